@@ -1,0 +1,23 @@
+// What a computation cost, in units that do not depend on the machine beside the seconds that do.
+#pragma once
+
+#include <cstdint>
+
+namespace softgrain {
+
+/// A loop pass is one evaluation of all contacts of a system;
+/// a contact evaluation is one touching or candidate pair in such a pass.
+struct Cost {
+  std::int64_t loop_passes = 0;
+  std::int64_t contact_evaluations = 0;
+  double seconds = 0.0;  ///< wall time of the thread that did the work
+
+  Cost& operator+=(const Cost& o) {
+    loop_passes += o.loop_passes;
+    contact_evaluations += o.contact_evaluations;
+    seconds += o.seconds;
+    return *this;
+  }
+};
+
+}  // namespace softgrain

@@ -1,0 +1,86 @@
+// The law of a soft contact as fitted: a card for people (TOML) and a table for programs (HDF5).
+// Everything inside is dimensionless (physics: Fn = E Rs^2 f(Delta), kt = E Rs g(Delta)), so one card serves any E and Rs.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/data/measurements.h"
+#include "common/data/pair_kind.h"
+
+namespace softgrain {
+
+/// A fitted number with its standard error (covariance) and 95 % interval (bootstrap over packings).
+struct Estimate {
+  double value = 0.0;
+  double standard_error = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// F(D) = 0 for D < delta, a D^b + c for D >= delta, with c = -a delta^b [SP 1.5]. Dimensionless.
+struct ThresholdPowerLaw {
+  Estimate a;
+  Estimate b;
+  Estimate c;
+  Estimate delta;
+
+  [[nodiscard]] double value(double overlap_ratio) const;
+  [[nodiscard]] double derivative(double overlap_ratio) const;  ///< d value / d Delta, 0 below delta
+};
+
+/// The mean measured curve behind a law, one entry per Delta. Dimensionless.
+struct LawTableRows {
+  std::vector<double> delta;
+  std::vector<double> force_mean;       ///< Fn/(E Rs^2)
+  std::vector<double> force_deviation;  ///< sample standard deviation over packings
+  std::vector<double> kt_initial_mean;  ///< kt/(E Rs), initial slope
+  std::vector<double> kt_initial_deviation;
+  std::vector<double> kt_secant_mean;   ///< kt/(E Rs), secant at 1 degree
+  std::vector<double> kt_secant_deviation;
+};
+
+/// Names of the jointly fitted parameters, in the order of PairLaw::covariance.
+inline constexpr std::array<const char*, 7> kLawParameterNames{"a_n",   "b_n",   "delta", "a_t_initial",
+                                                               "b_t_initial", "a_t_secant", "b_t_secant"};
+
+/// What was found for one pair kind.
+struct PairLaw {
+  PairKind kind = PairKind::soft_solid;
+  std::string status = "not run";  ///< "good", "no threshold crossing", "underdetermined", "not run"
+  std::string reason;              ///< one sentence when status is not "good"
+  ThresholdPowerLaw normal;
+  ThresholdPowerLaw tangential_initial;  ///< slope at ht = 0, from angles up to initial_angle_deg
+  ThresholdPowerLaw tangential_secant;   ///< secant at secant_angle_deg
+  double initial_angle_deg = 0.05;
+  double secant_angle_deg = 1.0;
+  bool has_tangential_initial = false;   ///< whether data for it existed
+  bool has_tangential_secant = false;
+  std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
+  double delta_min = 0.0;          ///< validity: range of Delta that was fitted
+  double delta_max = 0.0;
+  double max_overlap = 0.0;        ///< largest grain overlap over the smaller radius inside that range
+  int packings = 0;
+  int points = 0;
+  double chi2_per_dof = 0.0;
+  double quality = 0.0;            ///< probability of a larger chi^2 (GSL), computed on packing means
+  LawTableRows table;
+};
+
+struct LawCard {
+  int schema = 1;
+  SoftParticleSpec spec;           ///< of the measurement behind the law
+  std::string relaxation;          ///< which relaxation measured it
+  std::vector<PairLaw> pairs;
+
+  [[nodiscard]] const PairLaw* find(PairKind kind) const;
+};
+
+/// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws FileTrouble.
+void save_card(const LawCard& card, const std::string& toml_path);
+
+/// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, FileTrouble for files.
+LawCard load_card(const std::string& toml_path);
+
+}  // namespace softgrain

@@ -1,0 +1,29 @@
+// Where a result came from: written into every output.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/io/hdf5_file.h"
+
+namespace softgrain {
+
+inline constexpr int kSchemaVersion = 1;
+
+struct Provenance {
+  std::string version;         ///< of softgrain
+  std::string commit;          ///< git commit at build time, "unknown" without git
+  std::string compiler;        ///< compiler and flags
+  int threads = 1;
+  std::uint64_t seed = 0;
+  std::string command;         ///< command line as given
+  std::string scene;           ///< whole scene, overrides applied
+};
+
+/// Version, commit, compiler and flags are filled in; the rest is the caller's.
+Provenance build_provenance();
+
+/// Writes a group "provenance" with schema version.
+void write_provenance(const h5::Group& root, const Provenance& provenance);
+
+}  // namespace softgrain

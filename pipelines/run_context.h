@@ -1,0 +1,71 @@
+// What every command shares: options, run directory, log, summary.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/core/error.h"
+#include "common/io/provenance.h"
+#include "common/io/scene.h"
+
+namespace softgrain {
+
+/// Options of the command line that every command takes.
+struct CommonOptions {
+  std::vector<std::string> inputs;     ///< positional arguments
+  std::string out;                     ///< --out DIR; empty: chosen from the scene's name under results/
+  int threads = 0;                     ///< --threads N (>= 1); 0 = not given: all cores
+  std::uint64_t seed = 0;              ///< --seed N
+  bool seed_given = false;
+  std::vector<std::string> overrides;  ///< --set key=value
+  bool resume = false;                 ///< --resume
+  bool quiet = false;                  ///< --quiet
+  bool json = false;                   ///< --json
+  std::string law;                     ///< --law law.toml (macrosim)
+  std::string command_line;            ///< as given, for provenance
+};
+
+/// A run directory in use: made and proved writable, with a log file; writes the summary at the end.
+class RunContext {
+ public:
+  /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent.
+  RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name);
+
+  [[nodiscard]] const std::string& directory() const { return directory_; }
+  [[nodiscard]] std::string path(const std::string& file) const { return directory_ + "/" + file; }
+  [[nodiscard]] int threads() const { return threads_; }
+  [[nodiscard]] bool quiet() const { return options_.quiet; }
+  [[nodiscard]] bool resume() const { return options_.resume; }
+  /// Seed from --seed, else from the scene (`scene_seed`).
+  [[nodiscard]] std::uint64_t seed(std::uint64_t scene_seed) const { return options_.seed_given ? options_.seed : scene_seed; }
+  [[nodiscard]] Provenance provenance(const Scene& scene, std::uint64_t used_seed) const;
+
+  /// A line for people: to log.txt always, to standard error unless --quiet.
+  void say(const std::string& line) const;
+
+  /// Writes DIR/summary.json (atomic; "status", "command", "version", "commit" added when absent), prints it on standard
+  /// output with --json, else prints `people` (a few lines: what was found, how sure, where the files are) on standard output.
+  void finish(nlohmann::json summary, const std::string& people) const;
+
+ private:
+  CommonOptions options_;
+  std::string command_;
+  std::string directory_;
+  int threads_ = 1;
+};
+
+/// One function per command; returns the exit status, throws Error.
+ExitStatus command_run(const CommonOptions& options);
+ExitStatus command_microsim(const CommonOptions& options);
+ExitStatus command_calibrate(const CommonOptions& options);
+ExitStatus command_macrosim(const CommonOptions& options);
+ExitStatus command_compare(const CommonOptions& options);
+ExitStatus command_report(const CommonOptions& options);
+ExitStatus command_check(const CommonOptions& options);
+
+/// Parses the command line, dispatches, turns errors into messages and exit statuses.
+int run_program(int argc, char** argv);
+
+}  // namespace softgrain
