@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Checks that every #include obeys the layers of the project. Standard library only.
+
+  check_layers.py ROOT         prints each violation as file:line: what is wrong; status 1 when there is one
+  check_layers.py --self-test  proves on small made-up trees that every rule can fail
+
+Rules: common includes only itself; microsim, calibrate and macrosim only themselves and common; pipelines everything.
+Ceres appears only in .cpp files of calibrate; Eigen, toml++ and CLI11 only in .cpp files. Folders form no cycles.
+"""
+import os
+import re
+import sys
+import tempfile
+
+MAY_INCLUDE = {
+    "common": {"common"},
+    "microsim": {"microsim", "common"},
+    "calibrate": {"calibrate", "common"},
+    "macrosim": {"macrosim", "common"},
+    "pipelines": {"common", "microsim", "calibrate", "macrosim", "pipelines"},
+}
+OTHER_FOLDERS = {"tests", "results", "cmake", "build"}
+ONLY_IN_SOURCES = {"ceres": "Ceres", "glog": "glog", "Eigen": "Eigen", "unsupported": "Eigen", "toml++": "toml++", "CLI": "CLI11"}
+ONLY_IN_CALIBRATE = {"ceres", "glog"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+
+
+def source_files(root):
+    for layer in MAY_INCLUDE:
+        for folder, _, names in sorted(os.walk(os.path.join(root, layer))):
+            for name in sorted(names):
+                if name.endswith((".h", ".hpp", ".cpp", ".cc")):
+                    yield os.path.relpath(os.path.join(folder, name), root).replace(os.sep, "/")
+
+
+def includes(root, path):
+    """Yields (line number, included path); one written relative to its file is resolved against the root."""
+    with open(os.path.join(root, path), encoding="utf-8", errors="replace") as lines:
+        for number, line in enumerate(lines, 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            quote, target = match.groups()
+            beside = os.path.normpath(os.path.join(os.path.dirname(path), target)).replace(os.sep, "/")
+            if quote == '"' and (target.startswith(".") or os.path.isfile(os.path.join(root, beside))):
+                target = beside
+            yield number, target
+
+
+def violation(path, target):
+    """What is wrong with `path` including `target`, or None."""
+    layer = path.split("/")[0]
+    first = target.split("/")[0]
+    source = path.endswith((".cpp", ".cc"))
+    if first in OTHER_FOLDERS or (first in MAY_INCLUDE and first not in MAY_INCLUDE[layer]):
+        return f"{layer} must not include {first}/"
+    if first in ONLY_IN_CALIBRATE and layer != "calibrate":
+        return f"{ONLY_IN_SOURCES[first]} belongs to calibrate only"
+    if first in ONLY_IN_SOURCES and not source:
+        return f"{ONLY_IN_SOURCES[first]} must not be included by a header"
+    return None
+
+
+def reachable(edges, start):
+    seen, todo = set(), [start]
+    while todo:
+        for folder in edges.get(todo.pop(), {}):
+            if folder not in seen:
+                seen.add(folder)
+                todo.append(folder)
+    return seen
+
+
+def folder_cycles(edges):
+    """One message per include through which two folders depend on each other; edges[from][to] = "file:line"."""
+    for start in sorted(edges):
+        for end, where in sorted(edges[start].items()):
+            if start in reachable(edges, end):
+                yield f"{where}: folders depend on each other: {start} -> {end} -> ... -> {start}"
+
+
+def check(root):
+    messages, edges = [], {}
+    for path in source_files(root):
+        for number, target in includes(root, path):
+            problem = violation(path, target)
+            if problem:
+                messages.append(f'{path}:{number}: "{target}": {problem}')
+            start, end = os.path.dirname(path), os.path.dirname(target)
+            if target.split("/")[0] == path.split("/")[0] and start != end:
+                edges.setdefault(start, {}).setdefault(end, f"{path}:{number}")
+    return messages + list(folder_cycles(edges))
+
+
+GOOD = {
+    "common/core/a.h": "#include <vector>\n",
+    "common/io/b.cpp": '#include "common/core/a.h"\n#include <toml++/toml.h>\n#include <Eigen/Core>\n',
+    "microsim/shell/c.h": '#include "common/core/a.h"\n#include "microsim/d.h"\n',
+    "microsim/d.h": '// #include "macrosim/x.h"\n',
+    "calibrate/fit.cpp": "#include <ceres/ceres.h>\n",
+    "macrosim/lammps/e.cpp": '#include "local.h"\n#include "common/core/a.h"\n',
+    "macrosim/lammps/local.h": "",
+    "pipelines/main.cpp": '#include "microsim/d.h"\n#include <CLI/CLI.hpp>\n#include "generated_build_info.h"\n',
+}
+# Each case: a file that breaks one rule, and the start of the message that it must cause.
+BAD = [
+    ("common/core/x.h", '\n#include "microsim/d.h"\n', "common/core/x.h:2:"),
+    ("common/core/x.h", '#include "../../pipelines/not_there.h"\n', "common/core/x.h:1:"),
+    ("microsim/x.cpp", '#include "macrosim/lammps/local.h"\n', "microsim/x.cpp:1:"),
+    ("microsim/x.cpp", '# include "../calibrate/fit.cpp"\n', "microsim/x.cpp:1:"),
+    ("calibrate/x.cpp", "#include <microsim/d.h>\n", "calibrate/x.cpp:1:"),
+    ("macrosim/x.cpp", '#include "pipelines/run_context.h"\n', "macrosim/x.cpp:1:"),
+    ("pipelines/x.cpp", '#include "tests/support/t.h"\n', "pipelines/x.cpp:1:"),
+    ("calibrate/x.h", "#include <ceres/problem.h>\n", "calibrate/x.h:1:"),
+    ("pipelines/x.cpp", '#include "ceres/ceres.h"\n', "pipelines/x.cpp:1:"),
+    ("microsim/x.h", "#include <Eigen/Sparse>\n", "microsim/x.h:1:"),
+    ("common/io/x.h", "#include <toml++/toml.h>\n", "common/io/x.h:1:"),
+    ("pipelines/x.h", "#include <CLI/CLI.hpp>\n", "pipelines/x.h:1:"),
+    ("common/core/x.h", '#include "common/io/y.h"\n', "common/core/x.h:1: folders"),
+    ("microsim/d.h", '#include "microsim/shell/c.h"\n', "microsim/d.h:1: folders"),
+]
+
+
+def check_tree(files):
+    with tempfile.TemporaryDirectory() as root:
+        for path, text in files.items():
+            os.makedirs(os.path.join(root, os.path.dirname(path)), exist_ok=True)
+            with open(os.path.join(root, path), "w", encoding="utf-8") as out:
+                out.write(text)
+        return check(root)
+
+
+def self_test():
+    failures = [f"a good tree was refused: {message}" for message in check_tree(GOOD)]
+    for path, text, expected in BAD:
+        messages = check_tree({**GOOD, path: text})
+        if not any(message.startswith(expected) for message in messages):
+            failures.append(f"missed {text.strip()!r} in {path}; got {messages}")
+    for failure in failures:
+        print(failure)
+    print(f"{len(BAD)} rules broken on purpose, {len(failures)} failures")
+    return 1 if failures else 0
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return self_test()
+    root = sys.argv[1] if len(sys.argv) == 2 else os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    if not any(True for _ in source_files(root)):
+        print(f"no source files under {root}")
+        return 1
+    messages = check(root)
+    for message in messages:
+        print(message)
+    return 1 if messages else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
