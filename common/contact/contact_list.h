@@ -1,0 +1,46 @@
+// The contacts and near pairs of a system with their history: structure of arrays, sorted, in sections of one geometry and law.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/contact/contact_state.h"
+#include "common/core/particles.h"
+
+namespace softgrain {
+
+enum class Geometry : std::int32_t { sphere_sphere, sphere_shell, sphere_plane };
+
+/// A run of contacts that share geometry and law, so that both are types inside the loop.
+struct ContactSection {
+  std::int32_t begin = 0;
+  std::int32_t end = 0;
+  Geometry geometry = Geometry::sphere_sphere;
+  std::int32_t law = 0;
+};
+
+template <int D>
+struct ContactList {
+  std::vector<Slot> i;                   ///< a grain, always
+  std::vector<Slot> j;                   ///< grain (j > i), shell or plane
+  std::vector<std::int32_t> image;       ///< periodic image of j, see Cell
+  std::vector<PairConstants> constants;  ///< of the law
+  std::vector<Vec<D>> spring;            ///< committed history
+  std::vector<Vec<D>> spring_next;       ///< history of the state tried last
+  std::vector<double> memory;            ///< committed history of laws with a memory; empty when no law of the scene has one
+  std::vector<double> memory_next;
+  std::vector<ContactSection> sections;
+  bool has_spring = false;               ///< some law of the scene has a tangential spring
+  bool has_memory = false;
+  std::uint64_t build = 0;               ///< number of the build, unique in the process; not part of a saved state
+
+  [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(i.size()); }
+
+  /// The state tried last becomes the state that is.
+  void commit() {
+    if (has_spring) spring.swap(spring_next);
+    if (has_memory) memory.swap(memory_next);
+  }
+};
+
+}  // namespace softgrain

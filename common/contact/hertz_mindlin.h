@@ -1,0 +1,99 @@
+// Hertz normal force, Mindlin no-slip tangential spring with Coulomb limit, Tsuji damping [SP 1.3].
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "common/contact/contact_state.h"
+#include "common/contact/coulomb_spring.h"
+#include "common/core/material.h"
+
+namespace softgrain {
+
+/// How the tangential spring answers to a changing contact radius.
+enum class Tangential {
+  none,      ///< frictionless: no spring, no torque, no history
+  mindlin,   ///< the published total form Ft = -sqrt(R12 h) Dt ht
+  rescaled   ///< spring shortened as the contact grows (dFt = -kt dht while loading): never creates energy
+};
+
+/// Coefficients of a pair of materials.
+struct HertzCoefficients {
+  double inverse_d = 0.0;   ///< 1/D, D = 3/4 [(1-nu1^2)/E1 + (1-nu2^2)/E2] [Pa]
+  double shear = 0.0;       ///< Dt, 1/Dt = (2-nu1)/(8 G1) + (2-nu2)/(8 G2) [Pa]
+  double friction = 0.0;    ///< mu
+  double damping = 0.0;     ///< alpha(e)
+
+  static HertzCoefficients of(const Material& m1, const Material& m2, double friction, double restitution);
+};
+
+/// alpha(e) = -sqrt(5) ln e / sqrt(ln^2 e + pi^2): restitution e at any speed when the contact ends at zero overlap
+/// (the dashpot may pull at the very end; nothing is clipped). e = 1: 0; e -> 0: sqrt(5). 0 <= e <= 1.
+inline double tsuji_alpha(double restitution) {
+  if (restitution >= 1.0) return 0.0;
+  if (restitution <= 0.0) return std::sqrt(5.0);
+  const double l = std::log(restitution);
+  return -std::sqrt(5.0) * l / std::sqrt(l * l + std::numbers::pi * std::numbers::pi);
+}
+
+inline HertzCoefficients HertzCoefficients::of(const Material& m1, const Material& m2, double friction, double restitution) {
+  const double normal = 0.75 * (m1.normal_compliance() + m2.normal_compliance());
+  const double tangential = m1.tangential_compliance() + m2.tangential_compliance();
+  if (!(normal > 0.0)) throw std::invalid_argument("a contact of two rigid materials has no finite stiffness");
+  return {1.0 / normal, 1.0 / tangential, friction, tsuji_alpha(restitution)};
+}
+
+/// Fn = sqrt(R12) h^(3/2)/D - eta vn, Ft = -sqrt(R12 h) Dt ht, |Ft| <= mu Fn,
+/// eta = alpha sqrt(m12 sqrt(R12)/D) h^(1/4), the same for both directions. SI units.
+template <Tangential kTangential, bool kDamped>
+struct HertzMindlin {
+  static constexpr bool has_tangential = kTangential != Tangential::none;
+  static constexpr bool has_memory = kTangential == Tangential::rescaled;
+  static constexpr bool needs_velocity = has_tangential || kDamped;
+  static constexpr bool needs_particle_pass = false;
+
+  HertzCoefficients k;
+
+  /// a: sqrt(R12), b: alpha sqrt(m12 sqrt(R12)/D).
+  [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
+    const double root = std::sqrt(bodies.effective_radius());
+    return {root, k.damping * std::sqrt(bodies.effective_mass() * (root * k.inverse_d))};
+  }
+
+  /// Overlap below which the pair cannot interact [m].
+  [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
+
+  template <int D>
+  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
+    ContactResponse<D> out;
+    const double root_h = std::sqrt(s.overlap);
+    const double contact_radius = s.constants.a * root_h;
+    out.elastic_force = contact_radius * s.overlap * k.inverse_d;
+    out.normal_stiffness = 1.5 * contact_radius * k.inverse_d;
+    out.normal_force = out.elastic_force;
+    double eta = 0.0;
+    if constexpr (kDamped) {
+      eta = s.constants.b * std::sqrt(root_h);
+      out.normal_force -= eta * s.normal_speed;
+    }
+    if constexpr (has_tangential) tangential(s, contact_radius, eta, out);
+    return out;
+  }
+
+ private:
+  template <int D>
+  void tangential(const ContactState<D>& s, double contact_radius, double eta, ContactResponse<D>& out) const {
+    const double limit = k.friction * std::max(out.normal_force, 0.0);
+    if constexpr (kTangential == Tangential::rescaled) {
+      ContactState<D> shortened = s;
+      if (s.memory > 0.0 && contact_radius > s.memory) shortened.spring *= s.memory / contact_radius;
+      coulomb_spring(shortened, contact_radius * k.shear, eta, limit, out);
+      out.memory = contact_radius;
+    } else {
+      coulomb_spring(s, contact_radius * k.shear, eta, limit, out);
+    }
+  }
+};
+
+}  // namespace softgrain

@@ -1,0 +1,56 @@
+// The laws of a scene and which pair of materials uses which. The variant is opened once per section of the contact list,
+// never per contact.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include "common/contact/hertz_mindlin.h"
+#include "common/contact/linear_spring.h"
+#include "common/contact/soft_contact.h"
+
+namespace softgrain {
+
+/// Every contact law that the loop is compiled for.
+using AnyLaw = std::variant<HertzMindlin<Tangential::none, false>, HertzMindlin<Tangential::none, true>,
+                            HertzMindlin<Tangential::mindlin, false>, HertzMindlin<Tangential::mindlin, true>,
+                            HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>,
+                            LinearSpring, SoftContact>;
+
+/// The cheapest Hertz law that does what the coefficients ask for: no friction, no history; no damping, no dashpot.
+AnyLaw hertz_law(const HertzCoefficients& coefficients, bool rescaled);
+
+class LawSet {
+ public:
+  static constexpr std::int32_t kNoContact = -1;  ///< the pair passes through itself
+
+  explicit LawSet(std::int32_t materials = 0)
+      : materials_(materials), table_(static_cast<std::size_t>(materials) * static_cast<std::size_t>(materials), kNoContact) {}
+
+  /// `law` serves bodies i of material m1 with j of m2 (and the reverse unless `ordered`).
+  void set(std::int32_t m1, std::int32_t m2, const AnyLaw& law, bool ordered = false) {
+    const auto index = static_cast<std::int32_t>(laws_.size());
+    laws_.push_back(law);
+    table_[at(m1, m2)] = index;
+    if (!ordered) table_[at(m2, m1)] = index;
+  }
+
+  [[nodiscard]] std::int32_t index(std::int32_t m1, std::int32_t m2) const { return table_[at(m1, m2)]; }
+  [[nodiscard]] const AnyLaw& law(std::int32_t index) const { return laws_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(laws_.size()); }
+  [[nodiscard]] std::int32_t materials() const { return materials_; }
+
+ private:
+  [[nodiscard]] std::size_t at(std::int32_t m1, std::int32_t m2) const {
+    if (m1 < 0 || m2 < 0 || m1 >= materials_ || m2 >= materials_) throw std::out_of_range("material without a law table row");
+    return static_cast<std::size_t>(m1) * static_cast<std::size_t>(materials_) + static_cast<std::size_t>(m2);
+  }
+
+  std::int32_t materials_ = 0;
+  std::vector<std::int32_t> table_;
+  std::vector<AnyLaw> laws_;
+};
+
+}  // namespace softgrain

@@ -1,0 +1,49 @@
+// Linear spring and dashpot with a Coulomb-limited tangential spring.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "common/contact/contact_state.h"
+#include "common/contact/coulomb_spring.h"
+
+namespace softgrain {
+
+/// Fn = kn h - eta vn with eta = 2 zeta sqrt(kn m12), zeta = -ln e / sqrt(ln^2 e + pi^2) (restitution e at any speed, contact
+/// ending at zero force of the undamped clock, as for the Tsuji form); Ft = -kt ht, |Ft| <= mu max(Fn, 0). SI units.
+struct LinearSpring {
+  static constexpr bool has_tangential = true;
+  static constexpr bool has_memory = false;
+  static constexpr bool needs_velocity = true;
+  static constexpr bool needs_particle_pass = false;
+
+  double normal = 0.0;      ///< kn [N/m]
+  double tangential = 0.0;  ///< kt [N/m]
+  double friction = 0.0;    ///< mu
+  double damping = 0.0;     ///< zeta, fraction of critical
+
+  static double zeta(double restitution) {
+    if (restitution >= 1.0) return 0.0;
+    if (restitution <= 0.0) return 1.0;
+    const double l = std::log(restitution);
+    return -l / std::sqrt(l * l + std::numbers::pi * std::numbers::pi);
+  }
+
+  /// a: unused, b: eta.
+  [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
+    return {0.0, 2.0 * damping * std::sqrt(normal * bodies.effective_mass())};
+  }
+  [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
+
+  template <int D>
+  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
+    ContactResponse<D> out;
+    out.elastic_force = normal * s.overlap;
+    out.normal_stiffness = normal;
+    out.normal_force = out.elastic_force - s.constants.b * s.normal_speed;
+    coulomb_spring(s, tangential, s.constants.b, friction * std::max(out.normal_force, 0.0), out);
+    return out;
+  }
+};
+
+}  // namespace softgrain

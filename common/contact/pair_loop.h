@@ -1,0 +1,148 @@
+// The one pair loop: geometry and law are types, what happens with each contact is the sink's business (forces, stiffness,
+// records). Everything that looks at contacts goes through here.
+#pragma once
+
+#include <cmath>
+
+#include "common/contact/contact_list.h"
+#include "common/system.h"
+
+namespace softgrain {
+
+/// Where two bodies touch. Arms are signed distances along the normal: contact point = x_i - arm_i n = x_j + arm_j n.
+template <int D>
+struct ContactGeometry {
+  double overlap = 0.0;
+  Vec<D> normal{};      ///< to body i
+  double arm_i = 0.0;
+  double arm_j = 0.0;
+  Vec<D> branch{};      ///< x_i - x_j (image of j nearest to i), for spheres and shells [m]
+};
+
+namespace detail {
+
+/// False when the bodies do not overlap. Coincident centres of spheres get an arbitrary, fixed normal.
+template <int D, Geometry kGeometry>
+inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<D>& shift, ContactGeometry<D>& g) {
+  const Sphere<D>& a = p.sphere[i];
+  const Sphere<D>& b = p.sphere[j];
+  const Vec<D> d = a.x - b.x - shift;
+  g.branch = d;
+  if constexpr (kGeometry == Geometry::sphere_plane) {
+    const Vec<D>& n = p.normal_of(static_cast<Slot>(j));
+    g.overlap = a.r - dot(d, n);
+    if (g.overlap <= 0.0) return false;
+    g.normal = n;
+    g.arm_i = a.r - 0.5 * g.overlap;
+    g.arm_j = 0.0;
+    return true;
+  } else {
+    const double distance2 = norm2(d);
+    if constexpr (kGeometry == Geometry::sphere_sphere) {
+      const double reach = a.r + b.r;
+      if (distance2 >= reach * reach) return false;
+      const double distance = std::sqrt(distance2);
+      g.overlap = reach - distance;
+      if (distance > 0.0)
+        g.normal = d * (1.0 / distance);
+      else
+        g.normal[0] = 1.0;
+      g.arm_i = a.r - 0.5 * g.overlap;
+      g.arm_j = b.r - 0.5 * g.overlap;
+      return true;
+    } else {
+      const double room = b.r - a.r;
+      if (room > 0.0 && distance2 <= room * room) return false;
+      const double distance = std::sqrt(distance2);
+      g.overlap = distance - room;
+      if (distance > 0.0)
+        g.normal = d * (-1.0 / distance);
+      else
+        g.normal[0] = 1.0;
+      g.arm_i = a.r - 0.5 * g.overlap;
+      g.arm_j = -(distance + g.arm_i);
+      return true;
+    }
+  }
+}
+
+/// Relative velocity of i against j at the contact point, split along the normal.
+template <int D>
+inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j, const ContactGeometry<D>& g,
+                            const Vec<D>& image_velocity, ContactState<D>& state) {
+  const Rot<D> turning = p.spin[i] * g.arm_i + p.spin[j] * g.arm_j;
+  const Vec<D> v = p.velocity[i] - p.velocity[j] - image_velocity - cross(turning, g.normal);
+  state.normal_speed = dot(v, g.normal);
+  state.sliding = v - g.normal * state.normal_speed;
+}
+
+template <int D, Geometry kGeometry, bool kPeriodic, class Law, class Sink>
+void run_section(System<D>& s, const ContactSection& section, const Law& law, double dt, std::int32_t begin, std::int32_t end,
+                 Sink& sink) {
+  ContactList<D>& list = s.contacts;
+  (void)section;
+  for (std::int32_t k = begin; k < end; ++k) {
+    const auto c = static_cast<std::size_t>(k);
+    const auto i = static_cast<std::size_t>(list.i[c]);
+    const auto j = static_cast<std::size_t>(list.j[c]);
+    Vec<D> shift{};
+    Vec<D> image_velocity{};
+    if constexpr (kPeriodic) {
+      shift = s.cell.image_shift(list.image[c]);
+      image_velocity = s.cell.velocity_gradient * shift;
+    }
+    ContactGeometry<D> g;
+    if (!meet<D, kGeometry>(s.particles, i, j, shift, g)) {
+      if constexpr (Law::has_tangential) list.spring_next[c] = {};
+      if constexpr (Law::has_memory) list.memory_next[c] = 0.0;
+      sink.apart(c);
+      continue;
+    }
+    ContactState<D> state;
+    state.overlap = g.overlap;
+    state.normal = g.normal;
+    state.dt = dt;
+    state.constants = list.constants[c];
+    if constexpr (Law::needs_velocity) relative_motion(s.particles, i, j, g, image_velocity, state);
+    if constexpr (Law::has_tangential) state.spring = list.spring[c];
+    if constexpr (Law::has_memory) state.memory = list.memory[c];
+    const ContactResponse<D> response = law.evaluate(state);
+    if constexpr (Law::has_tangential) list.spring_next[c] = response.spring;
+    if constexpr (Law::has_memory) list.memory_next[c] = response.memory;
+    sink.template touch<Law::has_tangential>(c, i, j, g, response);
+  }
+}
+
+}  // namespace detail
+
+/// Runs the part [begin, end) of one section through `sink`.
+template <int D, class Sink>
+void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end, Sink& sink) {
+  const bool periodic = s.cell.any_periodic();
+  std::visit(
+      [&](const auto& law) {
+        switch (section.geometry) {
+          case Geometry::sphere_sphere:
+            if (periodic)
+              detail::run_section<D, Geometry::sphere_sphere, true>(s, section, law, dt, begin, end, sink);
+            else
+              detail::run_section<D, Geometry::sphere_sphere, false>(s, section, law, dt, begin, end, sink);
+            break;
+          case Geometry::sphere_shell:
+            detail::run_section<D, Geometry::sphere_shell, false>(s, section, law, dt, begin, end, sink);
+            break;
+          case Geometry::sphere_plane:
+            detail::run_section<D, Geometry::sphere_plane, false>(s, section, law, dt, begin, end, sink);
+            break;
+        }
+      },
+      s.laws.law(section.law));
+}
+
+/// Runs all contacts through `sink`, in list order. The committed history is not touched; spring_next holds the new one.
+template <int D, class Sink>
+void pair_loop(System<D>& s, double dt, Sink& sink) {
+  for (const ContactSection& section : s.contacts.sections) pair_loop(s, section, dt, section.begin, section.end, sink);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,67 @@
+// The fitted law of a soft contact, ready for the loop: threshold power law in Delta = h/R, R the smaller shell [SP 1.5, 1.6].
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/contact/contact_state.h"
+#include "common/contact/coulomb_spring.h"
+
+namespace softgrain {
+
+/// a D^b + c for D >= delta, 0 below; c = -a delta^b. Dimensionless.
+struct PowerTerm {
+  double a = 0.0;
+  double b = 1.0;
+  double c = 0.0;
+
+  [[nodiscard]] double value(double d) const { return a * std::pow(d, b) + c; }
+  [[nodiscard]] double slope(double d) const { return a * b * std::pow(d, b - 1.0); }
+};
+
+/// Fn = E R^2 f(Delta), kt = E R g(Delta), |Ft| <= mu Fn, viscous damping eta = 2 zeta sqrt(m12 kn).
+/// Below delta: no force, no spring, no history (the pair does not even enter the list before its skin). SI units.
+struct SoftContact {
+  static constexpr bool has_tangential = true;
+  static constexpr bool has_memory = false;
+  static constexpr bool needs_velocity = true;
+  static constexpr bool needs_particle_pass = false;
+
+  PowerTerm normal;
+  PowerTerm tangential;
+  double delta = 0.0;        ///< threshold of both
+  double modulus = 0.0;      ///< E [Pa]
+  double friction = 0.0;     ///< mu_soft
+  double damping = 0.0;      ///< zeta, fraction of critical
+  bool partner_is_soft = false;  ///< soft-soft: the smaller radius counts; soft-solid: the soft one's
+  bool i_is_soft = true;         ///< soft-solid: which of the two is soft
+
+  /// a: radius of the shell that Delta refers to [m], b: 2 zeta sqrt(m12).
+  [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
+    return {reference_radius(bodies), 2.0 * damping * std::sqrt(bodies.effective_mass())};
+  }
+  [[nodiscard]] double onset(const PairBodies& bodies) const { return delta * reference_radius(bodies); }
+
+  template <int D>
+  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
+    ContactResponse<D> out;
+    const double radius = s.constants.a;
+    const double ratio = s.overlap / radius;
+    if (ratio < delta) return out;
+    out.elastic_force = modulus * radius * radius * normal.value(ratio);
+    out.normal_stiffness = modulus * radius * normal.slope(ratio);
+    const double eta = s.constants.b * std::sqrt(out.normal_stiffness);
+    out.normal_force = out.elastic_force - eta * s.normal_speed;
+    const double stiffness = modulus * radius * std::max(tangential.value(ratio), 0.0);
+    if (stiffness > 0.0) coulomb_spring(s, stiffness, eta, friction * std::max(out.normal_force, 0.0), out);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] double reference_radius(const PairBodies& bodies) const {
+    if (partner_is_soft) return std::min(bodies.radius_i, bodies.radius_j);
+    return i_is_soft ? bodies.radius_i : bodies.radius_j;
+  }
+};
+
+}  // namespace softgrain

@@ -1,0 +1,91 @@
+// Everything that can touch: grains (solid or soft), shells (insides of spheres) and planes, as a structure of arrays.
+// Slots are ordered grains, shells, planes, so that one index names a body everywhere (contacts, forces, output).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/core/vec.h"
+
+namespace softgrain {
+
+/// Position and radius sit together: the contact loop gathers them in one aligned 32-byte load.
+template <int D>
+struct alignas(32) Sphere {
+  Vec<D> x;        ///< centre [m]; a point of the plane for planes
+  double r = 0.0;  ///< radius [m]; 0 for planes
+};
+
+template <int D>
+struct Particles {
+  std::vector<Sphere<D>> sphere;
+  std::vector<Vec<D>> velocity;          ///< [m/s]
+  std::vector<Rot<D>> spin;              ///< [rad/s]
+  std::vector<Vec<D>> force;             ///< of the last pass, on the body [N]
+  std::vector<Rot<D>> torque;            ///< [N m]
+  std::vector<double> inverse_mass;      ///< [1/kg]; 0: not moved by forces
+  std::vector<double> inverse_inertia;   ///< [1/(kg m^2)]; 0: not turned by torques
+  std::vector<std::int32_t> material;    ///< index into the materials of the scene
+  std::vector<std::int32_t> shell;       ///< slot of the shell this grain lives in, -1: none
+  std::vector<Vec<D>> plane_normal;      ///< one per plane, unit, into the space of the grains
+  std::int32_t grains = 0;               ///< slots [0, grains)
+  std::int32_t shells = 0;               ///< slots [grains, grains + shells)
+  std::int32_t planes = 0;               ///< the rest
+
+  [[nodiscard]] std::int32_t size() const { return grains + shells + planes; }
+  [[nodiscard]] std::int32_t first_plane() const { return grains + shells; }
+  [[nodiscard]] const Vec<D>& normal_of(std::int32_t slot) const {
+    return plane_normal[static_cast<std::size_t>(slot - first_plane())];
+  }
+};
+
+using Slot = std::int32_t;
+
+/// A body to be added. Mass and inertia zero mean "not moved by forces".
+template <int D>
+struct NewBody {
+  Vec<D> x{};
+  double r = 0.0;
+  double mass = 0.0;
+  double inertia = 0.0;
+  std::int32_t material = 0;
+  Slot shell = -1;
+  Vec<D> velocity{};
+  Rot<D> spin{};
+};
+
+namespace detail {
+template <int D>
+void insert_body(Particles<D>& p, Slot at, const NewBody<D>& b) {
+  const auto k = static_cast<std::ptrdiff_t>(at);
+  p.sphere.insert(p.sphere.begin() + k, Sphere<D>{b.x, b.r});
+  p.velocity.insert(p.velocity.begin() + k, b.velocity);
+  p.spin.insert(p.spin.begin() + k, b.spin);
+  p.force.insert(p.force.begin() + k, Vec<D>{});
+  p.torque.insert(p.torque.begin() + k, Rot<D>{});
+  p.inverse_mass.insert(p.inverse_mass.begin() + k, b.mass > 0.0 ? 1.0 / b.mass : 0.0);
+  p.inverse_inertia.insert(p.inverse_inertia.begin() + k, b.inertia > 0.0 ? 1.0 / b.inertia : 0.0);
+  p.material.insert(p.material.begin() + k, b.material);
+  p.shell.insert(p.shell.begin() + k, b.shell);
+}
+}  // namespace detail
+
+/// Bodies are added in the order grains, shells, planes (asserted by the slot returned being the last).
+template <int D>
+Slot add_grain(Particles<D>& p, const NewBody<D>& b) {
+  detail::insert_body(p, p.grains, b);
+  return p.grains++;
+}
+template <int D>
+Slot add_shell(Particles<D>& p, const NewBody<D>& b) {
+  detail::insert_body(p, p.first_plane(), b);
+  return p.grains + p.shells++;
+}
+template <int D>
+Slot add_plane(Particles<D>& p, const NewBody<D>& b, const Vec<D>& unit_normal) {
+  detail::insert_body(p, p.size(), b);
+  p.plane_normal.push_back(unit_normal);
+  return p.first_plane() + p.planes++;
+}
+
+}  // namespace softgrain

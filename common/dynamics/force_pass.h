@@ -1,0 +1,45 @@
+// Forces and torques on all bodies from all contacts.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/system.h"
+
+namespace softgrain {
+
+/// One loop pass: updates the neighbour list when needed, evaluates every contact over a time `dt` since the last commit and
+/// sums forces and torques per body (gravity not included). History is left uncommitted in contacts.*_next.
+/// Sums run in list order for every body, whatever the number of threads: the result is bitwise the same.
+template <int D>
+void force_pass(System<D>& system, double dt);
+
+/// Sums of contact stiffness per body, for mass scaling and step control.
+struct BodyStiffness {
+  std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
+  std::vector<double> rotation;     ///< sum of kt arm^2 [N m]
+};
+
+/// A pass that also returns the stiffness sums.
+template <int D>
+void force_pass(System<D>& system, double dt, BodyStiffness& stiffness);
+
+/// One contact as it is, for measurement and output.
+template <int D>
+struct ContactRecord {
+  Slot i = 0;
+  Slot j = 0;
+  double overlap = 0.0;
+  Vec<D> normal{};       ///< to i
+  Vec<D> branch{};       ///< x_i - x_j (from a point of the plane for planes) [m]
+  Vec<D> point{};        ///< of contact, image near i [m]
+  double normal_force = 0.0;
+  Vec<D> tangential_force{};
+  bool sliding = false;
+};
+
+/// All force-carrying contacts of the committed state. Never changes the trajectory; not counted as a loop pass.
+template <int D>
+std::vector<ContactRecord<D>> contact_records(const System<D>& system);
+
+}  // namespace softgrain

@@ -1,0 +1,51 @@
+#include "common/dynamics/time_step.h"
+
+#include <cmath>
+#include <type_traits>
+
+namespace softgrain {
+
+namespace {
+
+/// Overlap in units of the shell radius at which soft contacts are judged: near the end of their measured range.
+constexpr double kSoftOverlap = 0.35;
+
+double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        ContactState<3> state;
+        state.overlap = radius * (std::is_same_v<Law, SoftContact> ? kSoftOverlap : overlap_ratio);
+        state.normal = {{1.0, 0.0, 0.0}};
+        state.constants = law.pair_constants({radius, radius, inverse_mass, inverse_mass});
+        return law.evaluate(state).normal_stiffness;
+      },
+      any);
+}
+
+}  // namespace
+
+template <int D>
+StepLimit step_limit(const System<D>& s, double overlap_ratio) {
+  StepLimit limit;
+  const auto& p = s.particles;
+  double smallest = 0.0;
+  for (Slot i = 0; i < p.grains + p.shells; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    if (!(p.inverse_mass[u] > 0.0)) continue;
+    for (std::int32_t m = 0; m < s.laws.materials(); ++m) {
+      const std::int32_t law = s.laws.index(p.material[u], m);
+      if (law == LawSet::kNoContact) continue;
+      const double k = stiffness_of(s.laws.law(law), p.sphere[u].r, p.inverse_mass[u], overlap_ratio);
+      const double t2 = 1.0 / (p.inverse_mass[u] * k);
+      if (limit.body >= 0 && t2 >= smallest) continue;
+      smallest = t2;
+      limit = {std::sqrt(t2), i, law, k};
+    }
+  }
+  return limit;
+}
+
+template StepLimit step_limit<2>(const System<2>&, double);
+template StepLimit step_limit<3>(const System<3>&, double);
+
+}  // namespace softgrain

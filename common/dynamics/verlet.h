@@ -1,0 +1,47 @@
+// Velocity Verlet for bodies with contacts that depend on velocity.
+#pragma once
+
+#include <vector>
+
+#include "common/system.h"
+
+namespace softgrain {
+
+/// Advances a system by steps of `dt`. Forces are evaluated at full-step positions with full-step (predicted) velocities:
+/// half-step velocities in the tangential force give spurious friction at large size ratios (Vyas et al. 2024).
+/// Bodies with zero inverse mass move with the velocity and spin they were given.
+template <int D>
+class VelocityVerlet {
+ public:
+  explicit VelocityVerlet(double dt) : dt_(dt) {}
+
+  [[nodiscard]] double dt() const { return dt_; }
+
+  /// Forces of the state as it is, without advancing any history. Needed once before the first step and after any change
+  /// of positions from outside.
+  void initialise(System<D>& system);
+
+  void step(System<D>& system);
+
+ private:
+  void drift(System<D>& system);
+  void correct(System<D>& system) const;
+
+  double dt_;
+  std::vector<Vec<D>> old_force_;
+  std::vector<Rot<D>> old_torque_;
+};
+
+/// Adds gravity to the forces of the last pass, for bodies moved by forces.
+template <int D>
+void add_gravity(System<D>& system);
+
+/// Sets all translational and angular velocities of bodies moved by forces to zero.
+template <int D>
+void stop_motion(Particles<D>& particles);
+
+/// Translational plus rotational kinetic energy of bodies moved by forces [J].
+template <int D>
+double kinetic_energy(const Particles<D>& particles);
+
+}  // namespace softgrain
