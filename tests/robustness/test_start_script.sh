@@ -145,6 +145,14 @@ failing_steps() {
   check "shows what apt-get said" printed err 'E: no such package'
 }
 
+unwritable() {
+  fresh
+  touch "$repo/build"
+  start run x
+  check "status 4 when the build directory cannot be made" status 4
+  check "says so in one line" lines 1 err
+}
+
 tests_command() {
   fresh
   start run x
@@ -172,7 +180,7 @@ moved_copy() {
 for script_file in softgrain .ci/run; do
   "$real_bash" -n "$root/$script_file" || failures=$((failures + 1))
 done
-for group in nothing_missing missing_as_root missing_with_sudo missing_without_rights other_system failing_steps tests_command moved_copy; do
+for group in nothing_missing missing_as_root missing_with_sudo missing_without_rights other_system failing_steps unwritable tests_command moved_copy; do
   printf -- '-- %s\n' "$group"
   "$group"
 done
