@@ -3,8 +3,9 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "common/contact/pair_loop.h"
+#include "common/dynamics/pair_loop.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -47,6 +48,10 @@ struct StiffnessSink {
   template <bool kTorque>
   void touch(std::size_t c, std::size_t i, std::size_t j, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
     scatter.template touch<kTorque>(c, i, j, g, r);
+    if (r.normal_force != 0.0) {
+      out.force_sum += std::abs(r.normal_force);
+      ++out.contacts;
+    }
     const double k = r.normal_stiffness + r.tangential_stiffness;
     out.translation[i] += k;
     out.translation[j] += k;
@@ -215,6 +220,8 @@ void force_pass(System<D>& system, double dt, BodyStiffness& stiffness) {
   clear_forces(system.particles);
   stiffness.translation.assign(static_cast<std::size_t>(system.particles.size()), 0.0);
   stiffness.rotation.assign(static_cast<std::size_t>(system.particles.size()), 0.0);
+  stiffness.force_sum = 0.0;
+  stiffness.contacts = 0;
   StiffnessSink<D> sink{{system.particles}, stiffness};
   pair_loop(system, dt, sink);
   count_pass(system);

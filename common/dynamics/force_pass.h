@@ -14,10 +14,14 @@ namespace softgrain {
 template <int D>
 void force_pass(System<D>& system, double dt);
 
-/// Sums of contact stiffness per body, for mass scaling and step control.
+/// Sums of contact stiffness per body, for mass scaling and step control, and the mean contact force of the same pass.
 struct BodyStiffness {
   std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
   std::vector<double> rotation;     ///< sum of kt arm^2 [N m]
+  double force_sum = 0.0;           ///< of |normal force| over contacts [N]
+  std::int64_t contacts = 0;        ///< force-carrying
+
+  [[nodiscard]] double mean_force() const { return contacts > 0 ? force_sum / static_cast<double>(contacts) : 0.0; }
 };
 
 /// A pass that also returns the stiffness sums.

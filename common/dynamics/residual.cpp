@@ -1,0 +1,60 @@
+#include "common/dynamics/residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/dynamics/force_pass.h"
+
+namespace softgrain {
+
+namespace {
+
+template <int D>
+double net_force2(const Particles<D>& p, std::size_t u) {
+  double f2 = p.inverse_mass[u] > 0.0 ? norm2(p.force[u]) : 0.0;
+  if (p.inverse_inertia[u] > 0.0) f2 = std::max(f2, norm2(p.torque[u]) / (p.sphere[u].r * p.sphere[u].r));
+  return f2;
+}
+
+template <int D>
+double smaller_radius(const System<D>& s, const ContactRecord<D>& c) {
+  const double ri = s.particles.sphere[static_cast<std::size_t>(c.i)].r;
+  return c.j < s.particles.grains ? std::min(ri, s.particles.sphere[static_cast<std::size_t>(c.j)].r) : ri;
+}
+
+}  // namespace
+
+template <int D>
+double worst_net_force(const Particles<D>& p) {
+  double worst = 0.0;
+  for (std::size_t u = 0; u < p.force.size(); ++u) worst = std::max(worst, net_force2(p, u));
+  return std::sqrt(worst);
+}
+
+template <int D>
+Residual residual(const System<D>& s) {
+  Residual out;
+  const auto& p = s.particles;
+  double worst = -1.0;
+  for (Slot i = 0; i < p.size(); ++i) {
+    const double f2 = net_force2(p, static_cast<std::size_t>(i));
+    if (f2 <= worst) continue;
+    worst = f2;
+    out.worst_body = i;
+  }
+  out.worst_force = std::sqrt(std::max(worst, 0.0));
+  for (const ContactRecord<D>& c : contact_records(s)) {
+    out.max_overlap = std::max(out.max_overlap, c.overlap / smaller_radius(s, c));
+    out.mean_contact += std::abs(c.normal_force);
+    ++out.contacts;
+  }
+  if (out.contacts > 0) out.mean_contact /= static_cast<double>(out.contacts);
+  return out;
+}
+
+template Residual residual<2>(const System<2>&);
+template Residual residual<3>(const System<3>&);
+template double worst_net_force<2>(const Particles<2>&);
+template double worst_net_force<3>(const Particles<3>&);
+
+}  // namespace softgrain

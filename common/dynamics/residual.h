@@ -1,0 +1,30 @@
+// How far a system is from equilibrium.
+#pragma once
+
+#include "common/system.h"
+
+namespace softgrain {
+
+struct Residual {
+  double worst_force = 0.0;      ///< largest net force (or net moment over radius) on a body moved by forces [N]
+  double mean_contact = 0.0;     ///< mean normal contact force [N]
+  Slot worst_body = -1;
+  double max_overlap = 0.0;      ///< largest overlap over the smaller radius involved
+  std::int64_t contacts = 0;     ///< force-carrying
+
+  /// worst_force over the larger of mean_contact and floor.
+  [[nodiscard]] double relative(double floor) const {
+    const double scale = mean_contact > floor ? mean_contact : floor;
+    return scale > 0.0 ? worst_force / scale : 0.0;
+  }
+};
+
+/// From the forces of the last pass (gravity included when add_gravity was called) and the contacts as they are.
+template <int D>
+Residual residual(const System<D>& system);
+
+/// The largest net force alone: cheap, for a test within iterations.
+template <int D>
+double worst_net_force(const Particles<D>& particles);
+
+}  // namespace softgrain

@@ -1,0 +1,74 @@
+#include "microsim/measure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/dynamics/residual.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Adds what a piece of work cost to a Cost.
+class CostMeter {
+ public:
+  CostMeter(const System3& system, Cost& to) : system_(system), to_(to), before_(system.cost), start_(Clock::now()) {}
+  ~CostMeter() {
+    to_.loop_passes += system_.cost.loop_passes - before_.loop_passes;
+    to_.contact_evaluations += system_.cost.contact_evaluations - before_.contact_evaluations;
+    to_.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+  CostMeter(const CostMeter&) = delete;
+  CostMeter& operator=(const CostMeter&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const System3& system_;
+  Cost& to_;
+  Cost before_;
+  Clock::time_point start_;
+};
+
+NormalPoint normal_point(MeasurementState& state, double delta, const Protocol& protocol) {
+  const CostMeter meter(state.experiment.system, state.run.normal_cost);
+  protocol.approach(state.experiment, delta * state.experiment.spec.shell_radius);
+  const SettleResult rest = protocol.settle(state.experiment, false);
+  return {delta, state.experiment.force_on_second()[0], rest.residual, rest.max_overlap, rest.converged};
+}
+
+TangentialPoint as_tangential(const SoftExperiment& e, double delta, double angle, double residual, bool converged) {
+  const Vec3 force = e.force_on_second();
+  return {delta, angle, force[1], force[2], residual, converged};
+}
+
+TangentialPoint rotated_point(const MeasurementState& state, double delta, double angle, const MeasurementPlan& plan,
+                              const Protocol& protocol, Cost& cost) {
+  SoftExperiment e = state.experiment;
+  const CostMeter meter(e.system, cost);
+  e.rotate_first(angle, plan.rotation_step_deg, plan.shell_turns);
+  const SettleResult rest = protocol.settle(e, true);
+  return as_tangential(e, delta, angle, rest.residual, rest.converged);
+}
+
+bool is_among(const std::vector<double>& values, double x) {
+  return std::any_of(values.begin(), values.end(), [x](double v) { return std::abs(v - x) < 1e-9; });
+}
+
+}  // namespace
+
+void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol, const MeasurementObserver& observer) {
+  for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
+    const double delta = plan.deltas[k];
+    const NormalPoint normal = normal_point(state, delta, protocol);
+    if (is_among(plan.tangential_deltas, delta)) {
+      state.run.tangential.push_back(as_tangential(state.experiment, delta, 0.0, normal.residual, normal.converged));
+      for (const double angle : plan.angles_deg)
+        state.run.tangential.push_back(rotated_point(state, delta, angle, plan, protocol, state.run.tangential_cost));
+    }
+    state.run.normal.push_back(normal);
+    observer(state, static_cast<double>(k + 1) / static_cast<double>(plan.deltas.size()));
+  }
+}
+
+}  // namespace softgrain

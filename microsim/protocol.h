@@ -1,0 +1,55 @@
+// How a measurement comes to rest: the published protocol (the reference) and faster ones, behind one small interface.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/data/measurements.h"
+#include "microsim/soft_experiment.h"
+
+namespace softgrain {
+
+struct PublishedOptions {
+  double approach_speed = 0.0;   ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise
+  double stop_interval = 0.0;    ///< [s]; 0: 0.3 s at the published Rs, rho, E, scaled with Rs sqrt(rho/E) otherwise
+  int stops = 6;                 ///< stops of all motion, each after one interval; one more interval follows
+  double step_fraction = 0.2;    ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
+  double tolerance = 1e-2;       ///< a point is called converged below this (largest net force over mean contact force)
+};
+
+struct DampedProtocolOptions {
+  double increment = 0.0025;        ///< of Delta between two relaxations
+  double tolerance = 1e-3;          ///< at a recorded point
+  double tolerance_between = 1e-1;  ///< at increments between recorded points
+  double tolerance_rotated = 1e-4;  ///< at recorded points after a rotation
+  std::int64_t max_passes = 20000;  ///< per relaxation
+};
+
+/// Residuals count forces from this floor up: 1e-7 E Rs^2 [SP 1.4].
+double force_floor(const SoftParticleSpec& spec);
+
+struct SettleResult {
+  double residual = 0.0;
+  double max_overlap = 0.0;
+  bool converged = false;
+};
+
+/// A way of bringing an experiment to a given overlap and to rest.
+class Protocol {
+ public:
+  virtual ~Protocol() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Whether contacts carry physical dashpots under this protocol.
+  [[nodiscard]] virtual bool damped_contacts() const = 0;
+  /// Moves the second body until the overlap is `overlap` [m], at the protocol's own pace.
+  virtual void approach(SoftExperiment& experiment, double overlap) const = 0;
+  /// Relaxes a state that is to be recorded; `rotated` says that it follows a rotation.
+  virtual SettleResult settle(SoftExperiment& experiment, bool rotated) const = 0;
+};
+
+/// Six times { molecular dynamics for an interval; all velocities to zero }, one more interval [SP 1.4]. Name "published".
+std::unique_ptr<Protocol> make_published_protocol(const PublishedOptions& options);
+/// Increments of overlap, each relaxed by mass-scaled dynamics with adaptive damping. Name "damped".
+std::unique_ptr<Protocol> make_damped_protocol(const DampedProtocolOptions& options);
+
+}  // namespace softgrain

@@ -1,0 +1,76 @@
+#include <cmath>
+
+#include "common/dynamics/residual.h"
+#include "common/dynamics/time_step.h"
+#include "common/dynamics/verlet.h"
+#include "microsim/protocol.h"
+
+namespace softgrain {
+
+namespace {
+
+/// The published experiment: Rs = 0.016 m, E = 5e5 Pa, rho = 2500 kg/m^3 (density is ours, it is not published).
+const SoftParticleSpec kPublished{};
+constexpr double kPublishedInterval = 0.3;   // s
+constexpr double kPublishedSpeed = 0.002;    // m/s, ours: slow enough for the law not to depend on it much
+
+class PublishedProtocol : public Protocol {
+ public:
+  explicit PublishedProtocol(const PublishedOptions& options) : options_(options) {}
+
+  [[nodiscard]] std::string name() const override { return "published"; }
+  [[nodiscard]] bool damped_contacts() const override { return true; }
+
+  void approach(SoftExperiment& e, double overlap) const override {
+    const double distance = overlap - e.normal_overlap;
+    if (distance <= 0.0) return;
+    const double dt = step(e);
+    const auto steps = static_cast<std::int64_t>(std::ceil(distance / (speed(e.spec) * dt)));
+    const double exact_speed = distance / (static_cast<double>(steps) * dt);
+    e.add_approach_speed(exact_speed);
+    run(e, steps, dt);
+    e.add_approach_speed(-exact_speed);
+    e.normal_overlap = overlap;
+  }
+
+  SettleResult settle(SoftExperiment& e, bool) const override {
+    const double dt = step(e);
+    const auto steps = static_cast<std::int64_t>(std::ceil(interval(e.spec) / dt));
+    for (int k = 0; k < options_.stops; ++k) {
+      run(e, steps, dt);
+      stop_motion(e.system.particles);
+    }
+    run(e, steps, dt);
+    const Residual r = residual(e.system);
+    const double relative = r.relative(force_floor(e.spec));
+    return {relative, r.max_overlap, relative <= options_.tolerance};
+  }
+
+ private:
+  [[nodiscard]] double step(const SoftExperiment& e) const { return options_.step_fraction * step_limit(e.system).natural_time; }
+  [[nodiscard]] double speed(const SoftParticleSpec& spec) const {
+    if (options_.approach_speed > 0.0) return options_.approach_speed;
+    return kPublishedSpeed * ((spec.shell_radius / natural_time(spec)) / (kPublished.shell_radius / natural_time(kPublished)));
+  }
+  [[nodiscard]] double interval(const SoftParticleSpec& spec) const {
+    if (options_.stop_interval > 0.0) return options_.stop_interval;
+    return kPublishedInterval * (natural_time(spec) / natural_time(kPublished));
+  }
+  static void run(SoftExperiment& e, std::int64_t steps, double dt) {
+    VelocityVerlet<3> integrator(dt);
+    integrator.initialise(e.system);
+    for (std::int64_t k = 0; k < steps; ++k) integrator.step(e.system);
+  }
+
+  PublishedOptions options_;
+};
+
+}  // namespace
+
+double force_floor(const SoftParticleSpec& spec) { return 1e-7 * spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
+
+std::unique_ptr<Protocol> make_published_protocol(const PublishedOptions& options) {
+  return std::make_unique<PublishedProtocol>(options);
+}
+
+}  // namespace softgrain
