@@ -1,0 +1,51 @@
+// Turns "observations y at points x, model f(x; p)" into a least-squares problem with an exact Jacobian.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "calibrate/dual.h"
+#include "calibrate/least_squares.h"
+
+namespace softgrain {
+
+/// Observations: `predictors` numbers of x per y, row after row.
+struct Observations {
+  std::vector<double> y;
+  std::vector<double> x;
+  std::size_t predictors = 1;
+};
+
+/// Residuals f(x_i; p) - y_i. `model(p, x)` is generic in the type of p (double or Dual<N>): `[](const auto* p, const double* x)`.
+template <std::size_t N, class Model>
+LeastSquaresProblem curve_problem(Observations data, Model model) {
+  const auto shared = std::make_shared<const Observations>(std::move(data));
+  LeastSquaresProblem problem;
+  problem.residuals = shared->y.size();
+  problem.evaluate = [shared, model](std::span<const double> p, std::span<double> r) {
+    bool finite = true;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      r[i] = model(p.data(), shared->x.data() + i * shared->predictors) - shared->y[i];
+      finite = finite && std::isfinite(r[i]);
+    }
+    return finite;
+  };
+  problem.jacobian = [shared, model](std::span<const double> p, std::span<double> jacobian) {
+    std::array<Dual<N>, N> q;
+    for (std::size_t j = 0; j < N; ++j) q[j] = Dual<N>::variable(p[j], j);
+    bool finite = true;
+    for (std::size_t i = 0; i < shared->y.size(); ++i) {
+      const Dual<N> f = model(q.data(), shared->x.data() + i * shared->predictors);
+      for (std::size_t j = 0; j < N; ++j) {
+        jacobian[i * N + j] = f.d[j];
+        finite = finite && std::isfinite(f.d[j]);
+      }
+    }
+    return finite;
+  };
+  return problem;
+}
+
+}  // namespace softgrain

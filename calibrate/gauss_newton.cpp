@@ -1,0 +1,162 @@
+#include "calibrate/gauss_newton.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "calibrate/numeric_jacobian.h"
+
+namespace softgrain {
+
+namespace {
+
+using Vector = std::vector<double>;
+
+struct FreeMatrix {
+  void operator()(gsl_matrix* m) const { gsl_matrix_free(m); }
+  void operator()(gsl_vector* v) const { gsl_vector_free(v); }
+};
+using MatrixPtr = std::unique_ptr<gsl_matrix, FreeMatrix>;
+using VectorPtr = std::unique_ptr<gsl_vector, FreeMatrix>;
+
+bool all_finite(const Vector& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+bool evaluate_jacobian(const LeastSquaresProblem& problem, const Vector& p, Vector& jacobian) {
+  const bool defined = problem.jacobian ? problem.jacobian(p, jacobian)
+                                        : ridders_jacobian(problem.evaluate, problem.residuals, p, jacobian);
+  return defined && all_finite(jacobian);
+}
+
+/// On a bound (to rounding) with the descent direction pointing out of it.
+std::vector<bool> active_bounds(const LeastSquaresProblem& problem, const Vector& p, const Vector& r, const Vector& jacobian) {
+  std::vector<bool> active(p.size(), false);
+  for (std::size_t j = 0; j < problem.bounds.size(); ++j) {
+    const ParameterBounds& b = problem.bounds[j];
+    const double slack = 1e-9 * std::max(std::abs(p[j]), std::isfinite(b.high - b.low) ? b.high - b.low : 0.0);
+    double gradient = 0.0;
+    for (std::size_t i = 0; i < r.size(); ++i) gradient += jacobian[i * p.size() + j] * r[i];
+    active[j] = (p[j] - b.low <= slack && gradient >= 0.0) || (b.high - p[j] <= slack && gradient <= 0.0);
+  }
+  return active;
+}
+
+/// GSL ends the program on an error unless told not to; here a status is enough.
+void keep_gsl_from_aborting() {
+  static const auto previous = gsl_set_error_handler_off();
+  (void)previous;
+}
+
+/// Singular value decomposition of the free columns, each divided by its norm: J_free = U S V^T diag(norm).
+/// One-sided Jacobi keeps small singular values accurate. Rows of zeros are added when there are fewer residuals than columns.
+struct Decomposition {
+  std::vector<std::size_t> free;  ///< column of each free parameter
+  Vector norm;
+  MatrixPtr u, v;
+  VectorPtr s;
+  std::size_t rank = 0;
+};
+
+Decomposition decompose(const Vector& jacobian, std::size_t rows, const std::vector<bool>& at_bound, double tolerance) {
+  Decomposition d;
+  const std::size_t n = at_bound.size();
+  for (std::size_t j = 0; j < n; ++j)
+    if (!at_bound[j]) d.free.push_back(j);
+  const std::size_t columns = d.free.size();
+  if (columns == 0) return d;
+  d.u.reset(gsl_matrix_calloc(std::max(rows, columns), columns));
+  d.v.reset(gsl_matrix_alloc(columns, columns));
+  d.s.reset(gsl_vector_alloc(columns));
+  for (std::size_t c = 0; c < columns; ++c) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < rows; ++i) sum += jacobian[i * n + d.free[c]] * jacobian[i * n + d.free[c]];
+    d.norm.push_back(std::sqrt(sum));
+    for (std::size_t i = 0; i < rows && sum > 0.0; ++i) gsl_matrix_set(d.u.get(), i, c, jacobian[i * n + d.free[c]] / d.norm[c]);
+  }
+  keep_gsl_from_aborting();
+  gsl_linalg_SV_decomp_jacobi(d.u.get(), d.v.get(), d.s.get());
+  const double smallest = tolerance * gsl_vector_get(d.s.get(), 0);
+  while (d.rank < columns && gsl_vector_get(d.s.get(), d.rank) > smallest) ++d.rank;
+  return d;
+}
+
+/// Step and inverse over the free parameters; directions beyond the rank take no part.
+void fill_free(const Decomposition& d, const Vector& r, Linearisation& out) {
+  const std::size_t n = out.at_bound.size();
+  const std::size_t columns = d.free.size();
+  Vector seen(columns, 0.0);  // share of each parameter's axis inside the determined directions
+  for (std::size_t k = 0; k < d.rank; ++k) {
+    Vector direction(columns);
+    double along = 0.0;
+    for (std::size_t i = 0; i < r.size(); ++i) along += gsl_matrix_get(d.u.get(), i, k) * r[i];
+    for (std::size_t c = 0; c < columns; ++c) {
+      const double v = gsl_matrix_get(d.v.get(), c, k);
+      seen[c] += v * v;
+      direction[c] = d.norm[c] > 0.0 ? v / (gsl_vector_get(d.s.get(), k) * d.norm[c]) : 0.0;
+    }
+    for (std::size_t c = 0; c < columns; ++c) {
+      out.step[d.free[c]] -= direction[c] * along;
+      for (std::size_t e = 0; e < columns; ++e) out.inverse[d.free[c] * n + d.free[e]] += direction[c] * direction[e];
+    }
+  }
+  for (std::size_t c = 0; c < columns; ++c) out.undetermined[d.free[c]] = d.norm[c] == 0.0 || seen[c] < 1.0 - 1e-8;
+}
+
+}  // namespace
+
+Linearisation linearise(const LeastSquaresProblem& problem, const std::vector<double>& p, double rank_tolerance) {
+  Linearisation out;
+  out.step.assign(p.size(), 0.0);
+  out.inverse.assign(p.size() * p.size(), 0.0);
+  out.undetermined.assign(p.size(), false);
+  out.at_bound.assign(p.size(), false);
+  Vector r(problem.residuals);
+  Vector jacobian(problem.residuals * p.size());
+  out.defined = problem.evaluate(p, r) && all_finite(r) && evaluate_jacobian(problem, p, jacobian);
+  if (!out.defined) return out;
+  for (const double x : r) out.residual_sum_of_squares += x * x;
+  out.at_bound = active_bounds(problem, p, r, jacobian);
+  const Decomposition d = decompose(jacobian, problem.residuals, out.at_bound, rank_tolerance);
+  out.rank = static_cast<int>(d.rank);
+  out.rank_deficient = d.rank < d.free.size();
+  fill_free(d, r, out);
+  return out;
+}
+
+double step_in_deviations(const Linearisation& at, const std::vector<double>& p, std::size_t residuals) {
+  const std::size_t n = p.size();
+  const double freedom = std::max(1.0, static_cast<double>(residuals) - static_cast<double>(n));
+  const double s = std::sqrt(at.residual_sum_of_squares / freedom);
+  double largest = 0.0;
+  for (std::size_t j = 0; j < n; ++j) {
+    if (std::abs(at.step[j]) <= 1e-10 * std::abs(p[j])) continue;
+    const double deviation = s * std::sqrt(at.inverse[j * n + j]);
+    largest = std::max(largest, deviation > 0.0 ? std::abs(at.step[j]) / deviation : HUGE_VAL);
+  }
+  return largest;
+}
+
+void polish(const LeastSquaresProblem& problem, std::vector<double>& p, double rank_tolerance) {
+  constexpr int kMaxSteps = 12;
+  Linearisation here = linearise(problem, p, rank_tolerance);
+  for (int k = 0; k < kMaxSteps && here.defined && !here.rank_deficient; ++k) {
+    const double left = step_in_deviations(here, p, problem.residuals);
+    if (left <= 1e-12) return;
+    std::vector<double> next = p;
+    for (std::size_t j = 0; j < p.size(); ++j) next[j] += here.step[j];
+    for (std::size_t j = 0; j < problem.bounds.size(); ++j)
+      next[j] = std::clamp(next[j], problem.bounds[j].low, problem.bounds[j].high);
+    Linearisation there = linearise(problem, next, rank_tolerance);
+    const bool better = there.defined && there.residual_sum_of_squares <= here.residual_sum_of_squares * (1.0 + 1e-12) &&
+                        (step_in_deviations(there, next, problem.residuals) < left || there.residual_sum_of_squares < here.residual_sum_of_squares);
+    if (!better) return;
+    p = std::move(next);
+    here = std::move(there);
+  }
+}
+
+}  // namespace softgrain
