@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 
+#include "common/dynamics/force_pass.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
@@ -24,7 +26,7 @@ class PublishedProtocol : public Protocol {
   void approach(SoftExperiment& e, double overlap) const override {
     const double distance = overlap - e.normal_overlap;
     if (distance <= 0.0) return;
-    const double dt = step(e);
+    const double dt = step(e, options_);
     const auto steps = static_cast<std::int64_t>(std::ceil(distance / (speed(e.spec) * dt)));
     const double exact_speed = distance / (static_cast<double>(steps) * dt);
     e.add_approach_speed(exact_speed);
@@ -34,7 +36,7 @@ class PublishedProtocol : public Protocol {
   }
 
   SettleResult settle(SoftExperiment& e, bool) const override {
-    const double dt = step(e);
+    const double dt = step(e, options_);
     const auto steps = static_cast<std::int64_t>(std::ceil(interval(e.spec) / dt));
     for (int k = 0; k < options_.stops; ++k) {
       run(e, steps, dt);
@@ -47,7 +49,21 @@ class PublishedProtocol : public Protocol {
   }
 
  private:
-  [[nodiscard]] double step(const SoftExperiment& e) const { return options_.step_fraction * step_limit(e.system).natural_time; }
+  /// The nominal step, shortened where grains are squeezed by many stiff contacts: a heavily damped contact evaluated once per
+  /// step otherwise keeps jittering, and the forces come out plausible and 10-15 % low.
+  static double step(SoftExperiment& e, const PublishedOptions& options) {
+    BodyStiffness sums;
+    force_pass(e.system, 0.0, sums);
+    const auto& p = e.system.particles;
+    double shortest2 = -1.0;
+    for (std::size_t u = 0; u < sums.translation.size(); ++u) {
+      if (!(p.inverse_mass[u] > 0.0) || !(sums.translation[u] > 0.0)) continue;
+      const double t2 = 1.0 / (p.inverse_mass[u] * sums.translation[u]);
+      if (shortest2 < 0.0 || t2 < shortest2) shortest2 = t2;
+    }
+    const double nominal = options.step_fraction * step_limit(e.system).natural_time;
+    return shortest2 < 0.0 ? nominal : std::min(nominal, options.crowded_fraction * std::sqrt(shortest2));
+  }
   [[nodiscard]] double speed(const SoftParticleSpec& spec) const {
     if (options_.approach_speed > 0.0) return options_.approach_speed;
     return kPublishedSpeed * ((spec.shell_radius / natural_time(spec)) / (kPublished.shell_radius / natural_time(kPublished)));

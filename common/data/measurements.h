@@ -17,7 +17,7 @@ struct SoftParticleSpec {
   double poisson_ratio = 0.3;      ///< nu
   double friction = 0.3;           ///< mu, Coulomb coefficient
   double density = 2500.0;         ///< rho [kg/m^3]
-  double restitution = 0.1;        ///< e of the Tsuji damping (dynamic runs)
+  double restitution = 0.5;        ///< e of the Tsuji damping (dynamic runs)
   double exponent = 3.5;           ///< b of the size distribution P(r) ~ r^-b
   double polydispersity = 10.0;    ///< Pi = rmax/rmin
   double rmax_over_shell = 0.5;    ///< rmax/Rs

@@ -12,14 +12,15 @@ namespace {
 
 /// Passes between two updates of masses and two tests for convergence.
 constexpr std::int64_t kMassInterval = 10;
-/// Pseudo-mass over contact stiffness; 1/2 is the limit of stability (Gershgorin) for a fixed stiffness.
-constexpr double kMassMargin = 1.0;
 
-/// Rolls the pseudo-velocity forward and returns it. Central difference with viscous damping c and unit step.
-template <class V>
-V damped_velocity(const V& v, const V& force, double inverse_mass, double c) {
-  return (v * (2.0 - c) + force * (2.0 * inverse_mass)) * (1.0 / (2.0 + c));
-}
+// FIRE, in units where a body alone on its springs has frequency 1 (mass = stiffness).
+constexpr double kLargestStep = 1.0;    // 2/sqrt(2) is the limit of stability (Gershgorin) for a fixed stiffness
+constexpr double kFirstStep = 0.3;
+constexpr double kGrow = 1.1;
+constexpr double kShrink = 0.5;
+constexpr double kFirstMixing = 0.15;
+constexpr double kMixingDecay = 0.99;
+constexpr std::int64_t kPatience = 5;
 
 template <class V>
 void limit_length(V& v, double longest) {
@@ -46,45 +47,60 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     const double r = p.sphere[u].r;
     const double floor = std::max(floor_per_radius * r, 1e-300);
-    if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = 1.0 / (kMassMargin * std::max(stiffness_.translation[u], floor));
+    if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = 1.0 / std::max(stiffness_.translation[u], floor);
     if (p.inverse_inertia[u] > 0.0)
-      inverse_inertia_[u] = 1.0 / (kMassMargin * std::max(stiffness_.rotation[u], 0.4 * floor * r * r));
+      inverse_inertia_[u] = 1.0 / std::max(stiffness_.rotation[u], 0.4 * floor * r * r);
   }
 }
 
 template <int D>
-void DampedRelaxation<D>::adapt_damping(const System<D>& s) {
-  const auto& p = s.particles;
-  double curvature = 0.0;
-  double weight = 0.0;
+void DampedRelaxation<D>::steer(System<D>& s) {
+  auto& p = s.particles;
+  double power = 0.0;
+  double speed2 = 0.0;
+  double pull2 = 0.0;
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     if (inverse_mass_[u] > 0.0) {
-      curvature += dot(p.velocity[u], old_force_[u] - p.force[u]);
-      weight += norm2(p.velocity[u]) / inverse_mass_[u];
+      power += dot(p.velocity[u], p.force[u]);
+      speed2 += norm2(p.velocity[u]) / inverse_mass_[u];
+      pull2 += norm2(p.force[u]) * inverse_mass_[u];
     }
     if (inverse_inertia_[u] > 0.0) {
-      curvature += dot(p.spin[u], old_torque_[u] - p.torque[u]);
-      weight += norm2(p.spin[u]) / inverse_inertia_[u];
+      power += dot(p.spin[u], p.torque[u]);
+      speed2 += norm2(p.spin[u]) / inverse_inertia_[u];
+      pull2 += norm2(p.torque[u]) * inverse_inertia_[u];
     }
   }
-  const double lambda = weight > 0.0 ? std::max(curvature / weight, 0.0) : 0.0;
-  const double wanted = std::clamp(2.0 * std::sqrt(lambda), 0.01, 1.8);
-  damping_ = 0.9 * damping_ + 0.1 * wanted;
+  if (power < 0.0) {
+    stop_motion(p);
+    step_ *= kShrink;
+    mixing_ = kFirstMixing;
+    downhill_ = 0;
+  } else {
+    const double turn = pull2 > 0.0 ? mixing_ * std::sqrt(speed2 / pull2) : 0.0;
+    for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
+      p.velocity[u] = p.velocity[u] * (1.0 - mixing_) + p.force[u] * (turn * inverse_mass_[u]);
+      p.spin[u] = p.spin[u] * (1.0 - mixing_) + p.torque[u] * (turn * inverse_inertia_[u]);
+    }
+    if (++downhill_ > kPatience) {
+      step_ = std::min(step_ * kGrow, kLargestStep);
+      mixing_ *= kMixingDecay;
+    }
+  }
 }
 
 template <int D>
 void DampedRelaxation<D>::move(System<D>& s) {
   auto& p = s.particles;
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
-    const double r = p.sphere[u].r;
     if (inverse_mass_[u] > 0.0) {
-      p.velocity[u] = damped_velocity(p.velocity[u], p.force[u], inverse_mass_[u], damping_);
-      limit_length(p.velocity[u], options_.max_move * r);
-      p.sphere[u].x += p.velocity[u];
+      p.velocity[u] += p.force[u] * (step_ * inverse_mass_[u]);
+      limit_length(p.velocity[u], options_.max_move * p.sphere[u].r / step_);
+      p.sphere[u].x += p.velocity[u] * step_;
     }
     if (inverse_inertia_[u] > 0.0) {
-      p.spin[u] = damped_velocity(p.spin[u], p.torque[u], inverse_inertia_[u], damping_);
-      limit_length(p.spin[u], options_.max_move);
+      p.spin[u] += p.torque[u] * (step_ * inverse_inertia_[u]);
+      limit_length(p.spin[u], options_.max_move / step_);
     }
   }
 }
@@ -93,7 +109,9 @@ template <int D>
 RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
   RelaxationResult result;
   stop_motion(s.particles);
-  damping_ = 0.2;
+  step_ = kFirstStep;
+  mixing_ = kFirstMixing;
+  downhill_ = 0;
   force_pass(s, 0.0, stiffness_);
   add_gravity(s);
   for (;;) {
@@ -107,16 +125,14 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
       if (result.end != RelaxationEnd::not_run) break;
       scale_masses(s);
     }
+    steer(s);
     move(s);
-    old_force_ = s.particles.force;
-    old_torque_ = s.particles.torque;
     if ((result.passes + 1) % kMassInterval == 0)
-      force_pass(s, 1.0, stiffness_);
+      force_pass(s, step_, stiffness_);
     else
-      force_pass(s, 1.0);
+      force_pass(s, step_);
     add_gravity(s);
     s.contacts.commit();
-    adapt_damping(s);
     ++result.passes;
   }
   stop_motion(s.particles);

@@ -17,10 +17,10 @@ struct DampedOptions {
   double max_move = 0.05;        ///< largest move of a body per pass, in its radius
 };
 
-/// Pseudo-time has unit step; every body gets the mass that makes its own stiffness critical to it (sum of contact stiffness),
-/// so that all grains relax at one rate whatever their size. Damping: c = 2 sqrt(lambda), lambda the Rayleigh quotient of the
-/// stiffness along the present motion (Underwood 1983), i.e. critical for the slowest mode that moves. It acts on the motion of
-/// bodies against the frame, never on contacts: contact damping proportional to sqrt(k m) is unstable under mass scaling.
+/// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate whatever
+/// their size. Damping adapts to the motion (FIRE, Bitzek et al. 2006): velocities are steered towards the forces, the step
+/// grows while the motion goes downhill, and everything stops when it goes uphill. It acts on the motion of bodies against the
+/// frame, never on contacts: contact damping proportional to sqrt(k m) is unstable under mass scaling.
 /// Contact laws must be without damping (their dashpots would see pseudo-velocities).
 template <int D>
 class DampedRelaxation {
@@ -32,16 +32,16 @@ class DampedRelaxation {
 
  private:
   void scale_masses(System<D>& system);
+  void steer(System<D>& system);
   void move(System<D>& system);
-  void adapt_damping(const System<D>& system);
 
   DampedOptions options_;
   BodyStiffness stiffness_;
   std::vector<double> inverse_mass_;     ///< pseudo, per body
   std::vector<double> inverse_inertia_;
-  std::vector<Vec<D>> old_force_;
-  std::vector<Rot<D>> old_torque_;
-  double damping_ = 0.0;                 ///< c, per unit pseudo-time
+  double step_ = 0.0;                    ///< in units of the pseudo-time of one body on its own springs
+  double mixing_ = 0.0;                  ///< share of the velocity that is turned into the direction of the force
+  std::int64_t downhill_ = 0;            ///< passes since the motion last went uphill
 };
 
 }  // namespace softgrain
