@@ -1,0 +1,19 @@
+// The one state that can be saved: everything a run needs to go on, bit for bit, to and from an HDF5 group.
+// Materials and laws are not in it: they come from the scene, whose text is compared on resume.
+#pragma once
+
+#include "common/io/hdf5_file.h"
+#include "common/system.h"
+
+namespace softgrain {
+
+/// Writes bodies, velocities, forces of the last pass, cell, contact histories, neighbour references, clock and counters.
+template <int D>
+void write_system(const h5::Group& group, const System<D>& system);
+
+/// Restores what write_system wrote into a system that already has its materials and laws. The neighbour list is made again
+/// from its reference positions, so that later rebuilds fall on the same steps. Throws FileTrouble.
+template <int D>
+void read_system(const h5::Group& group, System<D>& system);
+
+}  // namespace softgrain
