@@ -17,7 +17,7 @@ using ResidualFunction = std::function<bool(std::span<const double> parameters, 
 /// Writes dr_i/dp_j, row-major (residuals x parameters); returns false where it is not defined.
 using JacobianFunction = std::function<bool(std::span<const double> parameters, std::span<double> jacobian)>;
 
-/// Closed interval of one parameter; open by default.
+/// Closed interval of one parameter; open by default, and of zero width to fix the parameter.
 struct ParameterBounds {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();

@@ -71,12 +71,20 @@ Vector scales(const LeastSquaresProblem& problem, const Vector& p) {
   return scale;
 }
 
+/// Bounds of zero width fix a parameter.
 void set_bounds(ceres::Problem& ceres_problem, double* q, const LeastSquaresProblem& problem, const Vector& scale) {
+  std::vector<int> fixed;
   for (std::size_t j = 0; j < problem.bounds.size(); ++j) {
     const ParameterBounds& b = problem.bounds[j];
+    if (b.low == b.high) {
+      fixed.push_back(static_cast<int>(j));
+      continue;
+    }
     if (std::isfinite(b.low)) ceres_problem.SetParameterLowerBound(q, static_cast<int>(j), b.low / scale[j]);
     if (std::isfinite(b.high)) ceres_problem.SetParameterUpperBound(q, static_cast<int>(j), b.high / scale[j]);
   }
+  if (fixed.size() == scale.size()) ceres_problem.SetParameterBlockConstant(q);
+  else if (!fixed.empty()) ceres_problem.SetManifold(q, new ceres::SubsetManifold(static_cast<int>(scale.size()), fixed));
 }
 
 /// Ceres reports unusual steps through glog; libraries of this project do not print.

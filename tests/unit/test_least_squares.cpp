@@ -86,6 +86,17 @@ TEST(LeastSquares, ActiveBoundIsReportedAndTheRestIsOptimal) {
   EXPECT_EQ(fit.standard_deviations[1], 0.0);
 }
 
+TEST(LeastSquares, BoundsOfZeroWidthFixAParameter) {
+  auto problem = curve_problem<2>(decay_data(3.0, 0.7, 0.01), kDecay);
+  problem.bounds = {{}, {0.6, 0.6}};
+  const auto fit = fit_least_squares(problem, {{1.0, 0.6}});
+  EXPECT_EQ(fit.end, FitEnd::converged) << fit.message;
+  EXPECT_EQ(fit.parameters[1], 0.6);
+  EXPECT_EQ(fit.rank, 1);
+  problem.bounds[0] = {2.0, 2.0};
+  EXPECT_EQ(fit_least_squares(problem, {{2.0, 0.6}}).parameters[0], 2.0);
+}
+
 TEST(LeastSquares, RankDeficientCovarianceIsReported) {
   constexpr auto twice = [](const auto* p, const double* x) { return (p[0] + p[1]) * exp(-p[2] * x[0]); };
   const auto fit = fit_least_squares(curve_problem<3>(decay_data(3.0, 0.7, 0.01), twice), {{1.0, 1.0, 0.2}});

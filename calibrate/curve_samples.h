@@ -1,0 +1,52 @@
+// Measured curves in dimensionless form, one row per packing: what the threshold fit and its bootstrap resample.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "common/data/measurements.h"
+
+namespace softgrain {
+
+/// One quantity over overlap ratio and packing. Absent values are NaN.
+struct CurveSamples {
+  std::vector<double> delta;  ///< Delta, rising
+  std::size_t packings = 0;
+  std::vector<double> value;  ///< packings x delta, row-major; force/(E Rs^2) or stiffness/(E Rs)
+  int left_out = 0;           ///< points that were measured but did not converge
+
+  [[nodiscard]] double at(std::size_t packing, std::size_t k) const { return value[packing * delta.size() + k]; }
+  [[nodiscard]] bool empty() const { return delta.empty(); }
+};
+
+/// Mean over packings per Delta.
+struct CurveMeans {
+  std::vector<double> delta;
+  std::vector<double> mean;
+  std::vector<double> deviation;  ///< sample standard deviation over packings; 0 for one packing
+  std::vector<double> count;      ///< packings with a value
+};
+
+/// Means where packing i counts `multiplicity[i]` times (empty: once each). Deltas without any value keep count 0 and mean 0.
+CurveMeans means_of(const CurveSamples& samples, std::span<const int> multiplicity = {});
+
+/// Error per single packing at each Delta: the deviation, but no less than a floor, because the scatter vanishes below the
+/// threshold: `scatter_floor` times the pooled deviation (root of the mean square over Delta), and 1e-4 of the largest mean.
+std::vector<double> floored_deviations(const CurveMeans& means, double scatter_floor);
+
+/// Which runs and points enter.
+struct CurveSelection {
+  double delta_low = 0.0;
+  double delta_high = std::numeric_limits<double>::infinity();
+  double initial_angle_deg = 0.05;
+  double secant_angle_deg = 1.0;
+};
+
+using RunList = std::vector<const PackingRun*>;
+
+CurveSamples normal_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
+CurveSamples initial_slope_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
+CurveSamples secant_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection);
+
+}  // namespace softgrain

@@ -1,0 +1,315 @@
+#include "calibrate/threshold_fit.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "calibrate/bootstrap.h"
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Clear points (mean above noise and two standard errors) that each curve needs: normal a, b, delta; tangential a, b.
+constexpr std::array<std::size_t, kLawCurves> kClearNeeded{3, 2, 2};
+constexpr std::array<const char*, kLawCurves> kCurveNames{"normal force", "initial tangential stiffness", "secant tangential stiffness"};
+/// Share of replicates beyond which an interval end is not determined.
+constexpr double kTolerableShare = 0.025;
+
+void require_valid(const FitOptions& o) {
+  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg > 0.0)) throw BadInput("fit: angles must be above 0 degrees");
+  if (!(o.delta_high > o.delta_low) || o.delta_low < 0.0) throw BadInput(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
+  if (!(o.noise_floor >= 0.0)) throw BadInput(fmt::format("fit: noise_floor = {}: must be 0 or above", o.noise_floor));
+  if (!(o.scatter_floor > 0.0 && o.scatter_floor <= 1.0)) throw BadInput(fmt::format("fit: scatter_floor = {}: must lie in (0, 1]", o.scatter_floor));
+  if (o.min_packings < 2) throw BadInput(fmt::format("fit: min_packings = {}: must be 2 or above", o.min_packings));
+  if (o.replicates < 0) throw BadInput(fmt::format("fit: replicates = {}: must be 0 or above", o.replicates));
+}
+
+RunList select_runs(const Measurements& data, PairKind kind, const std::string& relaxation) {
+  RunList runs;
+  for (const PackingRun& run : data.runs)
+    if (run.kind == kind && run.relaxation == relaxation) runs.push_back(&run);
+  return runs;
+}
+
+/// Deltas whose mean is above the noise floor and above two standard errors.
+std::vector<double> clear_deltas(const CurveMeans& means, double noise_floor) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k < means.delta.size(); ++k) {
+    const double standard_error = means.deviation[k] / std::sqrt(std::max(means.count[k], 1.0));
+    if (means.mean[k] > noise_floor && means.mean[k] > 2.0 * standard_error) out.push_back(means.delta[k]);
+  }
+  return out;
+}
+
+/// One fit in the making: samples, means, and the reasons against using it.
+struct Work {
+  std::array<CurveSamples, kLawCurves> samples;
+  std::array<CurveMeans, kLawCurves> means;
+  std::array<std::vector<double>, kLawCurves> clear;
+  FitCurves curves;
+  double delta_limit = 0.0;
+  JointFit joint;
+  std::vector<std::string> reasons;
+};
+
+Work collect(const RunList& runs, const SoftParticleSpec& spec, const FitOptions& options) {
+  const CurveSelection selection{options.delta_low, options.delta_high, options.initial_angle_deg, options.secant_angle_deg};
+  Work w;
+  w.samples = {normal_samples(runs, spec, selection), initial_slope_samples(runs, spec, selection), secant_samples(runs, spec, selection)};
+  for (std::size_t j = 0; j < kLawCurves; ++j) {
+    w.means[j] = means_of(w.samples[j]);
+    w.clear[j] = clear_deltas(w.means[j], options.noise_floor);
+  }
+  return w;
+}
+
+int count_values(const CurveSamples& s) {
+  return static_cast<int>(std::count_if(s.value.begin(), s.value.end(), [](double x) { return !std::isnan(x); }));
+}
+
+int count_packings(const CurveSamples& s) {
+  int n = 0;
+  for (std::size_t i = 0; i < s.packings; ++i) {
+    bool any = false;
+    for (std::size_t k = 0; k < s.delta.size(); ++k) any = any || !std::isnan(s.at(i, k));
+    n += any ? 1 : 0;
+  }
+  return n;
+}
+
+/// Values of a stiffness curve on the rows of the normal curve; NaN where it was not measured.
+void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, std::vector<double>& mean, std::vector<double>& deviation) {
+  for (const double d : rows) {
+    const auto it = std::find_if(means.delta.begin(), means.delta.end(), [d](double x) { return std::abs(x - d) < 1e-7; });
+    const auto k = static_cast<std::size_t>(it - means.delta.begin());
+    const bool found = it != means.delta.end();
+    mean.push_back(found ? means.mean[k] : std::numeric_limits<double>::quiet_NaN());
+    deviation.push_back(found ? means.deviation[k] : std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+/// What the card says about the data themselves.
+void describe_data(const RunList& runs, const FitOptions& options, const Work& w, FitReport& report) {
+  PairLaw& law = report.law;
+  const CurveMeans& normal = w.means[0];
+  law.initial_angle_deg = options.initial_angle_deg;
+  law.secant_angle_deg = options.secant_angle_deg;
+  law.has_tangential_initial = !w.samples[1].empty();
+  law.has_tangential_secant = !w.samples[2].empty();
+  law.packings = count_packings(w.samples[0]);
+  for (const CurveSamples& s : w.samples) law.points += count_values(s);
+  report.normal_left_out = w.samples[0].left_out;
+  report.tangential_left_out = w.samples[1].left_out;
+  law.table.delta = normal.delta;
+  law.table.force_mean = normal.mean;
+  law.table.force_deviation = normal.deviation;
+  fill_stiffness(w.means[1], normal.delta, law.table.kt_initial_mean, law.table.kt_initial_deviation);
+  fill_stiffness(w.means[2], normal.delta, law.table.kt_secant_mean, law.table.kt_secant_deviation);
+  if (normal.delta.empty()) return;
+  law.delta_min = normal.delta.front();
+  law.delta_max = normal.delta.back();
+  for (const PackingRun* run : runs)
+    for (const NormalPoint& p : run->normal)
+      if (p.converged && p.delta >= law.delta_min - 1e-7 && p.delta <= law.delta_max + 1e-7) law.max_overlap = std::max(law.max_overlap, p.max_overlap);
+}
+
+/// Chooses the curves that can be fitted and the largest threshold that leaves enough clear points above it.
+void prepare(const FitOptions& options, Work& w) {
+  for (std::size_t j = 0; j < kLawCurves; ++j) {
+    if (w.samples[j].empty()) continue;
+    if (w.clear[j].size() < kClearNeeded[j])
+      w.reasons.push_back(fmt::format("{}: {} points clearly above zero, {} needed", kCurveNames[j], w.clear[j].size(), kClearNeeded[j]));
+    if (j > 0 && w.clear[j].size() < kClearNeeded[j]) continue;
+    w.curves[j] = {w.means[j], floored_deviations(w.means[j], options.scatter_floor)};
+  }
+  const std::vector<double>& clear = w.clear[0];
+  w.delta_limit = clear.size() >= 3 ? clear[clear.size() - 3] : clear.back();
+}
+
+/// Reasons that the fit itself gives against its use.
+void judge_fit(Work& w) {
+  const JointFit& joint = w.joint;
+  if (joint.fit.rank_deficient) w.reasons.push_back("rank-deficient covariance: " + joint.fit.message);
+  else if (joint.fit.end != FitEnd::converged) w.reasons.push_back("the optimiser did not converge: " + joint.fit.message);
+  if (joint.delta_at_zero) w.reasons.emplace_back("delta is at its lower bound 0: the data show no threshold");
+  if (joint.delta_at_limit)
+    w.reasons.push_back(fmt::format("delta is at its upper bound {:.4g}, where three clear points are left", w.delta_limit));
+  for (std::size_t j = 0; j < kLawCurves; ++j)
+    if (joint.exponent_at_bound[j]) w.reasons.push_back(fmt::format("exponent of the {} is at its bound {:.4g}", kCurveNames[j], joint.parameters.exponent[j]));
+}
+
+void goodness(const Work& w, double noise_floor, PairLaw& law) {
+  double chi2 = 0.0;
+  double points = 0.0;
+  double parameters = 1.0;
+  for (std::size_t j = 0; j < kLawCurves; ++j) {
+    const FitCurve& c = w.curves[j];
+    if (c.present()) parameters += 2.0;
+    for (std::size_t k = 0; k < c.means.delta.size(); ++k) {
+      const double f = w.joint.parameters.value(j, c.means.delta[k]);
+      if (f <= 0.0 && c.means.mean[k] <= noise_floor) continue;  // below threshold nothing is tested
+      const double z = (c.means.mean[k] - f) / c.sigma[k];
+      chi2 += c.means.count[k] * z * z;
+      points += 1.0;
+    }
+  }
+  const double freedom = points - parameters;
+  law.chi2_per_dof = freedom > 0.0 ? chi2 / freedom : 0.0;
+  law.quality = freedom > 0.0 ? gsl_cdf_chisq_Q(chi2, freedom) : 0.0;
+}
+
+double constant_of(double a, double b, double delta) { return delta > 0.0 ? -a * std::pow(delta, b) : 0.0; }
+
+/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2.
+double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b, double delta) {
+  if (delta <= 0.0) return 0.0;
+  const double p = std::pow(delta, b);
+  const std::array<std::size_t, 3> rows{i, j, 2};
+  const std::array<double, 3> slope{-p, -a * p * std::log(delta), -a * b * p / delta};
+  double variance = 0.0;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) variance += slope[r] * slope[c] * covariance[rows[r] * 7 + rows[c]];
+  return std::sqrt(std::max(variance, 0.0));
+}
+
+template <class Pick>
+Estimate estimate(double value, double error, const FitReport& report, Pick pick) {
+  std::vector<double> values;
+  for (const auto& r : report.replicates) values.push_back(pick(r));
+  const auto [low, high] = interval95(std::move(values));
+  return {value, error, low, high};
+}
+
+constexpr std::array<std::size_t, kLawCurves> kRowOfA{0, 3, 5};
+
+ThresholdPowerLaw law_of(const FitReport& report, const std::array<double, 7>& p, std::size_t curve, bool errors_known) {
+  const std::size_t i = kRowOfA[curve];
+  const std::size_t j = i + 1;
+  const auto& cov = report.law.covariance;
+  const auto error = [&](std::size_t k) { return errors_known ? std::sqrt(cov[k * 7 + k]) : kInfinity; };
+  ThresholdPowerLaw law;
+  law.a = estimate(p[i], error(i), report, [i](const auto& r) { return r[i]; });
+  law.b = estimate(p[j], error(j), report, [j](const auto& r) { return r[j]; });
+  law.delta = estimate(p[2], error(2), report, [](const auto& r) { return r[2]; });
+  law.c = estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity, report,
+                   [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); });
+  return law;
+}
+
+void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
+  const bool enough = report.law.packings >= options.min_packings;
+  if (!enough) w.reasons.push_back(fmt::format("{} packings, {} needed for an interval", report.law.packings, options.min_packings));
+  else if (options.replicates < 1) w.reasons.emplace_back("no bootstrap replicates were asked for");
+  if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient) return;
+  BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters};
+  BootstrapResult result = bootstrap(input, options.replicates, options.seed, static_cast<std::uint64_t>(report.law.kind) + 1);
+  report.replicates = std::move(result.replicates);
+  report.replicates_failed = result.failed;
+  report.replicates_at_bound = result.at_bound;
+  const double total = options.replicates;
+  if (result.failed > kTolerableShare * total)
+    w.reasons.push_back(fmt::format("{:.1f} % of bootstrap replicates are rank-deficient", 100.0 * result.failed / total));
+  if (result.at_bound > kTolerableShare * total)
+    w.reasons.push_back(fmt::format("unbounded interval: {:.1f} % of bootstrap replicates ran to a bound", 100.0 * result.at_bound / total));
+}
+
+void fill_law(const FitOptions& options, Work& w, FitReport& report) {
+  PairLaw& law = report.law;
+  law.covariance.assign(49, 0.0);
+  const bool errors_known = law.packings >= 2 && !w.joint.fit.rank_deficient;
+  if (errors_known) law.covariance = packing_covariance(w.joint, w.curves, {&w.samples[0], &w.samples[1], &w.samples[2]});
+  run_bootstrap(options, w, report);
+  const auto p = w.joint.parameters.law_parameters();
+  law.normal = law_of(report, p, 0, errors_known);
+  if (w.curves[1].present()) law.tangential_initial = law_of(report, p, 1, errors_known);
+  if (w.curves[2].present()) law.tangential_secant = law_of(report, p, 2, errors_known);
+  goodness(w, options.noise_floor, law);
+}
+
+void conclude(PairLaw& law, const std::string& status, const std::vector<std::string>& reasons) {
+  law.status = status;
+  law.reason.clear();
+  for (const std::string& r : reasons) law.reason += (law.reason.empty() ? "" : "; ") + r;
+  if (!law.reason.empty()) law.reason += ".";
+}
+
+}  // namespace
+
+std::string chosen_relaxation(const Measurements& data, const FitOptions& options) {
+  std::set<std::string> present;
+  for (const PackingRun& run : data.runs) present.insert(run.relaxation);
+  std::string names;
+  for (const std::string& name : present) names += (names.empty() ? "\"" : ", \"") + name + "\"";
+  if (present.empty()) throw BadInput("fit: the measurements hold no runs");
+  if (options.relaxation.empty() && present.size() > 1) throw BadInput("fit: relaxation is not given and the measurements hold " + names + "; choose one");
+  if (options.relaxation.empty()) return *present.begin();
+  if (present.count(options.relaxation) == 0) throw BadInput(fmt::format("fit: relaxation = \"{}\": the measurements hold {}", options.relaxation, names));
+  return options.relaxation;
+}
+
+FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions& options) {
+  require_valid(options);
+  FitReport report;
+  report.law.kind = kind;
+  const RunList runs = select_runs(data, kind, chosen_relaxation(data, options));
+  if (runs.empty()) {
+    report.law.reason = "No measurements of this pair kind.";
+    return report;
+  }
+  Work w = collect(runs, data.spec, options);
+  describe_data(runs, options, w, report);
+  if (w.samples[0].empty()) {
+    conclude(report.law, "underdetermined", {"no converged normal point in the fitted range"});
+    return report;
+  }
+  if (w.clear[0].empty()) {
+    const double largest = *std::max_element(w.means[0].mean.begin(), w.means[0].mean.end());
+    conclude(report.law, "no threshold crossing", {fmt::format("no mean force clearly above the noise floor {:.1e} E Rs^2 up to Delta = {:.4g} (largest mean {:.1e})", options.noise_floor, report.law.delta_max, largest)});
+    return report;
+  }
+  prepare(options, w);
+  w.joint = fit_joint(w.curves, w.delta_limit);
+  report.iterations = w.joint.fit.iterations;
+  report.fit_message = w.joint.fit.message;
+  judge_fit(w);
+  fill_law(options, w, report);
+  conclude(report.law, w.reasons.empty() ? "good" : "underdetermined", w.reasons);
+  return report;
+}
+
+LawCard calibrate(const Measurements& data, const FitOptions& options, std::vector<FitReport>* reports) {
+  LawCard card;
+  card.spec = data.spec;
+  card.relaxation = chosen_relaxation(data, options);
+  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+    if (select_runs(data, kind, card.relaxation).empty()) continue;
+    FitReport report = fit_pair_law(data, kind, options);
+    card.pairs.push_back(report.law);
+    if (reports != nullptr) reports->push_back(std::move(report));
+  }
+  return card;
+}
+
+std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<const double> deltas) {
+  const PairLaw& law = report.law;
+  const std::size_t i = kRowOfA[static_cast<std::size_t>(curve)];
+  const std::array<const ThresholdPowerLaw*, kLawCurves> laws{&law.normal, &law.tangential_initial, &law.tangential_secant};
+  const ThresholdPowerLaw& best = *laws[static_cast<std::size_t>(curve)];
+  const auto value = [](double a, double b, double delta, double d) { return d <= delta ? 0.0 : a * std::pow(d, b) + constant_of(a, b, delta); };
+  std::vector<Band> out;
+  for (const double d : deltas) {
+    std::vector<double> values;
+    for (const auto& r : report.replicates) values.push_back(value(r[i], r[i + 1], r[2], d));
+    const auto [low, high] = interval95(std::move(values));
+    out.push_back({d, value(best.a.value, best.b.value, best.delta.value, d), low, high});
+  }
+  return out;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,73 @@
+// From measurements to the threshold power laws of a contact, with honest uncertainty.
+//
+//   f(D) = 0 (D < delta), a D^b + c (D >= delta), c = -a delta^b          [SP 1.5], D = hn/Rs, f = Fn/(E Rs^2)
+//
+// jointly for the normal force, the initial slope of kt/(E Rs) and its secant, with one delta. Points are weighted by one over
+// the sample standard deviation over packings at their Delta (floored, see floored_deviations). Standard errors come from a
+// covariance whose clusters are packings; 95 % intervals from a bootstrap over packings.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibrate/threshold_model.h"
+#include "common/data/law_card.h"
+#include "common/data/measurements.h"
+
+namespace softgrain {
+
+struct FitOptions {
+  std::string relaxation;           ///< which relaxation's runs; empty: the only one present
+  double delta_low = 0.0;           ///< fitted range of Delta
+  double delta_high = std::numeric_limits<double>::infinity();
+  double initial_angle_deg = 0.05;  ///< largest |angle| of the initial slope [degree]
+  double secant_angle_deg = 1.0;    ///< angle of the secant [degree]
+  double noise_floor = 1e-6;        ///< means below this (dimensionless) count as zero force
+  double scatter_floor = 0.02;      ///< smallest weight-giving deviation, as a share of the pooled deviation
+  int min_packings = 5;             ///< for an interval; the published protocol asks for at least seven
+  int replicates = 1000;            ///< of the bootstrap; 0: none (the law is then marked underdetermined)
+  std::uint64_t seed = 0;
+};
+
+/// What a fit found beside the law itself.
+struct FitReport {
+  PairLaw law;
+  std::vector<std::array<double, 7>> replicates;  ///< bootstrap, order of kLawParameterNames, parameters of a D^b + c
+  int replicates_failed = 0;      ///< resamples whose fit did not converge or was rank-deficient; not among `replicates`
+  int replicates_at_bound = 0;    ///< among `replicates`, with an exponent or the upper end of delta at its bound
+  int normal_left_out = 0;        ///< normal points that were measured but not converged
+  int tangential_left_out = 0;    ///< the same for tangential points
+  int iterations = 0;             ///< of the optimiser over all intervals of delta
+  std::string fit_message;        ///< why the optimiser ended
+};
+
+/// Fits one pair kind. status of the law:
+///   "good"; "no threshold crossing" (no mean force clearly above the noise floor: above it and above two standard errors);
+///   "underdetermined" (best values are in the card, but must not be used: the reason says why); "not run" (no such data).
+/// `quality` is the chi^2 tail probability of the packing means above threshold. Means at neighbouring Delta come from the same
+/// packings and move together, so it is a guide, not a test of level; 0 without degrees of freedom.
+/// Throws BadInput for options out of range or an ambiguous relaxation.
+FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions& options = {});
+
+/// Fits every pair kind present. Throws BadInput when nothing matches the relaxation asked for.
+LawCard calibrate(const Measurements& data, const FitOptions& options = {}, std::vector<FitReport>* reports = nullptr);
+
+/// The law and its 95 % band at one Delta (dimensionless).
+struct Band {
+  double delta = 0.0;
+  double value = 0.0;
+  double low = 0.0;   ///< 2.5 % quantile over bootstrap replicates; -infinity without replicates
+  double high = 0.0;  ///< 97.5 %
+};
+
+/// a, b and delta are nearly degenerate: judge a law by this band, not by their intervals.
+std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<const double> deltas);
+
+/// The relaxation that options and data agree on. Throws BadInput.
+std::string chosen_relaxation(const Measurements& data, const FitOptions& options);
+
+}  // namespace softgrain
