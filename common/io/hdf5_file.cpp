@@ -1,0 +1,111 @@
+// Files: opening, and the atomic file.
+#include "common/io/hdf5_file.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "common/core/error.h"
+#include "common/io/atomic_rename.h"
+#include "common/io/hdf5_handle.h"
+
+namespace softgrain::h5 {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+extern "C" herr_t softgrain_note_error(unsigned depth, const H5E_error2_t* entry, void* text) {
+  if (depth == 0 && entry->desc != nullptr) *static_cast<std::string*>(text) = entry->desc;
+  return 0;
+}
+
+/// Locks are taken where the file system knows them. The format of HDF5 1.8: small, checksummed headers.
+Handle access_list() {
+  Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(list.id(), true, true);
+  H5Pset_libver_bounds(list.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  return list;
+}
+
+/// For writing: closing the file closes every group that is still around, so that the file is complete on disk.
+Handle create_file(const std::string& path) {
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  const Handle access = access_list();
+  H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
+  if (file.id() < 0) throw FileTrouble(path + ": cannot be created" + library_message());
+  return file;
+}
+
+}  // namespace
+
+std::string library_message() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, softgrain_note_error, &text);
+  H5Eclear2(H5E_DEFAULT);
+  return text.empty() ? text : " (" + text + ")";
+}
+
+void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+void Group::Impl::fail(const std::string& item, const std::string& problem) const {
+  throw FileTrouble(file->path + ": " + name + "/" + item + ": " + problem + library_message());
+}
+
+Handle Group::Impl::checked(hid_t id, Handle::Close close, const std::string& item, const std::string& problem) const {
+  if (id < 0) fail(item, problem);
+  return {id, close};
+}
+
+Group root_of(std::shared_ptr<File> file) {
+  Handle root(H5Gopen2(file->handle.id(), "/", H5P_DEFAULT), H5Gclose);
+  if (root.id() < 0) throw FileTrouble(file->path + ": damaged, no root group" + library_message());
+  return Group(std::make_shared<Group::Impl>(Group::Impl{std::move(file), std::move(root), ""}));
+}
+
+Group open_file(const std::string& path) {
+  silence_library();
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) throw FileTrouble(path + ": no such file");
+  if (fs::is_directory(path, ignored)) throw FileTrouble(path + ": is a directory, not a file");
+  const Handle access = access_list();
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
+  if (file.id() < 0) throw FileTrouble(path + ": cannot be read as HDF5, is it damaged or cut short?" + library_message());
+  return root_of(std::make_shared<File>(File{std::move(file), path}));
+}
+
+struct AtomicFile::Impl {
+  std::string path;
+  bool keep_previous;
+  bool committed = false;
+  std::shared_ptr<File> file;
+};
+
+AtomicFile::AtomicFile(const std::string& path, bool keep_previous)
+    : impl_(std::make_unique<Impl>(Impl{path, keep_previous, false, nullptr})) {
+  silence_library();
+  impl_->file = std::make_shared<File>(File{create_file(temporary_name(path)), path});
+}
+
+AtomicFile::~AtomicFile() {
+  if (impl_->committed) return;
+  if (impl_->file->handle.id() >= 0) impl_->file->handle.close();
+  std::error_code ignored;
+  fs::remove(temporary_name(impl_->path), ignored);
+}
+
+Group AtomicFile::root() const { return root_of(impl_->file); }
+
+void AtomicFile::commit() {
+  if (impl_->committed) throw FileTrouble(impl_->path + ": already committed");
+  Handle& handle = impl_->file->handle;
+  const bool flushed = H5Fflush(handle.id(), H5F_SCOPE_GLOBAL) >= 0;
+  const std::string reason = library_message();
+  const bool closed = handle.close();
+  if (!flushed || !closed) throw FileTrouble(impl_->path + ": cannot be written" + reason);
+  rename_into_place(impl_->path, impl_->keep_previous);
+  impl_->committed = true;
+}
+
+}  // namespace softgrain::h5

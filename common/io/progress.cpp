@@ -1,0 +1,81 @@
+#include "common/io/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace softgrain {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr Seconds kSilentStart{2.0};      ///< shorter work prints nothing
+constexpr Seconds kTerminalPeriod{0.2};   ///< between two updates of the bar
+constexpr Seconds kLinePeriod{30.0};      ///< between two lines of a log
+constexpr std::size_t kBarWidth = 30;
+
+std::string readable_time(double seconds) {
+  const auto whole = static_cast<long long>(seconds + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string bar(double share) {
+  const auto full = static_cast<std::size_t>(share * static_cast<double>(kBarWidth));
+  return "[" + std::string(full, '#') + std::string(kBarWidth - full, '.') + "]";
+}
+
+}  // namespace
+
+Progress::Progress(std::string what, double total, bool quiet)
+    : what_(std::move(what)),
+      total_(total),
+      quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()),
+      last_print_(start_) {}
+
+Progress::~Progress() { finish(); }
+
+void Progress::advance(double amount) {
+  const std::lock_guard lock(mutex_);
+  done_ += amount;
+  print(false);
+}
+
+void Progress::set(double done) {
+  const std::lock_guard lock(mutex_);
+  done_ = done;
+  print(false);
+}
+
+void Progress::finish() {
+  const std::lock_guard lock(mutex_);
+  if (finished_) return;
+  finished_ = true;
+  if (printed_) print(true);
+}
+
+void Progress::print(bool last) {
+  if (quiet_ || (finished_ && !last)) return;
+  const auto now = std::chrono::steady_clock::now();
+  const Seconds elapsed = now - start_;
+  const Seconds period = terminal_ ? kTerminalPeriod : kLinePeriod;
+  if (!last && (elapsed < kSilentStart || (printed_ && now - last_print_ < period))) return;
+  const double share = total_ > 0.0 ? std::clamp(done_ / total_, 0.0, 1.0) : 0.0;
+  std::string line = terminal_ ? fmt::format("\r\033[K{} {} {:3.0f} %", what_, bar(share), 100.0 * share)
+                               : fmt::format("{}: {:.0f} %", what_, 100.0 * share);
+  line += ", " + readable_time(elapsed.count()) + " so far";
+  if (!last && share > 0.0) line += ", about " + readable_time(elapsed.count() * (1.0 - share) / share) + " left";
+  if (!terminal_ || last) line += "\n";
+  std::fputs(line.c_str(), stderr);
+  printed_ = true;
+  last_print_ = now;
+}
+
+}  // namespace softgrain

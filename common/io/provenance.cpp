@@ -1,0 +1,28 @@
+#include "common/io/provenance.h"
+
+#include "softgrain_build.h"
+
+namespace softgrain {
+
+Provenance build_provenance() {
+  Provenance p;
+  p.version = SOFTGRAIN_BUILD_VERSION;
+  p.commit = SOFTGRAIN_BUILD_COMMIT;
+  p.compiler = SOFTGRAIN_BUILD_COMPILER;
+  return p;
+}
+
+void write_provenance(const h5::Group& root, const Provenance& provenance) {
+  const h5::Group group = root.create("provenance");
+  group.attribute("schema_version", std::int64_t{kSchemaVersion});
+  group.attribute("program", "softgrain");
+  group.attribute("version", provenance.version);
+  group.attribute("commit", provenance.commit);
+  group.attribute("compiler", provenance.compiler);
+  group.attribute("threads", static_cast<std::int64_t>(provenance.threads));
+  group.attribute("seed", static_cast<std::int64_t>(provenance.seed));
+  group.attribute("command", provenance.command);
+  group.attribute("scene", provenance.scene);
+}
+
+}  // namespace softgrain
