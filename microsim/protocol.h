@@ -14,14 +14,14 @@ struct PublishedOptions {
   double stop_interval = 0.0;    ///< [s]; 0: 0.3 s at the published Rs, rho, E, scaled with Rs sqrt(rho/E) otherwise
   int stops = 6;                 ///< stops of all motion, each after one interval; one more interval follows
   double step_fraction = 0.2;    ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
-  double crowded_fraction = 0.3; ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
+  double crowded_fraction = 0.5; ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
   double tolerance = 1e-2;       ///< a point is called converged below this (largest net force over mean contact force)
 };
 
 struct DampedProtocolOptions {
-  double increment = 0.0025;        ///< of Delta between two relaxations
+  double increment = 0.005;         ///< of Delta between two relaxations
   double tolerance = 1e-3;          ///< at a recorded point
-  double tolerance_between = 1e-1;  ///< at increments between recorded points
+  double tolerance_between = 0.3;   ///< at increments between recorded points
   double tolerance_rotated = 1e-4;  ///< at recorded points after a rotation
   std::int64_t max_passes = 20000;  ///< per relaxation
 };

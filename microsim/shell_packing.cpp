@@ -85,12 +85,6 @@ void grow(ShellPacking& packing) {
 
 }  // namespace
 
-double ShellPacking::solid_fraction() const {
-  double sum = 0.0;
-  for (const double r : radius) sum += r * r * r;
-  return sum;
-}
-
 ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index) {
   ShellPacking packing;
   packing.seed = index;

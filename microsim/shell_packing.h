@@ -2,21 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "common/core/vec.h"
 #include "common/data/measurements.h"
+#include "common/data/shell_packing.h"
 
 namespace softgrain {
-
-/// Grains inside a unit shell (radius 1, centre at the origin), largest first.
-struct ShellPacking {
-  std::uint64_t seed = 0;
-  std::vector<Vec3> position;
-  std::vector<double> radius;
-
-  [[nodiscard]] double solid_fraction() const;
-};
 
 /// Generates packing number `index` of the run with this seed. Dimensionless: the same for every Rs and E.
 /// Throws BadInput when no grain could be placed.

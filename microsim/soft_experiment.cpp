@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/dynamics/pair_loop.h"
+#include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
 
@@ -98,9 +98,11 @@ Vec3 SoftExperiment::force_on_second() const {
 }
 
 void SoftExperiment::push(double distance) {
-  auto& p = system.particles;
+  const auto& p = system.particles;
+  std::vector<Vec3> moves(static_cast<std::size_t>(p.size()));
   for (Slot i = first_grains; i < p.size(); ++i)
-    if (i != p.grains) p.sphere[static_cast<std::size_t>(i)].x[0] -= distance;
+    if (i != p.grains) moves[static_cast<std::size_t>(i)][0] = -distance;
+  displace(system, moves);
   normal_overlap += distance;
 }
 

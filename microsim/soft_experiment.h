@@ -2,8 +2,8 @@
 #pragma once
 
 #include "common/data/measurements.h"
+#include "common/data/shell_packing.h"
 #include "common/system.h"
-#include "microsim/shell_packing.h"
 
 namespace softgrain {
 
@@ -18,7 +18,8 @@ struct SoftExperiment {
   /// Net force on the second body from the first, of the state as it is; x is along the normal (compression positive) [N].
   [[nodiscard]] Vec3 force_on_second() const;
 
-  /// Moves the second body rigidly by `distance` towards the first (shell and grains, or plane), without time.
+  /// Moves the second body rigidly by `distance` towards the first (shell and grains, or plane) in one stroke; tangential
+  /// springs follow. Contacts must be without dashpots.
   void push(double distance);
 
   /// Gives the second body, grains included, this approach speed on top of what it has [m/s].

@@ -27,7 +27,7 @@ std::string readable_time(double seconds) {
 
 std::string bar(double share) {
   const auto full = static_cast<std::size_t>(share * static_cast<double>(kBarWidth));
-  return "[" + std::string(full, '#') + std::string(kBarWidth - full, '.') + "]";
+  return fmt::format("[{:#<{}}{:.<{}}]", "", full, "", kBarWidth - full);
 }
 
 }  // namespace

@@ -175,9 +175,9 @@ void require_sound(const Particles<D>& p) {
     if (!std::isfinite(norm2(p.sphere[u].x))) throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
     if (i >= p.grains || p.shell[u] < 0) continue;
     const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(p.shell[u])];
-    if (norm(p.sphere[u].x - shell.x) > shell.r)
+    if (norm(p.sphere[u].x - shell.x) - p.sphere[u].r > shell.r)
       throw NotUsable("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
-                      " m) has been squeezed out of its shell: its centre is outside");
+                      " m) has been squeezed out of its shell");
   }
 }
 

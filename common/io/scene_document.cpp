@@ -1,0 +1,123 @@
+// From text to a document: syntax, overrides, and back to text.
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include "common/core/error.h"
+#include "common/io/scene_impl.h"
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+namespace {
+
+std::string as_toml(const toml::table& table) {
+  std::ostringstream out;
+  out << table << "\n";
+  return out.str();
+}
+
+std::vector<std::string> split(const std::string& path) {
+  std::vector<std::string> parts;
+  std::istringstream in(path);
+  for (std::string part; std::getline(in, part, '.');) parts.push_back(part);
+  return parts;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// A table with the one key "value". What is not TOML and does not begin like a TOML container or string is a bare word.
+toml::table parse_value(const std::string& value, const std::string& setting) {
+  try {
+    toml::table table = toml::parse("value = " + value);
+    if (table.size() == 1) return table;
+  } catch (const toml::parse_error& e) {
+    if (!value.empty() && std::string("[{\"'").find(value.front()) != std::string::npos)
+      throw BadInput("--set " + setting + ": " + std::string(e.description()));
+  }
+  return toml::table{{"value", value}};
+}
+
+/// The child under `part` on the way to the key that is set; missing tables are made.
+toml::node& descend(toml::node& parent, const std::string& part, const std::string& setting) {
+  if (toml::array* array = parent.as_array()) {
+    const bool digits = !part.empty() && part.size() < 10 && part.find_first_not_of("0123456789") == std::string::npos;
+    toml::node* element = digits ? array->get(std::stoul(part)) : nullptr;
+    if (element == nullptr)
+      throw BadInput("--set " + setting + ": '" + part + "' must be a number from 0 to " + std::to_string(array->size()) + " - 1");
+    return *element;
+  }
+  toml::table* table = parent.as_table();
+  if (table == nullptr) throw BadInput("--set " + setting + ": what stands before '." + part + "' is not a table");
+  if (toml::node* child = table->get(part)) return *child;
+  return table->insert(part, toml::table{}).first->second;
+}
+
+void assign(toml::node& parent, const std::string& key, toml::node& value, const std::string& setting) {
+  if (toml::table* table = parent.as_table()) {
+    value.visit([&](auto& concrete) { table->insert_or_assign(key, std::move(concrete)); });
+    return;
+  }
+  if (!parent.is_array()) throw BadInput("--set " + setting + ": what stands before '." + key + "' is not a table");
+  descend(parent, key, setting);  // checks the index
+  toml::array& array = *parent.as_array();
+  const auto place = array.cbegin() + static_cast<std::ptrdiff_t>(std::stoul(key));
+  value.visit([&](auto& concrete) { array.replace(place, std::move(concrete)); });
+}
+
+}  // namespace
+
+toml::table parse_toml(const std::string& text, const std::string& name) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& e) {
+    throw BadInput(name + ":" + std::to_string(e.source().begin.line) + ": not valid TOML: " + std::string(e.description()));
+  }
+}
+
+void apply_override(SceneDocument& document, const std::string& setting) {
+  const std::size_t mark = setting.find('=');
+  const std::string path = trimmed(setting.substr(0, mark));
+  if (mark == std::string::npos || path.empty()) throw BadInput("--set " + setting + ": must be of the form key=value");
+  const std::vector<std::string> parts = split(path);
+  for (const std::string& part : parts)
+    if (part.empty() || path.back() == '.') throw BadInput("--set " + setting + ": a part of the key is empty");
+  toml::table value = parse_value(trimmed(setting.substr(mark + 1)), setting);
+  toml::node* parent = &document.content;
+  for (std::size_t k = 0; k + 1 < parts.size(); ++k) parent = &descend(*parent, parts[k], setting);
+  assign(*parent, parts.back(), *value.get("value"), setting);
+  document.overridden.insert(path);
+}
+
+Scene Scene::load(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse(read_text(path), path, overrides);
+}
+
+Scene Scene::parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+  auto document = std::make_shared<SceneDocument>();
+  document->name = name;
+  document->content = parse_toml(text, name);
+  for (const std::string& setting : overrides) apply_override(*document, setting);
+
+  Scene scene;
+  scene.path_ = name;
+  scene.text_ = overrides.empty() ? text : as_toml(document->content);
+  scene.root_ = std::make_shared<SceneTable::Impl>();
+  scene.root_->content = &document->content;
+  scene.root_->place = name + ":1";
+  scene.root_->document = std::move(document);
+  return scene;
+}
+
+SceneTable Scene::root() const { return SceneTable(root_); }
+
+std::string Scene::resolve(const std::string& relative) const {
+  const std::filesystem::path given(relative);
+  if (given.is_absolute()) return relative;
+  return (std::filesystem::path(path_).parent_path() / given).lexically_normal().string();
+}
+
+}  // namespace softgrain

@@ -1,0 +1,37 @@
+// The initial state of a macro scene: bodies just in touch in a box. Law runs and resolved twins start from the same one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/core/vec.h"
+#include "common/io/hdf5_file.h"
+#include "macrosim/macro_spec.h"
+
+namespace softgrain {
+
+struct MacroBody {
+  Vec3 x{};
+  double r = 0.0;
+  bool soft = false;
+};
+
+struct MacroPacking {
+  Vec3 low{};    ///< corners of the box [m]
+  Vec3 high{};
+  std::vector<MacroBody> bodies;
+
+  [[nodiscard]] Vec3 size() const { return high - low; }
+  [[nodiscard]] double solid_fraction() const;
+  [[nodiscard]] double soft_volume_share() const;
+  [[nodiscard]] std::int64_t soft_count() const;
+};
+
+/// Radii from the power laws, random non-overlapping start, frictionless isotropic compaction of all bodies as hard grains until
+/// the wall pressure reaches start_pressure * E. Throws BadInput when the shares cannot be met, NotUsable when it does not jam.
+MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
+
+void write_macro_packing(const h5::Group& group, const MacroPacking& packing);
+MacroPacking read_macro_packing(const h5::Group& group);
+
+}  // namespace softgrain
