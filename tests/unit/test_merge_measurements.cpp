@@ -1,0 +1,61 @@
+// Measurement files join into one ensemble only when they belong together.
+#include "calibrate/merge_measurements.h"
+
+#include <gtest/gtest.h>
+
+#include "common/core/error.h"
+#include "tests/support/synthetic_law.h"
+
+namespace {
+
+using namespace softgrain;
+
+Measurements part(std::uint64_t seed) {
+  test::SyntheticOptions o;
+  o.packings = 3;
+  o.seed = seed;
+  return test::synthetic(o);
+}
+
+TEST(MergeMeasurements, PackingsAreRenumbered) {
+  const auto all = merge_measurements({part(1), part(2)}, {"a.h5", "b.h5"});
+  EXPECT_EQ(all.packings.size(), 6U);
+  ASSERT_EQ(all.runs.size(), 6U);
+  EXPECT_EQ(all.runs[5].packing, 5);
+  EXPECT_EQ(all.packings[5].radii, part(2).packings[2].radii);
+}
+
+TEST(MergeMeasurements, AnotherSoftParticleIsRefusedByName) {
+  auto other = part(2);
+  other.spec.friction = 0.5;
+  try {
+    merge_measurements({part(1), other}, {"a.h5", "b.h5"});
+    FAIL() << "merged packings of different friction";
+  } catch (const BadInput& e) {
+    const std::string text = e.what();
+    EXPECT_NE(text.find("mu = 0.3 and 0.5"), std::string::npos) << text;
+    EXPECT_NE(text.find("b.h5"), std::string::npos) << text;
+  }
+}
+
+TEST(MergeMeasurements, ProtocolsAreNotMixed) {
+  auto other = part(2);
+  other.shell_turns = false;
+  EXPECT_THROW(merge_measurements({part(1), other}, {"a", "b"}), BadInput);
+}
+
+TEST(MergeMeasurements, TheSamePackingTwiceIsRefused) {
+  EXPECT_THROW(merge_measurements({part(1), part(1)}, {"a", "a"}), BadInput);
+  auto other = part(1);
+  for (auto& run : other.runs) run.relaxation = "published";
+  EXPECT_EQ(merge_measurements({part(1), other}, {"a", "b"}).runs.size(), 6U);
+}
+
+TEST(MergeMeasurements, NothingOrDamagedIsRefused) {
+  EXPECT_THROW(merge_measurements({}, {}), BadInput);
+  auto broken = part(1);
+  broken.runs[0].packing = 7;
+  EXPECT_THROW(merge_measurements({broken}, {"a"}), BadInput);
+}
+
+}  // namespace
