@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/joint_fit.h"
 #include "common/core/random.h"
 
 namespace softgrain {

@@ -1,20 +1,20 @@
 #include "calibrate/threshold_fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "calibrate/bootstrap.h"
+#include "calibrate/joint_fit.h"
+#include "calibrate/law_estimate.h"
 #include "common/core/error.h"
 
 namespace softgrain {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Clear points (mean above noise and two standard errors) that each curve needs: normal a, b, delta; tangential a, b.
 constexpr std::array<std::size_t, kLawCurves> kClearNeeded{3, 2, 2};
 constexpr std::array<const char*, kLawCurves> kCurveNames{"normal force", "initial tangential stiffness", "secant tangential stiffness"};
@@ -49,8 +49,8 @@ std::vector<double> clear_deltas(const CurveMeans& means, double noise_floor) {
 
 /// One fit in the making: samples, means, and the reasons against using it.
 struct Work {
-  std::array<CurveSamples, kLawCurves> samples;
-  std::array<CurveMeans, kLawCurves> means;
+  LawSamples samples;
+  LawMeans means;
   std::array<std::vector<double>, kLawCurves> clear;
   FitCurves curves;
   double delta_limit = 0.0;
@@ -67,56 +67,6 @@ Work collect(const RunList& runs, const SoftParticleSpec& spec, const FitOptions
     w.clear[j] = clear_deltas(w.means[j], options.noise_floor);
   }
   return w;
-}
-
-int count_values(const CurveSamples& s) {
-  return static_cast<int>(std::count_if(s.value.begin(), s.value.end(), [](double x) { return !std::isnan(x); }));
-}
-
-int count_packings(const CurveSamples& s) {
-  int n = 0;
-  for (std::size_t i = 0; i < s.packings; ++i) {
-    bool any = false;
-    for (std::size_t k = 0; k < s.delta.size(); ++k) any = any || !std::isnan(s.at(i, k));
-    n += any ? 1 : 0;
-  }
-  return n;
-}
-
-/// Values of a stiffness curve on the rows of the normal curve; NaN where it was not measured.
-void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, std::vector<double>& mean, std::vector<double>& deviation) {
-  for (const double d : rows) {
-    const auto it = std::find_if(means.delta.begin(), means.delta.end(), [d](double x) { return std::abs(x - d) < 1e-7; });
-    const auto k = static_cast<std::size_t>(it - means.delta.begin());
-    const bool found = it != means.delta.end();
-    mean.push_back(found ? means.mean[k] : std::numeric_limits<double>::quiet_NaN());
-    deviation.push_back(found ? means.deviation[k] : std::numeric_limits<double>::quiet_NaN());
-  }
-}
-
-/// What the card says about the data themselves.
-void describe_data(const RunList& runs, const FitOptions& options, const Work& w, FitReport& report) {
-  PairLaw& law = report.law;
-  const CurveMeans& normal = w.means[0];
-  law.initial_angle_deg = options.initial_angle_deg;
-  law.secant_angle_deg = options.secant_angle_deg;
-  law.has_tangential_initial = !w.samples[1].empty();
-  law.has_tangential_secant = !w.samples[2].empty();
-  law.packings = count_packings(w.samples[0]);
-  for (const CurveSamples& s : w.samples) law.points += count_values(s);
-  report.normal_left_out = w.samples[0].left_out;
-  report.tangential_left_out = w.samples[1].left_out;
-  law.table.delta = normal.delta;
-  law.table.force_mean = normal.mean;
-  law.table.force_deviation = normal.deviation;
-  fill_stiffness(w.means[1], normal.delta, law.table.kt_initial_mean, law.table.kt_initial_deviation);
-  fill_stiffness(w.means[2], normal.delta, law.table.kt_secant_mean, law.table.kt_secant_deviation);
-  if (normal.delta.empty()) return;
-  law.delta_min = normal.delta.front();
-  law.delta_max = normal.delta.back();
-  for (const PackingRun* run : runs)
-    for (const NormalPoint& p : run->normal)
-      if (p.converged && p.delta >= law.delta_min - 1e-7 && p.delta <= law.delta_max + 1e-7) law.max_overlap = std::max(law.max_overlap, p.max_overlap);
 }
 
 /// Chooses the curves that can be fitted and the largest threshold that leaves enough clear points above it.
@@ -144,64 +94,6 @@ void judge_fit(Work& w) {
     if (joint.exponent_at_bound[j]) w.reasons.push_back(fmt::format("exponent of the {} is at its bound {:.4g}", kCurveNames[j], joint.parameters.exponent[j]));
 }
 
-void goodness(const Work& w, double noise_floor, PairLaw& law) {
-  double chi2 = 0.0;
-  double points = 0.0;
-  double parameters = 1.0;
-  for (std::size_t j = 0; j < kLawCurves; ++j) {
-    const FitCurve& c = w.curves[j];
-    if (c.present()) parameters += 2.0;
-    for (std::size_t k = 0; k < c.means.delta.size(); ++k) {
-      const double f = w.joint.parameters.value(j, c.means.delta[k]);
-      if (f <= 0.0 && c.means.mean[k] <= noise_floor) continue;  // below threshold nothing is tested
-      const double z = (c.means.mean[k] - f) / c.sigma[k];
-      chi2 += c.means.count[k] * z * z;
-      points += 1.0;
-    }
-  }
-  const double freedom = points - parameters;
-  law.chi2_per_dof = freedom > 0.0 ? chi2 / freedom : 0.0;
-  law.quality = freedom > 0.0 ? gsl_cdf_chisq_Q(chi2, freedom) : 0.0;
-}
-
-double constant_of(double a, double b, double delta) { return delta > 0.0 ? -a * std::pow(delta, b) : 0.0; }
-
-/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2.
-double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b, double delta) {
-  if (delta <= 0.0) return 0.0;
-  const double p = std::pow(delta, b);
-  const std::array<std::size_t, 3> rows{i, j, 2};
-  const std::array<double, 3> slope{-p, -a * p * std::log(delta), -a * b * p / delta};
-  double variance = 0.0;
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) variance += slope[r] * slope[c] * covariance[rows[r] * 7 + rows[c]];
-  return std::sqrt(std::max(variance, 0.0));
-}
-
-template <class Pick>
-Estimate estimate(double value, double error, const FitReport& report, Pick pick) {
-  std::vector<double> values;
-  for (const auto& r : report.replicates) values.push_back(pick(r));
-  const auto [low, high] = interval95(std::move(values));
-  return {value, error, low, high};
-}
-
-constexpr std::array<std::size_t, kLawCurves> kRowOfA{0, 3, 5};
-
-ThresholdPowerLaw law_of(const FitReport& report, const std::array<double, 7>& p, std::size_t curve, bool errors_known) {
-  const std::size_t i = kRowOfA[curve];
-  const std::size_t j = i + 1;
-  const auto& cov = report.law.covariance;
-  const auto error = [&](std::size_t k) { return errors_known ? std::sqrt(cov[k * 7 + k]) : kInfinity; };
-  ThresholdPowerLaw law;
-  law.a = estimate(p[i], error(i), report, [i](const auto& r) { return r[i]; });
-  law.b = estimate(p[j], error(j), report, [j](const auto& r) { return r[j]; });
-  law.delta = estimate(p[2], error(2), report, [](const auto& r) { return r[2]; });
-  law.c = estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity, report,
-                   [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); });
-  return law;
-}
-
 void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   const bool enough = report.law.packings >= options.min_packings;
   if (!enough) w.reasons.push_back(fmt::format("{} packings, {} needed for an interval", report.law.packings, options.min_packings));
@@ -226,10 +118,10 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   if (errors_known) law.covariance = packing_covariance(w.joint, w.curves, {&w.samples[0], &w.samples[1], &w.samples[2]});
   run_bootstrap(options, w, report);
   const auto p = w.joint.parameters.law_parameters();
-  law.normal = law_of(report, p, 0, errors_known);
-  if (w.curves[1].present()) law.tangential_initial = law_of(report, p, 1, errors_known);
-  if (w.curves[2].present()) law.tangential_secant = law_of(report, p, 2, errors_known);
-  goodness(w, options.noise_floor, law);
+  law.normal = estimated_law(report, p, 0, errors_known);
+  if (w.curves[1].present()) law.tangential_initial = estimated_law(report, p, 1, errors_known);
+  if (w.curves[2].present()) law.tangential_secant = estimated_law(report, p, 2, errors_known);
+  fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);
 }
 
 void conclude(PairLaw& law, const std::string& status, const std::vector<std::string>& reasons) {
@@ -263,7 +155,7 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
     return report;
   }
   Work w = collect(runs, data.spec, options);
-  describe_data(runs, options, w, report);
+  describe_data(runs, options, w.samples, w.means, report);
   if (w.samples[0].empty()) {
     conclude(report.law, "underdetermined", {"no converged normal point in the fitted range"});
     return report;
@@ -294,22 +186,6 @@ LawCard calibrate(const Measurements& data, const FitOptions& options, std::vect
     if (reports != nullptr) reports->push_back(std::move(report));
   }
   return card;
-}
-
-std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<const double> deltas) {
-  const PairLaw& law = report.law;
-  const std::size_t i = kRowOfA[static_cast<std::size_t>(curve)];
-  const std::array<const ThresholdPowerLaw*, kLawCurves> laws{&law.normal, &law.tangential_initial, &law.tangential_secant};
-  const ThresholdPowerLaw& best = *laws[static_cast<std::size_t>(curve)];
-  const auto value = [](double a, double b, double delta, double d) { return d <= delta ? 0.0 : a * std::pow(d, b) + constant_of(a, b, delta); };
-  std::vector<Band> out;
-  for (const double d : deltas) {
-    std::vector<double> values;
-    for (const auto& r : report.replicates) values.push_back(value(r[i], r[i + 1], r[2], d));
-    const auto [low, high] = interval95(std::move(values));
-    out.push_back({d, value(best.a.value, best.b.value, best.delta.value, d), low, high});
-  }
-  return out;
 }
 
 }  // namespace softgrain

@@ -1,8 +1,9 @@
-// The joint threshold power law of several curves that share one threshold, and its exact fit.
+// The joint threshold power law of several curves that share one threshold, as a least-squares problem.
 #pragma once
 
 #include <array>
-#include <optional>
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "calibrate/curve_samples.h"
@@ -36,30 +37,33 @@ struct JointParameters {
   [[nodiscard]] std::array<double, 7> law_parameters() const;
 };
 
-struct JointFit {
-  JointParameters parameters;
-  LeastSquaresFit fit;               ///< over [delta, A_j, b_j of each present curve]; covariance in units of sigma
-  bool delta_at_zero = false;        ///< the threshold ran to its lower bound
-  bool delta_at_limit = false;       ///< the threshold ran to its upper bound
-  std::array<bool, kLawCurves> exponent_at_bound{};
-};
-
 /// Bounds of every exponent b.
 inline constexpr ParameterBounds kExponentBounds{0.05, 12.0};
 
-/// Minimises sum_j sum_k n_jk [(mean_jk - F_j(D_k))/sigma_jk]^2; by the constancy of sigma and F over packings this is the fit to
-/// all single packings. The residual has a kink where delta passes a measured Delta, so each interval between neighbouring Deltas
-/// is fitted as a smooth problem with delta bounded to it, and the best interval wins: exact, and no start can miss it.
-/// `delta_limit` bounds delta from above; 0 fixes delta = 0, the plain power law.
-JointFit fit_joint(const FitCurves& curves, double delta_limit);
+/// Where each parameter of each curve sits in the vector of a fit: delta first, then (A, b) per present curve.
+struct JointLayout {
+  std::array<std::size_t, kLawCurves> first{};
+  std::size_t size = 1;
 
-/// The same from a known neighbour: starts in its interval and walks on while delta runs into the interval's end.
-/// What the bootstrap uses.
-JointFit refit_joint(const FitCurves& curves, double delta_limit, const JointParameters& from);
+  explicit JointLayout(const std::array<bool, kLawCurves>& present);
+  [[nodiscard]] std::vector<double> pack(const JointParameters& p) const;
+  /// `shape` says which curves are present and their references.
+  [[nodiscard]] JointParameters unpack(const JointParameters& shape, std::span<const double> x) const;
+};
 
-/// Cluster-robust covariance of law_parameters(), packings being the clusters: H^-1 [G/(G-1) sum_g s_g s_g^T] H^-1, s_g the
-/// score of packing g. Points of one packing move together, which (J^T J)^-1 alone would ignore. 7 x 7 row-major.
-std::vector<double> packing_covariance(const JointFit& joint, const FitCurves& curves,
-                                       const std::array<const CurveSamples*, kLawCurves>& samples);
+/// d F_j / d (delta, A, b) at one Delta; zero below the threshold.
+std::array<double, 3> law_gradient(const JointParameters& p, std::size_t curve, double overlap_ratio);
+
+/// Weighted residuals of all curves, exact Jacobian, bounds; delta in [0, infinity). Keeps a reference to `curves`.
+LeastSquaresProblem joint_problem(const FitCurves& curves, const JointParameters& shape);
+
+/// Which curves are present, and their references D_j.
+JointParameters joint_shape(const FitCurves& curves);
+
+/// Weight of a mean in the fit: sqrt(n)/sigma.
+inline double mean_weight(const FitCurve& curve, std::size_t k) { return std::sqrt(curve.means.count[k]) / curve.sigma[k]; }
+
+/// Row of a in law_parameters() for each curve; b follows it, delta is row 2.
+inline constexpr std::array<std::size_t, kLawCurves> kRowOfA{0, 3, 5};
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "calibrate/joint_fit.h"
 #include "common/core/error.h"
 #include "tests/support/synthetic_law.h"
 

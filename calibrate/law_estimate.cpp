@@ -1,0 +1,139 @@
+#include "calibrate/law_estimate.h"
+
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/bootstrap.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+int count_values(const CurveSamples& s) {
+  return static_cast<int>(std::count_if(s.value.begin(), s.value.end(), [](double x) { return !std::isnan(x); }));
+}
+
+int count_packings(const CurveSamples& s) {
+  int n = 0;
+  for (std::size_t i = 0; i < s.packings; ++i) {
+    bool any = false;
+    for (std::size_t k = 0; k < s.delta.size(); ++k) any = any || !std::isnan(s.at(i, k));
+    n += any ? 1 : 0;
+  }
+  return n;
+}
+
+/// Values of a stiffness curve on the rows of the normal curve; NaN where it was not measured.
+void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, std::vector<double>& mean, std::vector<double>& deviation) {
+  for (const double d : rows) {
+    const auto it = std::find_if(means.delta.begin(), means.delta.end(), [d](double x) { return std::abs(x - d) < 1e-7; });
+    const auto k = static_cast<std::size_t>(it - means.delta.begin());
+    const bool found = it != means.delta.end();
+    mean.push_back(found ? means.mean[k] : std::numeric_limits<double>::quiet_NaN());
+    deviation.push_back(found ? means.deviation[k] : std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+double constant_of(double a, double b, double delta) { return delta > 0.0 ? -a * std::pow(delta, b) : 0.0; }
+
+/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2.
+double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b, double delta) {
+  if (delta <= 0.0) return 0.0;
+  const double p = std::pow(delta, b);
+  const std::array<std::size_t, 3> rows{i, j, 2};
+  const std::array<double, 3> slope{-p, -a * p * std::log(delta), -a * b * p / delta};
+  double variance = 0.0;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) variance += slope[r] * slope[c] * covariance[rows[r] * 7 + rows[c]];
+  return std::sqrt(std::max(variance, 0.0));
+}
+
+template <class Pick>
+Estimate estimate(double value, double error, const FitReport& report, Pick pick) {
+  std::vector<double> values;
+  for (const auto& r : report.replicates) values.push_back(pick(r));
+  const auto [low, high] = interval95(std::move(values));
+  return {value, error, low, high};
+}
+
+}  // namespace
+
+void describe_data(const RunList& runs, const FitOptions& options, const LawSamples& samples, const LawMeans& means, FitReport& report) {
+  PairLaw& law = report.law;
+  const CurveMeans& normal = means[0];
+  law.initial_angle_deg = options.initial_angle_deg;
+  law.secant_angle_deg = options.secant_angle_deg;
+  law.has_tangential_initial = !samples[1].empty();
+  law.has_tangential_secant = !samples[2].empty();
+  law.packings = count_packings(samples[0]);
+  for (const CurveSamples& s : samples) law.points += count_values(s);
+  report.normal_left_out = samples[0].left_out;
+  report.tangential_left_out = samples[1].left_out;
+  law.table.delta = normal.delta;
+  law.table.force_mean = normal.mean;
+  law.table.force_deviation = normal.deviation;
+  fill_stiffness(means[1], normal.delta, law.table.kt_initial_mean, law.table.kt_initial_deviation);
+  fill_stiffness(means[2], normal.delta, law.table.kt_secant_mean, law.table.kt_secant_deviation);
+  if (normal.delta.empty()) return;
+  law.delta_min = normal.delta.front();
+  law.delta_max = normal.delta.back();
+  for (const PackingRun* run : runs)
+    for (const NormalPoint& p : run->normal)
+      if (p.converged && p.delta >= law.delta_min - 1e-7 && p.delta <= law.delta_max + 1e-7) law.max_overlap = std::max(law.max_overlap, p.max_overlap);
+}
+
+void fill_goodness(const FitCurves& curves, const JointParameters& found, double noise_floor, PairLaw& law) {
+  double chi2 = 0.0;
+  double points = 0.0;
+  double parameters = 1.0;
+  for (std::size_t j = 0; j < kLawCurves; ++j) {
+    const FitCurve& c = curves[j];
+    if (c.present()) parameters += 2.0;
+    for (std::size_t k = 0; k < c.means.delta.size(); ++k) {
+      const double f = found.value(j, c.means.delta[k]);
+      if (f <= 0.0 && c.means.mean[k] <= noise_floor) continue;  // below threshold nothing is tested
+      const double z = (c.means.mean[k] - f) / c.sigma[k];
+      chi2 += c.means.count[k] * z * z;
+      points += 1.0;
+    }
+  }
+  const double freedom = points - parameters;
+  law.chi2_per_dof = freedom > 0.0 ? chi2 / freedom : 0.0;
+  law.quality = freedom > 0.0 ? gsl_cdf_chisq_Q(chi2, freedom) : 0.0;
+}
+
+ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double, 7>& p, std::size_t curve, bool errors_known) {
+  const std::size_t i = kRowOfA[curve];
+  const std::size_t j = i + 1;
+  const auto& cov = report.law.covariance;
+  const auto error = [&](std::size_t k) { return errors_known ? std::sqrt(cov[k * 7 + k]) : kInfinity; };
+  ThresholdPowerLaw law;
+  law.a = estimate(p[i], error(i), report, [i](const auto& r) { return r[i]; });
+  law.b = estimate(p[j], error(j), report, [j](const auto& r) { return r[j]; });
+  law.delta = estimate(p[2], error(2), report, [](const auto& r) { return r[2]; });
+  law.c = estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity, report,
+                   [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); });
+  return law;
+}
+
+std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<const double> deltas) {
+  const PairLaw& law = report.law;
+  const std::size_t i = kRowOfA[static_cast<std::size_t>(curve)];
+  const std::array<const ThresholdPowerLaw*, kLawCurves> laws{&law.normal, &law.tangential_initial, &law.tangential_secant};
+  const ThresholdPowerLaw& best = *laws[static_cast<std::size_t>(curve)];
+  const auto value = [](double a, double b, double delta, double d) { return d <= delta ? 0.0 : a * std::pow(d, b) + constant_of(a, b, delta); };
+  std::vector<Band> out;
+  for (const double d : deltas) {
+    std::vector<double> values;
+    for (const auto& r : report.replicates) values.push_back(value(r[i], r[i + 1], r[2], d));
+    const auto [low, high] = interval95(std::move(values));
+    out.push_back({d, value(best.a.value, best.b.value, best.delta.value, d), low, high});
+  }
+  return out;
+}
+
+}  // namespace softgrain
