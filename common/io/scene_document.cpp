@@ -56,16 +56,28 @@ toml::node& descend(toml::node& parent, const std::string& part, const std::stri
   return table->insert(part, toml::table{}).first->second;
 }
 
-void assign(toml::node& parent, const std::string& key, toml::node& value, const std::string& setting) {
+/// Puts `value` under `key` of a table or array and returns the new node.
+const toml::node& assign(toml::node& parent, const std::string& key, toml::node& value, const std::string& setting) {
   if (toml::table* table = parent.as_table()) {
     value.visit([&](auto& concrete) { table->insert_or_assign(key, std::move(concrete)); });
-    return;
+    return *table->get(key);
   }
   if (!parent.is_array()) throw BadInput("--set " + setting + ": what stands before '." + key + "' is not a table");
   descend(parent, key, setting);  // checks the index
   toml::array& array = *parent.as_array();
-  const auto place = array.cbegin() + static_cast<std::ptrdiff_t>(std::stoul(key));
+  const std::size_t index = std::stoul(key);
+  const auto place = array.cbegin() + static_cast<std::ptrdiff_t>(index);
   value.visit([&](auto& concrete) { array.replace(place, std::move(concrete)); });
+  return *array.get(index);
+}
+
+/// Lines inside a value from the command line say nothing about the file.
+void note_overridden(SceneDocument& document, const toml::node& node) {
+  document.overridden.insert(&node);
+  if (const toml::table* table = node.as_table())
+    for (const auto& [key, child] : *table) note_overridden(document, child);
+  if (const toml::array* array = node.as_array())
+    for (const toml::node& child : *array) note_overridden(document, child);
 }
 
 }  // namespace
@@ -88,8 +100,7 @@ void apply_override(SceneDocument& document, const std::string& setting) {
   toml::table value = parse_value(trimmed(setting.substr(mark + 1)), setting);
   toml::node* parent = &document.content;
   for (std::size_t k = 0; k + 1 < parts.size(); ++k) parent = &descend(*parent, parts[k], setting);
-  assign(*parent, parts.back(), *value.get("value"), setting);
-  document.overridden.insert(path);
+  note_overridden(document, assign(*parent, parts.back(), *value.get("value"), setting));
 }
 
 Scene Scene::load(const std::string& path, const std::vector<std::string>& overrides) {

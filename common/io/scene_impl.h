@@ -14,9 +14,9 @@ namespace softgrain {
 
 /// A parsed file; every table of it holds the document.
 struct SceneDocument {
-  std::string name;                  ///< of the file, as shown in messages
+  std::string name;  ///< of the file, as shown in messages
   toml::table content;
-  std::set<std::string> overridden;  ///< dotted keys that --set gave
+  std::set<const toml::node*> overridden;  ///< nodes that --set gave
 };
 
 struct SceneTable::Impl {

@@ -17,14 +17,6 @@ std::string joined(const std::set<std::string>& words) {
   return text;
 }
 
-/// True when `key` or a table above it was given by --set.
-bool is_overridden(const std::set<std::string>& overridden, const std::string& key) {
-  for (std::size_t end = key.find('.');; end = key.find('.', end + 1)) {
-    if (overridden.contains(key.substr(0, end))) return true;
-    if (end == std::string::npos) return false;
-  }
-}
-
 std::string number_text(double value) {
   std::ostringstream out;
   out.precision(15);
@@ -70,9 +62,8 @@ std::string SceneTable::Impl::location() const {
 }
 
 std::string SceneTable::Impl::where(const std::string& key, const toml::node& node) const {
-  const std::string full = dotted(key);
   const auto line = node.source().begin.line;
-  if (line == 0 || is_overridden(document->overridden, full)) return document->name + " (--set " + full + ")";
+  if (line == 0 || document->overridden.contains(&node)) return document->name + " (--set " + dotted(key) + ")";
   return document->name + ":" + std::to_string(line);
 }
 

@@ -1,0 +1,211 @@
+// Strict reading of scenes: values, messages with file and line, unknown keys, overrides.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/core/error.h"
+#include "common/io/scene.h"
+
+namespace softgrain {
+namespace {
+
+constexpr const char* kText = R"(kind = "soft-particle"
+gravity = [0.0, 0, "-981 cm/s^2"]
+[packing]
+radius = "16 mm"
+beta = 3
+trials = 1e4
+turns = true
+[material.glass]
+E = "48 GPa"
+[[contact]]
+pair = ["glass", "glass"]
+mu = 0.5
+[[contact]]
+pair = ["glass", "steel"]
+mu = 0.25
+)";
+
+Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return Scene::parse(text, "scene.toml", overrides);
+}
+
+/// The message of the BadInput that `action` throws; empty when it throws none.
+template <class Action>
+std::string message_of(Action action) {
+  try {
+    action();
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Scene, ReadsEveryKindOfValue) {
+  const Scene scene = parse(kText);
+  const SceneTable root = scene.root();
+  EXPECT_EQ(root.choice("kind", {"grain-box", "soft-particle"}), "soft-particle");
+  EXPECT_EQ(root.vector3("gravity", Unit::acceleration), (Vec3{{0.0, 0.0, -9.81}}));
+  const SceneTable packing = root.table("packing");
+  EXPECT_EQ(packing.number("radius", Unit::length, Range::positive()), 0.016);
+  EXPECT_EQ(packing.number("beta", Unit::none), 3.0);
+  EXPECT_EQ(packing.count("trials", 1, 1000000), 10000);
+  EXPECT_TRUE(packing.flag("turns", false));
+  EXPECT_EQ(packing.number("absent", Unit::none, Range::any(), 7.0), 7.0);
+  const SceneTable materials = root.table("material");
+  ASSERT_EQ(materials.keys(), std::vector<std::string>{"glass"});
+  EXPECT_EQ(materials.named("glass").number("E", Unit::pressure), 48e9);
+  const std::vector<SceneTable> contacts = root.tables("contact");
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_EQ(contacts[1].texts("pair"), (std::vector<std::string>{"glass", "steel"}));
+  EXPECT_EQ(contacts[0].number("mu", Unit::none), 0.5);
+  EXPECT_EQ(contacts[1].number("mu", Unit::none), 0.25);
+  EXPECT_EQ(contacts[0].texts("pair").size(), 2U);
+  EXPECT_NO_THROW(scene.root().finish());
+}
+
+TEST(Scene, RangeMessageNamesPlaceValueAndLimit) {
+  const Scene scene = parse("[packing]\nradius = 1.0\nbeta = 0.9\n");
+  const SceneTable packing = scene.root().table("packing");
+  EXPECT_EQ(message_of([&] { (void)packing.number("beta", Unit::none, Range::above(1.0)); }),
+            "scene.toml:3: beta = 0.9: must be above 1");
+  EXPECT_EQ(message_of([&] { (void)packing.number("beta", Unit::none, Range::closed(1.0, 2.5)); }),
+            "scene.toml:3: beta = 0.9: must be from 1 to 2.5");
+  EXPECT_EQ(message_of([&] { (void)packing.number("radius", Unit::length, Range{0.0, 1.0, false, true}); }),
+            "scene.toml:2: radius = 1: must be at least 0 and below 1");
+}
+
+TEST(Scene, UnknownKeyNamesTheNearestAskedFor) {
+  const Scene scene = parse("kind = \"x\"\n[packing]\nbeta = 2.0\nraddius = 1.0\n");
+  (void)scene.root().text("kind");
+  const SceneTable packing = scene.root().table("packing");
+  (void)packing.number("beta", Unit::none);
+  (void)packing.number("radius", Unit::length, Range::any(), 1.0);
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }),
+            "scene.toml:4: unknown key 'raddius' in [packing]; nearest known key is 'radius'");
+}
+
+TEST(Scene, UnknownKeyWithoutNearOneListsTheKnown) {
+  const Scene scene = parse("zzzzzz = 1\nbeta = 2.0\n");
+  (void)scene.root().number("beta", Unit::none);
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }), "scene.toml:1: unknown key 'zzzzzz' at the top level; known keys are beta");
+}
+
+TEST(Scene, UnknownKeysAreFoundInsideElementsOfArrays) {
+  const Scene scene = parse("[[contact]]\nmu = 1.0\n[[contact]]\nmu = 1.0\nmuu = 2.0\n");
+  for (const SceneTable& contact : scene.root().tables("contact")) (void)contact.number("mu", Unit::none);
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }),
+            "scene.toml:5: unknown key 'muu' in [[contact]]; nearest known key is 'mu'");
+}
+
+TEST(Scene, MissingKeyNamesTableAndLikelyTypo) {
+  const Scene scene = parse("\n[packing]\nraddius = 1.0\n");
+  const SceneTable packing = scene.root().table("packing");
+  EXPECT_EQ(message_of([&] { (void)packing.number("radius", Unit::length); }),
+            "scene.toml:2: missing key 'radius' in [packing]; did 'raddius' at scene.toml:3 mean it?");
+  EXPECT_EQ(message_of([&] { (void)scene.root().table("macro"); }), "scene.toml:1: missing table [macro]");
+  EXPECT_EQ(scene.root().table_or_empty("macro").count("samples", 1, 9, 4), 4);
+}
+
+TEST(Scene, WrongTypesAreRefused) {
+  const Scene scene = parse("a = true\nb = nan\nc = inf\nd = \"word\"\ne = 2.5\nf = [1, 2]\ng = 3\n");
+  const SceneTable root = scene.root();
+  const std::string number = "must be a number";
+  EXPECT_EQ(message_of([&] { (void)root.number("a", Unit::none); }), "scene.toml:1: a = true: must be a number");
+  for (const char* key : {"b", "c", "d", "f"})
+    EXPECT_NE(message_of([&] { (void)root.number(key, Unit::length); }), "") << key;
+  EXPECT_NE(message_of([&] { (void)root.count("e", 0, 10); }).find("must be a whole number"), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)root.count("g", 4, 10); }).find("from 4 to 10"), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)root.flag("g", false); }).find("true or false"), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)root.vector3("f", Unit::length); }).find("three components"), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)root.text("g"); }), "");
+  EXPECT_NE(message_of([&] { (void)root.table("g"); }).find("must be a table [g]"), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)root.tables("f"); }).find("[[f]]"), std::string::npos);
+}
+
+TEST(Scene, ChoiceNamesTheWordsAndTheNearest) {
+  const Scene scene = parse("law = \"hertz-tsuij\"\n");
+  EXPECT_EQ(message_of([&] { (void)scene.root().choice("law", {"hertz-tsuji", "linear-spring"}); }),
+            "scene.toml:1: law = \"hertz-tsuij\": must be \"hertz-tsuji\" or \"linear-spring\"; nearest is \"hertz-tsuji\"");
+}
+
+TEST(Scene, SyntaxErrorsCarryFileAndLine) {
+  const std::string message = message_of([] { (void)parse("a = 1\nb = = 2\n"); });
+  EXPECT_EQ(message.rfind("scene.toml:2: not valid TOML", 0), 0U) << message;
+  EXPECT_NE(message_of([] { (void)parse("a = 1\na = 2\n"); }), "");
+}
+
+TEST(Scene, OverridesReplaceAndCreateKeys) {
+  const Scene scene = parse(kText, {"packing.beta=1.5", "packing.radius=5 mm", "kind=grain-box", "macro.samples=3",
+                                    "contact.1.mu=0.75", "packing.sizes=[1, 2.5]"});
+  const SceneTable root = scene.root();
+  EXPECT_EQ(root.text("kind"), "grain-box");
+  EXPECT_EQ(root.table("packing").number("beta", Unit::none), 1.5);
+  EXPECT_EQ(root.table("packing").number("radius", Unit::length), 0.005);
+  EXPECT_EQ(root.table("packing").numbers("sizes", Unit::none), (std::vector<double>{1.0, 2.5}));
+  EXPECT_EQ(root.table("macro").count("samples", 1, 10), 3);
+  EXPECT_EQ(root.tables("contact")[0].number("mu", Unit::none), 0.5);
+  EXPECT_EQ(root.tables("contact")[1].number("mu", Unit::none), 0.75);
+}
+
+TEST(Scene, OverridesAreNamedInMessages) {
+  const Scene scene = parse("[packing]\nbeta = 3\n", {"packing.beta=0.5", "packing.raddius=1"});
+  const SceneTable packing = scene.root().table("packing");
+  EXPECT_EQ(message_of([&] { (void)packing.number("beta", Unit::none, Range::above(1.0)); }),
+            "scene.toml (--set packing.beta): beta = 0.5: must be above 1");
+  (void)packing.number("radius", Unit::length, Range::any(), 1.0);
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }),
+            "scene.toml (--set packing.raddius): unknown key 'raddius' in [packing]; nearest known key is 'radius'");
+}
+
+TEST(Scene, BadOverridesAreRefused) {
+  for (const char* setting : {"packing.beta", "=3", "packing..beta=3", "packing.=3", "packing.beta.x=3", "contact.7.mu=1",
+                              "contact.x.mu=1", "packing.sizes=[1, 2", "packing.beta={a=}"})
+    EXPECT_NE(message_of([&] { (void)parse(kText, {setting}); }).find("--set"), std::string::npos) << setting;
+}
+
+TEST(Scene, TextWithOverridesReadsBackTheSame) {
+  const Scene first = parse(kText, {"packing.beta=0.1", "packing.radius=5 mm"});
+  const Scene second = parse(first.text());
+  EXPECT_EQ(second.root().table("packing").number("beta", Unit::none), 0.1);
+  EXPECT_EQ(second.root().table("packing").text("radius"), "5 mm");
+  EXPECT_EQ(second.root().tables("contact").size(), 2U);
+  EXPECT_EQ(parse(kText).text(), kText);
+}
+
+TEST(Scene, RejectAndWhereSpeakInTheStandardForm) {
+  const Scene scene = parse("a = 1\nb = 2.5\n");
+  EXPECT_EQ(scene.root().where("b"), "scene.toml:2");
+  EXPECT_EQ(message_of([&] { scene.root().reject("b", "must be below a"); }), "scene.toml:2: b = 2.5: must be below a");
+}
+
+TEST(Scene, MissingFileIsFileTrouble) {
+  try {
+    (void)Scene::load("/nowhere/scene.toml");
+    FAIL() << "no error";
+  } catch (const FileTrouble& e) {
+    EXPECT_STREQ(e.what(), "/nowhere/scene.toml: no such file");
+  }
+  EXPECT_THROW((void)Scene::load("/tmp"), FileTrouble);
+}
+
+TEST(Scene, PathsAreRelativeToTheScene) {
+  const Scene scene = Scene::parse("", "some/folder/scene.toml");
+  EXPECT_EQ(scene.resolve("A.xyzr"), "some/folder/A.xyzr");
+  EXPECT_EQ(scene.resolve("../A.xyzr"), "some/A.xyzr");
+  EXPECT_EQ(scene.resolve("/data/A.xyzr"), "/data/A.xyzr");
+  EXPECT_EQ(Scene::parse("", "scene.toml").resolve("A"), "A");
+}
+
+TEST(NearestWord, FindsTyposAndStaysSilentOtherwise) {
+  const std::vector<std::string> known{"radius", "density", "friction", "mu"};
+  EXPECT_EQ(nearest_word("raduis", known), "radius");
+  EXPECT_EQ(nearest_word("Friction", known), "friction");
+  EXPECT_EQ(nearest_word("m", known), "mu");
+  EXPECT_EQ(nearest_word("temperature", known), "");
+  EXPECT_EQ(nearest_word("x", {}), "");
+}
+
+}  // namespace
+}  // namespace softgrain
