@@ -1,0 +1,201 @@
+#include "pipelines/compare/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "common/core/error.h"
+
+namespace softgrain {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using Key = std::pair<std::string, std::int64_t>;
+
+void require_curve(const std::vector<double>& x, const std::vector<double>& y, const char* side) {
+  if (x.size() != y.size())
+    throw BadInput(fmt::format("compare: {} has {} abscissae and {} values", side, x.size(), y.size()));
+  if (x.size() < 2) throw BadInput(fmt::format("compare: {} has fewer than two points", side));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i]))
+      throw BadInput(fmt::format("compare: {} holds a value that is not finite at point {}", side, i));
+    if (i > 0 && !(x[i] > x[i - 1])) throw BadInput(fmt::format("compare: {} does not increase at point {}", side, i));
+  }
+}
+
+std::pair<double, double> common_range(const std::vector<double>& a, const std::vector<double>& b) {
+  const double low = std::max(a.front(), b.front());
+  const double high = std::min(a.back(), b.back());
+  if (low < high) return {low, high};
+  throw BadInput(fmt::format("compare: no common range: candidate {} .. {}, reference {} .. {}", a.front(), a.back(),
+                             b.front(), b.back()));
+}
+
+std::vector<double> union_grid(const std::vector<double>& a, const std::vector<double>& b, double low, double high) {
+  std::vector<double> grid{low, high};
+  for (const auto* x : {&a, &b}) {
+    std::copy_if(x->begin(), x->end(), std::back_inserter(grid), [&](double v) { return v > low && v < high; });
+  }
+  std::sort(grid.begin(), grid.end());
+  grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
+  return grid;
+}
+
+/// Integral of the square of a function that is linear between `left` and `right`.
+double square_integral(double width, double left, double right) {
+  return width * (left * left + left * right + right * right) / 3.0;
+}
+
+/// NaN in place of an error: the lateral stress is not recorded by every test.
+double difference_or_nan(const MacroCurve& c, const MacroCurve& r, const std::vector<double>& cy,
+                         const std::vector<double>& ry) {
+  try {
+    return relative_difference(c.strain, cy, r.strain, ry);
+  } catch (const BadInput&) {
+    return kNaN;
+  }
+}
+
+double value_or_nan(const MacroCurve& c, const std::vector<double>& y, double at) {
+  return y.size() == c.strain.size() && !y.empty() ? interpolate_linear(c.strain, y, at) : kNaN;
+}
+
+SampleComparison compare_sample(const MacroCurve& candidate, const MacroCurve& reference) {
+  SampleComparison s;
+  s.sample = candidate.sample;
+  s.test = candidate.test;
+  s.axial_difference =
+      relative_difference(candidate.strain, candidate.stress_axial, reference.strain, reference.stress_axial);
+  s.lateral_difference = difference_or_nan(candidate, reference, candidate.stress_lateral, reference.stress_lateral);
+  std::tie(s.strain_low, s.strain_high) = common_range(candidate.strain, reference.strain);
+  const double axial_c = interpolate_linear(candidate.strain, candidate.stress_axial, s.strain_high);
+  const double axial_r = interpolate_linear(reference.strain, reference.stress_axial, s.strain_high);
+  const double lateral_c = value_or_nan(candidate, candidate.stress_lateral, s.strain_high);
+  const double lateral_r = value_or_nan(reference, reference.stress_lateral, s.strain_high);
+  const auto ratio = [](double a, double b) { return b == 0.0 ? kNaN : a / b; };
+  s.axial_end_ratio = ratio(axial_c, axial_r);
+  s.lateral_end_ratio = ratio(lateral_c, lateral_r);
+  s.lateral_stress_ratio_candidate = ratio(lateral_c, axial_c);
+  s.lateral_stress_ratio_reference = ratio(lateral_r, axial_r);
+  s.candidate_cost = candidate.cost;
+  s.reference_cost = reference.cost;
+  return s;
+}
+
+std::map<Key, const MacroCurve*> by_key(const std::vector<MacroCurve>& curves, const char* side) {
+  std::map<Key, const MacroCurve*> result;
+  for (const MacroCurve& c : curves) {
+    if (result.emplace(Key{c.test, c.sample}, &c).second) continue;
+    throw BadInput(
+        fmt::format("compare: the {} holds test \"{}\", sample {} twice; choose one engine", side, c.test, c.sample));
+  }
+  return result;
+}
+
+/// Why a pair cannot be compared; empty when it can.
+std::string obstacle(const MacroCurve& candidate, const MacroCurve* reference) {
+  const std::string name = fmt::format("{} sample {}: ", candidate.test, candidate.sample);
+  if (reference == nullptr) return name + "the reference has no such sample";
+  if (!candidate.usable) return name + "the candidate is marked unusable (" + candidate.note + ")";
+  if (!reference->usable) return name + "the reference is marked unusable (" + reference->note + ")";
+  return "";
+}
+
+MeanError mean_of(const std::vector<SampleComparison>& samples, double SampleComparison::*member) {
+  std::vector<double> values;
+  for (const SampleComparison& s : samples) {
+    if (std::isfinite(s.*member)) values.push_back(s.*member);
+  }
+  return mean_error(values);
+}
+
+void add_speedups(Comparison& result) {
+  Cost candidate;
+  Cost reference;
+  for (const SampleComparison& s : result.samples) {
+    candidate += s.candidate_cost;
+    reference += s.reference_cost;
+  }
+  const auto ratio = [](double a, double b) { return a > 0.0 && b > 0.0 ? a / b : kNaN; };
+  result.speedup_seconds = ratio(reference.seconds, candidate.seconds);
+  result.speedup_contact_evaluations =
+      ratio(static_cast<double>(reference.contact_evaluations), static_cast<double>(candidate.contact_evaluations));
+}
+
+void add_means(Comparison& result) {
+  result.axial_difference = mean_of(result.samples, &SampleComparison::axial_difference);
+  result.lateral_difference = mean_of(result.samples, &SampleComparison::lateral_difference);
+  result.axial_end_ratio = mean_of(result.samples, &SampleComparison::axial_end_ratio);
+  result.lateral_stress_ratio_candidate = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_candidate);
+  result.lateral_stress_ratio_reference = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_reference);
+}
+
+}  // namespace
+
+double interpolate_linear(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto next = std::upper_bound(x.begin(), x.end(), at);
+  if (next == x.begin()) return y.front();
+  if (next == x.end()) return y.back();
+  const auto i = static_cast<std::size_t>(next - x.begin());
+  const double share = (at - x[i - 1]) / (x[i] - x[i - 1]);
+  return y[i - 1] + share * (y[i] - y[i - 1]);
+}
+
+double relative_difference(const std::vector<double>& candidate_x, const std::vector<double>& candidate_y,
+                           const std::vector<double>& reference_x, const std::vector<double>& reference_y) {
+  require_curve(candidate_x, candidate_y, "the candidate");
+  require_curve(reference_x, reference_y, "the reference");
+  const auto [low, high] = common_range(candidate_x, reference_x);
+  double squares = 0.0;
+  double reference_squares = 0.0;
+  double x0 = low;
+  double a0 = interpolate_linear(candidate_x, candidate_y, low);
+  double b0 = interpolate_linear(reference_x, reference_y, low);
+  for (const double x1 : union_grid(candidate_x, reference_x, low, high)) {
+    const double a1 = interpolate_linear(candidate_x, candidate_y, x1);
+    const double b1 = interpolate_linear(reference_x, reference_y, x1);
+    squares += square_integral(x1 - x0, a0 - b0, a1 - b1);
+    reference_squares += square_integral(x1 - x0, b0, b1);
+    x0 = x1;
+    a0 = a1;
+    b0 = b1;
+  }
+  if (!(reference_squares > 0.0)) throw BadInput("compare: the reference is zero over the whole common range");
+  return std::sqrt(squares / reference_squares);
+}
+
+Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference) {
+  if (candidate.empty() || reference.empty()) {
+    throw BadInput(fmt::format("compare: the {} holds no curve", candidate.empty() ? "candidate" : "reference"));
+  }
+  const auto candidates = by_key(candidate, "candidate");
+  const auto references = by_key(reference, "reference");
+  Comparison result;
+  for (const auto& [key, curve] : candidates) {
+    const auto partner = references.find(key);
+    const MacroCurve* other = partner == references.end() ? nullptr : partner->second;
+    const std::string problem = obstacle(*curve, other);
+    if (problem.empty()) {
+      result.samples.push_back(compare_sample(*curve, *other));
+    } else {
+      result.left_out.push_back(problem);
+    }
+  }
+  if (result.samples.empty()) throw BadInput("compare: no sample can be compared: " + result.left_out.front());
+  add_means(result);
+  add_speedups(result);
+  return result;
+}
+
+std::vector<MacroCurve> curves_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
+  std::vector<MacroCurve> result;
+  std::copy_if(curves.begin(), curves.end(), std::back_inserter(result),
+               [&](const MacroCurve& c) { return c.engine == engine; });
+  return result;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,58 @@
+// Error norms and cost of macro runs: a candidate (law) against a reference (resolved twin, or another run).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/data/macro_result.h"
+#include "pipelines/compare/statistics.h"
+
+namespace softgrain {
+
+/// Relative L2 difference of two piecewise linear curves over their common range of x:
+/// sqrt( int (a - b)^2 dx / int b^2 dx ), b the reference; integrals exact on the union of both grids.
+/// Throws BadInput when a curve is shorter than two points, x does not increase, a value is not finite, there is no
+/// common range, or the reference is zero on it. Units cancel.
+double relative_difference(const std::vector<double>& candidate_x, const std::vector<double>& candidate_y,
+                           const std::vector<double>& reference_x, const std::vector<double>& reference_y);
+
+/// Value of a piecewise linear curve inside its range.
+double interpolate_linear(const std::vector<double>& x, const std::vector<double>& y, double at);
+
+/// One sample seen by both sides.
+struct SampleComparison {
+  std::int64_t sample = 0;
+  std::string test;         ///< "oedometric" or "isotropic"
+  double strain_low = 0.0;  ///< common range of strain
+  double strain_high = 0.0;
+  double axial_difference = 0.0;    ///< relative L2 difference of the axial stress
+  double lateral_difference = 0.0;  ///< of the lateral stress; NaN when it was not recorded or is zero
+  double axial_end_ratio = 0.0;     ///< candidate over reference at the end of the common range
+  double lateral_end_ratio = 0.0;
+  double lateral_stress_ratio_candidate = 0.0;  ///< lateral over axial stress at the end of the common range
+  double lateral_stress_ratio_reference = 0.0;
+  Cost candidate_cost;
+  Cost reference_cost;
+};
+
+struct Comparison {
+  std::vector<SampleComparison> samples;
+  std::vector<std::string> left_out;  ///< one sentence for each sample that could not be compared
+  MeanError axial_difference;         ///< over samples
+  MeanError lateral_difference;
+  MeanError axial_end_ratio;
+  MeanError lateral_stress_ratio_candidate;
+  MeanError lateral_stress_ratio_reference;
+  double speedup_seconds = 0.0;  ///< reference over candidate, summed over samples; NaN when not recorded
+  double speedup_contact_evaluations = 0.0;
+};
+
+/// Pairs the curves by test and sample. Curves marked unusable, or without a partner, are left out and named.
+/// Throws BadInput when nothing remains to compare, or when one side holds the same test and sample twice.
+Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference);
+
+/// The curves of one engine.
+std::vector<MacroCurve> curves_of(const std::vector<MacroCurve>& curves, const std::string& engine);
+
+}  // namespace softgrain

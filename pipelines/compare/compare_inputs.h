@@ -1,0 +1,63 @@
+// What the two sides of `softgrain compare` hold, and everything that can be compared between them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/data/law_card.h"
+#include "common/data/macro_result.h"
+#include "common/data/measurements.h"
+#include "pipelines/compare/compare.h"
+#include "pipelines/compare/compare_measurements.h"
+
+namespace softgrain {
+
+/// A run directory or one of its files.
+struct CompareSide {
+  std::string name;
+  std::vector<MacroCurve> macro;
+  std::optional<Measurements> measurements;
+  std::optional<LawCard> card;
+};
+
+/// `path` is a run directory, or a file named like macro*.h5, law*.toml or another .h5 with measurements.
+/// Throws FileTrouble when it does not exist or is damaged, BadInput when it is none of these or holds nothing to
+/// compare.
+CompareSide load_side(const std::string& path);
+
+struct MacroPart {
+  std::string candidate_engine;
+  std::string reference_engine;
+  Comparison result;
+};
+
+struct LawPartComparison {
+  PairKind kind = PairKind::soft_solid;
+  std::vector<LawRow> rows;
+};
+
+/// All comparisons that the data allow.
+struct CompareResult {
+  std::vector<MacroPart> macro;
+  std::vector<RelaxationComparison> relaxations;
+  std::vector<MeasurementComparison> measurements;
+  std::vector<LawPartComparison> laws;
+  std::vector<std::string> remarks;  ///< what could not be compared, and why
+};
+
+/// Candidate against reference: engines and relaxations of the same name; when the sides share none, the first of each.
+/// Throws BadInput when nothing can be compared.
+CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference);
+
+/// Inside one run: engine "law" against "shelled", and every other relaxation against "published".
+/// Throws BadInput when nothing can be compared.
+CompareResult compare_within(const CompareSide& side);
+
+nlohmann::json to_json(const CompareResult& result);
+
+/// A table for people.
+std::string to_text(const CompareResult& result);
+
+}  // namespace softgrain

@@ -1,0 +1,204 @@
+// A comparison as JSON and as a table for people.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipelines/compare/compare_inputs.h"
+
+namespace softgrain {
+namespace {
+
+using nlohmann::json;
+
+/// Values that are not finite become null: JSON knows no NaN.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json to_json(const MeanError& m) { return {{"mean", number(m.mean)}, {"standard_error", number(m.error)}, {"n", m.n}}; }
+
+json to_json(const SampleComparison& s) {
+  return {{"test", s.test},
+          {"sample", s.sample},
+          {"strain_range", {s.strain_low, s.strain_high}},
+          {"axial_difference", number(s.axial_difference)},
+          {"lateral_difference", number(s.lateral_difference)},
+          {"axial_end_ratio", number(s.axial_end_ratio)},
+          {"lateral_end_ratio", number(s.lateral_end_ratio)},
+          {"lateral_stress_ratio",
+           {{"candidate", number(s.lateral_stress_ratio_candidate)},
+            {"reference", number(s.lateral_stress_ratio_reference)}}}};
+}
+
+json to_json(const MacroPart& part) {
+  const Comparison& c = part.result;
+  json samples = json::array();
+  for (const SampleComparison& s : c.samples) samples.push_back(to_json(s));
+  return {{"candidate_engine", part.candidate_engine},
+          {"reference_engine", part.reference_engine},
+          {"axial_difference", to_json(c.axial_difference)},
+          {"lateral_difference", to_json(c.lateral_difference)},
+          {"axial_end_ratio", to_json(c.axial_end_ratio)},
+          {"lateral_stress_ratio",
+           {{"candidate", to_json(c.lateral_stress_ratio_candidate)},
+            {"reference", to_json(c.lateral_stress_ratio_reference)}}},
+          {"speedup_seconds", number(c.speedup_seconds)},
+          {"speedup_contact_evaluations", number(c.speedup_contact_evaluations)},
+          {"left_out", c.left_out},
+          {"samples", samples}};
+}
+
+json to_json(const std::vector<RatioRow>& rows) {
+  json out = json::array();
+  for (const RatioRow& r : rows) {
+    out.push_back({{"delta", r.delta},
+                   {"candidate", to_json(r.candidate)},
+                   {"reference", to_json(r.reference)},
+                   {"ratio", number(r.ratio.ratio)},
+                   {"ratio_standard_error", number(r.ratio.error)}});
+  }
+  return out;
+}
+
+json to_json(const PointCost& c) {
+  return {{"points", c.points},
+          {"loop_passes_per_point", number(c.loop_passes)},
+          {"contact_evaluations_per_point", number(c.contact_evaluations)},
+          {"seconds_per_point", number(c.seconds)}};
+}
+
+json to_json(const RelaxationComparison& c) {
+  return {{"pair", to_string(c.kind)},
+          {"candidate", c.candidate},
+          {"reference", c.reference},
+          {"normal_force", to_json(c.normal)},
+          {"stiffness_initial", to_json(c.stiffness_initial)},
+          {"stiffness_secant", to_json(c.stiffness_secant)},
+          {"cost",
+           {{"candidate_normal", to_json(c.candidate_normal_cost)},
+            {"reference_normal", to_json(c.reference_normal_cost)},
+            {"candidate_tangential", to_json(c.candidate_tangential_cost)},
+            {"reference_tangential", to_json(c.reference_tangential_cost)}}}};
+}
+
+json to_json(const MeasurementComparison& c) {
+  return {{"pair", to_string(c.kind)},
+          {"candidate_relaxation", c.candidate_relaxation},
+          {"reference_relaxation", c.reference_relaxation},
+          {"normal_force", to_json(c.normal)},
+          {"stiffness_initial", to_json(c.stiffness_initial)},
+          {"stiffness_secant", to_json(c.stiffness_secant)}};
+}
+
+json to_json(const LawPartComparison& part) {
+  json rows = json::array();
+  for (const LawRow& r : part.rows) {
+    rows.push_back({{"what", r.what},
+                    {"candidate", number(r.candidate)},
+                    {"candidate_standard_error", number(r.candidate_error)},
+                    {"reference", number(r.reference)},
+                    {"reference_standard_error", number(r.reference_error)}});
+  }
+  return {{"pair", to_string(part.kind)}, {"rows", rows}};
+}
+
+std::string with_error(double value, double error, int digits = 4) {
+  if (!std::isfinite(value)) return "-";
+  return std::isfinite(error) ? fmt::format("{:.{}g} +- {:.2g}", value, digits, error)
+                              : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string percent(const MeanError& m) { return with_error(100.0 * m.mean, 100.0 * m.error, 3) + " %"; }
+
+std::string text_of(const MacroPart& part) {
+  const Comparison& c = part.result;
+  std::string out =
+      fmt::format("macro: {} against {}, {} samples\n", part.candidate_engine, part.reference_engine, c.samples.size());
+  out += fmt::format("  axial stress, relative L2 difference    {}\n", percent(c.axial_difference));
+  out += fmt::format("  lateral stress, relative L2 difference  {}\n", percent(c.lateral_difference));
+  out += fmt::format("  axial stress ratio at the end           {}\n",
+                     with_error(c.axial_end_ratio.mean, c.axial_end_ratio.error));
+  out += fmt::format("  lateral over axial stress at the end    {} against {}\n",
+                     with_error(c.lateral_stress_ratio_candidate.mean, c.lateral_stress_ratio_candidate.error),
+                     with_error(c.lateral_stress_ratio_reference.mean, c.lateral_stress_ratio_reference.error));
+  out += fmt::format("  speed-up                                {:.3g} in seconds, {:.3g} in contact evaluations\n",
+                     c.speedup_seconds, c.speedup_contact_evaluations);
+  for (const std::string& reason : c.left_out) out += "  left out: " + reason + "\n";
+  return out;
+}
+
+std::string text_of(const std::string& quantity, const std::vector<RatioRow>& rows) {
+  std::string out;
+  for (const RatioRow& r : rows) {
+    out += fmt::format("  {:<14} {:>6.3f} {:>5} {:>24} {:>24} {:>20}\n", quantity, r.delta, r.reference.n,
+                       with_error(r.candidate.mean, r.candidate.error), with_error(r.reference.mean, r.reference.error),
+                       with_error(r.ratio.ratio, r.ratio.error));
+  }
+  return out;
+}
+
+std::string ratio_header() {
+  return fmt::format("  {:<14} {:>6} {:>5} {:>24} {:>24} {:>20}\n", "", "Delta", "n", "candidate", "reference",
+                     "ratio");
+}
+
+template <class Ratios>
+std::string ratio_text(const Ratios& c) {
+  return ratio_header() + text_of("Fn", c.normal) + text_of("kt initial", c.stiffness_initial) +
+         text_of("kt secant", c.stiffness_secant);
+}
+
+std::string text_of(const RelaxationComparison& c) {
+  std::string out =
+      fmt::format("relaxations, {}: {} against {} (N, N/m)\n", to_string(c.kind), c.candidate, c.reference) +
+      ratio_text(c);
+  const double speedup = c.reference_normal_cost.seconds / c.candidate_normal_cost.seconds;
+  return out +
+         fmt::format(
+             "  cost of a normal point: {:.3g} against {:.3g} loop passes, {:.3g} against {:.3g} s (speed-up {:.3g})\n",
+             c.candidate_normal_cost.loop_passes, c.reference_normal_cost.loop_passes, c.candidate_normal_cost.seconds,
+             c.reference_normal_cost.seconds, speedup);
+}
+
+std::string text_of(const MeasurementComparison& c) {
+  return fmt::format("measurements, {}: {} against {} (Fn/(E Rs^2), kt/(E Rs))\n", to_string(c.kind),
+                     c.candidate_relaxation, c.reference_relaxation) +
+         ratio_text(c);
+}
+
+std::string text_of(const LawPartComparison& part) {
+  std::string out =
+      fmt::format("laws, {}\n  {:<32} {:>24} {:>24}\n", to_string(part.kind), "", "candidate", "reference");
+  for (const LawRow& r : part.rows) {
+    out += fmt::format("  {:<32} {:>24} {:>24}\n", r.what, with_error(r.candidate, r.candidate_error),
+                       with_error(r.reference, r.reference_error));
+  }
+  return out;
+}
+
+template <class Part>
+json list_of(const std::vector<Part>& parts) {
+  json out = json::array();
+  for (const Part& part : parts) out.push_back(to_json(part));
+  return out;
+}
+
+}  // namespace
+
+json to_json(const CompareResult& result) {
+  return {{"macro", list_of(result.macro)},
+          {"relaxations", list_of(result.relaxations)},
+          {"measurements", list_of(result.measurements)},
+          {"laws", list_of(result.laws)},
+          {"remarks", result.remarks}};
+}
+
+std::string to_text(const CompareResult& result) {
+  std::string out;
+  for (const auto& part : result.macro) out += text_of(part);
+  for (const auto& part : result.relaxations) out += text_of(part);
+  for (const auto& part : result.measurements) out += text_of(part);
+  for (const auto& part : result.laws) out += text_of(part);
+  for (const std::string& remark : result.remarks) out += "not compared: " + remark + "\n";
+  return out;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,78 @@
+#include "pipelines/report/plot_helpers.h"
+
+#include <fmt/format.h>
+
+#include "pipelines/compare/statistics.h"
+#include "pipelines/report/number_format.h"
+
+namespace softgrain::report {
+
+std::string describe(PairKind kind) {
+  return kind == PairKind::soft_solid ? "soft particle on a solid plane" : "two equal soft particles";
+}
+
+std::string packing_name(const Measurements& data, std::int64_t packing) {
+  const auto index = static_cast<std::size_t>(packing);
+  if (packing < 0 || index >= data.packings.size()) return fmt::format("packing {}", packing);
+  return fmt::format("packing {} (seed {})", packing, data.packings[index].seed);
+}
+
+Series mean_series(const ValuesByDelta& values, double unit, const std::string& label, const SeriesStyle& style) {
+  Series s{.label = label, .hover = label, .x = {}, .y = {}};
+  for (const auto& [key, by_packing] : values) {
+    std::vector<double> column;
+    for (const auto& [packing, value] : by_packing) column.push_back(value * unit);
+    const MeanError m = mean_error(column);
+    s.x.push_back(key_delta(key));
+    s.y.push_back(m.mean);
+    s.y_error.push_back(m.error);
+  }
+  s.style = style;
+  return s;
+}
+
+std::vector<Series> packing_series(const Measurements& data, const ValuesByDelta& values, double unit,
+                                   const std::string& label) {
+  std::map<std::int64_t, Series> curves;
+  for (const auto& [key, by_packing] : values) {
+    for (const auto& [packing, value] : by_packing) {
+      curves[packing].x.push_back(key_delta(key));
+      curves[packing].y.push_back(value * unit);
+    }
+  }
+  std::vector<Series> result;
+  for (auto& [packing, s] : curves) {
+    s.label = result.empty() ? label : "";
+    s.hover = packing_name(data, packing);
+    s.style = {.color = palette::grey, .width = 0.8, .opacity = 0.6};
+    result.push_back(std::move(s));
+  }
+  return result;
+}
+
+void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, double unit, const std::string& label,
+             const char* color) {
+  if (!has_part(law, part) || law.delta_max <= 0.0) return;
+  if (const auto band = law_band(run, law, part)) {
+    Series s{.label = "95 % interval (" + band->origin + ")",
+             .hover = "95 % interval of " + label,
+             .x = band->delta,
+             .y = {}};
+    for (std::size_t i = 0; i < band->delta.size(); ++i) {
+      s.band_low.push_back(band->low[i] * unit);
+      s.band_high.push_back(band->high[i] * unit);
+    }
+    s.style = {.color = color, .width = 0.0};
+    s.sets_range = false;
+    plot.add(std::move(s));
+  }
+  Series s{.label = label, .hover = "", .x = spread(0.0, law.delta_max, 161), .y = {}};
+  for (const double overlap : s.x) s.y.push_back(part_of(law, part).value(overlap) * unit);
+  s.style = {.color = color, .width = 2.0};
+  s.sets_range = false;
+  plot.add(std::move(s));
+}
+
+double last_delta(const ValuesByDelta& values) { return values.empty() ? 0.0 : key_delta(values.rbegin()->first); }
+
+}  // namespace softgrain::report

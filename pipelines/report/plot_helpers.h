@@ -1,0 +1,35 @@
+// Series that several sections draw alike.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/compare/measured_stiffness.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/svg_plot.h"
+
+namespace softgrain::report {
+
+inline constexpr PairKind kPairKinds[] = {PairKind::soft_solid, PairKind::soft_soft};
+
+/// "soft particle on a plane" or "two soft particles".
+std::string describe(PairKind kind);
+
+/// "packing 7 (seed 12)": how a curve is named under the pointer. `second` of a soft-soft pair is not recorded.
+std::string packing_name(const Measurements& data, std::int64_t packing);
+
+/// Mean over packings with standard error against Delta, times `unit`.
+Series mean_series(const ValuesByDelta& values, double unit, const std::string& label, const SeriesStyle& style);
+
+/// One thin grey line per packing, times `unit`. The first carries the legend label.
+std::vector<Series> packing_series(const Measurements& data, const ValuesByDelta& values, double unit,
+                                   const std::string& label);
+
+/// A fitted law over (0, delta_max], times `unit`, with its 95 % band when there is one.
+void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, double unit, const std::string& label,
+             const char* color);
+
+/// Largest overlap of some values.
+double last_delta(const ValuesByDelta& values);
+
+}  // namespace softgrain::report

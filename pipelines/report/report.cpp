@@ -1,0 +1,30 @@
+#include "pipelines/report/report.h"
+
+#include <filesystem>
+
+#include "common/io/text_file.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain {
+
+void write_report(const std::string& run_directory) {
+  using namespace report;
+  const RunData run = load_run(run_directory);
+  std::string body = heading_section(run);
+  body += remarks_section(run);
+  body += laws_section(run);
+  body += normal_section(run);
+  body += tangential_section(run);
+  body += stiffness_section(run);
+  body += relaxations_section(run);
+  body += macro_section(run);
+  body += radii_section(run);
+  body += particles_section(run);
+  body += cost_section(run);
+  body += provenance_section(run);
+  const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
+  write_text_atomic(run_directory + "/report.html", page("softgrain: " + name, body));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,63 @@
+// Everything a run directory holds that a report can show.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/data/law_card.h"
+#include "common/data/macro_result.h"
+#include "common/data/measurements.h"
+#include "pipelines/compare/measured_stiffness.h"
+
+namespace softgrain::report {
+
+/// 95 % band of a law, dimensionless, over `delta`.
+struct LawBand {
+  std::vector<double> delta;
+  std::vector<double> low;
+  std::vector<double> high;
+  std::string origin;  ///< "bootstrap over packings" or "linearised from the covariance"
+};
+
+struct RunData {
+  std::string directory;
+  nlohmann::json summary;  ///< empty object when absent
+  std::optional<Measurements> measurements;
+  std::optional<LawCard> card;
+  std::vector<MacroCurve> macro;
+
+  /// Law of a pair kind, if it was fitted and is usable for drawing.
+  [[nodiscard]] const PairLaw* law(PairKind kind) const;
+  /// The relaxation that the main figures show: that of the card, else the first measured; empty without runs.
+  [[nodiscard]] std::string relaxation(PairKind kind) const;
+  /// Angles that define the stiffnesses: those of the card, else the defaults.
+  [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
+};
+
+/// Reads what exists among summary.json, measurements.h5, law.toml and macro.h5.
+/// Throws FileTrouble when the directory is missing, holds none of them, or one of them is damaged.
+RunData load_run(const std::string& directory);
+
+/// Lookups that never throw: a path of keys "measurement.points"; absent or of another type gives nothing.
+const nlohmann::json* find_value(const nlohmann::json& root, const std::string& path);
+std::optional<double> find_number(const nlohmann::json& root, const std::string& path);
+std::string find_text(const nlohmann::json& root,
+                      const std::string& path);  ///< empty when absent; numbers and flags as text
+
+enum class LawPart { normal, tangential_initial, tangential_secant };
+const ThresholdPowerLaw& part_of(const PairLaw& law, LawPart part);
+bool has_part(const PairLaw& law, LawPart part);
+
+/// Band from group "band/<kind>" of law.h5 (`delta`, `<part>_low`, `<part>_high`) when it is there, else from the
+/// covariance of the parameters by linearised error propagation; empty when neither exists.
+std::optional<LawBand> law_band(const RunData& run, const PairLaw& law, LawPart part);
+
+/// Linearised 95 % band at the given overlaps; empty when the covariance is absent or zero.
+std::optional<LawBand> linearised_band(const PairLaw& law, LawPart part, const std::vector<double>& delta);
+
+/// n values evenly spread over [low, high].
+std::vector<double> spread(double low, double high, int n);
+
+}  // namespace softgrain::report

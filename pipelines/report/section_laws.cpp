@@ -1,0 +1,112 @@
+// Table of the fitted parameters with errors, intervals and units.
+#include <fmt/format.h>
+
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain::report {
+namespace {
+
+/// A unit in which a dimensionless parameter is also given.
+struct UnitScale {
+  double factor = 1.0;
+  std::string unit;
+};
+
+std::string interval(const Estimate& e) {
+  return e.low < e.high ? format_number(e.low) + " .. " + format_number(e.high) : "–";
+}
+
+std::string in_units(const Estimate& e, const std::vector<UnitScale>& units) {
+  std::string out;
+  for (const UnitScale& u : units)
+    out +=
+        (out.empty() ? "" : "; ") + format_with_error(e.value * u.factor, e.standard_error * u.factor) + " " + u.unit;
+  return out;
+}
+
+void add_row(HtmlTable& table, const std::string& law, const std::string& name, const Estimate& e,
+             const std::vector<UnitScale>& units) {
+  table.row(
+      {law, name, format_number(e.value, 5), format_number(e.standard_error, 2), interval(e), in_units(e, units)});
+}
+
+void add_law_rows(HtmlTable& table, const std::string& name, const ThresholdPowerLaw& law,
+                  const std::vector<UnitScale>& units) {
+  add_row(table, name, "a", law.a, units);
+  add_row(table, name, "b", law.b, {});
+  add_row(table, name, "c", law.c, units);
+  add_row(table, name, "δ", law.delta, {});
+}
+
+std::string status_line(const PairLaw& law) {
+  std::string text = "Status: " + law.status;
+  if (!law.reason.empty()) text += " (" + law.reason + ")";
+  text += fmt::format(". {} packings, {} points, fitted over Δ = {} .. {}", law.packings, law.points,
+                      format_number(law.delta_min), format_number(law.delta_max));
+  text += fmt::format("; chi²/dof {}, probability of a larger one {}", format_number(law.chi2_per_dof, 3),
+                      format_number(law.quality, 2));
+  if (law.max_overlap > 0.0)
+    text += fmt::format("; largest grain overlap over the smaller radius {}", format_number(law.max_overlap, 2));
+  return paragraph(text + ".");
+}
+
+std::string card_tables(const LawCard& card) {
+  const double force = card.spec.youngs_modulus * card.spec.shell_radius * card.spec.shell_radius;
+  const double stiffness = card.spec.youngs_modulus * card.spec.shell_radius;
+  const std::vector<UnitScale> force_units{{force, "N"}};
+  const std::vector<UnitScale> stiffness_units{
+      {stiffness, "N/m"}, {stiffness / per_degree_to_per_metre(card.spec.shell_radius), "N/degree"}};
+  std::string out;
+  for (const PairLaw& law : card.pairs) {
+    HtmlTable table({"law", "parameter", "value", "standard error", "95 % interval", "for this E and Rs"}, 2);
+    add_law_rows(table, "Fn/(E Rs²)", law.normal, force_units);
+    if (law.has_tangential_initial)
+      add_law_rows(table, fmt::format("kt/(E Rs), initial slope (≤ {}°)", law.initial_angle_deg),
+                   law.tangential_initial, stiffness_units);
+    if (law.has_tangential_secant)
+      add_law_rows(table, fmt::format("kt/(E Rs), secant at {}°", law.secant_angle_deg), law.tangential_secant,
+                   stiffness_units);
+    out += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + status_line(law) + table.html();
+  }
+  out += paragraph(
+      "F(Δ) = a Δ^b + c for Δ ≥ δ and zero below, c = -a δ^b. Standard errors from the covariance of the joint fit, "
+      "intervals by bootstrap over packings. "
+      "a, b and δ are strongly correlated: judge a law by F(Δ), not by single parameters.");
+  return out;
+}
+
+std::string summary_interval(const nlohmann::json& law, const std::string& name) {
+  const auto* found = find_value(law, name + "_interval");
+  if (found == nullptr || !found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
+      !(*found)[1].is_number())
+    return "–";
+  return format_number((*found)[0].get<double>()) + " .. " + format_number((*found)[1].get<double>());
+}
+
+/// Laws as the summary gives them, for runs whose card is elsewhere.
+std::string summary_table(const nlohmann::json& summary) {
+  HtmlTable table({"pair", "law", "parameter", "value", "95 % interval"}, 3);
+  for (const char* kind : {"soft-solid", "soft-soft"}) {
+    for (const char* part : {"normal", "tangential", "tangential_secant"}) {
+      const auto* law = find_value(summary, fmt::format("laws.{}.{}", kind, part));
+      if (law == nullptr || !law->is_object()) continue;
+      for (const char* name : {"a", "b", "c", "delta"}) {
+        if (const auto value = find_number(*law, name))
+          table.row({kind, part, name, format_number(*value, 5), summary_interval(*law, name)});
+      }
+    }
+  }
+  return table.empty() ? "" : table.html();
+}
+
+}  // namespace
+
+std::string laws_section(const RunData& run) {
+  const std::string body = run.card && !run.card->pairs.empty() ? card_tables(*run.card) : summary_table(run.summary);
+  return section("laws", "Laws", body);
+}
+
+}  // namespace softgrain::report

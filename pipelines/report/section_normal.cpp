@@ -1,0 +1,99 @@
+// Normal force against overlap: every packing, their mean, the fitted law, the published law and the Hertz line.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
+#include "pipelines/report/reference_curves.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain::report {
+namespace {
+
+double force_scale(const SoftParticleSpec& spec) { return spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
+
+void add_reference_curves(Plot& plot, const SoftParticleSpec& spec, PairKind kind, double last) {
+  const auto overlaps = spread(0.0, last, 161);
+  Series hertz{.label = "solid grain of radius Rs (Hertz)", .hover = "", .x = overlaps, .y = {}};
+  for (const double d : overlaps) hertz.y.push_back(hertz_force(d, spec, kind));
+  hertz.style = {.color = palette::green, .width = 1.6, .dash = "2 3"};
+  hertz.sets_range = false;
+  plot.add(std::move(hertz));
+  if (kind != PairKind::soft_solid) return;
+  Series published{.label = "published law", .hover = "published law, scaled by E Rs²", .x = overlaps, .y = {}};
+  for (const double d : overlaps) published.y.push_back(published_normal_force(d, spec));
+  published.style = {.color = palette::vermillion, .width = 1.8, .dash = "7 4"};
+  published.sets_range = false;
+  plot.add(std::move(published));
+}
+
+/// Points whose relaxation did not reach its own criterion.
+Series unconverged(const std::vector<const PackingRun*>& runs) {
+  Series s{.label = "point not converged", .hover = "not converged", .x = {}, .y = {}};
+  for (const PackingRun* r : runs) {
+    for (const NormalPoint& p : r->normal) {
+      if (p.converged) continue;
+      s.x.push_back(p.delta);
+      s.y.push_back(p.force);
+    }
+  }
+  s.style = {.color = palette::purple, .width = 0.0, .marker = Marker::hollow, .marker_size = 2.6};
+  return s;
+}
+
+std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
+  const Measurements& data = *run.measurements;
+  const auto runs = runs_of(data, kind, run.relaxation(kind));
+  const auto forces = normal_forces(runs);
+  const bool linear = scale == Scale::linear;
+  Plot plot({.id = "normal-" + to_string(kind) + (linear ? "-linear" : "-log"),
+             .title = "Fn(Δ), " + describe(kind) + (linear ? "" : ", logarithmic"),
+             .x = {.label = "normal overlap Δ = hn/Rs", .low = 0.0},
+             .y = {.label = "normal force Fn [N]", .scale = scale}});
+  for (Series& s : packing_series(data, forces, 1.0, fmt::format("one packing ({})", runs.size())))
+    plot.add(std::move(s));
+  add_reference_curves(plot, data.spec, kind, last_delta(forces));
+  if (const PairLaw* law = run.law(kind))
+    add_law(plot, run, *law, LawPart::normal, force_scale(data.spec), "fitted law", palette::blue);
+  Series failed = unconverged(runs);
+  if (!failed.x.empty()) plot.add(std::move(failed));
+  plot.add(mean_series(forces, 1.0, "mean ± standard error",
+                       {.color = palette::black, .width = 0.0, .marker = Marker::circle, .marker_size = 3.2}));
+  return figure(plot.svg(),
+                linear ? "Rest the pointer on a thin line to see which packing it is."
+                       : "The same data with a logarithmic force axis: the start of the force near the threshold.");
+}
+
+std::string kind_body(const RunData& run, PairKind kind) {
+  const std::string relaxation = run.relaxation(kind);
+  if (relaxation.empty()) return "";
+  const auto runs = runs_of(*run.measurements, kind, relaxation);
+  if (normal_forces(runs).empty()) return "";
+  return "<h3>" + escape(describe(kind) + ", relaxation \"" + relaxation + "\"") + "</h3>\n" +
+         figure_row({force_figure(run, kind, Scale::linear), force_figure(run, kind, Scale::logarithmic)});
+}
+
+std::string published_note(const SoftParticleSpec& spec) {
+  namespace law = published_soft_solid;
+  const std::string scaled = spec.youngs_modulus == law::youngs_modulus && spec.shell_radius == law::shell_radius
+                                 ? "which are those of this run."
+                                 : "drawn here scaled by E Rs² to this run's E and Rs.";
+  return paragraph(
+      fmt::format("Published law (soft-solid): Fn = a Δ^b + c above Δ = δ, with a = {} N, b = {}, c = {} N, δ = {}, "
+                  "for E = 5×10⁵ Pa and Rs = 0.016 m, {} "
+                  "The Hertz line is a solid grain of radius Rs of the grains' material at the same overlap.",
+                  law::a, law::b, format_number(law::c), law::delta, scaled));
+}
+
+}  // namespace
+
+std::string normal_section(const RunData& run) {
+  if (!run.measurements) return "";
+  std::string body;
+  for (const PairKind kind : kPairKinds) body += kind_body(run, kind);
+  return body.empty() ? "" : section("normal", "Normal force", body + published_note(run.measurements->spec));
+}
+
+}  // namespace softgrain::report

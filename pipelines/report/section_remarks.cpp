@@ -1,0 +1,112 @@
+// What a reader should be careful with, gathered from the data and from the summary.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "pipelines/report/html.h"
+#include "pipelines/report/plot_helpers.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain::report {
+namespace {
+
+using Remarks = std::vector<std::string>;
+
+struct Count {
+  std::size_t bad = 0;
+  std::size_t all = 0;
+};
+
+template <class Points>
+void count_points(const Points& points, Count& count) {
+  for (const auto& p : points) count.bad += p.converged ? 0 : 1;
+  count.all += points.size();
+}
+
+void add_convergence(const Measurements& data, Remarks& remarks) {
+  for (const PairKind kind : kPairKinds) {
+    for (const std::string& relaxation : relaxations_of(data, kind)) {
+      Count count;
+      for (const PackingRun* run : runs_of(data, kind, relaxation)) {
+        count_points(run->normal, count);
+        count_points(run->tangential, count);
+      }
+      if (count.bad == 0) continue;
+      remarks.push_back(
+          fmt::format("{}, relaxation \"{}\": {} of {} points did not reach their convergence criterion; they are left "
+                      "out of means and fits.",
+                      to_string(kind), relaxation, count.bad, count.all));
+    }
+  }
+}
+
+void add_packings(const Measurements& data, Remarks& remarks) {
+  if (data.packings.size() < 7) {
+    remarks.push_back(fmt::format("Only {} packings: at least seven are needed for a mean, about 32 for a law.",
+                                  data.packings.size()));
+  }
+  double largest = 0.0;
+  for (const PackingRun& run : data.runs) {
+    for (const NormalPoint& p : run.normal) largest = std::max(largest, p.max_overlap);
+  }
+  if (largest > 0.2) {
+    remarks.push_back(
+        fmt::format("Grain overlaps reach {:.0f} % of the smaller radius: the contact law is used beyond small strain.",
+                    100.0 * largest));
+  }
+}
+
+void add_laws(const LawCard& card, Remarks& remarks) {
+  for (const PairLaw& law : card.pairs) {
+    if (law.status == "good") continue;
+    remarks.push_back("The " + to_string(law.kind) + " law is not usable as it is: " + law.status +
+                      (law.reason.empty() ? "." : " (" + law.reason + ")."));
+  }
+}
+
+void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
+  bool law_engine = false;
+  for (const MacroCurve& c : macro) {
+    law_engine = law_engine || c.engine == "law";
+    if (c.usable && c.note.empty()) continue;
+    remarks.push_back(fmt::format("Macro run \"{}\", {}, sample {}{}: {}", c.engine, c.test, c.sample,
+                                  c.usable ? "" : " is not usable", c.note.empty() ? "no reason given." : c.note));
+  }
+  if (law_engine) {
+    remarks.push_back(
+        "The pair law was measured with one contact at a time. A soft particle with several neighbours is stiffer than "
+        "the sum of its pair "
+        "laws, by a factor of about 2 to 14, so a macro run with the pair law alone is expected to be too soft.");
+  }
+}
+
+void add_summary(const nlohmann::json& summary, Remarks& remarks) {
+  const std::string status = find_text(summary, "status");
+  if (!status.empty() && status != "good") remarks.push_back("The status of the run is \"" + status + "\".");
+  const auto* list = find_value(summary, "remarks");
+  if (list == nullptr || !list->is_array()) return;
+  for (const auto& one : *list) {
+    if (one.is_string() && std::find(remarks.begin(), remarks.end(), one.get<std::string>()) == remarks.end())
+      remarks.push_back(one.get<std::string>());
+  }
+}
+
+}  // namespace
+
+std::string remarks_section(const RunData& run) {
+  Remarks remarks;
+  if (run.measurements) {
+    add_convergence(*run.measurements, remarks);
+    add_packings(*run.measurements, remarks);
+  }
+  if (run.card) add_laws(*run.card, remarks);
+  add_macro(run.macro, remarks);
+  add_summary(run.summary, remarks);
+  if (remarks.empty()) return "";
+  std::string items;
+  for (const std::string& remark : remarks) items += "<li>" + escape(remark) + "</li>\n";
+  return "<div class=\"remarks\" id=\"remarks\"><h2>What to be careful with</h2>\n<ul>\n" + items + "</ul></div>\n";
+}
+
+}  // namespace softgrain::report

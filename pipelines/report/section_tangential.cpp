@@ -1,0 +1,93 @@
+// Tangential force against tangential displacement, along it and across it, at a few overlaps.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "pipelines/compare/statistics.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/plot_helpers.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain::report {
+namespace {
+
+constexpr std::size_t kCurves = 4;
+
+/// At most kCurves overlaps, spread over those that have rotations, the largest included.
+std::vector<long long> chosen_overlaps(const std::vector<const PackingRun*>& runs) {
+  std::set<long long> all;
+  for (const PackingRun* run : runs) {
+    for (const TangentialPoint& p : run->tangential) {
+      if (p.angle_deg != 0.0) all.insert(delta_key(p.delta));
+    }
+  }
+  const std::vector<long long> sorted(all.begin(), all.end());
+  if (sorted.size() <= kCurves) return sorted;
+  std::vector<long long> result;
+  for (std::size_t k = 1; k <= kCurves; ++k) result.push_back(sorted[k * sorted.size() / kCurves - 1]);
+  return result;
+}
+
+/// Mean over packings against ht [mm].
+Series mean_curve(const std::vector<const PackingRun*>& runs, long long overlap, double mm_per_degree,
+                  double TangentialPoint::*force) {
+  std::map<long long, std::vector<double>> columns;  // by angle in 1e-6 degree
+  for (const PackingRun* run : runs) {
+    for (const TangentialPoint& p : run->tangential) {
+      if (delta_key(p.delta) == overlap) columns[delta_key(p.angle_deg)].push_back(p.*force);
+    }
+  }
+  Series s{.label = "Δ = " + format_number(key_delta(overlap)), .hover = "", .x = {}, .y = {}};
+  for (const auto& [angle, values] : columns) {
+    const MeanError m = mean_error(values);
+    s.x.push_back(key_delta(angle) * mm_per_degree);
+    s.y.push_back(m.mean);
+    s.y_error.push_back(m.error);
+  }
+  return s;
+}
+
+std::string force_figure(const RunData& run, PairKind kind, bool parallel) {
+  const SoftParticleSpec& spec = run.measurements->spec;
+  const auto runs = runs_of(*run.measurements, kind, run.relaxation(kind));
+  const double mm_per_degree = 1e3 * std::numbers::pi * spec.shell_radius / 180.0;
+  Plot plot({.id = "tangential-" + to_string(kind) + (parallel ? "-parallel" : "-perpendicular"),
+             .title = std::string("Ft(ht) ") + (parallel ? "along" : "across") + " the displacement, " + describe(kind),
+             .x = {.label = fmt::format("tangential displacement ht [mm]   (1° of rotation = {} mm)",
+                                        format_number(mm_per_degree, 3))},
+             .y = {.label = std::string(parallel ? "parallel" : "perpendicular") + " force [N]"}});
+  static constexpr Marker markers[] = {Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
+  std::size_t index = 0;
+  for (const long long overlap : chosen_overlaps(runs)) {
+    Series s = mean_curve(runs, overlap, mm_per_degree,
+                          parallel ? &TangentialPoint::force_parallel : &TangentialPoint::force_perpendicular);
+    s.style = {.color = palette::cycle(index), .width = 1.4, .marker = markers[index % 4], .marker_size = 3.0};
+    plot.add(std::move(s));
+    ++index;
+  }
+  return figure(plot.svg(), parallel ? "Mean over packings ± standard error. The value at ht = 0 (prestrain) comes "
+                                       "from the inhomogeneity of single packings."
+                                     : "Across the displacement the mean should vanish within its error.");
+}
+
+}  // namespace
+
+std::string tangential_section(const RunData& run) {
+  if (!run.measurements) return "";
+  std::string body;
+  for (const PairKind kind : kPairKinds) {
+    const std::string relaxation = run.relaxation(kind);
+    if (relaxation.empty() || chosen_overlaps(runs_of(*run.measurements, kind, relaxation)).empty()) continue;
+    body += "<h3>" + escape(describe(kind) + ", relaxation \"" + relaxation + "\"") + "</h3>\n" +
+            figure_row({force_figure(run, kind, true), force_figure(run, kind, false)});
+  }
+  const std::string turns = run.measurements->shell_turns ? "The first shell turned together with its grains."
+                                                          : "The first shell did not turn with its grains.";
+  return body.empty() ? "" : section("tangential", "Tangential force", body + paragraph(turns));
+}
+
+}  // namespace softgrain::report

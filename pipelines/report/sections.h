@@ -1,0 +1,23 @@
+// The sections of a report, one file each. A section without data is an empty string.
+#pragma once
+
+#include <string>
+
+#include "pipelines/report/run_data.h"
+
+namespace softgrain::report {
+
+std::string heading_section(const RunData& run);      ///< what was run and what came out
+std::string remarks_section(const RunData& run);      ///< what to be careful with
+std::string laws_section(const RunData& run);         ///< parameters, errors, intervals, units
+std::string normal_section(const RunData& run);       ///< Fn(Delta)
+std::string tangential_section(const RunData& run);   ///< Ft(ht)
+std::string stiffness_section(const RunData& run);    ///< kt(Delta)
+std::string relaxations_section(const RunData& run);  ///< published against damped relaxation
+std::string macro_section(const RunData& run);        ///< stress and strain, law against resolved twin
+std::string radii_section(const RunData& run);        ///< size distribution of the packed grains
+std::string particles_section(const RunData& run);    ///< final states and contacts of a scene of explicit particles
+std::string cost_section(const RunData& run);         ///< passes, contact evaluations, seconds, speed-ups
+std::string provenance_section(const RunData& run);   ///< version, seeds, command, scene
+
+}  // namespace softgrain::report

@@ -1,0 +1,181 @@
+// The report of a made-up run: the sections that its data allow, self-contained, escaped, well formed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "pipelines/report/reference_curves.h"
+#include "pipelines/report/report.h"
+#include "pipelines/report/run_data.h"
+#include "tests/support/markup_check.h"
+#include "tests/support/synthetic_run.h"
+
+namespace softgrain {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSummary = R"json({
+  "status": "good", "command": "run",
+  "remarks": ["radii <script>alert(1)</script> & more"],
+  "comparison": {"stress_error": 0.19, "speedup_seconds": 407.0, "speedup_contact_evaluations": 400.0},
+  "calibration": {"seconds": 1.5},
+  "files": {"law": "law.toml"},
+  "provenance": {"version": "0.1.0", "commit": "abc", "compiler": "g++ -O3", "threads": 2, "seed": 5, "command": "softgrain run x.toml",
+                 "scene": "kind = \"soft-particle\"  # <b>bold</b>"}
+})json";
+
+class Report : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = fs::temp_directory_path() /
+                 ("softgrain_report_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(directory_);
+    fs::create_directories(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  [[nodiscard]] std::string path(const std::string& file) const { return (directory_ / file).string(); }
+  [[nodiscard]] std::string written() const {
+    write_report(directory_.string());
+    return read_text(path("report.html"));
+  }
+
+  fs::path directory_;
+};
+
+void remove_all(std::string& text, const std::string& part) {
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part)) text.erase(at, part.size());
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_F(Report, AWholeRunHasAllSections) {
+  save(synthetic::measurements(), path("measurements.h5"));
+  save_card(synthetic::card(), path("law.toml"));
+  save_macro(synthetic::macro(), path("macro.h5"));
+  write_text_atomic(path("summary.json"), kSummary);
+  std::string html = written();
+  for (const char* id : {"remarks", "laws", "normal", "tangential", "stiffness", "relaxations", "macro", "radii",
+                         "cost", "provenance"}) {
+    EXPECT_TRUE(contains(html, std::string("id=\"") + id + "\"")) << id;
+  }
+  EXPECT_TRUE(contains(html, "seed 104"));
+  EXPECT_TRUE(contains(html, "solid grain of radius Rs"));
+  EXPECT_TRUE(contains(html, "N/degree"));
+  EXPECT_EQ(unbalanced_tags(html), "");
+  for (const char* bad : {">nan", " nan", "\"nan", "inf "}) EXPECT_FALSE(contains(html, bad)) << bad;
+  remove_all(html, "xmlns=\"http://www.w3.org/2000/svg\"");
+  EXPECT_FALSE(contains(html, "http"));
+}
+
+TEST_F(Report, TextsOfOthersAreEscaped) {
+  write_text_atomic(path("summary.json"), kSummary);
+  const std::string html = written();
+  EXPECT_FALSE(contains(html, "<script>alert"));
+  EXPECT_TRUE(contains(html, "&lt;script&gt;alert"));
+  EXPECT_TRUE(contains(html, "# &lt;b&gt;bold"));
+}
+
+TEST_F(Report, ASummaryAloneMakesAPage) {
+  write_text_atomic(
+      path("summary.json"),
+      R"({"status": "not converged", "particles": [{"id": 0, "position": [0, 0, 1.5], "velocity": [0, 0, 0]}],
+    "contacts": [{"pair": [0, 1], "duration": 1e-5, "max_force": 12.0, "max_overlap": 1e-6}]})");
+  const std::string html = written();
+  EXPECT_TRUE(contains(html, "id=\"particles\""));
+  EXPECT_TRUE(contains(html, "id=\"contacts\""));
+  EXPECT_TRUE(contains(html, "not converged"));
+  EXPECT_FALSE(contains(html, "id=\"normal\""));
+  EXPECT_EQ(unbalanced_tags(html), "");
+}
+
+TEST_F(Report, OddSummariesDoNotStopIt) {
+  write_text_atomic(
+      path("summary.json"),
+      R"({"status": 7, "remarks": "none", "provenance": [1], "files": 3, "comparison": null, "particles": [1, "a"], "measurement": {"points": "many"}})");
+  EXPECT_EQ(unbalanced_tags(written()), "");
+}
+
+TEST_F(Report, LawsOfTheSummaryStandInForACard) {
+  write_text_atomic(path("summary.json"),
+                    R"({"laws": {"soft-solid": {"normal": {"a": 0.5755, "a_interval": [0.5, 0.6], "b": 2.8}}}})");
+  const std::string html = written();
+  EXPECT_TRUE(contains(html, "id=\"laws\""));
+  EXPECT_TRUE(contains(html, "0.5755"));
+  EXPECT_TRUE(contains(html, "0.5 .. 0.6"));
+}
+
+TEST_F(Report, UnusableResultsAreSaid) {
+  auto card = synthetic::card();
+  card.pairs[1].status = "no threshold crossing";
+  card.pairs[1].reason = "force is zero up to Delta 0.30";
+  save_card(card, path("law.toml"));
+  auto macro = synthetic::macro();
+  macro[0].usable = false;
+  macro[0].note = "step capped at 3000 iterations";
+  save_macro(macro, path("macro.h5"));
+  save(synthetic::measurements(4), path("measurements.h5"));
+  const std::string html = written();
+  EXPECT_TRUE(contains(html, "force is zero up to Delta 0.30"));
+  EXPECT_TRUE(contains(html, "step capped at 3000 iterations"));
+  EXPECT_TRUE(contains(html, "did not reach their convergence criterion"));
+  EXPECT_TRUE(contains(html, "Only 4 packings"));
+}
+
+TEST_F(Report, OnePackingAndNoRadiiAreEnough) {
+  auto data = synthetic::measurements(1);
+  data.packings[0].radii.clear();
+  save(data, path("measurements.h5"));
+  const std::string html = written();
+  EXPECT_EQ(unbalanced_tags(html), "");
+  EXPECT_TRUE(contains(html, "id=\"normal\""));
+}
+
+TEST_F(Report, NothingToReportIsFileTrouble) {
+  EXPECT_THROW(write_report(directory_.string()), FileTrouble);
+  EXPECT_THROW(write_report(path("absent")), FileTrouble);
+  write_text_atomic(path("summary.json"), "{ half");
+  EXPECT_THROW(write_report(directory_.string()), FileTrouble);
+}
+
+TEST(ReferenceCurves, PublishedLawAndItsScaling) {
+  SoftParticleSpec spec;
+  EXPECT_NEAR(report::published_normal_force(0.2, spec), 73.669 * std::pow(0.2, 2.799) - 0.035, 1e-12);
+  EXPECT_EQ(report::published_normal_force(0.06, spec), 0.0);
+  const double before = report::published_normal_force(0.2, spec);
+  spec.youngs_modulus *= 2.0;
+  spec.shell_radius *= 3.0;
+  EXPECT_NEAR(report::published_normal_force(0.2, spec), 18.0 * before, 1e-9);
+}
+
+TEST(ReferenceCurves, HertzOfASolidGrain) {
+  const SoftParticleSpec spec;
+  const double h = 0.1 * spec.shell_radius;
+  const double expected =
+      4.0 / 3.0 * spec.youngs_modulus / (2.0 * (1.0 - 0.09)) * std::sqrt(spec.shell_radius) * std::pow(h, 1.5);
+  EXPECT_NEAR(report::hertz_force(0.1, spec, PairKind::soft_solid), expected, 1e-12);
+  EXPECT_NEAR(report::hertz_force(0.1, spec, PairKind::soft_soft), expected * std::sqrt(0.5), 1e-12);
+}
+
+TEST(LinearisedBand, MatchesFiniteDifferences) {
+  PairLaw law = synthetic::pair_law(PairKind::soft_solid, synthetic::kA);
+  law.covariance.assign(49, 0.0);
+  law.covariance[16] = 1e-4 * 1e-4;  // only delta uncertain
+  const auto band = report::linearised_band(law, report::LawPart::normal, {0.03, 0.2});
+  ASSERT_TRUE(band.has_value());
+  EXPECT_EQ(band->low[0], 0.0);
+  const auto shifted = [&](double delta) {
+    return synthetic::kA * (std::pow(0.2, synthetic::kB) - std::pow(delta, synthetic::kB));
+  };
+  const double slope = (shifted(synthetic::kDelta + 1e-6) - shifted(synthetic::kDelta - 1e-6)) / 2e-6;
+  EXPECT_NEAR(0.5 * (band->high[1] - band->low[1]), 1.96 * std::abs(slope) * 1e-4, 1e-9);
+  law.covariance.assign(49, 0.0);
+  EXPECT_FALSE(report::linearised_band(law, report::LawPart::normal, {0.2}).has_value());
+}
+
+}  // namespace
+}  // namespace softgrain

@@ -1,0 +1,151 @@
+// Axes, number formats and drawings of the plotter.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <regex>
+#include <stdexcept>
+
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/svg_plot.h"
+#include "tests/support/markup_check.h"
+
+namespace softgrain::report {
+namespace {
+
+PlotOptions options(Scale scale = Scale::linear) {
+  return {.id = "p", .title = "Title", .x = {.label = "x [m]"}, .y = {.label = "y [N]", .scale = scale}};
+}
+
+TEST(NumberFormat, ReadableNumbers) {
+  EXPECT_EQ(format_number(0.0), "0");
+  EXPECT_EQ(format_number(73.669), "73.67");
+  EXPECT_EQ(format_number(-0.035), "\u22120.035");
+  EXPECT_EQ(format_number(9.99996), "10");
+  EXPECT_EQ(format_number(1.234e-9, 3), "1.23\u00d710\u207b\u2079");
+  EXPECT_EQ(format_number(NAN), "\u2013");
+  EXPECT_EQ(format_count(1234567), "1\u202f234\u202f567");
+  EXPECT_EQ(format_count(-1234), "\u22121\u202f234");
+  EXPECT_EQ(format_seconds(7999.0), "2 h 13 min");
+  EXPECT_EQ(format_seconds(245.0), "4 min 05 s");
+}
+
+TEST(NumberFormat, TheErrorRulesTheDigits) {
+  EXPECT_EQ(format_with_error(0.57612, 0.0123), "0.576 \u00b1 0.012");
+  EXPECT_EQ(format_with_error(1234.56, 78.9), "1235 \u00b1 79");
+  EXPECT_EQ(format_with_error(1.5e-7, 2e-9), "(1.500 \u00b1 0.020)\u00d710\u207b\u2077");
+  EXPECT_EQ(format_with_error(2.5, NAN), "2.5");
+}
+
+TEST(NumberFormat, PrefixesBringValuesBetweenOneAndAThousand) {
+  EXPECT_EQ(si_prefix(4.2e5).symbol, "k");
+  EXPECT_EQ(si_prefix(0.0).symbol, "");
+  EXPECT_EQ(si_prefix(3e-5).symbol, "\u00b5");
+  EXPECT_EQ(si_prefix(1e14).symbol, "G");
+}
+
+TEST(Axis, LinearTicksAreRoundAndInside) {
+  const Axis axis(Scale::linear, -0.03, 0.31);
+  const auto ticks = axis.ticks(6);
+  ASSERT_GE(ticks.size(), 4U);
+  for (const Tick& t : ticks) {
+    EXPECT_GE(t.value, -0.03);
+    EXPECT_LE(t.value, 0.31);
+  }
+  EXPECT_EQ(ticks.front().label, "0.00");
+}
+
+TEST(Axis, TakesACommonPowerOfTenOutOfTheLabels) {
+  const Axis axis(Scale::linear, 0.0, 4e-7);
+  EXPECT_EQ(axis.exponent(), -7);
+  EXPECT_EQ(axis.ticks(4).back().label, "4");
+}
+
+TEST(Axis, LogarithmicTicksLabelDecades) {
+  const Axis axis(Scale::logarithmic, 0.5, 2e5);
+  int labelled = 0;
+  for (const Tick& t : axis.ticks()) labelled += t.label.empty() ? 0 : 1;
+  EXPECT_EQ(labelled, 6);
+  EXPECT_NEAR(axis.position(0.5), 0.0, 1e-12);
+  EXPECT_NEAR(axis.position(std::sqrt(0.5 * 2e5)), 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(axis.position(0.0)));
+}
+
+TEST(Axis, SurvivesDegenerateData) {
+  const std::vector<double> none;
+  const std::vector<double> same{3.0, 3.0};
+  const std::vector<double> odd{NAN, -1.0, 0.0};
+  EXPECT_LT(Axis::around(Scale::linear, none).low(), Axis::around(Scale::linear, none).high());
+  EXPECT_LT(Axis::around(Scale::linear, same).low(), 3.0);
+  EXPECT_GT(Axis::around(Scale::logarithmic, odd).low(), 0.0);
+  EXPECT_THROW(Axis(Scale::linear, 1.0, 1.0), std::invalid_argument);
+  EXPECT_THROW(Axis(Scale::logarithmic, 0.0, 1.0), std::invalid_argument);
+}
+
+TEST(Plot, DrawsWellFormedMarkupWithClipLegendAndTooltips) {
+  Plot plot(options());
+  plot.add({.label = "a < b & c",
+            .hover = "packing \"7\"",
+            .x = {0, 1, 2},
+            .y = {1, 4, 9},
+            .y_error = {0.1, NAN, 0.2},
+            .style = {.marker = Marker::diamond}});
+  plot.add({.label = "band", .hover = "", .x = {0, 2}, .y = {}, .band_low = {0, 1}, .band_high = {1, 2}});
+  const std::string svg = plot.svg();
+  EXPECT_EQ(unbalanced_tags(svg), "");
+  EXPECT_NE(svg.find("clip-path=\"url(#p-clip)\""), std::string::npos);
+  EXPECT_NE(svg.find("<title>packing &quot;7&quot;: x = 1, y = 4</title>"), std::string::npos);
+  EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
+  EXPECT_NE(svg.find("viewBox"), std::string::npos);
+}
+
+TEST(Plot, NeverWritesNumbersThatAreNotFinite) {
+  Plot plot(options(Scale::logarithmic));
+  plot.add({.label = "gap",
+            .hover = "",
+            .x = {1, 2, 3, 4},
+            .y = {1, 0, NAN, 5},
+            .y_error = {2, 1, 1, NAN},
+            .style = {.marker = Marker::circle}});
+  const std::string svg = plot.svg();
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_NE(svg.find('M', svg.find("<g clip-path")), std::string::npos);
+}
+
+TEST(Plot, FarAwayDataStayBoundedAndDoNotStretchTheAxes) {
+  Plot plot(options());
+  plot.add({.label = "data", .hover = "", .x = {0, 1}, .y = {0, 1}});
+  plot.add({.label = "reference", .hover = "", .x = {0, 1}, .y = {0, 1e300}, .sets_range = false});
+  const std::string svg = plot.svg();
+  EXPECT_EQ(svg.find("e+"), std::string::npos);
+  EXPECT_NE(svg.find(">0.8<"), std::string::npos);
+}
+
+TEST(Plot, AnEmptyPlotIsStillADrawing) { EXPECT_EQ(unbalanced_tags(Plot(options()).svg()), ""); }
+
+TEST(Plot, RefusesArraysOfDifferentLength) {
+  Plot plot(options());
+  EXPECT_THROW(plot.add({.label = "", .hover = "", .x = {1, 2}, .y = {1}}), std::invalid_argument);
+  EXPECT_THROW(plot.add({.label = "", .hover = "", .x = {1, 2}, .y = {1, 2}, .y_error = {1}}), std::invalid_argument);
+  EXPECT_THROW(plot.add({.label = "", .hover = "", .x = {1, 2}, .y = {}, .band_low = {1, 2}, .band_high = {1}}),
+               std::invalid_argument);
+}
+
+TEST(Markup, TheCheckFindsWhatIsWrong) {
+  EXPECT_EQ(unbalanced_tags("<a><b/></a>"), "");
+  EXPECT_NE(unbalanced_tags("<a><b></a>"), "");
+  EXPECT_NE(unbalanced_tags("<a>"), "");
+  EXPECT_NE(unbalanced_tags("</a>"), "");
+}
+
+TEST(Html, EscapesAndDropsControlCharacters) { EXPECT_EQ(escape("<&>\"'\x01"), "&lt;&amp;&gt;&quot;&#39;"); }
+
+TEST(Html, ASectionWithoutBodyLeavesNoTrace) {
+  EXPECT_EQ(section("id", "Heading", ""), "");
+  EXPECT_EQ(figure_row({}), "");
+}
+
+}  // namespace
+}  // namespace softgrain::report
