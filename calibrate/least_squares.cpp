@@ -18,6 +18,8 @@ namespace {
 constexpr double kStepTolerance = 1e-5;
 /// Restarts of one strategy with parameters rescaled to where the last run ended.
 constexpr int kMaxRounds = 4;
+/// Sums closer than this share are equal: the earlier end point stays (models with a symmetry have several equal minima).
+constexpr double kSumTie = 1e-9;
 /// Further starts, spread a decade around the given ones, tried only while the best end point is not usable.
 constexpr std::size_t kSpreadStarts = 16;
 
@@ -106,6 +108,16 @@ void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& opt
                                n - static_cast<std::size_t>(std::count(fit.at_bound.begin(), fit.at_bound.end(), true)));
 }
 
+/// A clearly lower sum; or a slightly lower one at the same minimum (more digits).
+bool improves(const EndPoint& end, const EndPoint& best) {
+  constexpr double kSameMinimum = 1e-2;
+  if (!best.ran || end.sum < best.sum * (1.0 - kSumTie)) return true;
+  if (!(end.sum < best.sum)) return false;
+  for (std::size_t j = 0; j < best.parameters.size(); ++j)
+    if (std::abs(end.parameters[j] - best.parameters[j]) > kSameMinimum * std::abs(best.parameters[j])) return false;
+  return true;
+}
+
 /// Every strategy from one start; keeps the best end point so far.
 void run_strategies(const LeastSquaresProblem& problem, const std::vector<double>& start, std::size_t index,
                     const LeastSquaresOptions& options, EndPoint& best, LeastSquaresFit& fit) {
@@ -113,7 +125,7 @@ void run_strategies(const LeastSquaresProblem& problem, const std::vector<double
   const std::size_t used = options.thorough ? strategies.size() : 1;
   for (std::size_t k = 0; k < used; ++k) {
     EndPoint end = run_strategy(problem, start, strategies[k], options, fit.iterations);
-    if (!end.ran || !(end.sum < best.sum)) continue;
+    if (!end.ran || !improves(end, best)) continue;
     best = std::move(end);
     fit.strategy = strategies[k].name;
     fit.start = index;

@@ -11,11 +11,13 @@ namespace {
 /// Angles are equal when they differ by less than this share of the larger one [-], plus rounding.
 constexpr double kAngleTolerance = 1e-6;
 
+bool usable(const TangentialPoint& p) { return p.converged && std::isfinite(p.force_parallel); }
+
 bool same_angle(double a, double b) { return std::abs(a - b) <= kAngleTolerance * std::max(std::abs(a), std::abs(b)) + 1e-12; }
 
 std::optional<double> force_at(const std::vector<TangentialPoint>& points, double angle_deg) {
   for (const TangentialPoint& p : points)
-    if (p.converged && same_angle(p.angle_deg, angle_deg)) return p.force_parallel;
+    if (usable(p) && same_angle(p.angle_deg, angle_deg)) return p.force_parallel;
   return std::nullopt;
 }
 
@@ -27,7 +29,7 @@ std::optional<double> initial_slope(const std::vector<TangentialPoint>& points, 
   double n = 0.0;
   double sum_h = 0.0;
   double sum_f = 0.0;
-  const auto used = [&](const TangentialPoint& p) { return p.converged && std::abs(p.angle_deg) <= angle_deg * (1.0 + kAngleTolerance); };
+  const auto used = [&](const TangentialPoint& p) { return usable(p) && std::abs(p.angle_deg) <= angle_deg * (1.0 + kAngleTolerance); };
   for (const TangentialPoint& p : points) {
     if (!used(p)) continue;
     n += 1.0;
