@@ -1,0 +1,134 @@
+// softgrain run: pack, measure, fit, macro, resolved twin, compare, report.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "calibrate/threshold_fit.h"
+#include "pipelines/compare/compare.h"
+#include "pipelines/law_json.h"
+#include "pipelines/macro_stage.h"
+#include "pipelines/measure_stage.h"
+#include "pipelines/pipeline_setup.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run_context.h"
+#include "pipelines/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+std::string law_line(const PairLaw& law) {
+  if (law.status == "no threshold crossing" || law.status == "not run") return fmt::format("{}: {} ({})", to_string(law.kind), law.status, law.reason);
+  return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}", to_string(law.kind),
+                     law.normal.a.value, law.normal.b.value, law.normal.delta.value, law.normal.b.value, law.delta_max, law.packings, law.status);
+}
+
+json comparison_json(const Comparison& c) {
+  json samples = json::array();
+  for (const SampleComparison& s : c.samples)
+    samples.push_back({{"sample", s.sample}, {"strain_high", s.strain_high}, {"stress_error", s.axial_difference}, {"end_ratio", s.axial_end_ratio}});
+  return {{"stress_error", c.axial_difference.mean},
+          {"stress_error_standard_error", c.axial_difference.error},
+          {"lateral_stress_error", c.lateral_difference.mean},
+          {"end_stress_ratio", c.axial_end_ratio.mean},
+          {"lateral_stress_ratio_law", c.lateral_stress_ratio_candidate.mean},
+          {"lateral_stress_ratio_resolved", c.lateral_stress_ratio_reference.mean},
+          {"speedup_seconds", c.speedup_seconds},
+          {"speedup_contact_evaluations", c.speedup_contact_evaluations},
+          {"samples", samples},
+          {"left_out", c.left_out}};
+}
+
+/// What the stages leave behind, for summary and screen.
+struct PipelineResult {
+  MeasureResult measured;
+  LawCard card;
+  std::vector<MacroCurve> curves;
+  std::optional<Comparison> comparison;
+  std::vector<std::string> remarks;
+  bool usable = true;
+};
+
+void fit(const PipelineSetup& setup, const RunContext& context, PipelineResult& result) {
+  FitOptions options = setup.fit;
+  options.relaxation = setup.measure.series[0].relaxation;
+  options.seed = context.seed(setup.measure.seed);
+  result.card = calibrate(result.measured.data, options);
+  save_card(result.card, context.path("law.toml"));
+  for (const PairLaw& law : result.card.pairs) {
+    context.say(law_line(law));
+    if (law.status == "good") continue;
+    result.usable = false;
+    result.remarks.push_back(fmt::format("{} law: {}: {}", to_string(law.kind), law.status, law.reason));
+  }
+}
+
+void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, PipelineResult& result) {
+  if (!setup.macro) return;
+  result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context);
+  for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
+  for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
+  if (setup.macro->resolved) result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
+}
+
+json summarise(const PipelineSetup& setup, const PipelineResult& r, const Provenance& provenance, const RunContext& context, double seconds) {
+  const Measurements& data = r.measured.data;
+  json s;
+  s["status"] = r.usable ? "good" : "not usable";
+  s["title"] = setup.title;
+  s["seconds"] = seconds;
+  s["laws"] = laws_json(r.card);
+  s["packings"] = packings_json(data);
+  s["packings"]["seconds"] = r.measured.packing_seconds;
+  s["measurement"] = measurement_json(data, setup.measure.series[0].relaxation);
+  s["measurement"]["wall_seconds"] = r.measured.wall_seconds;
+  if (setup.measure.series.size() > 1) {
+    s["reference_measurement"] = measurement_json(data, setup.measure.series[1].relaxation);
+    s["relaxations"] = relaxations_json(data, setup.measure.series[1].relaxation, setup.measure.series[0].relaxation);
+  }
+  s["macro"] = macro_json(r.curves, "law");
+  s["resolved"] = macro_json(r.curves, "shelled");
+  if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
+  s["remarks"] = r.remarks;
+  for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"}) s["files"][file] = context.path(file);
+  s["provenance"] = provenance_json(provenance);
+  return s;
+}
+
+std::string people_text(const PipelineResult& r, const RunContext& context, double seconds) {
+  std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
+  for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
+  if (r.comparison)
+    text += fmt::format("macro against its resolved twin: stress differs by {:.0f} %, {:.0f} times fewer contact evaluations, {:.0f} times less time\n",
+                        100.0 * r.comparison->axial_difference.mean, r.comparison->speedup_contact_evaluations, r.comparison->speedup_seconds);
+  for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
+  return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
+}
+
+}  // namespace
+
+ExitStatus command_run(const CommonOptions& options) {
+  if (options.inputs.size() != 1) throw BadInput("run: give one pipeline file");
+  const auto start = std::chrono::steady_clock::now();
+  const Scene scene = Scene::load(options.inputs[0], options.overrides);
+  const PipelineSetup setup = read_pipeline_setup(scene.root());
+  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(setup.measure.seed);
+  const TaskStore store(context, scene, seed);
+  PipelineResult result;
+  result.measured = run_measure_stage(setup.measure, store, context);
+  for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
+  fit(setup, context, result);
+  run_macro(setup, store, context, result);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  context.finish(summarise(setup, result, context.provenance(scene, seed), context, seconds), people_text(result, context, seconds));
+  write_report(context.directory());
+  store.clear();
+  return result.usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,43 @@
+// Tables of a scene that describe the soft particle and how it is measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/measurements.h"
+#include "common/io/scene.h"
+#include "microsim/measure.h"
+#include "microsim/protocol.h"
+
+namespace softgrain {
+
+/// One series of measurements: which relaxation, how many packings, which states of which pair kind.
+struct MeasureSeries {
+  std::string relaxation;               ///< "damped" or "published"
+  std::int64_t packings = 0;
+  std::vector<PairKind> kinds;
+  MeasurementPlan soft_solid;
+  MeasurementPlan soft_soft;
+
+  [[nodiscard]] const MeasurementPlan& plan(PairKind kind) const {
+    return kind == PairKind::soft_solid ? soft_solid : soft_soft;
+  }
+};
+
+struct MeasureSetup {
+  SoftParticleSpec spec;
+  PublishedOptions published;
+  DampedProtocolOptions damped;
+  std::vector<MeasureSeries> series;    ///< the first one feeds the fit; a second one is the reference it is compared with
+  std::uint64_t seed = 1;
+
+  [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
+};
+
+/// Reads [material], [packing], [measure] and [reference]. Throws BadInput.
+MeasureSetup read_measure_setup(const SceneTable& root);
+
+/// The protocol of a name.
+std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name);
+
+}  // namespace softgrain

@@ -1,0 +1,45 @@
+#include "pipelines/soft_particle_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "pipelines/measure_stage.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run_summary.h"
+
+namespace softgrain {
+
+ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& options) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"soft-particle"});
+  const std::string title = root.text("title", "");
+  const MeasureSetup setup = read_measure_setup(root);
+  root.finish();
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(setup.seed);
+  const TaskStore store(context, scene, seed);
+  const MeasureResult result = run_measure_stage(setup, store, context);
+
+  nlohmann::json summary;
+  const auto remarks = measurement_remarks(result.data);
+  summary["status"] = remarks.empty() ? "good" : "not usable";
+  summary["title"] = title;
+  summary["packings"] = packings_json(result.data);
+  summary["measurement"] = measurement_json(result.data, setup.series[0].relaxation);
+  if (setup.series.size() > 1) {
+    summary["reference_measurement"] = measurement_json(result.data, setup.series[1].relaxation);
+    summary["relaxations"] = relaxations_json(result.data, setup.series[1].relaxation, setup.series[0].relaxation);
+  }
+  summary["remarks"] = remarks;
+  summary["files"] = {{"measurements", context.path("measurements.h5")}, {"report", context.path("report.html")}};
+  summary["provenance"] = provenance_json(context.provenance(scene, seed));
+  context.finish(summary, fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\nreport: {}",
+                                      result.data.packings.size(), summary["packings"]["solid_fraction"].get<double>(),
+                                      summary["measurement"]["points"].get<std::int64_t>(), result.wall_seconds, context.path("report.html")));
+  write_report(context.directory());
+  store.clear();
+  return remarks.empty() ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain
