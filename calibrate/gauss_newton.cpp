@@ -150,12 +150,14 @@ void polish(const LeastSquaresProblem& problem, std::vector<double>& p, double r
     for (std::size_t j = 0; j < p.size(); ++j) next[j] += here.step[j];
     for (std::size_t j = 0; j < problem.bounds.size(); ++j)
       next[j] = std::clamp(next[j], problem.bounds[j].low, problem.bounds[j].high);
-    Linearisation there = linearise(problem, next, rank_tolerance);
-    const bool better = there.defined && there.residual_sum_of_squares <= here.residual_sum_of_squares * (1.0 + 1e-12) &&
-                        (step_in_deviations(there, next, problem.residuals) < left || there.residual_sum_of_squares < here.residual_sum_of_squares);
+    const Linearisation there = linearise(problem, next, rank_tolerance);
+    const bool smaller_step = step_in_deviations(there, next, problem.residuals) < left;
+    // S carries the rounding of the residuals; the step does not, so it decides when S stands still.
+    const bool better = there.defined && (there.residual_sum_of_squares < here.residual_sum_of_squares ||
+                                          (smaller_step && there.residual_sum_of_squares <= here.residual_sum_of_squares * (1.0 + 1e-9)));
     if (!better) return;
     p = std::move(next);
-    here = std::move(there);
+    here = there;
   }
 }
 

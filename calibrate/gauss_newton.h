@@ -21,7 +21,7 @@ struct Linearisation {
 
 Linearisation linearise(const LeastSquaresProblem& problem, const std::vector<double>& p, double rank_tolerance);
 
-/// Full Gauss-Newton steps while they shrink and S does not grow: the last digits that a trust region leaves.
+/// Full Gauss-Newton steps while they shrink or S falls (and S does not grow beyond rounding): the last digits that a trust region leaves.
 void polish(const LeastSquaresProblem& problem, std::vector<double>& p, double rank_tolerance);
 
 /// Largest |step_j| in standard deviations; components below 1e-10 of the parameter's size count as nothing.
