@@ -8,6 +8,7 @@
 
 #include "common/data/measurements.h"
 #include "common/data/pair_kind.h"
+#include "common/io/provenance.h"
 
 namespace softgrain {
 
@@ -78,7 +79,7 @@ struct LawCard {
 };
 
 /// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws FileTrouble.
-void save_card(const LawCard& card, const std::string& toml_path);
+void save_card(const LawCard& card, const std::string& toml_path, const Provenance& provenance = build_provenance());
 
 /// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, FileTrouble for files.
 LawCard load_card(const std::string& toml_path);

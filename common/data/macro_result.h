@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/core/cost.h"
+#include "common/io/provenance.h"
 
 namespace softgrain {
 
@@ -31,7 +32,7 @@ struct MacroCurve {
 };
 
 /// Writes all curves to an HDF5 file, atomically.
-void save_macro(const std::vector<MacroCurve>& curves, const std::string& path);
+void save_macro(const std::vector<MacroCurve>& curves, const std::string& path, const Provenance& provenance = build_provenance());
 std::vector<MacroCurve> load_macro(const std::string& path);
 
 }  // namespace softgrain

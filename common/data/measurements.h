@@ -7,6 +7,7 @@
 
 #include "common/core/cost.h"
 #include "common/data/pair_kind.h"
+#include "common/io/provenance.h"
 
 namespace softgrain {
 
@@ -75,7 +76,7 @@ struct Measurements {
 };
 
 /// Writes to an HDF5 file, atomically (temporary file, flush, rename). Throws FileTrouble.
-void save(const Measurements& data, const std::string& path);
+void save(const Measurements& data, const std::string& path, const Provenance& provenance = build_provenance());
 
 /// Reads what save() wrote. Throws FileTrouble naming the file and what is missing or damaged.
 Measurements load_measurements(const std::string& path);

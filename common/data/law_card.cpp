@@ -1,0 +1,44 @@
+#include "common/data/law_card.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/data/law_card_format.h"
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+double ThresholdPowerLaw::value(double overlap_ratio) const {
+  if (overlap_ratio < delta.value) return 0.0;
+  return a.value * std::pow(overlap_ratio, b.value) + c.value;
+}
+
+double ThresholdPowerLaw::derivative(double overlap_ratio) const {
+  if (overlap_ratio < delta.value) return 0.0;
+  return a.value * b.value * std::pow(overlap_ratio, b.value - 1.0);
+}
+
+const PairLaw* LawCard::find(PairKind kind) const {
+  for (const PairLaw& pair : pairs)
+    if (pair.kind == kind) return &pair;
+  return nullptr;
+}
+
+std::string table_path(const std::string& toml_path) {
+  return std::filesystem::path(toml_path).replace_extension(".h5").string();
+}
+
+void save_card(const LawCard& card, const std::string& toml_path, const Provenance& provenance) {
+  // The table first: a card on disk then always has its own table beside it.
+  write_table(card, table_path(toml_path), provenance);
+  write_text_atomic(toml_path, card_text(card, provenance));
+}
+
+LawCard load_card(const std::string& toml_path) {
+  LawCard card = read_card_text(toml_path);
+  const std::string table = table_path(toml_path);
+  if (std::filesystem::exists(table)) read_table(card, table);
+  return card;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,57 @@
+// Inner side of law_card.h: text and table of a card. For the sources of common/data only.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "common/data/law_card.h"
+
+namespace softgrain {
+
+/// The three threshold power laws of a pair and their places in the file.
+struct LawPartName {
+  const char* key;  ///< [pair.KEY]
+  ThresholdPowerLaw PairLaw::*law;
+  bool tangential;
+};
+inline constexpr std::array<LawPartName, 3> kLawParts{{{"normal", &PairLaw::normal, false},
+                                                       {"tangential_initial", &PairLaw::tangential_initial, true},
+                                                       {"tangential_secant", &PairLaw::tangential_secant, true}}};
+
+/// The four numbers of a threshold power law.
+struct LawParameterName {
+  const char* key;
+  Estimate ThresholdPowerLaw::*estimate;
+  bool has_dimension;  ///< true for those in units of the law (a, c)
+};
+inline constexpr std::array<LawParameterName, 4> kLawParameters{{{"a", &ThresholdPowerLaw::a, true},
+                                                                 {"b", &ThresholdPowerLaw::b, false},
+                                                                 {"c", &ThresholdPowerLaw::c, true},
+                                                                 {"delta", &ThresholdPowerLaw::delta, false}}};
+
+/// Columns of the measured curve.
+struct LawTableColumn {
+  const char* name;
+  std::vector<double> LawTableRows::*values;
+};
+inline constexpr std::array<LawTableColumn, 7> kLawTableColumns{{{"delta", &LawTableRows::delta},
+                                                                 {"force_mean", &LawTableRows::force_mean},
+                                                                 {"force_deviation", &LawTableRows::force_deviation},
+                                                                 {"kt_initial_mean", &LawTableRows::kt_initial_mean},
+                                                                 {"kt_initial_deviation", &LawTableRows::kt_initial_deviation},
+                                                                 {"kt_secant_mean", &LawTableRows::kt_secant_mean},
+                                                                 {"kt_secant_deviation", &LawTableRows::kt_secant_deviation}}};
+
+/// The card as TOML.
+std::string card_text(const LawCard& card, const Provenance& provenance);
+
+/// Card without its table. Throws BadInput with file and line, FileTrouble.
+LawCard read_card_text(const std::string& toml_path);
+
+/// Name of the table beside a card: the same with extension .h5.
+std::string table_path(const std::string& toml_path);
+void write_table(const LawCard& card, const std::string& path, const Provenance& provenance);
+/// Fills the table rows of the pairs that the file holds. Throws FileTrouble.
+void read_table(LawCard& card, const std::string& path);
+
+}  // namespace softgrain

@@ -1,0 +1,142 @@
+// Strict reading of a law card: what is unknown, missing or inconsistent is an error with file and line.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/core/error.h"
+#include "common/data/law_card_format.h"
+#include "common/io/scene.h"
+
+namespace softgrain {
+
+namespace {
+
+/// c may differ from -a delta^b by rounding only.
+constexpr double kContinuityTolerance = 1e-6;
+
+/// A number, or what was not known at the time of writing: "nan", "inf", "-inf".
+double real(const SceneTable& table, const std::string& key, const Range& range) {
+  if (!table.is_text(key)) return table.number(key, Unit::none, range);
+  const std::string word = table.choice(key, {"nan", "inf", "-inf"});
+  if (word == "nan") return std::numeric_limits<double>::quiet_NaN();
+  return word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+}
+
+Estimate read_estimate(const SceneTable& table, const Range& range, bool must_be_known) {
+  Estimate e;
+  e.value = must_be_known ? table.number("value", Unit::none, range) : real(table, "value", Range::any());
+  (void)table.choice("unit", {"1"});
+  e.standard_error = real(table, "standard_error", Range::not_negative());
+  const SceneTable interval = table.table("interval_95");
+  e.low = real(interval, "low", Range::any());
+  e.high = real(interval, "high", Range::any());
+  if (e.low > e.high) interval.reject("low", "must not be above the high end");
+  return e;
+}
+
+/// `must_be_known`: the law is used, so its numbers must be finite and make a continuous law.
+ThresholdPowerLaw read_law(const SceneTable& table, bool must_be_known) {
+  ThresholdPowerLaw law;
+  law.a = read_estimate(table.table("a"), Range::any(), must_be_known);
+  law.b = read_estimate(table.table("b"), Range::positive(), must_be_known);
+  law.c = read_estimate(table.table("c"), Range::any(), must_be_known);
+  law.delta = read_estimate(table.table("delta"), Range::not_negative(), must_be_known);
+  if (!must_be_known) return law;
+  const double expected = -law.a.value * std::pow(law.delta.value, law.b.value);
+  if (std::abs(law.c.value - expected) > kContinuityTolerance * std::abs(expected))
+    table.table("c").reject("value", fmt::format("must be -a delta^b = {}, or the law jumps at delta", expected));
+  return law;
+}
+
+std::vector<double> read_covariance(const SceneTable& pair) {
+  std::vector<double> covariance;
+  if (!pair.has("covariance")) return covariance;
+  const SceneTable table = pair.table("covariance");
+  for (const char* name : kLawParameterNames) {
+    const std::vector<double> row = table.numbers(name, Unit::none);
+    if (row.size() != kLawParameterNames.size())
+      table.reject(name, fmt::format("must have {} entries", kLawParameterNames.size()));
+    covariance.insert(covariance.end(), row.begin(), row.end());
+  }
+  return covariance;
+}
+
+void read_validity(const SceneTable& table, PairLaw& law) {
+  law.delta_min = table.number("delta_min", Unit::none, Range::not_negative());
+  law.delta_max = table.number("delta_max", Unit::none, Range::not_negative());
+  if (law.delta_max < law.delta_min) table.reject("delta_max", "must not be below delta_min");
+  law.max_overlap = real(table, "max_overlap", Range::not_negative());
+}
+
+void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& angle, bool& fitted, bool good) {
+  fitted = table.flag("fitted", false);
+  angle = table.number("angle_deg", Unit::angle_degree, Range::positive());
+  law = read_law(table, good && fitted);
+}
+
+PairLaw read_pair(const SceneTable& table) {
+  constexpr std::int64_t kMany = std::numeric_limits<int>::max();
+  PairLaw law;
+  law.kind = table.choice("kind", {"soft-solid", "soft-soft"}) == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+  law.status = table.choice("status", {"good", "no threshold crossing", "underdetermined", "not run"});
+  law.reason = table.text("reason", "");
+  law.packings = static_cast<int>(table.count("packings", 0, kMany));
+  law.points = static_cast<int>(table.count("points", 0, kMany));
+  law.chi2_per_dof = real(table, "chi2_per_dof", Range::not_negative());
+  law.quality = real(table, "quality", Range::closed(0.0, 1.0));
+  read_validity(table.table("validity"), law);
+  const bool good = law.status == "good" || law.status == "underdetermined";
+  law.normal = read_law(table.table("normal"), good);
+  read_tangential(table.table("tangential_initial"), law.tangential_initial, law.initial_angle_deg, law.has_tangential_initial, good);
+  read_tangential(table.table("tangential_secant"), law.tangential_secant, law.secant_angle_deg, law.has_tangential_secant, good);
+  law.covariance = read_covariance(table);
+  return law;
+}
+
+SoftParticleSpec read_spec(const SceneTable& table) {
+  SoftParticleSpec s;
+  s.shell_radius = table.number("shell_radius", Unit::length, Range::positive());
+  s.youngs_modulus = table.number("youngs_modulus", Unit::pressure, Range::positive());
+  s.poisson_ratio = table.number("poisson_ratio", Unit::none, Range{-1.0, 0.5, true, false});
+  s.friction = table.number("friction", Unit::none, Range::not_negative());
+  s.density = table.number("density", Unit::density, Range::positive());
+  s.restitution = table.number("restitution", Unit::none, Range::closed(0.0, 1.0));
+  s.exponent = table.number("exponent", Unit::none);
+  s.polydispersity = table.number("polydispersity", Unit::none, Range{1.0, std::numeric_limits<double>::infinity(), false, false});
+  s.rmax_over_shell = table.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, false});
+  s.beta = table.number("beta", Unit::none, Range::positive());
+  s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());
+  return s;
+}
+
+/// Words for people: known, but nothing depends on them.
+void skip_words(const SceneTable& root) {
+  const SceneTable provenance = root.table_or_empty("provenance");
+  for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
+  (void)provenance.count("threads", 1, std::numeric_limits<int>::max(), 1);
+  const SceneTable definitions = root.table_or_empty("definitions");
+  for (const char* key : {"form", "Delta", "normal", "tangential", "interval_95"}) (void)definitions.text(key, "");
+}
+
+}  // namespace
+
+LawCard read_card_text(const std::string& toml_path) {
+  const Scene scene = Scene::load(toml_path);
+  const SceneTable root = scene.root();
+  LawCard card;
+  card.schema = static_cast<int>(root.count("schema", kSchemaVersion, kSchemaVersion));
+  skip_words(root);
+  const SceneTable measurement = root.table("measurement");
+  card.relaxation = measurement.text("relaxation");
+  card.spec = read_spec(measurement);
+  for (const SceneTable& pair : root.tables("pair")) {
+    const PairLaw law = read_pair(pair);
+    if (card.find(law.kind) != nullptr) pair.reject("kind", "this pair kind was given before");
+    card.pairs.push_back(law);
+  }
+  root.finish();
+  return card;
+}
+
+}  // namespace softgrain

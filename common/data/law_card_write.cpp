@@ -1,0 +1,136 @@
+// A law card as text: meant to be read and edited by people, so every number stands with its meaning.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "common/data/law_card_format.h"
+
+namespace softgrain {
+
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+/// Shortest text that reads back to the same double; what is not finite goes into quotes.
+std::string real(double value) {
+  if (std::isnan(value)) return "\"nan\"";
+  if (std::isinf(value)) return value > 0.0 ? "\"inf\"" : "\"-inf\"";
+  std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string row(const double* values, std::size_t n) {
+  std::string text = "[";
+  for (std::size_t k = 0; k < n; ++k) text += (k > 0 ? ", " : "") + real(values[k]);
+  return text + "]";
+}
+
+/// "73.67 N" or "12.3 N/m = 0.0034 N/degree" for the measured E and Rs, as a comment.
+std::string dimensional(double value, bool tangential, const SoftParticleSpec& spec) {
+  if (!std::isfinite(value)) return "";
+  if (!tangential) return fmt::format("  # {:.6g} N", value * spec.youngs_modulus * spec.shell_radius * spec.shell_radius);
+  const double stiffness = value * spec.youngs_modulus * spec.shell_radius;
+  return fmt::format("  # {:.6g} N/m = {:.6g} N/degree", stiffness, stiffness * std::numbers::pi * spec.shell_radius / 180.0);
+}
+
+void write_head(Out out, const LawCard& card, const Provenance& provenance) {
+  fmt::format_to(out, "# Contact law of a soft particle: fitted parameters and what they were fitted to.\n");
+  fmt::format_to(out, "# The measured curve behind each law is in the .h5 file of the same name.\n");
+  fmt::format_to(out, "# All parameters are dimensionless, so one card serves every E and Rs; comments give the values for the\n");
+  fmt::format_to(out, "# measured E = {} Pa and Rs = {} m.\n", real(card.spec.youngs_modulus), real(card.spec.shell_radius));
+  fmt::format_to(out, "schema = {}\n\n[provenance]\n", card.schema);
+  fmt::format_to(out, "version = {}\ncommit = {}\n", quoted(provenance.version), quoted(provenance.commit));
+  fmt::format_to(out, "compiler = {}\ncommand = {}\n", quoted(provenance.compiler), quoted(provenance.command));
+  fmt::format_to(out, "seed = {}\nthreads = {}\n", quoted(fmt::format("{}", provenance.seed)), provenance.threads);
+  fmt::format_to(out, "\n[definitions]\n");
+  fmt::format_to(out, "form = \"F(Delta) = 0 for Delta < delta, a Delta^b + c for Delta >= delta, c = -a delta^b\"\n");
+  fmt::format_to(out, "Delta = \"total overlap hn over the shell radius Rs; for unequal radii hn/R of the smaller shell\"\n");
+  fmt::format_to(out, "normal = \"Fn = E Rs^2 F(Delta), compression positive\"\n");
+  fmt::format_to(out, "tangential = \"kt = E Rs F(Delta), force per tangential displacement ht = pi Rs angle/180\"\n");
+  fmt::format_to(out, "interval_95 = \"bootstrap over packings\"\n");
+}
+
+void write_measurement(Out out, const LawCard& card) {
+  const SoftParticleSpec& s = card.spec;
+  fmt::format_to(out, "\n# The soft particle that was measured.\n[measurement]\nrelaxation = {}\n", quoted(card.relaxation));
+  fmt::format_to(out, "shell_radius = {}  # Rs [m]\n", real(s.shell_radius));
+  fmt::format_to(out, "youngs_modulus = {}  # E [Pa]\n", real(s.youngs_modulus));
+  fmt::format_to(out, "poisson_ratio = {}  # nu\n", real(s.poisson_ratio));
+  fmt::format_to(out, "friction = {}  # mu\n", real(s.friction));
+  fmt::format_to(out, "density = {}  # [kg/m^3]\n", real(s.density));
+  fmt::format_to(out, "restitution = {}\n", real(s.restitution));
+  fmt::format_to(out, "exponent = {}  # b of P(r) ~ r^-b\n", real(s.exponent));
+  fmt::format_to(out, "polydispersity = {}  # rmax/rmin\n", real(s.polydispersity));
+  fmt::format_to(out, "rmax_over_shell = {}  # rmax/Rs\n", real(s.rmax_over_shell));
+  fmt::format_to(out, "beta = {}  # volume of drawn grains over volume of the shell\n", real(s.beta));
+  fmt::format_to(out, "trials = {}  # random positions tried per grain\n", s.trials);
+}
+
+void write_estimate(Out out, const std::string& table, const Estimate& e, const std::string& comment) {
+  fmt::format_to(out, "[{}]\nvalue = {}{}\nunit = \"1\"\nstandard_error = {}\n", table, real(e.value), comment, real(e.standard_error));
+  fmt::format_to(out, "interval_95 = {{ low = {}, high = {} }}\n", real(e.low), real(e.high));
+}
+
+void write_part(Out out, const PairLaw& pair, const LawPartName& part, const SoftParticleSpec& spec) {
+  const bool initial = part.law == &PairLaw::tangential_initial;
+  fmt::format_to(out, "\n[pair.{}]\n", part.key);
+  if (part.tangential) {
+    const char* meaning = initial ? "slope at ht = 0, from angles up to this one" : "secant at this angle";
+    fmt::format_to(out, "fitted = {}\n", initial ? pair.has_tangential_initial : pair.has_tangential_secant);
+    fmt::format_to(out, "angle_deg = {}  # {}\n", real(initial ? pair.initial_angle_deg : pair.secant_angle_deg), meaning);
+  }
+  for (const LawParameterName& p : kLawParameters) {
+    const Estimate& estimate = pair.*part.law.*p.estimate;
+    write_estimate(out, fmt::format("pair.{}.{}", part.key, p.key), estimate,
+                   p.has_dimension ? dimensional(estimate.value, part.tangential, spec) : "");
+  }
+}
+
+void write_covariance(Out out, const PairLaw& pair) {
+  constexpr std::size_t n = kLawParameterNames.size();
+  bool finite = pair.covariance.size() == n * n;
+  for (const double x : pair.covariance) finite = finite && std::isfinite(x);
+  if (!finite) return;
+  fmt::format_to(out, "\n# Rows and columns in the order of the rows; zero where a parameter was not fitted.\n[pair.covariance]\n");
+  for (std::size_t k = 0; k < n; ++k) fmt::format_to(out, "{} = {}\n", kLawParameterNames[k], row(&pair.covariance[k * n], n));
+}
+
+void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
+  fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind), quoted(pair.status), quoted(pair.reason));
+  fmt::format_to(out, "packings = {}\npoints = {}\n", pair.packings, pair.points);
+  fmt::format_to(out, "chi2_per_dof = {}\n", real(pair.chi2_per_dof));
+  fmt::format_to(out, "quality = {}  # probability of a larger chi^2\n", real(pair.quality));
+  fmt::format_to(out, "\n# Range of Delta that was fitted, and the largest grain overlap over the smaller radius inside it.\n");
+  fmt::format_to(out, "[pair.validity]\ndelta_min = {}\ndelta_max = {}\n", real(pair.delta_min), real(pair.delta_max));
+  fmt::format_to(out, "max_overlap = {}\n", real(pair.max_overlap));
+  for (const LawPartName& part : kLawParts) write_part(out, pair, part, spec);
+  write_covariance(out, pair);
+}
+
+}  // namespace
+
+std::string card_text(const LawCard& card, const Provenance& provenance) {
+  std::string text;
+  const Out out(text);
+  write_head(out, card, provenance);
+  write_measurement(out, card);
+  for (const PairLaw& pair : card.pairs) write_pair(out, pair, card.spec);
+  return text;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,88 @@
+// Layout of law.h5: "spec"; per pair kind a group with attributes, "table" (the measured curve) and, per law, a group of its
+// parameters as rows (value, standard_error, low, high); "covariance" 7 x 7. All dimensionless.
+#include <array>
+
+#include "common/core/error.h"
+#include "common/data/law_card_format.h"
+#include "common/data/spec_io.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr const char* kFormat = "soft contact law";
+
+void write_parameters(const h5::Group& group, const PairLaw& pair) {
+  for (const LawPartName& part : kLawParts) {
+    const h5::Group law = group.create(part.key);
+    law.attribute("columns", "value, standard_error, low, high");
+    law.attribute("unit", part.tangential ? "kt/(E Rs)" : "Fn/(E Rs^2)");
+    for (const LawParameterName& p : kLawParameters) {
+      const Estimate& e = pair.*part.law.*p.estimate;
+      law.write(p.key, std::array<double, 4>{e.value, e.standard_error, e.low, e.high});
+    }
+  }
+}
+
+void write_curve(const h5::Group& group, const LawTableRows& rows) {
+  const h5::Group table = group.create("table");
+  table.attribute("units", "delta 1, force Fn/(E Rs^2), kt kt/(E Rs)");
+  for (const LawTableColumn& column : kLawTableColumns) table.write(column.name, std::span<const double>(rows.*column.values));
+}
+
+void write_pair(const h5::Group& root, const PairLaw& pair) {
+  const h5::Group group = root.create(to_string(pair.kind));
+  group.attribute("status", pair.status);
+  group.attribute("reason", pair.reason);
+  group.attribute("initial_angle_deg", pair.initial_angle_deg);
+  group.attribute("secant_angle_deg", pair.secant_angle_deg);
+  group.attribute("has_tangential_initial", std::int64_t{pair.has_tangential_initial});
+  group.attribute("has_tangential_secant", std::int64_t{pair.has_tangential_secant});
+  group.attribute("delta_min", pair.delta_min);
+  group.attribute("delta_max", pair.delta_max);
+  group.attribute("max_overlap", pair.max_overlap);
+  group.attribute("packings", std::int64_t{pair.packings});
+  group.attribute("points", std::int64_t{pair.points});
+  group.attribute("chi2_per_dof", pair.chi2_per_dof);
+  group.attribute("quality", pair.quality);
+  write_curve(group, pair.table);
+  write_parameters(group, pair);
+  constexpr std::size_t n = kLawParameterNames.size();
+  if (pair.covariance.size() == n * n) group.write("covariance", std::span<const double>(pair.covariance), {n, n});
+}
+
+LawTableRows read_curve(const h5::Group& table, const std::string& path) {
+  LawTableRows rows;
+  for (const LawTableColumn& column : kLawTableColumns) {
+    std::vector<double>& values = rows.*column.values;
+    values = table.doubles(column.name);
+    // A quantity that was not measured has an empty column.
+    if (!values.empty() && values.size() != rows.delta.size())
+      throw FileTrouble(path + ": column '" + column.name + "' of the table has a wrong length");
+  }
+  return rows;
+}
+
+}  // namespace
+
+void write_table(const LawCard& card, const std::string& path, const Provenance& provenance) {
+  h5::AtomicFile file(path);
+  const h5::Group root = file.root();
+  write_format(root, kFormat);
+  root.attribute("relaxation", card.relaxation);
+  write_spec(root, card.spec);
+  for (const PairLaw& pair : card.pairs) write_pair(root, pair);
+  write_provenance(root, provenance);
+  file.commit();
+}
+
+void read_table(LawCard& card, const std::string& path) {
+  const h5::Group root = h5::open_file(path);
+  require_format(root, kFormat, path);
+  for (PairLaw& pair : card.pairs) {
+    const std::string name = to_string(pair.kind);
+    if (root.has(name)) pair.table = read_curve(root.open(name).open("table"), path);
+  }
+}
+
+}  // namespace softgrain
