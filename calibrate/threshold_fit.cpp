@@ -96,7 +96,7 @@ void judge_fit(Work& w) {
 
 void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   const bool enough = report.law.packings >= options.min_packings;
-  if (!enough) w.reasons.push_back(fmt::format("{} packings, {} needed for an interval", report.law.packings, options.min_packings));
+  if (!enough) w.reasons.push_back(fmt::format("{} packing{}, {} needed for an interval", report.law.packings, report.law.packings == 1 ? "" : "s", options.min_packings));
   else if (options.replicates < 1) w.reasons.emplace_back("no bootstrap replicates were asked for");
   if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient) return;
   BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters};
@@ -121,7 +121,7 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   law.normal = estimated_law(report, p, 0, errors_known);
   if (w.curves[1].present()) law.tangential_initial = estimated_law(report, p, 1, errors_known);
   if (w.curves[2].present()) law.tangential_secant = estimated_law(report, p, 2, errors_known);
-  fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);
+  if (law.packings >= 2) fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);
 }
 
 void conclude(PairLaw& law, const std::string& status, const std::vector<std::string>& reasons) {

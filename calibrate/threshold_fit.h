@@ -49,7 +49,7 @@ struct FitReport {
 ///   "good"; "no threshold crossing" (no mean force clearly above the noise floor: above it and above two standard errors);
 ///   "underdetermined" (best values are in the card, but must not be used: the reason says why); "not run" (no such data).
 /// `quality` is the chi^2 tail probability of the packing means above threshold. Means at neighbouring Delta come from the same
-/// packings and move together, so it is a guide, not a test of level; 0 without degrees of freedom.
+/// packings and move together, so it is a guide, not a test of level; 0 without degrees of freedom or scatter.
 /// Throws BadInput for options out of range or an ambiguous relaxation.
 FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions& options = {});
 

@@ -86,7 +86,7 @@ ExitStatus command_calibrate(const CommonOptions& options) {
   fit.seed = run.seed(fit.seed);
   std::vector<FitReport> reports;
   const LawCard card = calibrate(data, fit, &reports);
-  save_card(card, run.path("law.toml"));
+  save_card(card, run.path("law.toml"), run.provenance(settings, fit.seed));
 
   const bool good = std::all_of(card.pairs.begin(), card.pairs.end(), [](const PairLaw& law) { return law.status == "good"; });
   std::string people;

@@ -45,7 +45,7 @@ TEST(LawJson, UnknownIsNullAndStaysValidJson) {
   PairLaw law = example();
   law.kind = PairKind::soft_soft;
   law.status = "underdetermined";
-  law.reason = "1 packings, 5 needed for an interval.";
+  law.reason = "1 packing, 5 needed for an interval.";
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   law.normal.a = {0.5755, kInfinity, -kInfinity, kInfinity};
   card.pairs.push_back(law);

@@ -151,7 +151,8 @@ TEST(ThresholdFit, OnePackingIsUnderdetermined) {
   o.packings = 1;
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
   EXPECT_EQ(law.status, "underdetermined");
-  EXPECT_TRUE(mentions(law, "1 packings")) << law.reason;
+  EXPECT_TRUE(mentions(law, "1 packing, 5 needed")) << law.reason;
+  EXPECT_EQ(law.chi2_per_dof, 0.0);  // one packing has no scatter to judge by
   EXPECT_NEAR(law.normal.b.value, o.normal.b, 1e-6);   // the best values are still there
   EXPECT_TRUE(std::isinf(law.normal.b.standard_error));  // but no invented error
   EXPECT_TRUE(std::isinf(law.normal.b.high));
