@@ -28,6 +28,7 @@ struct Particles {
   std::vector<std::int32_t> material;    ///< index into the materials of the scene
   std::vector<std::int32_t> shell;       ///< slot of the shell this grain lives in, -1: none
   std::vector<Vec<D>> plane_normal;      ///< one per plane, unit, into the space of the grains
+  std::vector<double> plane_load;        ///< one per plane: outside force along its normal [N]; acts on planes moved by forces
   std::int32_t grains = 0;               ///< slots [0, grains)
   std::int32_t shells = 0;               ///< slots [grains, grains + shells)
   std::int32_t planes = 0;               ///< the rest
@@ -85,6 +86,7 @@ template <int D>
 Slot add_plane(Particles<D>& p, const NewBody<D>& b, const Vec<D>& unit_normal) {
   detail::insert_body(p, p.size(), b);
   p.plane_normal.push_back(unit_normal);
+  p.plane_load.push_back(0.0);
   return p.first_plane() + p.planes++;
 }
 

@@ -4,11 +4,26 @@
 
 namespace softgrain {
 
+namespace {
+
+template <int D>
+void load_planes(Particles<D>& p) {
+  for (Slot plane = p.first_plane(); plane < p.size(); ++plane) {
+    const auto u = static_cast<std::size_t>(plane);
+    if (!(p.inverse_mass[u] > 0.0)) continue;
+    const Vec<D>& n = p.normal_of(plane);
+    p.force[u] = n * (dot(p.force[u], n) + p.plane_load[static_cast<std::size_t>(plane - p.first_plane())]);
+  }
+}
+
+}  // namespace
+
 template <int D>
 void add_gravity(System<D>& s) {
-  if (s.gravity == Vec<D>{}) return;
   auto& p = s.particles;
-  for (std::size_t u = 0; u < p.force.size(); ++u)
+  load_planes(p);
+  if (s.gravity == Vec<D>{}) return;
+  for (auto u = std::size_t{0}; u < static_cast<std::size_t>(p.first_plane()); ++u)
     if (p.inverse_mass[u] > 0.0) p.force[u] += s.gravity * (1.0 / p.inverse_mass[u]);
 }
 

@@ -32,7 +32,8 @@ class VelocityVerlet {
   std::vector<Rot<D>> old_torque_;
 };
 
-/// Adds gravity to the forces of the last pass, for bodies moved by forces.
+/// Adds gravity to the forces of the last pass, for bodies moved by forces. A plane moved by forces feels no gravity: it goes
+/// along its normal alone, under its load and the normal part of what the grains do to it.
 template <int D>
 void add_gravity(System<D>& system);
 

@@ -151,7 +151,6 @@ void fill_list(System<D>& s, const std::vector<ListedPair>& pairs) {
   list.i.clear();
   list.j.clear();
   list.image.clear();
-  list.constants.clear();
   list.sections.clear();
   for (const ListedPair& pair : pairs) {
     const auto head = static_cast<std::int32_t>(pair.key >> (2 * kSlotBits));
@@ -162,10 +161,21 @@ void fill_list(System<D>& s, const std::vector<ListedPair>& pairs) {
     list.i.push_back(pair.i);
     list.j.push_back(pair.j);
     list.image.push_back(pair.image);
-    const PairBodies bodies = bodies_of(s.particles, geometry, pair.i, pair.j);
-    list.constants.push_back(std::visit([&](const auto& l) { return l.pair_constants(bodies); }, s.laws.law(law)));
     list.sections.back().end = list.size();
   }
+}
+
+template <int D>
+void fill_constants(System<D>& s) {
+  ContactList<D>& list = s.contacts;
+  list.constants.resize(list.i.size());
+  for (const ContactSection& section : list.sections)
+    std::visit(
+        [&](const auto& law) {
+          for (auto c = static_cast<std::size_t>(section.begin); c < static_cast<std::size_t>(section.end); ++c)
+            list.constants[c] = law.pair_constants(bodies_of(s.particles, section.geometry, list.i[c], list.j[c]));
+        },
+        s.laws.law(section.law));
 }
 
 template <int D>
@@ -181,16 +191,23 @@ void require_sound(const Particles<D>& p) {
   }
 }
 
+/// Edge c loses whole edges r until its component along axis r is within half an edge: another basis of the same lattice.
+template <int D>
+void reduce_tilt(Cell<D>& cell, int r, int c) {
+  while (std::abs(cell.edges[r][c]) > 0.5000001 * cell.edges[r][r]) {
+    const double sign = std::copysign(1.0, cell.edges[r][c]);
+    for (int k = 0; k <= r; ++k) cell.edges[k][c] -= sign * cell.edges[k][r];
+  }
+}
+
 /// Brings positions home into a periodic cell; a body that crosses a moving boundary takes the velocity of its new image.
 template <int D>
 void wrap(System<D>& s) {
   if (!s.cell.any_periodic()) return;
   // A strongly sheared cell is replaced by the equivalent one with the least tilt.
   for (int c = 1; c < D; ++c)
-    for (int r = 0; r < c; ++r)
-      if (s.cell.periodic[static_cast<std::size_t>(r)] && s.cell.periodic[static_cast<std::size_t>(c)])
-        while (std::abs(s.cell.edges[r][c]) > 0.5000001 * s.cell.edges[r][r])
-          s.cell.edges[r][c] -= std::copysign(s.cell.edges[r][r], s.cell.edges[r][c]);
+    for (int r = c - 1; r >= 0; --r)
+      if (s.cell.periodic[static_cast<std::size_t>(r)] && s.cell.periodic[static_cast<std::size_t>(c)]) reduce_tilt(s.cell, r, c);
   auto& p = s.particles;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
@@ -250,6 +267,14 @@ std::vector<double> default_skin(const Particles<D>& p) {
 }
 
 template <int D>
+void adopt_list(System<D>& s) {
+  fill_constants(s);
+  size_history(s.contacts, s.laws);
+  static std::atomic<std::uint64_t> builds{0};
+  s.contacts.build = ++builds;
+}
+
+template <int D>
 void rebuild_neighbours(System<D>& s) {
   require_sound(s.particles);
   wrap(s);
@@ -262,13 +287,11 @@ void rebuild_neighbours(System<D>& s) {
   list_planes(s, pairs);
   std::sort(pairs.begin(), pairs.end(), [](const ListedPair& a, const ListedPair& b) { return a.key < b.key; });
   fill_list(s, pairs);
-  size_history(s.contacts, s.laws);
+  adopt_list(s);
   restore_history(s.contacts, saved);
   n.reference.resize(static_cast<std::size_t>(s.particles.size()));
   for (std::size_t u = 0; u < n.reference.size(); ++u) n.reference[u] = s.particles.sphere[u].x;
   n.reference_edges = s.cell.edges;
-  static std::atomic<std::uint64_t> builds{0};
-  s.contacts.build = ++builds;
   ++n.rebuilds;
 }
 
@@ -281,6 +304,8 @@ bool update_neighbours(System<D>& system) {
 
 template std::vector<double> default_skin<2>(const Particles<2>&);
 template std::vector<double> default_skin<3>(const Particles<3>&);
+template void adopt_list<2>(System<2>&);
+template void adopt_list<3>(System<3>&);
 template void rebuild_neighbours<2>(System<2>&);
 template void rebuild_neighbours<3>(System<3>&);
 template bool update_neighbours<2>(System<2>&);

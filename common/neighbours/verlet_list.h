@@ -15,7 +15,12 @@ bool update_neighbours(System<D>& system);
 template <int D>
 void rebuild_neighbours(System<D>& system);
 
-/// Margin per body: a tenth of the radius, at most four tenths of the smallest one; planes and shells take the largest.
+/// Completes a list of which pairs, images and sections have been restored from a file: constants of the laws, empty histories,
+/// a new build number.
+template <int D>
+void adopt_list(System<D>& system);
+
+/// Margin per body: an eighth of the radius, at most half of the smallest one; planes and shells take the largest.
 template <int D>
 std::vector<double> default_skin(const Particles<D>& particles);
 

@@ -11,8 +11,9 @@ namespace softgrain {
 template <int D>
 void write_system(const h5::Group& group, const System<D>& system);
 
-/// Restores what write_system wrote into a system that already has its materials and laws. The neighbour list is made again
-/// from its reference positions, so that later rebuilds fall on the same steps. Throws FileTrouble.
+/// Restores what write_system wrote into a system that already has its materials and laws. The neighbour list is taken over as
+/// it was, so that later rebuilds fall on the same steps; constants of the pairs come from the laws. Needs no force pass before
+/// the next step. Throws FileTrouble.
 template <int D>
 void read_system(const h5::Group& group, System<D>& system);
 

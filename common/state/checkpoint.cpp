@@ -1,0 +1,91 @@
+#include "common/state/checkpoint.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKind = "softgrain checkpoint";
+constexpr std::int64_t kCheckpointSchema = 1;
+
+/// FNV-1a, 64 bits: tells scenes apart, protects nothing.
+std::int64_t fingerprint(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return static_cast<std::int64_t>(hash);
+}
+
+/// Reads every data set below `group`, so that damage shows now. Throws FileTrouble.
+void require_readable(const h5::Group& group) {
+  for (const std::string& name : group.children()) {
+    std::optional<h5::Group> child;
+    try {
+      child = group.open(name);
+    } catch (const FileTrouble&) {
+      (void)group.doubles(name);  // no group, so a data set, or damaged
+    }
+    if (child) require_readable(*child);
+  }
+}
+
+h5::Group open_sound(const std::string& path) {
+  h5::Group root = h5::open_file(path);
+  if (!root.has_attribute("kind") || root.text("kind") != kKind) throw FileTrouble(path + ": is not a checkpoint");
+  require_readable(root);
+  return root;
+}
+
+void require_match(const h5::Group& root, const std::string& path, const std::string& scene_text) {
+  if (root.integer("schema") != kCheckpointSchema)
+    throw BadInput(path + ": checkpoint of schema " + std::to_string(root.integer("schema")) + ", this program reads " +
+                   std::to_string(kCheckpointSchema) + "; run without --resume");
+  if (root.integer("fingerprint") != fingerprint(scene_text))
+    throw BadInput(path + ": belongs to another scene (or other --set values); run without --resume, or into another directory");
+}
+
+}  // namespace
+
+void write_checkpoint(const std::string& path, const std::string& scene_text, const std::function<void(const h5::Group&)>& content) {
+  h5::AtomicFile file(path, true);
+  {
+    const h5::Group root = file.root();
+    root.attribute("kind", kKind);
+    root.attribute("schema", kCheckpointSchema);
+    root.attribute("fingerprint", fingerprint(scene_text));
+    content(root);
+  }
+  file.commit();
+}
+
+std::optional<h5::Group> open_checkpoint(const std::string& path, const std::string& scene_text, std::string& note) {
+  std::string trouble;
+  for (const std::string& candidate : std::array{path, path + ".previous"}) {
+    std::error_code ignored;
+    if (!fs::exists(candidate, ignored)) continue;
+    try {
+      h5::Group root = open_sound(candidate);
+      require_match(root, candidate, scene_text);
+      if (!trouble.empty()) note = trouble + "; continuing from the checkpoint before it, " + candidate;
+      return root;
+    } catch (const FileTrouble& e) {
+      trouble += (trouble.empty() ? "" : "; ") + std::string(e.what());
+    }
+  }
+  if (!trouble.empty()) throw FileTrouble(trouble);
+  return std::nullopt;
+}
+
+void remove_checkpoint(const std::string& path) {
+  std::error_code ignored;
+  for (const char* ending : {"", ".previous", ".tmp"}) fs::remove(path + ending, ignored);
+}
+
+}  // namespace softgrain
