@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "common/core/error.h"
 #include "common/io/provenance.h"
 #include "common/io/scene.h"
+
+namespace spdlog {
+class logger;
+}
 
 namespace softgrain {
 
@@ -54,6 +59,7 @@ class RunContext {
   std::string command_;
   std::string directory_;
   int threads_ = 1;
+  std::shared_ptr<spdlog::logger> logger_;
 };
 
 /// One function per command; returns the exit status, throws Error.

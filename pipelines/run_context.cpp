@@ -1,0 +1,82 @@
+#include "pipelines/run_context.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Lines with a time into DIR/log.txt (continued by --resume), plain lines to standard error unless quiet.
+std::shared_ptr<spdlog::logger> make_logger(const std::string& file, const CommonOptions& options) {
+  std::vector<spdlog::sink_ptr> sinks;
+  auto to_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file, !options.resume);
+  to_file->set_pattern("%Y-%m-%d %H:%M:%S %v");
+  sinks.push_back(std::move(to_file));
+  if (!options.quiet) {
+    auto to_terminal = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    // On a terminal a progress bar may stand on the current line: begin by clearing it.
+    to_terminal->set_pattern(::isatty(STDERR_FILENO) == 1 ? "\r\033[K%v" : "%v");
+    sinks.push_back(std::move(to_terminal));
+  }
+  auto logger = std::make_shared<spdlog::logger>("softgrain", sinks.begin(), sinks.end());
+  logger->flush_on(spdlog::level::info);
+  return logger;
+}
+
+}  // namespace
+
+RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name)
+    : options_(options),
+      command_(command),
+      directory_(options.out.empty() ? "results/" + default_name : options.out),
+      threads_(options.threads > 0 ? options.threads : omp_get_max_threads()) {
+  require_writable_directory(directory_);
+  try {
+    logger_ = make_logger(path("log.txt"), options_);
+  } catch (const spdlog::spdlog_ex& e) {
+    throw FileTrouble(path("log.txt") + ": " + e.what());
+  }
+  omp_set_num_threads(threads_);
+  const Provenance build = build_provenance();
+  logger_->sinks().front()->log({"softgrain", spdlog::level::info,
+                                 fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
+}
+
+Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {
+  Provenance p = build_provenance();
+  p.threads = threads_;
+  p.seed = used_seed;
+  p.command = options_.command_line;
+  p.scene = scene.text();
+  return p;
+}
+
+void RunContext::say(const std::string& line) const { logger_->info("{}", line); }
+
+void RunContext::finish(nlohmann::json summary, const std::string& people) const {
+  const Provenance build = build_provenance();
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!summary.contains(key)) summary[key] = value;
+  };
+  add("status", "good");
+  add("command", command_);
+  add("version", build.version);
+  add("commit", build.commit);
+  const std::string text = summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  write_text_atomic(path("summary.json"), text);
+  std::string shown = options_.json ? text : people;
+  if (!shown.empty() && shown.back() != '\n') shown += '\n';
+  if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size() || std::fflush(stdout) != 0)
+    throw FileTrouble("standard output: cannot be written");
+}
+
+}  // namespace softgrain

@@ -1,0 +1,162 @@
+// The command line: what there is to ask for, and how errors become messages and exit statuses.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <limits>
+#include <new>
+#include <system_error>
+
+#include "common/io/interrupt.h"
+#include "common/io/text_file.h"
+#include "pipelines/run_context.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr int kMostThreads = 4096;
+
+struct Command {
+  const char* name;
+  const char* does;
+  const char* inputs;       ///< name of the positional arguments in the help
+  const char* inputs_help;
+  int least;
+  int most;
+  ExitStatus (*function)(const CommonOptions&);
+};
+
+constexpr std::array<Command, 7> kCommands{{
+    {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run", 1, 1, command_run},
+    {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml", "scene to run", 1, 1, command_microsim},
+    {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA.h5", "files of measurements", 1, 1000, command_calibrate},
+    {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1, command_macrosim},
+    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN", "two run directories or result files, A and B", 2, 2, command_compare},
+    {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, command_report},
+    {"check", "Validates a scene, card or result file and says what follows from it, without running", "FILE", "file to check", 1, 1, command_check},
+}};
+
+constexpr const char* kFooter =
+    "Exit status: 0 good; 2 bad input; 3 ran but the result is not usable; 4 file or disk trouble; 130 interrupted.\n"
+    "Numbers in files are SI, or text with a unit: radius = \"16 mm\".";
+
+/// The command line as one text that a shell would read back.
+std::string joined_command_line(int argc, char** argv) {
+  std::string text;
+  for (int k = 0; k < argc; ++k) {
+    const std::string word = argv[k];
+    const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+    text += (k > 0 ? " " : "") + (plain ? word : "'" + word + "'");
+  }
+  return text;
+}
+
+CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t high) {
+  return {[=](std::string& text) -> std::string {
+            std::int64_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool number = error == std::errc{} && end == text.data() + text.size();
+            if (number && value >= low && value <= high) return "";
+            const std::string limit = high == std::numeric_limits<std::int64_t>::max() ? fmt::format("at least {}", low)
+                                                                                       : fmt::format("from {} to {}", low, high);
+            return fmt::format("{} {}: must be a whole number, {}", option, text, limit);
+          },
+          "", "whole number"};
+}
+
+void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
+  app.add_option(command.inputs, o.inputs, command.inputs_help)->required()->expected(command.least, command.most)->option_text(" ");
+  app.add_option("--out", o.out, "Run directory; default results/<name of the first input>")->option_text("DIR");
+  app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
+      ->option_text("N")->transform(whole_number("--threads", 1, kMostThreads));
+  app.add_option("--seed", o.seed, "Seed of the random numbers; default that of the scene")
+      ->option_text("N")->transform(whole_number("--seed", 0, std::numeric_limits<std::int64_t>::max()));
+  app.add_option("--set", o.overrides, "Replaces a key of the scene: --set packing.beta=2.5 (repeatable)")
+      ->option_text("KEY=VALUE")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+  app.add_flag("--resume", o.resume, "Continues from the checkpoint in the run directory");
+  app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
+  app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
+  if (command.function == command_macrosim)
+    app.add_option("--law", o.law, "Law card of the soft particles; default that of the scene")->option_text("LAW.toml");
+}
+
+/// A first word that is no command: names the nearest.
+void require_command(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  std::string list;
+  for (const Command& c : kCommands) {
+    names.emplace_back(c.name);
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  const std::string word = argv[1];
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::string near = nearest_word(word, names);
+  throw BadInput("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") + "commands are " + list);
+}
+
+/// Parses and runs. CLI::ParseError (help, version, mistakes) and Error go up.
+ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
+  CommonOptions options;
+  options.command_line = joined_command_line(argc, argv);
+  const Command* chosen = nullptr;
+  for (const Command& command : kCommands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.does);
+    sub->footer(kFooter);
+    add_options(*sub, command, options);
+    sub->callback([&chosen, &command] { chosen = &command; });
+    sub->parse_complete_callback([&options, sub] { options.seed_given = sub->count("--seed") > 0; });
+  }
+  require_command(argc, argv);
+  app.parse(argc, argv);
+  if (chosen == nullptr) {
+    std::fputs(app.help().c_str(), stderr);
+    return ExitStatus::bad_input;
+  }
+  if (!options.out.empty()) require_writable_directory(options.out);
+  install_interrupt_handler();
+  return chosen->function(options);
+}
+
+int complain(ExitStatus status, const std::string& message) {
+  fmt::print(stderr, "softgrain: {}\n", message);
+  return static_cast<int>(status);
+}
+
+/// Help and version go to standard output with status 0, mistakes to standard error with status 2.
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
+  if (e.get_exit_code() == 0) return app.exit(e);
+  std::string message = e.what();
+  // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
+  for (const std::string option : {"--threads", "--seed"})
+    if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
+  return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)");
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  CLI::App app{"softgrain: contact laws of soft particles for extremely polydisperse packings", "softgrain"};
+  const Provenance build = build_provenance();
+  app.set_version_flag("--version", "softgrain " + build.version + " (" + build.commit + ")");
+  app.footer(kFooter);
+  try {
+    return static_cast<int>(parse_and_run(app, argc, argv));
+  } catch (const CLI::ParseError& e) {
+    return end_of_parsing(app, e);
+  } catch (const Error& e) {
+    return complain(e.status(), e.what());
+  } catch (const std::bad_alloc&) {
+    return complain(ExitStatus::not_usable, "not enough memory");
+  } catch (const std::system_error& e) {  // of file systems and streams
+    return complain(ExitStatus::file_trouble, e.what());
+  } catch (const std::exception& e) {
+    return complain(ExitStatus::not_usable, std::string("unexpected: ") + e.what());
+  }
+}
+
+}  // namespace softgrain
