@@ -69,7 +69,7 @@ CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t h
 }
 
 void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
-  app.add_option(command.inputs, o.inputs, command.inputs_help)->required()->expected(command.least, command.most)->option_text(" ");
+  app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
   app.add_option("--out", o.out, "Run directory; default results/<name of the first input>")->option_text("DIR");
   app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
       ->option_text("N")->transform(whole_number("--threads", 1, kMostThreads));
@@ -82,6 +82,14 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
   app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
   if (command.function == command_macrosim)
     app.add_option("--law", o.law, "Law card of the soft particles; default that of the scene")->option_text("LAW.toml");
+}
+
+/// Counted here and not by the parser, so that an unknown option is named before what follows it.
+void require_inputs(const Command& command, const CommonOptions& options) {
+  const auto given = static_cast<int>(options.inputs.size());
+  if (given >= command.least && given <= command.most) return;
+  const std::string wanted = command.least < command.most ? fmt::format("at least {}", command.least) : fmt::format("{}", command.least);
+  throw BadInput(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted, command.inputs, given, command.name));
 }
 
 /// A first word that is no command: names the nearest.
@@ -117,6 +125,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     std::fputs(app.help().c_str(), stderr);
     return ExitStatus::bad_input;
   }
+  require_inputs(*chosen, options);
   if (!options.out.empty()) require_writable_directory(options.out);
   install_interrupt_handler();
   return chosen->function(options);

@@ -1,0 +1,98 @@
+// The built program from outside: exit statuses and messages of everything that can be asked wrongly.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "common/io/text_file.h"
+
+namespace softgrain {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string output;  ///< standard output and standard error together
+};
+
+Outcome program(const std::string& arguments) {
+  const std::string line = std::string("'") + SOFTGRAIN_PROGRAM + "' " + arguments + " 2>&1 </dev/null";
+  FILE* pipe = ::popen(line.c_str(), "r");
+  if (pipe == nullptr) return {};
+  Outcome outcome;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) outcome.output.append(buffer.data(), n);
+  const int status = ::pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+void expect(const std::string& arguments, int status, const std::string& words) {
+  const Outcome outcome = program(arguments);
+  EXPECT_EQ(outcome.status, status) << arguments << "\n" << outcome.output;
+  EXPECT_NE(outcome.output.find(words), std::string::npos) << arguments << "\n" << outcome.output;
+}
+
+TEST(CommandLine, HelpAndVersionAreGood) {
+  expect("--help", 0, "macrosim");
+  expect("--version", 0, "softgrain 0.");
+  for (const char* command : {"run", "microsim", "calibrate", "macrosim", "compare", "report", "check"}) {
+    expect(std::string(command) + " --help", 0, "--threads");
+    expect(std::string(command) + " --help", 0, "--resume");
+  }
+  expect("macrosim --help", 0, "--law");
+}
+
+TEST(CommandLine, NoCommandShowsTheHelp) { expect("", 2, "Subcommands:"); }
+
+TEST(CommandLine, UnknownCommandNamesTheNearest) { expect("mircosim x.toml", 2, "nearest is 'microsim'"); }
+
+TEST(CommandLine, BadOptionsAreBadInput) {
+  expect("run x.toml --threads 0", 2, "softgrain: --threads 0: must be a whole number, from 1 to");
+  expect("run x.toml --threads -1", 2, "--threads");
+  expect("run x.toml --threads two", 2, "--threads two");
+  expect("run x.toml --threads 1.5", 2, "--threads 1.5");
+  expect("run x.toml --seed -1", 2, "--seed -1: must be a whole number, at least 0");
+  expect("run x.toml --bogus", 2, "--bogus");
+  expect("run x.toml y.toml", 2, "run needs 1 PIPELINE.toml, 2 given");
+  expect("run", 2, "run needs 1 PIPELINE.toml, 0 given");
+  expect("compare a", 2, "compare needs 2 RUN, 1 given");
+  expect("run x.toml --law l.toml", 2, "--law");
+}
+
+TEST(CommandLine, MissingSceneIsFileTroubleAndMakesNothing) {
+  const std::string name = "absent_" + std::to_string(::getpid());
+  for (const char* command : {"run", "macrosim"}) {
+    expect(std::string(command) + " " + name + ".toml", 4, name + ".toml: no such file");
+    EXPECT_FALSE(fs::exists("results/" + name));
+  }
+}
+
+TEST(CommandLine, UnwritableRunDirectoryIsFoundBeforeAnyWork) {
+  const std::string scene = (fs::temp_directory_path() / ("scene_" + std::to_string(::getpid()) + ".toml")).string();
+  write_text_atomic(scene, "nonsense = 1\n");
+  expect("run " + scene + " --out /dev/null/x", 4, "/dev/null/x");
+  expect("run " + scene + " --out /proc/softgrain", 4, "/proc/softgrain");
+  expect("run " + scene + " --out " + scene, 4, scene);
+  fs::remove(scene);
+}
+
+TEST(CommandLine, BadSceneIsNamedWithFileAndLine) {
+  const fs::path directory = fs::temp_directory_path() / ("softgrain_cli_" + std::to_string(::getpid()));
+  fs::create_directories(directory);
+  const std::string scene = (directory / "scene.toml").string();
+  write_text_atomic(scene, "a = 1\nb = = 2\n");
+  expect("run " + scene + " --out " + (directory / "out").string(), 2, "scene.toml:2: not valid TOML");
+  expect("run " + scene + " --set =3 --out " + (directory / "out").string(), 2, "scene.toml:2");
+  write_text_atomic(scene, "a = 1\n");
+  expect("run " + scene + " --set novalue --out " + (directory / "out").string(), 2, "--set novalue: must be of the form key=value");
+  fs::remove_all(directory);
+}
+
+}  // namespace
+}  // namespace softgrain
