@@ -25,12 +25,14 @@ AnyLaw hertz_law(const HertzCoefficients& coefficients, bool rescaled);
 class LawSet {
  public:
   static constexpr std::int32_t kNoContact = -1;  ///< the pair passes through itself
+  static constexpr std::size_t kMostLaws = 64;    ///< the sort key of the contact list has room for so many
 
   explicit LawSet(std::int32_t materials = 0)
       : materials_(materials), table_(static_cast<std::size_t>(materials) * static_cast<std::size_t>(materials), kNoContact) {}
 
   /// `law` serves bodies i of material m1 with j of m2 (and the reverse unless `ordered`).
   void set(std::int32_t m1, std::int32_t m2, const AnyLaw& law, bool ordered = false) {
+    if (laws_.size() == kMostLaws) throw std::length_error("more than 64 contact laws in one system");
     const auto index = static_cast<std::int32_t>(laws_.size());
     laws_.push_back(law);
     table_[at(m1, m2)] = index;

@@ -1,36 +1,56 @@
 #include "common/contact/soft_contact_from_card.h"
 
+#include <cmath>
+
 #include "common/core/error.h"
 
 namespace softgrain {
 
 namespace {
 
-PowerTerm term(const ThresholdPowerLaw& law) { return {law.a.value, law.b.value, law.c.value}; }
+[[noreturn]] void unusable(PairKind kind, const std::string& problem) {
+  throw BadInput("law card: no usable " + to_string(kind) + " law: " + problem);
+}
 
-PowerTerm tangential_term(const PairLaw& law, bool use_secant) {
-  if (use_secant && law.has_tangential_secant) return term(law.tangential_secant);
-  if (law.has_tangential_initial) return term(law.tangential_initial);
-  if (law.has_tangential_secant) return term(law.tangential_secant);
-  return {};
+/// The offset follows from a, b and delta, so that the law is zero at its threshold to the last bit.
+PowerTerm term(const ThresholdPowerLaw& law) {
+  const double a = law.a.value;
+  const double b = law.b.value;
+  return {a, b, -a * std::pow(law.delta.value, b)};
+}
+
+void require_sound(const ThresholdPowerLaw& law, PairKind kind, const char* part) {
+  const bool sound = std::isfinite(law.a.value) && law.a.value > 0.0 && std::isfinite(law.b.value) && law.b.value > 0.0 &&
+                     std::isfinite(law.delta.value) && law.delta.value >= 0.0 && law.delta.value < 1.0;
+  if (!sound) unusable(kind, std::string(part) + " part needs a > 0, b > 0 and delta in [0, 1)");
+}
+
+const PairLaw& usable_law(const LawCard& card, PairKind kind) {
+  const PairLaw* law = card.find(kind);
+  if (law == nullptr) unusable(kind, "the card has none");
+  if (law->status == "no threshold crossing" || law->status == "not run")
+    unusable(kind, "its status is \"" + law->status + "\"" + (law->reason.empty() ? "" : " (" + law->reason + ")"));
+  return *law;
 }
 
 }  // namespace
 
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping, bool use_secant) {
-  const PairLaw* law = card.find(kind);
-  if (law == nullptr) throw BadInput("the law card has no " + to_string(kind) + " law");
-  if (law->status != "good" && law->status != "underdetermined")
-    throw BadInput("the " + to_string(kind) + " law of the card is not usable: " + law->status + " (" + law->reason + ")");
-  SoftContact contact;
-  contact.normal = term(law->normal);
-  contact.tangential = tangential_term(*law, use_secant);
-  contact.delta = law->normal.delta.value;
-  contact.modulus = modulus;
-  contact.friction = friction;
-  contact.damping = damping;
-  contact.partner_is_soft = kind == PairKind::soft_soft;
-  return contact;
+  const PairLaw& law = usable_law(card, kind);
+  if (use_secant ? !law.has_tangential_secant : !law.has_tangential_initial)
+    unusable(kind, std::string("it has no ") + (use_secant ? "secant" : "initial") + " tangential stiffness");
+  const ThresholdPowerLaw& tangential = use_secant ? law.tangential_secant : law.tangential_initial;
+  require_sound(law.normal, kind, "normal");
+  require_sound(tangential, kind, "tangential");
+  SoftContact out;
+  out.normal = term(law.normal);
+  out.tangential = term(tangential);
+  out.delta = law.normal.delta.value;
+  out.modulus = modulus;
+  out.friction = friction;
+  out.damping = damping;
+  out.partner_is_soft = kind == PairKind::soft_soft;
+  return out;
 }
 
 }  // namespace softgrain

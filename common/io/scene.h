@@ -55,6 +55,7 @@ class SceneTable {
   [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range = Range::any()) const;
   [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range, const std::vector<double>& fallback) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;
+  [[nodiscard]] std::vector<bool> flags(const std::string& key) const;
 
   [[nodiscard]] SceneTable table(const std::string& key) const;            ///< required sub-table
   /// Sub-table, or an empty one (all fallbacks hold) when absent.

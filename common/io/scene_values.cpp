@@ -171,4 +171,15 @@ std::vector<std::string> SceneTable::texts(const std::string& key) const {
   return values;
 }
 
+std::vector<bool> SceneTable::flags(const std::string& key) const {
+  std::vector<bool> values;
+  const toml::node& node = impl_->require(key);
+  for (const toml::node& element : array_of(*impl_, key, node)) {
+    const auto value = element.as_boolean();
+    if (value == nullptr) impl_->reject(key, element, "must be true or false");
+    values.push_back(value->get());
+  }
+  return values;
+}
+
 }  // namespace softgrain
