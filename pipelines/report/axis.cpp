@@ -35,7 +35,7 @@ std::string decade_label(int mantissa, int exponent) {
 /// Which of 1..9 carry a label when the axis spans this many decades.
 bool labelled(int mantissa, int exponent, double decades) {
   if (decades < 0.8) return true;
-  if (decades < 2.2) return mantissa == 1 || mantissa == 2 || mantissa == 5;
+  if (decades < 3.2) return mantissa == 1 || mantissa == 2 || mantissa == 5;
   const int every = std::max(1, static_cast<int>(std::ceil(decades / 8.0)));
   return mantissa == 1 && exponent % every == 0;
 }

@@ -12,7 +12,7 @@ h2 { font-size: 1.2rem; margin: 2.2rem 0 0.5rem; padding-bottom: 0.2rem; border-
 h3 { font-size: 1rem; margin: 1.1rem 0 0.3rem; }
 p { margin: 0.4rem 0; max-width: 62rem; }
 ul { margin: 0.3rem 0; padding-left: 1.3rem; }
-.lead p { margin: 0.1rem 0; }
+.lead p { margin: 0.1rem 0; max-width: none; }
 .status { display: inline-block; padding: 0 0.55rem; border-radius: 0.7rem; font-size: 0.85rem; vertical-align: middle; font-weight: 600; }
 .status-good { background: #d9f2e8; color: #005c43; }
 .status-bad { background: #fde3d0; color: #8a3c00; }
@@ -25,8 +25,8 @@ figure svg { display: block; width: 100%; height: auto; }
 figcaption { font-size: 0.86rem; color: #444; padding: 0.2rem 0.4rem 0; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.88rem; margin: 0.5rem 0; font-variant-numeric: tabular-nums; }
-th, td { padding: 0.22rem 0.7rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e4e4e4; }
-th { border-bottom: 1.5px solid #555; font-weight: 600; vertical-align: bottom; }
+th, td { padding: 0.22rem 0.6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e4e4e4; }
+th { white-space: normal; border-bottom: 1.5px solid #555; font-weight: 600; vertical-align: bottom; }
 .l { text-align: left; }
 tbody tr:hover { background: #f5f8fa; }
 pre { background: #f6f6f6; padding: 0.7rem; font-size: 0.8rem; white-space: pre-wrap; overflow-wrap: anywhere; }

@@ -87,8 +87,9 @@ const ThresholdPowerLaw& part_of(const PairLaw& law, LawPart part) {
 }
 
 bool has_part(const PairLaw& law, LawPart part) {
-  if (part == LawPart::normal) return true;
-  return part == LawPart::tangential_initial ? law.has_tangential_initial : law.has_tangential_secant;
+  const bool measured = part == LawPart::normal ||
+                        (part == LawPart::tangential_initial ? law.has_tangential_initial : law.has_tangential_secant);
+  return measured && part_of(law, part).b.value > 0.0;  // a law that could not be fitted has no exponent
 }
 
 std::vector<double> spread(double low, double high, int n) {

@@ -68,12 +68,19 @@ std::string format_count(std::int64_t count) {
 }
 
 std::string format_with_error(double value, double error) {
-  if (!std::isfinite(value) || !std::isfinite(error) || error <= 0.0) return format_number(value);
+  const bool has_error = std::isfinite(error) && error > 1e-9 * std::abs(value);
+  if (!std::isfinite(value) || !has_error) return format_number(value);
   const int largest = decimal_exponent(std::max(std::abs(value), error));
   const bool plain = largest >= -4 && largest < 6;
   const double factor = plain ? 1.0 : std::pow(10.0, largest);
-  const int decimals = std::clamp(1 - decimal_exponent(error / factor), 0, 12);
-  const std::string body = format_fixed(value / factor, decimals) + " \u00b1 " + format_fixed(error / factor, decimals);
+  const int digits = 1 - decimal_exponent(error / factor);
+  const double coarse =
+      std::pow(10.0, std::max(0, -digits));  // above 1 when the digits of the error end before the point
+  const auto shown = [&](double number) {
+    const double scaled = number / factor;
+    return format_fixed(coarse > 1.0 ? coarse * std::round(scaled / coarse) : scaled, std::min(digits, 12));
+  };
+  const std::string body = shown(value) + " \u00b1 " + shown(error);
   return plain ? body : "(" + body + ")\u00d710" + superscript(largest);
 }
 

@@ -48,6 +48,7 @@ std::string find_text(const nlohmann::json& root,
 
 enum class LawPart { normal, tangential_initial, tangential_secant };
 const ThresholdPowerLaw& part_of(const PairLaw& law, LawPart part);
+/// Whether the part was measured and could be fitted.
 bool has_part(const PairLaw& law, LawPart part);
 
 /// Band from group "band/<kind>" of law.h5 (`delta`, `<part>_low`, `<part>_high`) when it is there, else from the

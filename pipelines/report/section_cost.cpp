@@ -55,8 +55,11 @@ void add_summary(HtmlTable& table, const RunData& run) {
                        (std::string(stage) != "calibration" && !run.macro.empty());
     if (part == nullptr || !part->is_object() || shown) continue;
     const auto seconds = find_number(*part, "seconds");
-    const std::string points = find_text(*part, "points").empty() ? count_text(*part, "bodies") + " bodies"
-                                                                  : count_text(*part, "points") + " points";
+    const bool has_points = find_number(*part, "points").has_value();
+    const bool has_bodies = find_number(*part, "bodies").has_value();
+    const std::string points = has_points   ? count_text(*part, "points") + " points"
+                               : has_bodies ? count_text(*part, "bodies") + " bodies"
+                                            : "–";
     table.row({stage, points, count_text(*part, "loop_passes"), count_text(*part, "contact_evaluations"),
                seconds ? format_seconds(*seconds) : "–"});
   }

@@ -49,7 +49,7 @@ std::string measured_line(const Measurements& data) {
 }
 
 std::string law_line(const PairLaw& law, const SoftParticleSpec& spec) {
-  if (law.status != "good")
+  if (law.status != "good" || !has_part(law, LawPart::normal))
     return fmt::format("Law, {}: {}{}", to_string(law.kind), law.status, law.reason.empty() ? "." : ": " + law.reason);
   const double force = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
   const ThresholdPowerLaw& n = law.normal;

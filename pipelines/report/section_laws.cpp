@@ -1,6 +1,8 @@
 // Table of the fitted parameters with errors, intervals and units.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
@@ -16,29 +18,31 @@ struct UnitScale {
 };
 
 std::string interval(const Estimate& e) {
-  return e.low < e.high ? format_number(e.low) + " .. " + format_number(e.high) : "–";
+  return std::isfinite(e.low) && std::isfinite(e.high) && e.low < e.high
+             ? format_number(e.low) + " .. " + format_number(e.high)
+             : "–";
 }
 
-std::string in_units(const Estimate& e, const std::vector<UnitScale>& units) {
-  std::string out;
-  for (const UnitScale& u : units)
-    out +=
-        (out.empty() ? "" : "; ") + format_with_error(e.value * u.factor, e.standard_error * u.factor) + " " + u.unit;
-  return out;
+/// The parameter in the given unit, empty when it has none.
+std::string in_unit(const Estimate& e, const std::vector<UnitScale>& units, std::size_t which) {
+  if (which >= units.size()) return "";
+  const UnitScale& u = units[which];
+  return format_with_error(e.value * u.factor, e.standard_error * u.factor) + " " + u.unit;
 }
 
 void add_row(HtmlTable& table, const std::string& law, const std::string& name, const Estimate& e,
              const std::vector<UnitScale>& units) {
-  table.row(
-      {law, name, format_number(e.value, 5), format_number(e.standard_error, 2), interval(e), in_units(e, units)});
+  table.row({law, name, format_number(e.value), format_number(e.standard_error, 2), interval(e), in_unit(e, units, 0),
+             in_unit(e, units, 1)});
 }
 
+/// The law is named in its first row only.
 void add_law_rows(HtmlTable& table, const std::string& name, const ThresholdPowerLaw& law,
                   const std::vector<UnitScale>& units) {
   add_row(table, name, "a", law.a, units);
-  add_row(table, name, "b", law.b, {});
-  add_row(table, name, "c", law.c, units);
-  add_row(table, name, "δ", law.delta, {});
+  add_row(table, "", "b", law.b, {});
+  add_row(table, "", "c", law.c, units);
+  add_row(table, "", "δ", law.delta, {});
 }
 
 std::string status_line(const PairLaw& law) {
@@ -61,15 +65,16 @@ std::string card_tables(const LawCard& card) {
       {stiffness, "N/m"}, {stiffness / per_degree_to_per_metre(card.spec.shell_radius), "N/degree"}};
   std::string out;
   for (const PairLaw& law : card.pairs) {
-    HtmlTable table({"law", "parameter", "value", "standard error", "95 % interval", "for this E and Rs"}, 2);
-    add_law_rows(table, "Fn/(E Rs²)", law.normal, force_units);
-    if (law.has_tangential_initial)
-      add_law_rows(table, fmt::format("kt/(E Rs), initial slope (≤ {}°)", law.initial_angle_deg),
-                   law.tangential_initial, stiffness_units);
-    if (law.has_tangential_secant)
+    HtmlTable table(
+        {"law", "parameter", "value", "standard error", "95 % interval", "for this E and Rs", "per degree turned"}, 2);
+    if (has_part(law, LawPart::normal)) add_law_rows(table, "Fn/(E Rs²)", law.normal, force_units);
+    if (has_part(law, LawPart::tangential_initial))
+      add_law_rows(table, fmt::format("kt/(E Rs), initial (≤ {}°)", law.initial_angle_deg), law.tangential_initial,
+                   stiffness_units);
+    if (has_part(law, LawPart::tangential_secant))
       add_law_rows(table, fmt::format("kt/(E Rs), secant at {}°", law.secant_angle_deg), law.tangential_secant,
                    stiffness_units);
-    out += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + status_line(law) + table.html();
+    out += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + status_line(law) + (table.empty() ? "" : table.html());
   }
   out += paragraph(
       "F(Δ) = a Δ^b + c for Δ ≥ δ and zero below, c = -a δ^b. Standard errors from the covariance of the joint fit, "

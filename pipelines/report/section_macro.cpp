@@ -158,11 +158,11 @@ std::string comparison_part(const std::vector<MacroCurve>& laws, const std::vect
 
 std::string bodies_table(const std::vector<MacroCurve>& curves) {
   HtmlTable table({"engine", "sample", "bodies", "soft particles", "volume share of soft", "grains inside",
-                   "solid fraction", "usable"});
+                   "solid fraction", "usable", "note"});
   for (const MacroCurve& c : curves) {
     table.row({engine_name(c.engine), std::to_string(c.sample), format_count(c.bodies), format_count(c.soft),
                format_number(c.soft_volume_share, 3), c.grains > 0 ? format_count(c.grains) : "–",
-               format_number(c.solid_fraction, 3), c.usable ? "yes" : "no"});
+               format_number(c.solid_fraction, 3), c.usable ? "yes" : "no", c.note});
   }
   return table.html();
 }

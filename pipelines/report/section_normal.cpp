@@ -1,7 +1,7 @@
 // Normal force against overlap: every packing, their mean, the fitted law, the published law and the Hertz line.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <optional>
 
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -48,15 +48,17 @@ std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
   const auto runs = runs_of(data, kind, run.relaxation(kind));
   const auto forces = normal_forces(runs);
   const bool linear = scale == Scale::linear;
+  // the logarithmic axis has room for the Hertz line, the linear one keeps to the measured forces
+  const auto top = linear ? std::nullopt : std::optional(1.5 * hertz_force(last_delta(forces), data.spec, kind));
   Plot plot({.id = "normal-" + to_string(kind) + (linear ? "-linear" : "-log"),
              .title = "Fn(Δ), " + describe(kind) + (linear ? "" : ", logarithmic"),
              .x = {.label = "normal overlap Δ = hn/Rs", .low = 0.0},
-             .y = {.label = "normal force Fn [N]", .scale = scale}});
+             .y = {.label = "normal force Fn [N]", .scale = scale, .high = top}});
   for (Series& s : packing_series(data, forces, 1.0, fmt::format("one packing ({})", runs.size())))
     plot.add(std::move(s));
-  add_reference_curves(plot, data.spec, kind, last_delta(forces));
   if (const PairLaw* law = run.law(kind))
     add_law(plot, run, *law, LawPart::normal, force_scale(data.spec), "fitted law", palette::blue);
+  add_reference_curves(plot, data.spec, kind, last_delta(forces));
   Series failed = unconverged(runs);
   if (!failed.x.empty()) plot.add(std::move(failed));
   plot.add(mean_series(forces, 1.0, "mean ± standard error",

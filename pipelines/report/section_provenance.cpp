@@ -6,7 +6,7 @@ namespace softgrain::report {
 namespace {
 
 std::string rows(const nlohmann::json& provenance) {
-  HtmlTable table({"", ""}, 2);
+  HtmlTable table({"what", "value"}, 2);
   for (const char* key : {"version", "commit", "compiler", "threads", "seed", "command"}) {
     const std::string value = find_text(provenance, key);
     if (!value.empty()) table.row({key, value});

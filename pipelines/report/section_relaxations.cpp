@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/core/error.h"
 #include "pipelines/compare/compare_measurements.h"
@@ -13,7 +14,7 @@
 namespace softgrain::report {
 namespace {
 
-/// Colour of one side.
+/// Means of one side.
 Series side_series(const std::vector<RatioRow>& rows, bool candidate, const std::string& name) {
   Series s{.label = name + ", mean ± standard error", .hover = name, .x = {}, .y = {}};
   for (const RatioRow& row : rows) {
@@ -72,7 +73,7 @@ std::string mean_text(const MeanError& m) { return format_with_error(m.mean, m.e
 
 void add_rows(HtmlTable& table, const std::string& quantity, const std::vector<RatioRow>& rows) {
   for (const RatioRow& row : rows) {
-    table.row({quantity, format_number(row.delta), format_count(static_cast<std::int64_t>(row.reference.n)),
+    table.row({quantity, format_fixed(row.delta, 3), format_count(static_cast<std::int64_t>(row.reference.n)),
                mean_text(row.reference), mean_text(row.candidate),
                format_with_error(row.ratio.ratio, row.ratio.error)});
   }
@@ -89,8 +90,8 @@ std::string ratio_table(const RelaxationComparison& c) {
 void add_cost_row(HtmlTable& table, const std::string& points, const std::string& name, const PointCost& cost,
                   const PointCost& reference) {
   if (cost.points == 0) return;
-  table.row({points, name, format_count(cost.points), format_number(cost.loop_passes, 3),
-             format_number(cost.contact_evaluations, 3), format_number(cost.seconds, 3),
+  table.row({points, name, format_count(cost.points), format_count(std::llround(cost.loop_passes)),
+             format_count(std::llround(cost.contact_evaluations)), format_number(cost.seconds, 3),
              format_number(reference.seconds / cost.seconds, 3)});
 }
 

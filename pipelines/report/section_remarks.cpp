@@ -66,14 +66,12 @@ void add_laws(const LawCard& card, Remarks& remarks) {
 }
 
 void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
-  bool law_engine = false;
   for (const MacroCurve& c : macro) {
-    law_engine = law_engine || c.engine == "law";
     if (c.usable && c.note.empty()) continue;
     remarks.push_back(fmt::format("Macro run \"{}\", {}, sample {}{}: {}", c.engine, c.test, c.sample,
                                   c.usable ? "" : " is not usable", c.note.empty() ? "no reason given." : c.note));
   }
-  if (law_engine) {
+  if (std::any_of(macro.begin(), macro.end(), [](const MacroCurve& c) { return c.engine == "law"; })) {
     remarks.push_back(
         "The pair law was measured with one contact at a time. A soft particle with several neighbours is stiffer than "
         "the sum of its pair "
@@ -81,28 +79,32 @@ void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
   }
 }
 
-void add_summary(const nlohmann::json& summary, Remarks& remarks) {
-  const std::string status = find_text(summary, "status");
-  if (!status.empty() && status != "good") remarks.push_back("The status of the run is \"" + status + "\".");
-  const auto* list = find_value(summary, "remarks");
-  if (list == nullptr || !list->is_array()) return;
-  for (const auto& one : *list) {
-    if (one.is_string() && std::find(remarks.begin(), remarks.end(), one.get<std::string>()) == remarks.end())
-      remarks.push_back(one.get<std::string>());
+const nlohmann::json* summary_remarks(const RunData& run) {
+  const auto* list = find_value(run.summary, "remarks");
+  return list != nullptr && list->is_array() ? list : nullptr;
+}
+
+/// A run states its own remarks in its summary; without such a list they follow from the data.
+void add_stated_or_derived(const RunData& run, Remarks& remarks) {
+  if (const auto* list = summary_remarks(run)) {
+    for (const auto& one : *list) {
+      if (one.is_string()) remarks.push_back(one.get<std::string>());
+    }
+    return;
   }
+  if (run.measurements) add_convergence(*run.measurements, remarks);
+  if (run.card) add_laws(*run.card, remarks);
+  add_macro(run.macro, remarks);
 }
 
 }  // namespace
 
 std::string remarks_section(const RunData& run) {
   Remarks remarks;
-  if (run.measurements) {
-    add_convergence(*run.measurements, remarks);
-    add_packings(*run.measurements, remarks);
-  }
-  if (run.card) add_laws(*run.card, remarks);
-  add_macro(run.macro, remarks);
-  add_summary(run.summary, remarks);
+  const std::string status = find_text(run.summary, "status");
+  if (!status.empty() && status != "good") remarks.push_back("The status of the run is \"" + status + "\".");
+  add_stated_or_derived(run, remarks);
+  if (run.measurements) add_packings(*run.measurements, remarks);
   if (remarks.empty()) return "";
   std::string items;
   for (const std::string& remark : remarks) items += "<li>" + escape(remark) + "</li>\n";

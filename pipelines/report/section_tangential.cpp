@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t kCurves = 4;
 
-/// At most kCurves overlaps, spread over those that have rotations, the largest included.
+/// At most kCurves overlaps, spread over those where a rotation meets a force, the largest included.
 std::vector<long long> chosen_overlaps(const std::vector<const PackingRun*>& runs) {
   std::set<long long> all;
   for (const PackingRun* run : runs) {
     for (const TangentialPoint& p : run->tangential) {
-      if (p.angle_deg != 0.0) all.insert(delta_key(p.delta));
+      if (p.angle_deg != 0.0 && p.force_parallel != 0.0) all.insert(delta_key(p.delta));
     }
   }
   const std::vector<long long> sorted(all.begin(), all.end());

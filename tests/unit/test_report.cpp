@@ -10,6 +10,7 @@
 #include "pipelines/report/reference_curves.h"
 #include "pipelines/report/report.h"
 #include "pipelines/report/run_data.h"
+#include "pipelines/run_context.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/synthetic_run.h"
 
@@ -140,6 +141,39 @@ TEST_F(Report, NothingToReportIsFileTrouble) {
   EXPECT_THROW(write_report(path("absent")), FileTrouble);
   write_text_atomic(path("summary.json"), "{ half");
   EXPECT_THROW(write_report(directory_.string()), FileTrouble);
+}
+
+TEST_F(Report, TheCommandLeavesTheSummaryOfTheRunAlone) {
+  write_text_atomic(path("summary.json"), kSummary);
+  CommonOptions options;
+  options.inputs = {directory_.string()};
+  options.quiet = true;
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(command_report(options), ExitStatus::good);
+  EXPECT_TRUE(contains(::testing::internal::GetCapturedStdout(), "report.html"));
+  EXPECT_EQ(read_text(path("summary.json")), kSummary);
+  options.inputs.clear();
+  EXPECT_THROW(command_report(options), BadInput);
+}
+
+TEST_F(Report, TheCompareCommandWritesASummary) {
+  save_macro(synthetic::macro(), path("macro.h5"));
+  CommonOptions options;
+  options.inputs = {directory_.string(), path("macro.h5")};
+  options.out = path("out");
+  options.quiet = true;
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(command_compare(options), ExitStatus::good);
+  EXPECT_TRUE(contains(::testing::internal::GetCapturedStdout(), "law against law"));
+  const auto summary = nlohmann::json::parse(read_text(path("out/summary.json")));
+  EXPECT_EQ(summary["macro"][0]["axial_difference"]["mean"].get<double>(), 0.0);
+  options.inputs[1] = path("absent");
+  EXPECT_THROW(command_compare(options), FileTrouble);
+  write_text_atomic(path("notes.txt"), "x");
+  options.inputs[1] = path("notes.txt");
+  EXPECT_THROW(command_compare(options), BadInput);
+  options.inputs.clear();
+  EXPECT_THROW(command_compare(options), BadInput);
 }
 
 TEST(ReferenceCurves, PublishedLawAndItsScaling) {

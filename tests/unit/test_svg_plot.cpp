@@ -34,6 +34,8 @@ TEST(NumberFormat, ReadableNumbers) {
 TEST(NumberFormat, TheErrorRulesTheDigits) {
   EXPECT_EQ(format_with_error(0.57612, 0.0123), "0.576 \u00b1 0.012");
   EXPECT_EQ(format_with_error(1234.56, 78.9), "1235 \u00b1 79");
+  EXPECT_EQ(format_with_error(24800.0, 1488.0), "24800 \u00b1 1500");
+  EXPECT_EQ(format_with_error(1.0416666, 1e-16), "1.042");
   EXPECT_EQ(format_with_error(1.5e-7, 2e-9), "(1.500 \u00b1 0.020)\u00d710\u207b\u2077");
   EXPECT_EQ(format_with_error(2.5, NAN), "2.5");
 }
