@@ -28,23 +28,28 @@ void require_sound(const ThresholdPowerLaw& law, PairKind kind, const char* part
 const PairLaw& usable_law(const LawCard& card, PairKind kind) {
   const PairLaw* law = card.find(kind);
   if (law == nullptr) unusable(kind, "the card has none");
-  if (law->status == "no threshold crossing" || law->status == "not run")
+  if (law->status != "good" && law->status != "underdetermined")
     unusable(kind, "its status is \"" + law->status + "\"" + (law->reason.empty() ? "" : " (" + law->reason + ")"));
+  require_sound(law->normal, kind, "normal");
   return *law;
+}
+
+/// The stiffness that was asked for, else the one that was fitted, else none.
+PowerTerm tangential_term(const PairLaw& law, bool use_secant) {
+  const bool secant = law.has_tangential_secant && (use_secant || !law.has_tangential_initial);
+  if (!secant && !law.has_tangential_initial) return {};
+  const ThresholdPowerLaw& chosen = secant ? law.tangential_secant : law.tangential_initial;
+  require_sound(chosen, law.kind, "tangential");
+  return term(chosen);
 }
 
 }  // namespace
 
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping, bool use_secant) {
   const PairLaw& law = usable_law(card, kind);
-  if (use_secant ? !law.has_tangential_secant : !law.has_tangential_initial)
-    unusable(kind, std::string("it has no ") + (use_secant ? "secant" : "initial") + " tangential stiffness");
-  const ThresholdPowerLaw& tangential = use_secant ? law.tangential_secant : law.tangential_initial;
-  require_sound(law.normal, kind, "normal");
-  require_sound(tangential, kind, "tangential");
   SoftContact out;
   out.normal = term(law.normal);
-  out.tangential = term(tangential);
+  out.tangential = tangential_term(law, use_secant);
   out.delta = law.normal.delta.value;
   out.modulus = modulus;
   out.friction = friction;

@@ -1,4 +1,4 @@
-// From a law card to the law of the loop.
+// From a law card to a law of the loop.
 #pragma once
 
 #include "common/contact/soft_contact.h"
@@ -6,10 +6,10 @@
 
 namespace softgrain {
 
-/// Law of a soft-solid or soft-soft contact of particles with modulus E [Pa], friction coefficient mu_soft and damping zeta
-/// (fraction of critical). The tangential stiffness is the initial slope, or the secant at the card's secant angle. For
-/// soft-solid the soft particle is body i; set i_is_soft = false for the reverse order.
-/// Throws BadInput when the card has no usable law of this kind (no threshold crossing, not run, no tangential data).
+/// The fitted law of `kind` for a material of Young's modulus `modulus` [Pa], Coulomb coefficient `friction` and viscous damping
+/// `damping` (fraction of critical). Tangential stiffness from the initial slope, or from the secant at 1 degree with
+/// `use_secant`; when only one of them was fitted, that one. Throws BadInput when the card has no usable law of this kind
+/// ("no threshold crossing", "not run") - an underdetermined law is accepted: it reproduces its data within its range.
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping, bool use_secant);
 
 }  // namespace softgrain
