@@ -1,7 +1,6 @@
 #include "pipelines/compare/compare_measurements.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -54,8 +53,10 @@ std::vector<const PackingRun*> require_runs(const Measurements& data, PairKind k
                                             const char* side) {
   auto runs = runs_of(data, kind, relaxation);
   if (!runs.empty()) return runs;
-  throw BadInput(fmt::format("compare: the {} has no {} runs with relaxation \"{}\"; present: {}", side,
-                             to_string(kind), relaxation, fmt::join(relaxations_of(data, kind), ", ")));
+  std::string present;
+  for (const std::string& name : relaxations_of(data, kind)) present += (present.empty() ? "" : ", ") + name;
+  throw BadInput(std::string("compare: the ") + side + " has no " + to_string(kind) + " runs with relaxation \"" +
+                 relaxation + "\"; present: " + (present.empty() ? "none" : present));
 }
 
 PointCost per_point(const Cost& total, std::int64_t points) {
