@@ -3,7 +3,6 @@
 
 namespace softgrain {
 
-__attribute__((weak)) ExitStatus command_microsim(const CommonOptions&) { throw BadInput("microsim: not available yet"); }
 __attribute__((weak)) ExitStatus command_check(const CommonOptions&) { throw BadInput("check: not available yet"); }
 
 }  // namespace softgrain
