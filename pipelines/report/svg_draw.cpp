@@ -46,7 +46,7 @@ std::string draw_band(const Series& s, const Frame& frame) {
     const double high = frame.py(lifted(s.band_high[i], frame.y));
     if (!std::isfinite(px) || !std::isfinite(low) || !std::isfinite(high)) continue;
     upper += (upper.empty() ? "M" : "L") + number(px) + " " + number(high);
-    lower.insert(0, "L" + number(px) + " " + number(low));
+    lower.insert(0, fmt::format("L{} {}", number(px), number(low)));
   }
   if (upper.empty()) return "";
   return fmt::format("<path d=\"{}{}Z\" fill=\"{}\" fill-opacity=\"0.18\" stroke=\"none\">{}</path>\n", upper, lower,
