@@ -26,7 +26,7 @@ std::string path_data(const std::vector<double>& x, const std::vector<double>& y
     const double px = frame.px(x[i]);
     const double py = frame.py(y[i]);
     const bool good = std::isfinite(px) && std::isfinite(py);
-    if (good) data += (pen_down ? "L" : "M") + number(px) + " " + number(py);
+    if (good) data += fmt::format("{}{} {}", pen_down ? 'L' : 'M', number(px), number(py));
     pen_down = good;
   }
   return data;
@@ -45,7 +45,7 @@ std::string draw_band(const Series& s, const Frame& frame) {
     const double low = frame.py(lifted(s.band_low[i], frame.y));
     const double high = frame.py(lifted(s.band_high[i], frame.y));
     if (!std::isfinite(px) || !std::isfinite(low) || !std::isfinite(high)) continue;
-    upper += (upper.empty() ? "M" : "L") + number(px) + " " + number(high);
+    upper += fmt::format("{}{} {}", upper.empty() ? 'M' : 'L', number(px), number(high));
     lower.insert(0, fmt::format("L{} {}", number(px), number(low)));
   }
   if (upper.empty()) return "";
