@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <sstream>
 #include <utility>
+#include <toml++/toml.h>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
@@ -80,8 +81,7 @@ void note_overridden(SceneDocument& document, const toml::node& node) {
     for (const toml::node& child : *array) note_overridden(document, child);
 }
 
-}  // namespace
-
+/// Parses TOML; syntax errors become BadInput with file and line.
 toml::table parse_toml(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text);
@@ -90,6 +90,7 @@ toml::table parse_toml(const std::string& text, const std::string& name) {
   }
 }
 
+/// Applies one "a.b.c=value". Elements of arrays are counted from 0: "contact.0.mu=0.5". Throws BadInput.
 void apply_override(SceneDocument& document, const std::string& setting) {
   const std::size_t mark = setting.find('=');
   const std::string path = trimmed(setting.substr(0, mark));
@@ -98,10 +99,12 @@ void apply_override(SceneDocument& document, const std::string& setting) {
   for (const std::string& part : parts)
     if (part.empty() || path.back() == '.') throw BadInput("--set " + setting + ": a part of the key is empty");
   toml::table value = parse_value(trimmed(setting.substr(mark + 1)), setting);
-  toml::node* parent = &document.content;
+  toml::node* parent = document.content.get();
   for (std::size_t k = 0; k + 1 < parts.size(); ++k) parent = &descend(*parent, parts[k], setting);
   note_overridden(document, assign(*parent, parts.back(), *value.get("value"), setting));
 }
+
+}  // namespace
 
 Scene Scene::load(const std::string& path, const std::vector<std::string>& overrides) {
   return parse(read_text(path), path, overrides);
@@ -110,14 +113,14 @@ Scene Scene::load(const std::string& path, const std::vector<std::string>& overr
 Scene Scene::parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
   auto document = std::make_shared<SceneDocument>();
   document->name = name;
-  document->content = parse_toml(text, name);
+  document->content = std::make_shared<toml::table>(parse_toml(text, name));
   for (const std::string& setting : overrides) apply_override(*document, setting);
 
   Scene scene;
   scene.path_ = name;
-  scene.text_ = overrides.empty() ? text : as_toml(document->content);
+  scene.text_ = overrides.empty() ? text : as_toml(*document->content);
   scene.root_ = std::make_shared<SceneTable::Impl>();
-  scene.root_->content = &document->content;
+  scene.root_->content = document->content.get();
   scene.root_->place = name + ":1";
   scene.root_->document = std::move(document);
   return scene;

@@ -5,17 +5,24 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "common/io/scene.h"
+
+// toml++ is included by sources only; this is how its version 3 declares the two types.
+namespace toml {
+inline namespace v3 {
+class node;
+class table;
+}  // namespace v3
+}  // namespace toml
 
 namespace softgrain {
 
 /// A parsed file; every table of it holds the document.
 struct SceneDocument {
   std::string name;  ///< of the file, as shown in messages
-  toml::table content;
+  std::shared_ptr<toml::table> content;
   std::set<const toml::node*> overridden;  ///< nodes that --set gave
 };
 
@@ -47,11 +54,5 @@ struct SceneTable::Impl {
 
 /// A value as it is shown in messages, shortened when long.
 std::string shown(const toml::node& node);
-
-/// Parses TOML; syntax errors become BadInput with file and line.
-toml::table parse_toml(const std::string& text, const std::string& name);
-
-/// Applies one "a.b.c=value". Elements of arrays are counted from 0: "contact.0.mu=0.5". Throws BadInput.
-void apply_override(SceneDocument& document, const std::string& setting);
 
 }  // namespace softgrain

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <toml++/toml.h>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
