@@ -1,0 +1,129 @@
+#include "microsim/particles/contact_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/dynamics/pair_loop.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Keeps the normal force of each contact.
+struct ForceSink {
+  std::vector<double>& force;
+  void apart(std::size_t c) { force[c] = 0.0; }
+  template <bool kTorque>
+  void touch(std::size_t c, std::size_t, std::size_t, const ContactGeometry<3>&, const ContactResponse<3>& r) {
+    force[c] = r.normal_force;
+  }
+};
+
+/// Overlap of a listed pair; negative: gap.
+double signed_overlap(const System3& s, std::size_t c) {
+  const auto& p = s.particles;
+  const Slot j = s.contacts.j[c];
+  const Sphere<3>& a = p.sphere[static_cast<std::size_t>(s.contacts.i[c])];
+  const Sphere<3>& b = p.sphere[static_cast<std::size_t>(j)];
+  if (j >= p.first_plane()) return a.r - dot(a.x - b.x, p.normal_of(j));
+  if (j >= p.grains) return norm(a.x - b.x) - (b.r - a.r);
+  return a.r + b.r - norm(a.x - b.x - s.cell.image_shift(s.contacts.image[c]));
+}
+
+}  // namespace
+
+void ContactMonitor::Peak::add(double value) {
+  top = std::max(top, value);
+  // Vertex of the parabola through (-1, before), (0, last), (1, value) when the middle is the highest (never with NaN).
+  const double bend = before - 2.0 * last + value;
+  if (last >= before && last >= value && bend < 0.0) {
+    const double slope = 0.5 * (value - before);
+    top = std::max(top, last - 0.5 * slope * slope / bend);
+  }
+  before = last;
+  last = value;
+}
+
+void ContactMonitor::match_list(const System3& s) {
+  if (build_ == s.contacts.build && of_contact_.size() == s.contacts.i.size()) return;
+  build_ = s.contacts.build;
+  std::map<Key, Watched> kept;
+  for (const auto& [key, w] : watched_)
+    if (w.count > 0) kept.emplace(key, w);
+  // Pairs that stay in the list keep their last gap.
+  of_contact_.resize(s.contacts.i.size());
+  for (std::size_t c = 0; c < of_contact_.size(); ++c) {
+    const Key key{s.contacts.i[c], s.contacts.j[c]};
+    const auto old = watched_.find(key);
+    Watched fresh;
+    fresh.seen = -1.0;
+    of_contact_[c] = &kept.emplace(key, old == watched_.end() ? fresh : old->second).first->second;
+  }
+  watched_.swap(kept);  // keeps the addresses of the entries
+}
+
+void ContactMonitor::update(Watched& w, double time, double overlap, double force) const {
+  const bool seen_before = w.seen >= 0.0;
+  const bool touched = seen_before && w.overlap > 0.0;
+  const double span = time - w.seen;
+  if (overlap > 0.0 && !touched) {
+    ++w.count;
+    w.begin = seen_before ? time - span * overlap / (overlap - w.overlap) : time;
+    w.force.reset();
+    w.depth.reset();
+  }
+  if (overlap <= 0.0 && touched) w.duration += w.seen + span * w.overlap / (w.overlap - overlap) - w.begin;
+  if (overlap > 0.0) {
+    w.force.add(force);
+    w.depth.add(overlap);
+  }
+  w.seen = time;
+  w.overlap = overlap;
+}
+
+void ContactMonitor::observe(System3& s) {
+  match_list(s);
+  force_.assign(s.contacts.i.size(), 0.0);
+  ForceSink sink{force_};
+  pair_loop(s, 0.0, sink);
+  for (std::size_t c = 0; c < of_contact_.size(); ++c) update(*of_contact_[c], s.time, signed_overlap(s, c), force_[c]);
+}
+
+std::vector<ContactHistory> ContactMonitor::histories() const {
+  std::vector<ContactHistory> out;
+  for (const auto& [key, w] : watched_) {
+    if (w.count == 0) continue;
+    const double present = w.overlap > 0.0 ? w.seen - w.begin : 0.0;
+    out.push_back({key.first, key.second, w.count, w.duration + present, w.force.top, w.depth.top});
+  }
+  return out;
+}
+
+void ContactMonitor::save(const h5::Group& group) const {
+  std::vector<std::int64_t> pairs;
+  std::vector<double> numbers;
+  for (const auto& [key, w] : watched_) {
+    pairs.insert(pairs.end(), {key.first, key.second, w.count});
+    numbers.insert(numbers.end(), {w.duration, w.begin, w.seen, w.overlap, w.force.before, w.force.last, w.force.top, w.depth.before,
+                                   w.depth.last, w.depth.top});
+  }
+  group.write("pairs", pairs, {watched_.size(), 3});
+  group.write("numbers", numbers, {watched_.size(), 10});
+}
+
+void ContactMonitor::load(const h5::Group& group) {
+  const std::vector<std::int64_t> pairs = group.integers("pairs");
+  const std::vector<double> v = group.doubles("numbers");
+  if (pairs.size() % 3 != 0 || v.size() != pairs.size() / 3 * 10) throw FileTrouble("saved contacts do not fit together");
+  watched_.clear();
+  of_contact_.clear();
+  build_ = 0;
+  for (std::size_t k = 0; k < pairs.size() / 3; ++k) {
+    const double* n = v.data() + 10 * k;
+    watched_[{static_cast<Slot>(pairs[3 * k]), static_cast<Slot>(pairs[3 * k + 1])}] =
+        Watched{pairs[3 * k + 2], n[0], n[1], n[2], n[3], {n[4], n[5], n[6]}, {n[7], n[8], n[9]}};
+  }
+}
+
+}  // namespace softgrain

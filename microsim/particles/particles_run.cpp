@@ -1,0 +1,203 @@
+#include "microsim/particles/particles_run.h"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "common/dynamics/verlet.h"
+#include "common/io/interrupt.h"
+#include "common/state/checkpoint.h"
+#include "common/state/system_io.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Steps between two looks at whether all is sound, and reports of progress.
+constexpr std::int64_t kCheckInterval = 64;
+
+using Clock = std::chrono::steady_clock;
+
+class ParticlesRun {
+ public:
+  ParticlesRun(const ParticlesScene& scene, const ParticlesControl& control)
+      : scene_(scene), control_(control), integrator_(scene.time.step), due_(scene.checkpoint_seconds), started_(Clock::now()) {}
+
+  ParticlesResult run();
+
+ private:
+  void begin();
+  bool restore();
+  void advance();
+  void observe();
+  void require_sound() const;
+  void save_if_due();
+  void save();
+  void count_time();
+  [[nodiscard]] bool watched() const { return system_.particles.grains <= kMostWatched; }
+  [[nodiscard]] bool frame_due() const { return scene_.output_stride > 0 && system_.step % scene_.output_stride == 0; }
+  ParticlesResult result(bool usable, const std::string& reason);
+
+  const ParticlesScene& scene_;
+  const ParticlesControl& control_;
+  System3 system_;
+  VelocityVerlet<3> integrator_;
+  Trajectory trajectory_;
+  ContactMonitor monitor_;
+  CheckpointClock due_;
+  Clock::time_point started_;
+};
+
+void ParticlesRun::count_time() {
+  const auto now = Clock::now();
+  system_.cost.seconds += std::chrono::duration<double>(now - started_).count();
+  started_ = now;
+}
+
+bool ParticlesRun::restore() {
+  if (!control_.resume || control_.checkpoint.empty()) return false;
+  std::string note;
+  const auto saved = open_checkpoint(control_.checkpoint, scene_.text, note);
+  if (control_.say && !note.empty()) control_.say(note);
+  if (!saved) {
+    if (control_.say) control_.say("no checkpoint, starting from the beginning");
+    return false;
+  }
+  read_system(saved->open("system"), system_);
+  trajectory_ = read_trajectory(saved->open("trajectory"));
+  monitor_.load(saved->open("contacts"));
+  if (control_.say) control_.say("continuing from step " + std::to_string(system_.step));
+  return true;
+}
+
+void ParticlesRun::begin() {
+  system_ = scene_.system;
+  if (restore()) return;
+  integrator_.initialise(system_);
+  if (watched()) monitor_.observe(system_);
+  record_frame(trajectory_, system_);
+}
+
+/// No number is lost and nothing moves its own radius in a step: it would pass through others unseen.
+void ParticlesRun::require_sound() const {
+  const auto& p = system_.particles;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    const double move = norm(p.velocity[u]) * scene_.time.step;
+    if (std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u])) && move < p.sphere[u].r) continue;
+    throw NotUsable("particle " + std::to_string(i) + " is lost: " +
+                    (std::isfinite(move) ? "it moves more than its radius in one step" : "its motion is not finite"));
+  }
+}
+
+void ParticlesRun::save() {
+  count_time();
+  write_checkpoint(control_.checkpoint, scene_.text, [&](const h5::Group& root) {
+    write_system(root.create("system"), system_);
+    write_trajectory(root.create("trajectory"), trajectory_);
+    monitor_.save(root.create("contacts"));
+  });
+}
+
+void ParticlesRun::save_if_due() {
+  if (control_.checkpoint.empty()) return;
+  if (interrupt_requested()) {
+    save();
+    throw Interrupted("interrupted at step " + std::to_string(system_.step) + " of " + std::to_string(scene_.time.steps) +
+                      "; go on with --resume (" + control_.checkpoint + ")");
+  }
+  const bool by_steps = scene_.checkpoint_steps > 0 && system_.step % scene_.checkpoint_steps == 0;
+  const bool by_time = system_.step % kCheckInterval == 0 && due_.due();
+  if (by_steps || by_time) save();
+}
+
+void ParticlesRun::observe() {
+  if (watched()) monitor_.observe(system_);
+  if (system_.step % kCheckInterval == 0) {
+    require_sound();
+    if (control_.progress) control_.progress(system_.step);
+  }
+  if (frame_due() && system_.step < scene_.time.steps) record_frame(trajectory_, system_);
+}
+
+void ParticlesRun::advance() {
+  while (system_.step < scene_.time.steps) {
+    integrator_.step(system_);
+    observe();
+    save_if_due();
+  }
+  require_sound();
+}
+
+ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
+  count_time();
+  record_frame(trajectory_, system_);
+  return {std::move(system_), std::move(trajectory_), watched(), monitor_.histories(), usable, reason};
+}
+
+ParticlesResult ParticlesRun::run() {
+  try {
+    begin();
+    advance();
+  } catch (const NotUsable& e) {
+    std::ostringstream reason;
+    reason << e.what() << " (step " << system_.step << " of " << scene_.time.steps << ", time " << system_.time << " s)";
+    return result(false, reason.str());
+  }
+  return result(true, "");
+}
+
+}  // namespace
+
+ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control) { return ParticlesRun(scene, control).run(); }
+
+namespace {
+
+void write_bodies(const h5::Group& g, const ParticlesScene& scene, const System3& s) {
+  const auto& p = s.particles;
+  const auto n = static_cast<std::size_t>(p.grains);
+  std::vector<double> radius;
+  std::vector<double> mass;
+  for (std::size_t u = 0; u < n; ++u) {
+    radius.push_back(p.sphere[u].r);
+    mass.push_back(1.0 / p.inverse_mass[u]);
+  }
+  g.write("radius", radius);
+  g.attribute_of("radius", "unit", "m");
+  g.write("mass", mass);
+  g.attribute_of("mass", "unit", "kg");
+  g.write("material", std::vector<std::int64_t>(p.material.begin(), p.material.begin() + p.grains));
+  for (std::size_t m = 0; m < s.materials.size(); ++m) g.attribute("material_" + std::to_string(m), s.materials[m].name);
+  for (std::size_t w = 0; w < scene.wall_name.size(); ++w) g.attribute("wall_" + std::to_string(w), scene.wall_name[w]);
+}
+
+void write_histories(const h5::Group& g, const std::vector<ContactHistory>& contacts) {
+  std::vector<std::int64_t> pairs;
+  std::vector<double> numbers;
+  for (const ContactHistory& c : contacts) {
+    pairs.insert(pairs.end(), {c.i, c.j, c.count});
+    numbers.insert(numbers.end(), {c.duration, c.max_force, c.max_overlap});
+  }
+  g.write("pair_and_count", pairs, {contacts.size(), 3});
+  g.write("duration_force_overlap", numbers, {contacts.size(), 3});
+  g.attribute_of("duration_force_overlap", "unit", "s, N, m");
+}
+
+}  // namespace
+
+void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result, const Provenance& provenance) {
+  h5::AtomicFile file(path);
+  const h5::Group root = file.root();
+  root.attribute("kind", "particles");
+  root.attribute("status", result.usable ? "good" : "not usable");
+  root.attribute("reason", result.reason);
+  write_provenance(root, provenance);
+  write_bodies(root.create("bodies"), scene, result.system);
+  write_trajectory(root.create("trajectory"), result.trajectory);
+  if (result.watched) write_histories(root.create("contacts"), result.contacts);
+  write_system(root.create("final"), result.system);
+  file.commit();
+}
+
+}  // namespace softgrain

@@ -1,0 +1,177 @@
+#include "microsim/particles/scene_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "common/core/error.h"
+#include "microsim/particles/scene_walls.h"
+#include "microsim/particles/xyzr_file.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
+
+/// Everything that turns tables into bodies.
+struct Builder {
+  const Scene& scene;
+  const std::vector<Material>& materials;
+  std::vector<SceneWall> walls;
+  SceneBodies out;
+  std::vector<NewBody<3>> grains;
+  std::vector<std::ptrdiff_t> wall_of;  ///< per grain: index of its sphere-inside, -1 none
+};
+
+/// Mass 4/3 pi r^3 rho and inertia 2/5 m r^2 of a solid sphere.
+NewBody<3> solid_sphere(const Vec3& x, double r, std::int32_t material, double density) {
+  NewBody<3> body;
+  body.x = x;
+  body.r = r;
+  body.mass = density * kSphereVolume * r * r * r;
+  body.inertia = 0.4 * body.mass * r * r;
+  body.material = material;
+  return body;
+}
+
+double density_of(const Builder& b, const SceneTable& t, std::int32_t material) {
+  const Material& m = b.materials[static_cast<std::size_t>(material)];
+  if (!(m.density > 0.0)) t.reject("material", "has no density, which particles need");
+  return m.density;
+}
+
+bool holds_centre(const SceneWall& wall, const Vec3& x) { return !wall.plane && norm(x - wall.body.x) < wall.body.r; }
+
+/// The first sphere-inside that holds the centre, -1 without.
+std::ptrdiff_t wall_around(const Builder& b, const Vec3& x) {
+  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const SceneWall& w) { return holds_centre(w, x); });
+  return found == b.walls.end() ? -1 : found - b.walls.begin();
+}
+
+std::ptrdiff_t chosen_wall(const Builder& b, const SceneTable& t, const Vec3& x) {
+  if (!t.has("inside")) return wall_around(b, x);
+  const std::string name = t.text("inside");
+  if (name == "none") return -1;
+  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const SceneWall& w) { return w.name == name; });
+  if (found == b.walls.end()) t.reject("inside", "no wall of this name");
+  if (found->plane) t.reject("inside", "this wall is a plane, not a \"sphere-inside\"");
+  if (!holds_centre(*found, x)) t.reject("inside", "the particle's centre is outside this sphere");
+  return found - b.walls.begin();
+}
+
+void add_table(Builder& b, const SceneTable& t) {
+  const std::int32_t material = material_index(b.materials, t, "material");
+  const double r = t.number("radius", Unit::length, Range::positive());
+  NewBody<3> body = solid_sphere(t.vector3("position", Unit::length), r, material, density_of(b, t, material));
+  body.velocity = t.vector3("velocity", Unit::velocity, {});
+  body.spin = t.vector3("spin", Unit::angular_velocity, {});
+  b.grains.push_back(body);
+  b.wall_of.push_back(chosen_wall(b, t, body.x));
+  b.out.where.push_back(t.where("position"));
+}
+
+void add_file(Builder& b, const SceneTable& t) {
+  if (!t.has("file")) return;
+  const std::int32_t material = material_index(b.materials, t, "material");
+  const double density = density_of(b, t, material);
+  b.out.many_file = b.scene.resolve(t.text("file"));
+  const XyzrFile file = read_xyzr(b.out.many_file);
+  for (std::size_t k = 0; k < file.radius.size(); ++k) {
+    b.grains.push_back(solid_sphere(file.position[k], file.radius[k], material, density));
+    b.wall_of.push_back(wall_around(b, file.position[k]));
+  }
+}
+
+void require_distinct_centres(const Builder& b) {
+  std::vector<Slot> order(b.grains.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto centre = [&](Slot k) -> const auto& { return b.grains[static_cast<std::size_t>(k)].x.v; };
+  std::sort(order.begin(), order.end(), [&](Slot a, Slot c) { return centre(a) != centre(c) ? centre(a) < centre(c) : a < c; });
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (centre(order[k - 1]) == centre(order[k]))
+      throw BadInput(b.out.where_of(order[k]) + ": position: particle " + std::to_string(order[k]) + " has the same centre as particle " +
+                     std::to_string(order[k - 1]) + " (" + b.out.where_of(order[k - 1]) + ")");
+}
+
+void require_fits(const Builder& b, Slot k) {
+  const NewBody<3>& grain = b.grains[static_cast<std::size_t>(k)];
+  const SceneWall& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
+  if (grain.r < wall.body.r) return;
+  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " + std::to_string(wall.body.r) +
+                 ", the radius of the sphere around it, '" + wall.name + "' (" + wall.where + ")");
+}
+
+/// Radii and densities so extreme that the mass is no number.
+void require_mass(const Builder& b, Slot k) {
+  const NewBody<3>& grain = b.grains[static_cast<std::size_t>(k)];
+  if (grain.inertia > 0.0 && std::isfinite(grain.mass) && std::isfinite(1.0 / grain.inertia)) return;
+  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": the mass of this particle is out of the range of numbers");
+}
+
+/// Slots of the walls: sphere-insides follow the particles, planes come last.
+std::vector<Slot> wall_slots(const Builder& b) {
+  std::vector<Slot> slots(b.walls.size());
+  auto next = static_cast<Slot>(b.grains.size());
+  for (const bool plane : {false, true})
+    for (std::size_t w = 0; w < b.walls.size(); ++w)
+      if (b.walls[w].plane == plane) slots[w] = next++;
+  return slots;
+}
+
+void place_grains(Builder& b, const std::vector<Slot>& slots) {
+  for (std::size_t k = 0; k < b.grains.size(); ++k) {
+    require_mass(b, static_cast<Slot>(k));
+    if (b.wall_of[k] >= 0) {
+      require_fits(b, static_cast<Slot>(k));
+      b.grains[k].shell = slots[static_cast<std::size_t>(b.wall_of[k])];
+    }
+    add_grain(b.out.particles, b.grains[k]);
+  }
+}
+
+void place_walls(Builder& b) {
+  double total = 0.0;
+  double heaviest = 0.0;
+  for (const NewBody<3>& grain : b.grains) {
+    total += grain.mass;
+    heaviest = std::max(heaviest, grain.mass);
+  }
+  for (SceneWall& w : b.walls) {
+    if (w.plane) continue;
+    add_shell(b.out.particles, w.body);
+    b.out.wall_name.push_back(w.name);
+  }
+  for (SceneWall& w : b.walls) {
+    if (!w.plane) continue;
+    if (w.needs_mass) w.body.mass = total;
+    if (w.body.mass > 0.0 && w.body.mass < heaviest)
+      throw BadInput(w.where + ": mass = " + std::to_string(w.body.mass) + ": a wall moved by a force must weigh at least as much as the heaviest particle, " +
+                     std::to_string(heaviest) + " kg (left out: the mass of all particles, " + std::to_string(total) + " kg)");
+    const Slot slot = add_plane(b.out.particles, w.body, w.normal);
+    b.out.particles.plane_load[static_cast<std::size_t>(slot - b.out.particles.first_plane())] = w.load;
+    b.out.wall_name.push_back(w.name);
+  }
+}
+
+}  // namespace
+
+std::string SceneBodies::where_of(Slot particle) const {
+  const auto k = static_cast<std::size_t>(particle);
+  return k < where.size() ? where[k] : many_file + ":" + std::to_string(xyzr_line(k - where.size()));
+}
+
+SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materials) {
+  const SceneTable root = scene.root();
+  Builder b{scene, materials, read_walls(root, materials), {}, {}, {}};
+  for (const SceneTable& t : root.tables("particle")) add_table(b, t);
+  add_file(b, root.table_or_empty("particles"));
+  if (b.grains.empty()) throw BadInput(scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
+  require_distinct_centres(b);
+  place_grains(b, wall_slots(b));
+  place_walls(b);
+  return std::move(b.out);
+}
+
+}  // namespace softgrain

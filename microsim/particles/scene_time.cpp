@@ -1,0 +1,129 @@
+#include "microsim/particles/scene_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+#include <type_traits>
+
+#include "common/core/error.h"
+#include "common/dynamics/time_step.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kDefaultFraction = 0.05;
+constexpr double kStepsPerImpact = 200.0;
+constexpr double kMostSteps = 1e12;
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+std::string shown(double value) {
+  std::ostringstream out;
+  out.precision(6);
+  out << value;
+  return out.str();
+}
+
+/// Diagonal of the box that holds all values: no two differ by more.
+double spread(const std::vector<Vec3>& values) {
+  if (values.empty()) return 0.0;
+  Vec3 low = values.front();
+  Vec3 high = low;
+  for (const Vec3& v : values)
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], v[k]);
+      high[k] = std::max(high[k], v[k]);
+    }
+  return norm(high - low);
+}
+
+double largest_relative_speed(const System3& s, double end) {
+  std::vector<Vec3> places;
+  for (const auto& sphere : s.particles.sphere) places.push_back(sphere.x);
+  const double g = norm(s.gravity);
+  return spread(s.particles.velocity) + std::min(g * end, std::sqrt(2.0 * g * spread(places)));
+}
+
+/// Impact of two equal spheres of radius r and mass 1/inverse_mass under one law.
+double impact_time(const AnyLaw& any, double r, double inverse_mass, double speed) {
+  const PairBodies bodies{r, r, inverse_mass, inverse_mass};
+  const double m12 = bodies.effective_mass();
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (std::is_same_v<Law, SoftContact>) {
+          return kForever;  // judged by its stiffness alone
+        } else if constexpr (std::is_same_v<Law, LinearSpring>) {
+          return std::numbers::pi * std::sqrt(m12 / law.normal);
+        } else {
+          const double stiffness = law.pair_constants(bodies).a * law.k.inverse_d;
+          const double overlap = std::pow(1.25 * m12 * speed * speed / stiffness, 0.4);
+          return 0.8 * std::beta(0.4, 0.5) * overlap / speed;
+        }
+      },
+      any);
+}
+
+std::string limit_sentence(const StepLimit& limit, const System3& s, const std::vector<std::string>& law_description) {
+  const double r = s.particles.sphere[static_cast<std::size_t>(limit.body)].r;
+  return "set by particle " + std::to_string(limit.body) + " (radius " + shown(r) + " m) with " +
+         law_description[static_cast<std::size_t>(limit.law)];
+}
+
+/// As many steps as fill the time.
+std::int64_t steps_to(const SceneTable& t, double end, double step) {
+  const double steps = std::ceil(end / step * (1.0 - 1e-12));
+  if (!(steps <= kMostSteps)) t.reject("end", "takes " + shown(steps) + " steps of " + shown(step) + " s, at most " + shown(kMostSteps) + " are allowed");
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
+}
+
+void choose_step(const SceneTable& t, double fraction, SceneTime& out) {
+  const double wanted = std::min({fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.end});
+  if (!std::isfinite(wanted)) t.reject("step", "\"auto\" needs a contact law that the particles take part in");
+  out.steps = steps_to(t, out.end, wanted);
+  out.step = out.end / static_cast<double>(out.steps);
+}
+
+void take_step(const SceneTable& t, SceneTime& out) {
+  out.step = t.number("step", Unit::time, Range::positive());
+  const double limit = kLargestStepFraction * out.natural_time;
+  if (out.step > limit)
+    t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(kLargestStepFraction) + " sqrt(m/k), " + out.limited_by);
+  out.steps = steps_to(t, out.end, out.step);
+}
+
+}  // namespace
+
+double shortest_impact(const System3& s, double end) {
+  const double speed = largest_relative_speed(s, end);
+  double shortest = kForever;
+  if (!(speed > 0.0)) return shortest;
+  for (Slot i = 0; i < s.particles.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    for (std::int32_t m = 0; m < s.laws.materials(); ++m) {
+      const std::int32_t law = s.laws.index(s.particles.material[u], m);
+      if (law == LawSet::kNoContact) continue;
+      shortest = std::min(shortest, impact_time(s.laws.law(law), s.particles.sphere[u].r, s.particles.inverse_mass[u], speed));
+    }
+  }
+  return shortest;
+}
+
+SceneTime read_time(const SceneTable& t, const System3& system, const std::vector<std::string>& law_description) {
+  SceneTime out;
+  out.end = t.number("end", Unit::time, Range::positive());
+  const double fraction = t.number("step_fraction", Unit::none, Range{0.0, kLargestStepFraction, true, false}, kDefaultFraction);
+  const StepLimit limit = step_limit(system);
+  out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
+  if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);
+  out.contact_time = shortest_impact(system, out.end);
+  const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
+  if (automatic)
+    choose_step(t, fraction, out);
+  else
+    take_step(t, out);
+  return out;
+}
+
+}  // namespace softgrain

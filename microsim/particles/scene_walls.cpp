@@ -1,0 +1,59 @@
+#include "microsim/particles/scene_walls.h"
+
+#include <algorithm>
+
+namespace softgrain {
+
+namespace {
+
+Vec3 read_normal(const SceneTable& t) {
+  const Vec3 n = t.vector3("normal", Unit::none);
+  const double length = norm(n);
+  if (!(length > 0.0) || !std::isfinite(1.0 / length)) t.reject("normal", "must not be the zero vector");
+  return length == 1.0 ? n : n * (1.0 / length);
+}
+
+void read_shape(const SceneTable& t, SceneWall& wall) {
+  wall.plane = t.choice("shape", {"plane", "sphere-inside"}) == "plane";
+  if (wall.plane) {
+    wall.body.x = t.vector3("point", Unit::length);
+    wall.normal = read_normal(t);
+  } else {
+    wall.body.x = t.vector3("center", Unit::length);
+    wall.body.r = t.number("radius", Unit::length, Range::positive());
+  }
+}
+
+void read_motion(const SceneTable& t, SceneWall& wall) {
+  const std::string motion = t.choice("motion", {"fixed", "velocity", "force"}, "fixed");
+  if (motion == "velocity") wall.body.velocity = t.vector3("velocity", Unit::velocity);
+  if (motion != "force") return;
+  if (!wall.plane) t.reject("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
+  wall.load = t.number("force", Unit::force);
+  wall.needs_mass = !t.has("mass");
+  if (!wall.needs_mass) wall.body.mass = t.number("mass", Unit::mass, Range::positive());
+}
+
+void require_new_name(const SceneTable& t, const std::vector<SceneWall>& walls, const std::string& name) {
+  const auto same = std::find_if(walls.begin(), walls.end(), [&](const SceneWall& w) { return w.name == name; });
+  if (same != walls.end()) t.reject("name", "another wall is called '" + name + "' (" + same->where + ")");
+}
+
+}  // namespace
+
+std::vector<SceneWall> read_walls(const SceneTable& root, const std::vector<Material>& materials) {
+  std::vector<SceneWall> walls;
+  for (const SceneTable& t : root.tables("wall")) {
+    SceneWall wall;
+    read_shape(t, wall);
+    read_motion(t, wall);
+    wall.body.material = material_index(materials, t, "material");
+    wall.name = t.text("name", "wall-" + std::to_string(walls.size() + 1));
+    require_new_name(t, walls, wall.name);
+    wall.where = t.where("shape");
+    walls.push_back(wall);
+  }
+  return walls;
+}
+
+}  // namespace softgrain

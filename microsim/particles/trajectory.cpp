@@ -1,0 +1,71 @@
+#include "microsim/particles/trajectory.h"
+
+#include <array>
+#include <span>
+
+namespace softgrain {
+
+namespace {
+
+/// How a member is called in the file.
+struct Column {
+  const char* name;
+  const char* unit;
+  std::vector<double> Trajectory::* values;
+  std::size_t width;  ///< numbers per body; 0: one number per frame
+};
+
+constexpr std::array<Column, 9> kColumns{{
+    {"time", "s", &Trajectory::time, 0},
+    {"position", "m", &Trajectory::position, 3},
+    {"velocity", "m/s", &Trajectory::velocity, 3},
+    {"spin", "rad/s", &Trajectory::spin, 3},
+    {"wall_position", "m", &Trajectory::wall_position, 3},
+    {"cell_edges", "m", &Trajectory::cell_edges, 3},
+    {"translational_energy", "J", &Trajectory::translational_energy, 0},
+    {"rotational_energy", "J", &Trajectory::rotational_energy, 0},
+    {"gravitational_energy", "J", &Trajectory::gravitational_energy, 0},
+}};
+
+void append(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), v.v.begin(), v.v.end()); }
+
+}  // namespace
+
+void record_frame(Trajectory& t, const System3& s) {
+  const auto& p = s.particles;
+  double translational = 0.0;
+  double rotational = 0.0;
+  double gravitational = 0.0;
+  for (std::size_t u = 0; u < static_cast<std::size_t>(p.grains); ++u) {
+    append(t.position, p.sphere[u].x);
+    append(t.velocity, p.velocity[u]);
+    append(t.spin, p.spin[u]);
+    translational += 0.5 * norm2(p.velocity[u]) / p.inverse_mass[u];
+    rotational += 0.5 * norm2(p.spin[u]) / p.inverse_inertia[u];
+    gravitational -= dot(s.gravity, p.sphere[u].x) / p.inverse_mass[u];
+  }
+  for (auto u = static_cast<std::size_t>(p.grains); u < p.sphere.size(); ++u) append(t.wall_position, p.sphere[u].x);
+  for (const Vec3& row : s.cell.edges.row) append(t.cell_edges, row);
+  t.time.push_back(s.time);
+  t.translational_energy.push_back(translational);
+  t.rotational_energy.push_back(rotational);
+  t.gravitational_energy.push_back(gravitational);
+}
+
+void write_trajectory(const h5::Group& group, const Trajectory& t) {
+  const std::size_t frames = t.time.size();
+  for (const Column& c : kColumns) {
+    const std::vector<double>& values = t.*c.values;
+    const h5::Shape shape = c.width == 0 ? h5::Shape{frames} : h5::Shape{frames, frames == 0 ? 0 : values.size() / (frames * c.width), c.width};
+    group.write(c.name, values, shape);
+    group.attribute_of(c.name, "unit", c.unit);
+  }
+}
+
+Trajectory read_trajectory(const h5::Group& group) {
+  Trajectory t;
+  for (const Column& c : kColumns) t.*c.values = group.doubles(c.name);
+  return t;
+}
+
+}  // namespace softgrain

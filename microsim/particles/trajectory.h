@@ -1,0 +1,33 @@
+// Recorded frames of a run.
+#pragma once
+
+#include <vector>
+
+#include "common/io/hdf5_file.h"
+#include "common/system.h"
+
+namespace softgrain {
+
+/// One entry, or one block of 3 numbers per body, per frame; frames follow each other.
+struct Trajectory {
+  std::vector<double> time;                   ///< [s]
+  std::vector<double> position;               ///< of particles [m]
+  std::vector<double> velocity;               ///< [m/s]
+  std::vector<double> spin;                   ///< [rad/s]
+  std::vector<double> wall_position;          ///< centre of a sphere-inside, point of a plane [m]
+  std::vector<double> cell_edges;             ///< row-major 3 x 3 [m]
+  std::vector<double> translational_energy;   ///< of particles [J]
+  std::vector<double> rotational_energy;      ///< [J]
+  std::vector<double> gravitational_energy;   ///< -sum m g.x [J]; zero at the origin
+};
+
+/// Appends the system as it is.
+void record_frame(Trajectory& trajectory, const System3& system);
+
+/// Data sets with units: time [frames], position [frames, particles, 3], ...
+void write_trajectory(const h5::Group& group, const Trajectory& trajectory);
+
+/// Throws FileTrouble.
+Trajectory read_trajectory(const h5::Group& group);
+
+}  // namespace softgrain

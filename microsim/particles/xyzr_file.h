@@ -1,0 +1,24 @@
+// Files of many spheres: "N Lx Ly Lz" on the first line, then N lines "x y z r". Plain or compressed by gzip. SI units.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/vec.h"
+
+namespace softgrain {
+
+struct XyzrFile {
+  Vec3 box{};                    ///< Lx Ly Lz [m], as written; not used as a cell
+  std::vector<Vec3> position;    ///< [m]
+  std::vector<double> radius;    ///< [m], > 0
+};
+
+/// Line of a sphere in its file.
+inline std::int64_t xyzr_line(std::size_t sphere) { return static_cast<std::int64_t>(sphere) + 2; }
+
+/// Throws BadInput ("file:line: ...") for wrong content, FileTrouble for missing, unreadable or damaged files.
+XyzrFile read_xyzr(const std::string& path);
+
+}  // namespace softgrain

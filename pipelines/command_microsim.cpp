@@ -1,0 +1,15 @@
+// softgrain microsim SCENE.toml: one particle-scale scene; its `kind` says which.
+#include "pipelines/particles_command.h"
+#include "pipelines/run_context.h"
+#include "pipelines/soft_particle_command.h"
+
+namespace softgrain {
+
+ExitStatus command_microsim(const CommonOptions& options) {
+  if (options.inputs.size() != 1) throw BadInput("microsim: one scene is needed (softgrain microsim SCENE.toml)");
+  const Scene scene = Scene::load(options.inputs.front(), options.overrides);
+  if (scene.root().choice("kind", {"soft-particle", "particles"}) == "particles") return run_particles_scene(scene, options);
+  return run_soft_particle_scene(scene, options);
+}
+
+}  // namespace softgrain
