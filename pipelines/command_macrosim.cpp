@@ -62,8 +62,8 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   summary["status"] = usable ? "good" : "not usable";
   summary["title"] = title;
   summary["macro"] = macro_json(curves, "law");
-  if (setup.resolved) {
-    summary["resolved"] = macro_json(curves, "shelled");
+  if (setup.resolved) summary["resolved"] = macro_json(curves, "shelled");
+  if (setup.resolved && usable) {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
     summary["comparison"] = {{"stress_error", c.axial_difference.mean}, {"speedup_seconds", c.speedup_seconds}, {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
   }

@@ -72,7 +72,14 @@ void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunCont
   result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context);
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
-  if (setup.macro->resolved) result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
+  if (!setup.macro->resolved) return;
+  try {
+    result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
+  } catch (const BadInput& e) {
+    // No sample with two usable curves: said in the summary, what was computed is kept.
+    result.remarks.emplace_back(std::string("macro and twin cannot be compared: ") + e.what());
+    result.usable = false;
+  }
 }
 
 json summarise(const PipelineSetup& setup, const PipelineResult& r, const Provenance& provenance, const RunContext& context, double seconds) {
