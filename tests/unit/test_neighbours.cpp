@@ -1,0 +1,199 @@
+// The grid against testing all pairs; lists and histories while things move.
+#include "common/neighbours/hierarchical_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "common/core/error.h"
+#include "common/dynamics/force_pass.h"
+#include "common/neighbours/verlet_list.h"
+#include "tests/support/impact.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+enum class Box { open, periodic, half_periodic, sheared };
+
+template <int D>
+Cell<D> cell_of(Box box, double size) {
+  Vec<D> edges;
+  for (double& e : edges.v) e = size;
+  std::array<bool, D> periodic{};
+  if (box != Box::open) periodic.fill(true);
+  if (box == Box::half_periodic) periodic[D - 1] = false;
+  Cell<D> cell = box_cell<D>(edges, periodic);
+  if (box == Box::sheared)
+    for (int c = 1; c < D; ++c)
+      for (int r = 0; r < c; ++r) cell.edges[r][c] = size * (r == 0 ? 0.47 : -0.31);
+  return cell;
+}
+
+/// Radii log-uniform from 1/ratio to 1, the largest always there, in a cell of edge 7 (positions wrapped).
+template <int D>
+Particles<D> cloud(const Cell<D>& cell, int n, double ratio, std::uint64_t seed) {
+  RandomStream random(seed, RandomPurpose::test, 0);
+  Particles<D> p;
+  for (int k = 0; k < n; ++k) {
+    Vec<D> fractions;
+    for (double& f : fractions.v) f = random.uniform();
+    const double r = k < 3 ? 1.0 : std::pow(ratio, -random.uniform());
+    add_grain(p, solid_sphere<D>(cell.edges * fractions, r, 1.0));
+  }
+  return p;
+}
+
+using Found = std::vector<std::tuple<Slot, Slot, std::int32_t>>;
+
+Found sorted(const std::vector<CandidatePair>& pairs) {
+  Found out;
+  for (const CandidatePair& c : pairs) out.emplace_back(c.i, c.j, c.image);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+template <int D>
+void expect_same_pairs(Box box, double ratio) {
+  const Cell<D> cell = cell_of<D>(box, 7.0);
+  const int n = ratio > 100.0 ? 500 : 150;
+  const Particles<D> p = cloud<D>(cell, n, ratio, static_cast<std::uint64_t>(ratio) + 17U * static_cast<unsigned>(box));
+  const std::vector<double> skin = default_skin(p);
+  const Found grid = sorted(candidate_pairs(p, cell, skin));
+  EXPECT_EQ(grid, sorted(candidate_pairs_brute_force(p, cell, skin))) << "ratio " << ratio << ", box " << static_cast<int>(box);
+  EXPECT_FALSE(grid.empty());
+  EXPECT_EQ(std::adjacent_find(grid.begin(), grid.end()), grid.end()) << "a pair was found twice";
+}
+
+TEST(Neighbours, GridFindsWhatAllPairsFind) {
+  for (const double ratio : {1.0, 2.0, 10.0, 100.0, 1000.0})
+    for (const Box box : {Box::open, Box::periodic, Box::half_periodic, Box::sheared}) {
+      expect_same_pairs<2>(box, ratio);
+      expect_same_pairs<3>(box, ratio);
+    }
+}
+
+TEST(Neighbours, DegenerateArrangements) {
+  const Cell<3> cell = open_cell<3>();
+  Particles<3> p;
+  EXPECT_TRUE(candidate_pairs(p, cell, {}).empty());
+  add_grain(p, solid_sphere<3>({}, 1.0, 1.0));
+  EXPECT_TRUE(candidate_pairs(p, cell, {0.1}).empty());
+  for (int k = 1; k < 40; ++k) add_grain(p, solid_sphere<3>({{1.9 * k, 0.0, 0.0}}, k % 2 == 0 ? 1.0 : 1e-3, 1.0));  // a line
+  const std::vector<double> skin(40, 0.05);
+  EXPECT_EQ(sorted(candidate_pairs(p, cell, skin)), sorted(candidate_pairs_brute_force(p, cell, skin)));
+}
+
+TEST(Neighbours, ANarrowPeriodicCellIsRefused) {
+  const Cell<3> cell = box_cell<3>({{3.9, 10.0, 10.0}}, {true, true, true});
+  Particles<3> p;
+  add_grain(p, solid_sphere<3>({{1.0, 1.0, 1.0}}, 1.0, 1.0));
+  add_grain(p, solid_sphere<3>({{1.0, 5.0, 1.0}}, 1.0, 1.0));
+  EXPECT_THROW((void)candidate_pairs(p, cell, {0.0, 0.0}), BadInput);
+}
+
+/// Every touching pair is in the list, at every step, with its image.
+template <int D>
+void expect_complete_list(const System<D>& s) {
+  const std::vector<double> none(static_cast<std::size_t>(s.particles.size()), 0.0);
+  Found listed;
+  for (std::size_t c = 0; c < s.contacts.i.size(); ++c)
+    if (s.contacts.j[c] < s.particles.grains) listed.emplace_back(s.contacts.i[c], s.contacts.j[c], s.contacts.image[c]);
+  std::sort(listed.begin(), listed.end());
+  for (const auto& touching : sorted(candidate_pairs_brute_force(s.particles, s.cell, none)))
+    ASSERT_TRUE(std::binary_search(listed.begin(), listed.end(), touching))
+        << std::get<0>(touching) << " and " << std::get<1>(touching) << " touch unseen at step " << s.step;
+}
+
+template <int D>
+void shear_and_watch(double rate) {
+  System<D> s = hertz_system<D>(0.3, 0.9, false);
+  s.cell = cell_of<D>(Box::periodic, 1.2);
+  s.cell.velocity_gradient[0][1] = rate;
+  if constexpr (D == 3) {
+    s.cell.velocity_gradient[0][2] = -0.5 * rate;
+    s.cell.velocity_gradient[1][2] = 0.7 * rate;
+  }
+  RandomStream random(3, RandomPurpose::test, 2);
+  Vec<D> middle;
+  for (double& x : middle.v) x = 0.6;
+  for (const Vec<D>& x : shaken_lattice<D>(middle, 0.3, 4, 5)) {
+    NewBody<D> grain = solid_sphere<D>(x, 0.05 + 0.08 * random.uniform(), 2500.0);
+    for (double& v : grain.velocity.v) v = 8.0 * random.uniform() - 4.0;
+    add_grain(s.particles, grain);
+  }
+  VelocityVerlet<D> integrator(1e-4);
+  integrator.initialise(s);
+  for (int k = 0; k < 3000; ++k) {
+    integrator.step(s);
+    expect_complete_list(s);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(s.neighbours.rebuilds, 20);
+  for (int c = 1; c < D; ++c)
+    for (int r = 0; r < c; ++r) EXPECT_LT(std::abs(s.cell.edges[r][c]), 0.75 * s.cell.edges[r][r]) << "the cell must not tilt away";
+}
+
+TEST(Neighbours, NoContactIsMissedWhileACellIsSheared) {
+  shear_and_watch<2>(5.0);
+  shear_and_watch<3>(5.0);
+}
+
+/// The reduced cell spans the same lattice: every old edge is a whole combination of new ones.
+TEST(Neighbours, ATiltedCellIsReplacedByTheSameLattice) {
+  System3 s = hertz_system<3>(0.0, 1.0, false);
+  s.cell = cell_of<3>(Box::periodic, 1.2);
+  const Matrix<3> before{{{{{1.2, 0.9, 2.9}}, {{0.0, 1.2, 1.7}}, {{0.0, 0.0, 1.2}}}}};
+  s.cell.edges = before;
+  add_grain(s.particles, solid_sphere<3>({{0.1, 0.2, 0.3}}, 0.1, 1.0));
+  rebuild_neighbours(s);
+  for (int c = 0; c < 3; ++c) {
+    Vec3 edge;
+    for (int r = 0; r < 3; ++r) edge[r] = before[r][c];
+    const Vec3 n = s.cell.fractional(edge);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(n[k], std::round(n[k]), 1e-12);
+  }
+  for (int c = 1; c < 3; ++c)
+    for (int r = 0; r < c; ++r) EXPECT_LE(std::abs(s.cell.edges[r][c]), 0.5001 * s.cell.edges[r][r]);
+}
+
+TEST(Neighbours, HistorySurvivesARebuildAndAWrap) {
+  System3 s = hertz_system<3>(0.5, 1.0, true);
+  s.cell = cell_of<3>(Box::periodic, 1.0);
+  add_grain(s.particles, solid_sphere<3>({{0.92, 0.5, 0.5}}, 0.1, 1.0));
+  add_grain(s.particles, solid_sphere<3>({{0.109, 0.5, 0.5}}, 0.1, 1.0));  // touch through the boundary
+  s.particles.velocity[0] = {{0.0, 0.3, -0.2}};
+  force_pass(s, 1e-4);
+  s.contacts.commit();
+  ASSERT_EQ(s.contacts.size(), 1);
+  const Vec3 spring = s.contacts.spring[0];
+  const double memory = s.contacts.memory[0];
+  ASSERT_GT(norm(spring), 0.0);
+  ASSERT_GT(memory, 0.0);
+  for (auto& sphere : s.particles.sphere) sphere.x[0] += 0.0805;  // body 0 goes through the boundary
+  rebuild_neighbours(s);
+  ASSERT_EQ(s.contacts.size(), 1);
+  EXPECT_LT(s.particles.sphere[0].x[0], 0.1);
+  EXPECT_EQ(s.contacts.image[0], home_image<3>());
+  EXPECT_TRUE(s.contacts.spring[0] == spring);
+  EXPECT_EQ(s.contacts.memory[0], memory);
+}
+
+TEST(Neighbours, HistoryIsLostOnSeparation) {
+  System3 s = hertz_system<3>(0.5, 1.0, true);
+  add_grain(s.particles, solid_sphere<3>({}, 0.1, 1.0));
+  add_grain(s.particles, solid_sphere<3>({{0.199, 0.0, 0.0}}, 0.1, 1.0));
+  s.particles.velocity[0] = {{0.0, 0.3, -0.2}};
+  force_pass(s, 1e-4);
+  s.contacts.commit();
+  ASSERT_GT(norm(s.contacts.spring[0]), 0.0);
+  s.particles.sphere[1].x[0] = 0.2005;
+  force_pass(s, 1e-4);
+  s.contacts.commit();
+  ASSERT_EQ(s.contacts.size(), 1) << "still listed";
+  EXPECT_EQ(norm(s.contacts.spring[0]), 0.0);
+  EXPECT_EQ(s.contacts.memory[0], 0.0);
+}
+
+}  // namespace
