@@ -53,12 +53,12 @@ struct PipelineResult {
   bool usable = true;
 };
 
-void fit(const PipelineSetup& setup, const RunContext& context, PipelineResult& result) {
+void fit(const PipelineSetup& setup, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
   FitOptions options = setup.fit;
   options.relaxation = setup.measure.series[0].relaxation;
   options.seed = context.seed(setup.measure.seed);
   result.card = calibrate(result.measured.data, options);
-  save_card(result.card, context.path("law.toml"));
+  save_card(result.card, context.path("law.toml"), provenance);
   for (const PairLaw& law : result.card.pairs) {
     context.say(law_line(law));
     if (law.status == "good") continue;
@@ -67,9 +67,22 @@ void fit(const PipelineSetup& setup, const RunContext& context, PipelineResult& 
   }
 }
 
-void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, PipelineResult& result) {
+bool has_laws(const LawCard& card) {
+  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+    const PairLaw* law = card.find(kind);
+    if (law == nullptr || (law->status != "good" && law->status != "underdetermined")) return false;
+  }
+  return true;
+}
+
+void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
   if (!setup.macro) return;
-  result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context);
+  if (!has_laws(result.card)) {
+    result.remarks.emplace_back("no macro run: it needs a soft-solid and a soft-soft law that cross their threshold");
+    result.usable = false;
+    return;
+  }
+  result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context, provenance);
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   if (!setup.macro->resolved) return;
@@ -125,14 +138,15 @@ ExitStatus command_run(const CommonOptions& options) {
   const PipelineSetup setup = read_pipeline_setup(scene.root());
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.measure.seed);
+  const Provenance provenance = context.provenance(scene, seed);
   const TaskStore store(context, scene, seed);
   PipelineResult result;
-  result.measured = run_measure_stage(setup.measure, store, context);
+  result.measured = run_measure_stage(setup.measure, store, context, provenance);
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
-  fit(setup, context, result);
-  run_macro(setup, store, context, result);
+  fit(setup, context, provenance, result);
+  run_macro(setup, store, context, provenance, result);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  context.finish(summarise(setup, result, context.provenance(scene, seed), context, seconds), people_text(result, context, seconds));
+  context.finish(summarise(setup, result, provenance, context, seconds), people_text(result, context, seconds));
   write_report(context.directory());
   store.clear();
   return result.usable ? ExitStatus::good : ExitStatus::not_usable;

@@ -90,7 +90,7 @@ double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
   return contents.empty() ? 1.0 : sum / static_cast<double>(contents.size());
 }
 
-std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context) {
+std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context, const Provenance& provenance) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
@@ -98,6 +98,7 @@ std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t s
     progress.advance();
   });
   h5::AtomicFile file(context.path("macro_initial.h5"));
+  write_provenance(file.root(), provenance);
   for (std::size_t k = 0; k < packings.size(); ++k) write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
   file.commit();
   return packings;
@@ -106,9 +107,10 @@ std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t s
 }  // namespace
 
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card, const std::vector<ShellPacking>& contents,
-                                        std::uint64_t seed, const TaskStore& store, const RunContext& context) {
+                                        std::uint64_t seed, const TaskStore& store, const RunContext& context,
+                                        const Provenance& provenance) {
   const SoftLaws laws = laws_from_card(card, setup.spec);
-  const auto packings = make_packings(setup, seed, context);
+  const auto packings = make_packings(setup, seed, context, provenance);
   const Stage stage{setup, laws, mean_solid_fraction(contents), contents, seed, store, packings};
   const auto n = static_cast<std::size_t>(setup.samples);
   std::vector<MacroCurve> curves(setup.resolved ? 2 * n : n);
@@ -120,7 +122,7 @@ std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& 
     Progress progress("resolved twins", static_cast<double>(n), context.quiet());
     over_samples(setup.samples, [&](std::int64_t k) { curves[n + static_cast<std::size_t>(k)] = run_one(stage, k, true, progress); });
   }
-  save_macro(curves, context.path("macro.h5"));
+  save_macro(curves, context.path("macro.h5"), provenance);
   return curves;
 }
 

@@ -26,6 +26,7 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
 /// Runs all samples with the laws of `card` and, when asked, their shelled twins filled with `contents`; saves DIR/macro.h5 and
 /// DIR/macro_initial.h5 (the common starting states). Throws BadInput when the card has no usable law for the scene.
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card, const std::vector<ShellPacking>& contents,
-                                        std::uint64_t seed, const TaskStore& store, const RunContext& context);
+                                        std::uint64_t seed, const TaskStore& store, const RunContext& context,
+                                        const Provenance& provenance);
 
 }  // namespace softgrain

@@ -145,7 +145,7 @@ PackingRun run_task(const Stage& stage, const Task& task) {
 
 std::uint64_t second_body_index(std::int64_t packing) { return (std::uint64_t{1} << 32) + static_cast<std::uint64_t>(packing); }
 
-MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context) {
+MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance) {
   const auto start = Clock::now();
   const std::uint64_t seed = context.seed(setup.seed);
   MeasureResult result;
@@ -173,7 +173,7 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& stor
     data.runs[t] = run_task(stage, tasks[t]);
   });
   progress.finish();
-  save(data, context.path("measurements.h5"));
+  save(data, context.path("measurements.h5"), provenance);
   result.wall_seconds = seconds_since(start);
   return result;
 }

@@ -22,6 +22,6 @@ struct MeasureResult {
 std::uint64_t second_body_index(std::int64_t packing);
 
 /// Generates, measures and saves DIR/measurements.h5. Results do not depend on the number of threads.
-MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context);
+MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance);
 
 }  // namespace softgrain

@@ -35,7 +35,7 @@ constexpr std::array<Command, 7> kCommands{{
     {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml", "scene to run", 1, 1, command_microsim},
     {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA.h5", "files of measurements", 1, 1000, command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1, command_macrosim},
-    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN", "two run directories or result files, A and B", 2, 2, command_compare},
+    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN", "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, command_compare},
     {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, command_report},
     {"check", "Validates a scene, card or result file and says what follows from it, without running", "FILE", "file to check", 1, 1, command_check},
 }};

@@ -1,0 +1,180 @@
+// softgrain check: is this file sound, and what follows from it. Runs nothing that takes more than a moment.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+#include "common/data/law_card.h"
+#include "common/data/macro_result.h"
+#include "common/data/measurements.h"
+#include "common/dynamics/force_pass.h"
+#include "common/dynamics/time_step.h"
+#include "microsim/particles/particles_scene.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/pipeline_setup.h"
+#include "pipelines/run_context.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+/// Lines for people and the same facts for programs.
+struct Findings {
+  json facts;
+  std::string lines;
+
+  void add(const std::string& key, const json& value, const std::string& line) {
+    facts[key] = value;
+    lines += "  " + line + "\n";
+  }
+};
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = Clock::now();
+  work();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Loop passes per recorded point of each relaxation, as measured on the published parameters.
+double typical_passes(const std::string& relaxation, bool rotated) {
+  if (relaxation == "published") return 55000.0;
+  return rotated ? 450.0 : 2500.0;
+}
+
+struct PointCounts {
+  std::int64_t normal = 0;
+  std::int64_t rotated = 0;
+};
+
+PointCounts count_points(const MeasureSeries& series, PairKind kind) {
+  const MeasurementPlan& plan = series.plan(kind);
+  return {series.packings * static_cast<std::int64_t>(plan.deltas.size()),
+          series.packings * static_cast<std::int64_t>(plan.tangential_deltas.size() * plan.angles_deg.size())};
+}
+
+/// Time from one packing and a short trial of the loop on this machine, one thread.
+void check_measurements(const MeasureSetup& setup, Findings& out) {
+  ShellPacking packing;
+  const double packing_time = seconds_of([&] { packing = generate_shell_packing(setup.spec, setup.seed, 0); });
+  SoftExperiment e = make_soft_solid(setup.spec, packing, true);
+  force_pass(e.system, 0.0);
+  constexpr int kTrials = 500;
+  const double pass_time = seconds_of([&] { for (int k = 0; k < kTrials; ++k) force_pass(e.system, 0.0); }) / kTrials;
+  const StepLimit limit = step_limit(e.system);
+  out.add("grains", packing.radius.size(), fmt::format("grains in the first packing: {}, solid fraction {:.3f}", packing.radius.size(), packing.solid_fraction()));
+  out.add("time_step", setup.published.step_fraction * limit.natural_time,
+          fmt::format("time step of the published protocol: {:.3g} s, set by grain {} (radius {:.3g} m) at a stiffness of {:.3g} N/m",
+                      setup.published.step_fraction * limit.natural_time, limit.body, e.system.particles.sphere[static_cast<std::size_t>(limit.body)].r, limit.stiffness));
+  double seconds = packing_time * static_cast<double>(setup.packings());
+  for (const MeasureSeries& series : setup.series) {
+    for (const PairKind kind : series.kinds) {
+      const PointCounts points = count_points(series, kind);
+      const double weight = (kind == PairKind::soft_soft ? 2.2 : 1.0) * 2.0;  // the squeezed state has about twice the pairs of the first
+      seconds += weight * pass_time * (static_cast<double>(points.normal) * typical_passes(series.relaxation, false) +
+                                       static_cast<double>(points.rotated) * typical_passes(series.relaxation, true));
+      out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
+              fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind), series.packings, points.normal, points.rotated));
+    }
+  }
+  out.add("core_seconds_measuring", seconds, fmt::format("measuring: about {:.0f} s of one core", seconds));
+}
+
+void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out) {
+  const double soft = setup.spec.soft_share * static_cast<double>(setup.spec.bodies);
+  const double resolved = static_cast<double>(setup.spec.bodies) + soft * grains_per_soft;
+  constexpr double kBytesPerGrain = 300.0;
+  constexpr double kBytesPerContact = 160.0;
+  const double memory = resolved * (kBytesPerGrain + 3.0 * kBytesPerContact);
+  out.add("macro_bodies", setup.spec.bodies, fmt::format("macro: {} samples of {} bodies, {} compression to a strain of {}", setup.samples, setup.spec.bodies, setup.spec.test, setup.spec.strain_end));
+  if (setup.resolved) {
+    out.add("twin_grains", resolved, fmt::format("resolved twin: about {:.0f} grains per sample", resolved));
+    out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
+  }
+}
+
+void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
+  const Scene scene = Scene::load(path, options.overrides);
+  const SceneTable root = scene.root();
+  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles"});
+  out.add("kind", kind, "scene of kind " + kind);
+  if (kind == "particles") {
+    const ParticlesScene particles = read_particles_scene(scene);
+    const StepLimit limit = step_limit(particles.system);
+    out.add("bodies", particles.system.particles.size(), fmt::format("{} grains, {} walls", particles.system.particles.grains, particles.wall_name.size()));
+    out.add("time_step", particles.time.step, fmt::format("step {:.4g} s to {:.4g} s: {:.0f} steps", particles.time.step, particles.time.end, particles.time.end / particles.time.step));
+    if (limit.body >= 0) out.add("step_limit", limit.natural_time, fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+  } else if (kind == "macro") {
+    (void)root.text("title", "");
+    (void)root.text("law", "");
+    (void)root.count("seed", 0, 1000000000000, 1);
+    (void)root.count("contents", 1, 100000, 7);
+    const MacroSetup macro = read_macro_setup(root.table("macro"), SoftParticleSpec{});
+    root.finish();
+    check_macro(macro, 400.0, out);
+  } else if (kind == "pipeline") {
+    const PipelineSetup setup = read_pipeline_setup(root);
+    check_measurements(setup.measure, out);
+    if (setup.macro) check_macro(*setup.macro, out.facts["grains"].get<double>(), out);
+  } else {
+    (void)root.text("title", "");
+    const MeasureSetup setup = read_measure_setup(root);
+    root.finish();
+    check_measurements(setup, out);
+  }
+}
+
+void check_card(const std::string& path, Findings& out) {
+  const LawCard card = load_card(path);
+  out.add("kind", "law card", "law card, measured with the " + card.relaxation + " relaxation");
+  for (const PairLaw& law : card.pairs)
+    out.add(to_string(law.kind), {{"status", law.status}, {"delta_min", law.delta_min}, {"delta_max", law.delta_max}},
+            fmt::format("{}: {}, fitted for Delta from {:.3f} to {:.3f} on {} packings, largest grain overlap {:.2f} of the smaller radius", to_string(law.kind), law.status,
+                        law.delta_min, law.delta_max, law.packings, law.max_overlap));
+}
+
+void check_data(const std::string& path, Findings& out) {
+  const h5::Group root = h5::open_file(path);
+  if (root.has("runs")) {
+    const Measurements data = load_measurements(path);
+    out.add("kind", "measurements", fmt::format("measurements: {} packings, {} runs", data.packings.size(), data.runs.size()));
+    return;
+  }
+  if (root.has("curves")) {
+    const auto curves = load_macro(path);
+    out.add("kind", "macro curves", fmt::format("macro curves: {}", curves.size()));
+    return;
+  }
+  std::string names;
+  for (const std::string& child : root.children()) names += (names.empty() ? "" : ", ") + child;
+  out.add("kind", "HDF5", "readable HDF5 file with " + names);
+}
+
+/// Law cards and scenes are both TOML; cards have a schema at the top.
+bool is_card(const std::string& path) { return Scene::load(path).root().has("schema"); }
+
+}  // namespace
+
+ExitStatus command_check(const CommonOptions& options) {
+  if (options.inputs.size() != 1) throw BadInput("check: give one file");
+  const std::string& path = options.inputs[0];
+  Findings out;
+  if (std::filesystem::path(path).extension() == ".h5")
+    check_data(path, out);
+  else if (is_card(path))
+    check_card(path, out);
+  else
+    check_scene(path, options, out);
+  out.facts["status"] = "good";
+  if (options.json)
+    std::cout << out.facts.dump(2) << "\n";
+  else
+    std::cout << path << ": sound\n" << out.lines;
+  return ExitStatus::good;
+}
+
+}  // namespace softgrain
