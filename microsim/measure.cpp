@@ -42,13 +42,36 @@ TangentialPoint as_tangential(const SoftExperiment& e, double delta, double angl
   return {delta, angle, force[1], force[2], residual, converged};
 }
 
-TangentialPoint rotated_point(const MeasurementState& state, double delta, double angle, const MeasurementPlan& plan,
+TangentialPoint rotated_point(SoftExperiment& e, double delta, double from, double angle, const MeasurementPlan& plan,
                               const Protocol& protocol, Cost& cost) {
-  SoftExperiment e = state.experiment;
   const CostMeter meter(e.system, cost);
-  e.rotate_first(angle, plan.rotation_step_deg, plan.shell_turns);
+  e.rotate_first(angle - from, plan.rotation_step_deg, plan.shell_turns);
   const SettleResult rest = protocol.settle(e, true);
   return as_tangential(e, delta, angle, rest.residual, rest.converged);
+}
+
+/// Angles in the order they are visited: as given, or outwards sign by sign for a cumulative sweep.
+std::vector<double> visiting_order(const MeasurementPlan& plan) {
+  std::vector<double> order = plan.angles_deg;
+  if (plan.cumulative)
+    std::stable_sort(order.begin(), order.end(), [](double a, double b) {
+      if ((a < 0.0) != (b < 0.0)) return a < 0.0;
+      return std::abs(a) < std::abs(b);
+    });
+  return order;
+}
+
+void rotate_through(MeasurementState& state, double delta, const MeasurementPlan& plan, const Protocol& protocol) {
+  SoftExperiment e = state.experiment;
+  double from = 0.0;
+  for (const double angle : visiting_order(plan)) {
+    if (!plan.cumulative || angle * from <= 0.0) {
+      e = state.experiment;
+      from = 0.0;
+    }
+    state.run.tangential.push_back(rotated_point(e, delta, from, angle, plan, protocol, state.run.tangential_cost));
+    from = angle;
+  }
 }
 
 bool is_among(const std::vector<double>& values, double x) {
@@ -63,8 +86,7 @@ void measure(MeasurementState& state, const MeasurementPlan& plan, const Protoco
     const NormalPoint normal = normal_point(state, delta, protocol);
     if (is_among(plan.tangential_deltas, delta)) {
       state.run.tangential.push_back(as_tangential(state.experiment, delta, 0.0, normal.residual, normal.converged));
-      for (const double angle : plan.angles_deg)
-        state.run.tangential.push_back(rotated_point(state, delta, angle, plan, protocol, state.run.tangential_cost));
+      rotate_through(state, delta, plan, protocol);
     }
     state.run.normal.push_back(normal);
     observer(state, static_cast<double>(k + 1) / static_cast<double>(plan.deltas.size()));

@@ -14,9 +14,10 @@ namespace softgrain {
 struct MeasurementPlan {
   std::vector<double> deltas;            ///< ascending, Delta = hn/Rs
   std::vector<double> tangential_deltas; ///< subset of deltas at which the first body is rotated
-  std::vector<double> angles_deg;        ///< rotations, both signs; each starts afresh from the relaxed state
+  std::vector<double> angles_deg;        ///< rotations, both signs; each starts afresh from the relaxed state unless `cumulative`
   double rotation_step_deg = 0.01;       ///< largest rotation between two evaluations of the springs
   bool shell_turns = true;               ///< whether the first shell turns with its grains
+  bool cumulative = false;               ///< each angle goes on from the one before of its sign: cheaper, another path
 };
 
 /// Everything a measurement needs to go on after the last recorded overlap.

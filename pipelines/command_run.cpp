@@ -106,6 +106,7 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Proven
   s["packings"]["seconds"] = r.measured.packing_seconds;
   s["measurement"] = measurement_json(data, setup.measure.series[0].relaxation);
   s["measurement"]["wall_seconds"] = r.measured.wall_seconds;
+  s["forces"] = forces_json(data, setup.measure.series[0].relaxation);
   if (setup.measure.series.size() > 1) {
     s["reference_measurement"] = measurement_json(data, setup.measure.series[1].relaxation);
     s["relaxations"] = relaxations_json(data, setup.measure.series[1].relaxation, setup.measure.series[0].relaxation);

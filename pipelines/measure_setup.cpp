@@ -114,6 +114,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   MeasurementPlan common;
   common.rotation_step_deg = measure.number("rotation_step_deg", Unit::angle_degree, Range{0.0, 5.0, true, false}, common.rotation_step_deg);
   common.shell_turns = measure.flag("shell_turns", common.shell_turns);
+  common.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
   setup.series.push_back(read_series(measure, measure.choice("relaxation", {"damped", "published"}, "damped"), count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "pipelines/compare/compare_measurements.h"
 
@@ -81,6 +82,22 @@ json measurement_json(const Measurements& data, const std::string& relaxation) {
           {"seconds", cost.seconds},
           {"loop_passes_per_point", static_cast<double>(cost.loop_passes) / n},
           {"seconds_per_point", cost.seconds / n}};
+}
+
+json forces_json(const Measurements& data, const std::string& relaxation) {
+  std::map<std::string, std::map<double, std::vector<double>>> forces;
+  for (const PackingRun& run : data.runs) {
+    if (run.relaxation != relaxation) continue;
+    for (const NormalPoint& p : run.normal)
+      if (p.converged) forces[to_string(run.kind)][p.delta].push_back(p.force);
+  }
+  json out = json::object();
+  for (const auto& [kind, rows] : forces)
+    for (const auto& [delta, values] : rows) {
+      const MeanError m = mean_error(values);
+      out[kind].push_back({{"delta", delta}, {"force", m.mean}, {"standard_error", m.error}, {"deviation", m.deviation}, {"packings", m.n}});
+    }
+  return out;
 }
 
 json relaxations_json(const Measurements& data, const std::string& reference, const std::string& candidate) {

@@ -27,6 +27,7 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   summary["title"] = title;
   summary["packings"] = packings_json(result.data);
   summary["measurement"] = measurement_json(result.data, setup.series[0].relaxation);
+  summary["forces"] = forces_json(result.data, setup.series[0].relaxation);
   if (setup.series.size() > 1) {
     summary["reference_measurement"] = measurement_json(result.data, setup.series[1].relaxation);
     summary["relaxations"] = relaxations_json(result.data, setup.series[1].relaxation, setup.series[0].relaxation);

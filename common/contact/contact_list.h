@@ -29,6 +29,7 @@ struct ContactList {
   std::vector<Vec<D>> spring_next;       ///< history of the state tried last
   std::vector<double> memory;            ///< committed history of laws with a memory; empty when no law of the scene has one
   std::vector<double> memory_next;
+  std::vector<double> particle_sum;      ///< scratch of laws with a particle pass, per body; empty when no law has one
   std::vector<ContactSection> sections;
   bool has_spring = false;               ///< some law of the scene has a tangential spring
   bool has_memory = false;

@@ -23,6 +23,8 @@ struct ContactState {
   PairConstants constants{};
   Vec<D> spring{};            ///< history: tangential spring [m]
   double memory = 0.0;        ///< history: one number for laws that ask for it
+  double sum_i = 0.0;         ///< of the particle pass, for laws that ask for it: what all contacts of body i added up to
+  double sum_j = 0.0;
 };
 
 /// Answer of a law: force on i is normal_force * normal + tangential_force.

@@ -173,6 +173,7 @@ void parallel_pass(System<D>& s, double dt) {
     scratch.contributions.assign(s.contacts.i.size(), {});
     scratch.adjacency = adjacency_of(s);
   }
+  particle_pass(s);
   StoreSink<D> sink{scratch.contributions};
   constexpr std::int32_t kChunk = 1024;
   for (const ContactSection& section : s.contacts.sections) {

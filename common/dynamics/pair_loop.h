@@ -2,7 +2,9 @@
 // records). Everything that looks at contacts goes through here.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "common/contact/contact_list.h"
 #include "common/system.h"
@@ -106,6 +108,10 @@ void run_section(System<D>& s, const ContactSection& section, const Law& law, do
     if constexpr (Law::needs_velocity) relative_motion(s.particles, i, j, g, image_velocity, state);
     if constexpr (Law::has_tangential) state.spring = list.spring[c];
     if constexpr (Law::has_memory) state.memory = list.memory[c];
+    if constexpr (Law::needs_particle_pass) {
+      state.sum_i = list.particle_sum[i];
+      state.sum_j = list.particle_sum[j];
+    }
     const ContactResponse<D> response = law.evaluate(state);
     if constexpr (Law::has_tangential) list.spring_next[c] = response.spring;
     if constexpr (Law::has_memory) list.memory_next[c] = response.memory;
@@ -113,35 +119,80 @@ void run_section(System<D>& s, const ContactSection& section, const Law& law, do
   }
 }
 
-}  // namespace detail
+/// The pass over particles that a law may ask for: every contact adds law.share(state, of_i) to the sums of its bodies, before any
+/// contact is evaluated. Laws that do not ask compile to nothing.
+template <int D, Geometry kGeometry, bool kPeriodic, class Law>
+void sum_section(System<D>& s, const ContactSection& section, const Law& law) {
+  if constexpr (Law::needs_particle_pass) {
+    ContactList<D>& list = s.contacts;
+    for (std::int32_t k = section.begin; k < section.end; ++k) {
+      const auto c = static_cast<std::size_t>(k);
+      const auto i = static_cast<std::size_t>(list.i[c]);
+      const auto j = static_cast<std::size_t>(list.j[c]);
+      Vec<D> shift{};
+      if constexpr (kPeriodic) shift = s.cell.image_shift(list.image[c]);
+      ContactGeometry<D> g;
+      if (!meet<D, kGeometry>(s.particles, i, j, shift, g)) continue;
+      ContactState<D> state;
+      state.overlap = g.overlap;
+      state.normal = g.normal;
+      state.constants = list.constants[c];
+      list.particle_sum[i] += law.share(state, true);
+      list.particle_sum[j] += law.share(state, false);
+    }
+  } else {
+    (void)s;
+    (void)section;
+    (void)law;
+  }
+}
 
-/// Runs the part [begin, end) of one section through `sink`.
-template <int D, class Sink>
-void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end, Sink& sink) {
+/// Opens geometry and law of a section: work(law, geometry constant, periodic constant).
+template <int D, class Work>
+void with_types(const System<D>& s, const ContactSection& section, Work&& work) {
   const bool periodic = s.cell.any_periodic();
   std::visit(
       [&](const auto& law) {
+        using G = Geometry;
         switch (section.geometry) {
-          case Geometry::sphere_sphere:
+          case G::sphere_sphere:
             if (periodic)
-              detail::run_section<D, Geometry::sphere_sphere, true>(s, section, law, dt, begin, end, sink);
+              work(law, std::integral_constant<G, G::sphere_sphere>{}, std::true_type{});
             else
-              detail::run_section<D, Geometry::sphere_sphere, false>(s, section, law, dt, begin, end, sink);
+              work(law, std::integral_constant<G, G::sphere_sphere>{}, std::false_type{});
             break;
-          case Geometry::sphere_shell:
-            detail::run_section<D, Geometry::sphere_shell, false>(s, section, law, dt, begin, end, sink);
-            break;
-          case Geometry::sphere_plane:
-            detail::run_section<D, Geometry::sphere_plane, false>(s, section, law, dt, begin, end, sink);
-            break;
+          case G::sphere_shell: work(law, std::integral_constant<G, G::sphere_shell>{}, std::false_type{}); break;
+          case G::sphere_plane: work(law, std::integral_constant<G, G::sphere_plane>{}, std::false_type{}); break;
         }
       },
       s.laws.law(section.law));
 }
 
+}  // namespace detail
+
+/// Runs the part [begin, end) of one section through `sink`.
+template <int D, class Sink>
+void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end, Sink& sink) {
+  detail::with_types(s, section, [&](const auto& law, auto geometry, auto periodic) {
+    detail::run_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, section, law, dt, begin, end, sink);
+  });
+}
+
+/// The particle pass of all laws that ask for one; must precede the loop over contacts.
+template <int D>
+void particle_pass(System<D>& s) {
+  if (s.contacts.particle_sum.empty()) return;
+  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), 0.0);
+  for (const ContactSection& section : s.contacts.sections)
+    detail::with_types(s, section, [&](const auto& law, auto geometry, auto periodic) {
+      detail::sum_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, section, law);
+    });
+}
+
 /// Runs all contacts through `sink`, in list order. The committed history is not touched; spring_next holds the new one.
 template <int D, class Sink>
 void pair_loop(System<D>& s, double dt, Sink& sink) {
+  particle_pass(s);
   for (const ContactSection& section : s.contacts.sections) pair_loop(s, section, dt, section.begin, section.end, sink);
 }
 

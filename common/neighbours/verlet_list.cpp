@@ -128,13 +128,15 @@ void restore_history(ContactList<D>& list, const std::vector<SavedHistory<D>>& s
 }
 
 template <int D>
-void size_history(ContactList<D>& list, const LawSet& laws) {
+void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) {
+  bool sums = false;
   list.has_spring = list.has_memory = false;
   for (std::int32_t l = 0; l < laws.size(); ++l)
     std::visit(
         [&]<class Law>(const Law&) {
           list.has_spring = list.has_spring || Law::has_tangential;
           list.has_memory = list.has_memory || Law::has_memory;
+          sums = sums || Law::needs_particle_pass;
         },
         laws.law(l));
   const std::size_t springs = list.has_spring ? list.i.size() : 0;
@@ -143,6 +145,7 @@ void size_history(ContactList<D>& list, const LawSet& laws) {
   list.spring_next.assign(springs, Vec<D>{});
   list.memory.assign(memories, 0.0);
   list.memory_next.assign(memories, 0.0);
+  list.particle_sum.assign(sums ? bodies : 0, 0.0);
 }
 
 template <int D>
@@ -269,7 +272,7 @@ std::vector<double> default_skin(const Particles<D>& p) {
 template <int D>
 void adopt_list(System<D>& s) {
   fill_constants(s);
-  size_history(s.contacts, s.laws);
+  size_history(s.contacts, s.laws, static_cast<std::size_t>(s.particles.size()));
   static std::atomic<std::uint64_t> builds{0};
   s.contacts.build = ++builds;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "common/io/text_file.h"
+#include "pipelines/report/figures.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/sections.h"
 
@@ -25,6 +26,8 @@ void write_report(const std::string& run_directory) {
   body += provenance_section(run);
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
   write_text_atomic(run_directory + "/report.html", page("softgrain: " + name, body));
+  std::filesystem::create_directories(run_directory + "/figures");
+  for (const Figure& figure : figures_of(body)) write_text_atomic(run_directory + "/figures/" + figure.name + ".svg", figure.svg);
 }
 
 }  // namespace softgrain
