@@ -1,0 +1,167 @@
+// Wrong scenes of explicit particles: status 2, and a message that says where and what.
+#include <gtest/gtest.h>
+
+#include "common/io/text_file.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+const char* const kGood = R"(kind = "particles"
+[material.glass]
+density = 2500.0
+E = "1 MPa"
+nu = 0.2
+[material.bare]
+E = "1 MPa"
+nu = 0.2
+[[contact]]
+pair = ["glass", "glass"]
+law = "hertz-tsuji"
+restitution = 0.9
+mu = 0.3
+[[contact]]
+pair = ["glass", "rigid"]
+law = "hertz-tsuji"
+restitution = 0.9
+mu = 0.3
+[[particle]]
+material = "glass"
+radius = 0.01
+position = [0.0, 0.0, 0.05]
+[[particle]]
+material = "glass"
+radius = 0.01
+position = [0.0, 0.0, 0.1]
+[[wall]]
+shape = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+material = "rigid"
+[time]
+end = 1e-3
+)";
+
+class ParticlesBadInput : public ::testing::Test {
+ protected:
+  /// Replaces the first `from` in the good scene, runs it, expects status 2 and all `words` in the message.
+  void expect(const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+    std::string text = kGood;
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    expect_text(text.replace(at, from.size(), to), words);
+  }
+  void expect_text(const std::string& text, const std::vector<std::string>& words) {
+    write_text_atomic(directory_.file("scene.toml"), text);
+    const ProgramOutcome outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") + "'");
+    EXPECT_EQ(outcome.status, 2) << outcome.output << "\n" << text;
+    for (const std::string& word : words) EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
+  }
+  void expect_file(const std::string& content, const std::vector<std::string>& words) {
+    write_text_atomic(directory_.file("many.xyzr"), content);
+    expect("[time]", "[particles]\nfile = \"many.xyzr\"\nmaterial = \"glass\"\n[time]", words);
+  }
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ParticlesBadInput, TheGoodSceneIsGood) {
+  write_text_atomic(directory_.file("scene.toml"), kGood);
+  const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(ParticlesBadInput, Particles) {
+  expect("radius = 0.01", "radius = 0.0", {"scene.toml:21: radius", "above 0"});
+  expect("radius = 0.01", "radius = -0.01", {"scene.toml:21: radius", "above 0"});
+  expect("radius = 0.01", "radius = nan", {"scene.toml:21: radius", "finite"});
+  expect("radius = 0.01", "radius = 1e-120", {"scene.toml:22", "radius", "mass"});
+  expect("radius = 0.01", "radius = \"1 kg\"", {"scene.toml:21: radius"});
+  expect("radius = 0.01", "radus = 0.01", {"radius", "radus", "scene.toml:"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, inf, 0.05]", {"scene.toml:22: position", "finite"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.05]", {"scene.toml:22: position", "three"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.1]", {"scene.toml:26: position", "same centre", "scene.toml:22"});
+  expect("material = \"glass\"", "material = \"glas\"", {"scene.toml:20: material", "nearest is 'glass'"});
+  expect("material = \"glass\"", "material = \"bare\"", {"scene.toml:20: material", "density"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.05]\ninside = \"nowhere\"", {"scene.toml:23: inside", "no wall"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.05]\nmass = 1.0", {"scene.toml:23: unknown key 'mass'"});
+}
+
+TEST_F(ParticlesBadInput, EmptyScenes) {
+  expect_text("kind = \"particles\"\n[time]\nend = 1.0\n", {"scene.toml:1", "no particle"});
+  expect_text("kind = \"particle\"\n", {"scene.toml:1: kind", "nearest is \"particles\""});
+  expect_text("", {"kind"});
+}
+
+TEST_F(ParticlesBadInput, Materials) {
+  expect("density = 2500.0", "density = 0.0", {"scene.toml:3: density"});
+  expect("nu = 0.2", "nu = 0.6", {"scene.toml:5: nu", "0.5"});
+  expect("nu = 0.2", "rigid = true", {"scene.toml:4: E", "rigid"});
+  expect("[material.bare]", "[material.rigid]", {"rigid", "taken"});
+  expect("E = \"1 MPa\"\nnu = 0.2\n", "", {"scene.toml:", "pair", "E and nu", "glass"});
+}
+
+TEST_F(ParticlesBadInput, Contacts) {
+  expect("restitution = 0.9", "restitution = 1.1", {"scene.toml:12: restitution", "from 0 to 1"});
+  expect("mu = 0.3", "mu = -0.3", {"scene.toml:13: mu"});
+  expect("mu = 0.3\n", "", {"mu", "scene.toml:"});
+  expect("law = \"hertz-tsuji\"", "law = \"hertz-tsuij\"", {"scene.toml:11: law", "nearest is \"hertz-tsuji\""});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"rigit\"]", {"scene.toml:15: pair", "nearest is 'rigid'"});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"glass\"]", {"scene.toml:15: pair", "already", "scene.toml:10"});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"bare\"]", {"'glass'", "'rigid'", "no law", "scene.toml:"});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"rigid\", \"rigid\"]", {"scene.toml:15: pair", "two rigid"});
+  expect("mu = 0.3", "mu = 0.3\ntangential = \"spring\"", {"scene.toml:14: tangential"});
+  expect("mu = 0.3", "mu = 0.3\nnormal_stiffness = 1.0", {"scene.toml:14: unknown key 'normal_stiffness'"});
+  expect("law = \"hertz-tsuji\"", "law = \"linear-spring\"\nnormal_stiffness = 1e3\ntangential_stiffness = 0.0", {"scene.toml:13: tangential_stiffness"});
+}
+
+TEST_F(ParticlesBadInput, Walls) {
+  expect("shape = \"plane\"", "shape = \"box\"", {"scene.toml:28: shape"});
+  expect("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 0.0]", {"scene.toml:30: normal"});
+  expect("material = \"rigid\"", "material = \"rigid\"\nmotion = \"force\"\nforce = 1.0\nmass = 1e-9", {"scene.toml:28", "mass", "heaviest"});
+  expect("material = \"rigid\"", "material = \"rigid\"\nmotion = \"velocity\"", {"velocity", "scene.toml:"});
+  expect("shape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]", "shape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.05]\nradius = 0.009",
+         {"scene.toml:22", "radius", "wall-1"});
+  expect("material = \"rigid\"\n", "material = \"rigid\"\nname = \"a\"\n[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"rigid\"\nname = \"a\"\n",
+         {"scene.toml:38: name", "scene.toml:28"});
+}
+
+TEST_F(ParticlesBadInput, CellTimeAndOutput) {
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true]\n[time]", {"scene.toml:34: periodic", "three"});
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 0.0]\nperiodic = [true, true, false]\n[time]", {"scene.toml:33: size"});
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\n[time]", {"scene.toml:30: normal", "periodic"});
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, false, false]\nshear_rate = 1.0\n[time]", {"scene.toml:35: shear_rate"});
+  expect("end = 1e-3", "end = 0.0", {"scene.toml:33: end"});
+  expect("end = 1e-3", "", {"end", "scene.toml:32"});
+  expect("end = 1e-3", "end = 1e-3\nstep = 1e-2", {"scene.toml:34: step", "limit", "particle 0", "hertz-tsuji of glass and rigid", "scene.toml:15"});
+  expect("end = 1e-3", "end = 1e-3\nstep = \"fast\"", {"scene.toml:34: step"});
+  expect("end = 1e-3", "end = 1e30", {"scene.toml:33: end", "steps"});
+  expect("end = 1e-3", "end = 1e-3\nstep_fraction = 0.7", {"scene.toml:34: step_fraction", "0.6"});
+  expect("end = 1e-3", "end = 1e-3\n[output]\nevery = 0.0", {"scene.toml:35: every"});
+  expect("end = 1e-3", "end = 1e-3\n[output]\nevry = 1e-4", {"scene.toml:35: unknown key 'evry'", "'every'"});
+  expect("end = 1e-3", "end = 1e-3\n[checkpoint]\nevery_steps = -1", {"scene.toml:35: every_steps"});
+}
+
+TEST_F(ParticlesBadInput, FilesOfManySpheres) {
+  expect_file("", {"many.xyzr:1", "N Lx Ly Lz"});
+  expect_file("2 1 1 1\n0 0 1 0.01\n", {"many.xyzr:3", "ends after 1 of 2"});
+  expect_file("1 1 1 1\n0 0 1 0.01\n0 1 1 0.01\n", {"many.xyzr:3", "more lines"});
+  expect_file("1 1 1 1\n0 0 1 -0.01\n", {"many.xyzr:2", "above 0"});
+  expect_file("1 1 1 1\n0 nan 1 0.01\n", {"many.xyzr:2", "finite"});
+  expect_file("1 1 1 1\n0 1 0.01\n", {"many.xyzr:2", "four"});
+  expect_file("1 1 1 1\n0 0 0.1 0.01\n", {"many.xyzr:2", "same centre", "scene.toml:26"});
+  expect("[time]", "[particles]\nfile = \"nothing.xyzr\"\n[time]", {"material"});
+}
+
+TEST_F(ParticlesBadInput, MissingFilesAreFileTrouble) {
+  std::string text = kGood;
+  text += "[particles]\nfile = \"nothing.xyzr\"\nmaterial = \"glass\"\n";
+  write_text_atomic(directory_.file("scene.toml"), text);
+  const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") + "'");
+  EXPECT_EQ(outcome.status, 4) << outcome.output;
+  EXPECT_NE(outcome.output.find("nothing.xyzr"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,65 @@
+// A law card becomes the law of the loop, or is refused with the reason.
+#include "common/contact/soft_contact_from_card.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/error.h"
+
+namespace {
+
+using namespace softgrain;
+
+LawCard card_with(PairKind kind, const std::string& status) {
+  PairLaw law;
+  law.kind = kind;
+  law.status = status;
+  law.reason = "because";
+  law.normal.a.value = 0.6;
+  law.normal.b.value = 2.2;
+  law.normal.delta.value = 0.05;
+  law.normal.c.value = -0.6 * std::pow(0.05, 2.2);
+  law.tangential_initial = law.normal;
+  law.tangential_initial.a.value = 1.5;
+  law.tangential_secant = law.normal;
+  law.tangential_secant.a.value = 1.2;
+  law.has_tangential_initial = law.has_tangential_secant = true;
+  LawCard card;
+  card.pairs.push_back(law);
+  return card;
+}
+
+ContactState<3> pressed(const SoftContact& law, double ratio) {
+  ContactState<3> state;
+  state.constants = law.pair_constants({0.02, 0.03, 1.0, 1.0});
+  state.overlap = ratio * state.constants.a;
+  state.normal = {{1.0, 0.0, 0.0}};
+  return state;
+}
+
+TEST(SoftContactFromCard, ScalesWithModulusAndRadius) {
+  const LawCard card = card_with(PairKind::soft_soft, "good");
+  const SoftContact law = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, false);
+  EXPECT_TRUE(law.partner_is_soft);
+  const auto r = law.evaluate(pressed(law, 0.3));
+  EXPECT_NEAR(r.elastic_force, 4e5 * 0.02 * 0.02 * (0.6 * std::pow(0.3, 2.2) - 0.6 * std::pow(0.05, 2.2)), 1e-12);
+  EXPECT_NEAR(r.tangential_stiffness, 4e5 * 0.02 * 1.5 * (std::pow(0.3, 2.2) - std::pow(0.05, 2.2)), 1e-9);
+  EXPECT_EQ(law.evaluate(pressed(law, 0.05)).elastic_force, 0.0) << "zero at the threshold";
+  EXPECT_EQ(law.evaluate(pressed(law, 0.04)).elastic_force, 0.0);
+  const SoftContact secant = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, true);
+  EXPECT_LT(secant.evaluate(pressed(secant, 0.3)).tangential_stiffness, r.tangential_stiffness);
+}
+
+TEST(SoftContactFromCard, UnusableLawsAreRefused) {
+  const auto make = [](const LawCard& card, PairKind kind) { return make_soft_contact(card, kind, 1e5, 0.3, 0.0, false); };
+  for (const char* status : {"no threshold crossing", "not run"})
+    EXPECT_THROW((void)make(card_with(PairKind::soft_solid, status), PairKind::soft_solid), BadInput) << status;
+  EXPECT_NO_THROW((void)make(card_with(PairKind::soft_solid, "underdetermined"), PairKind::soft_solid));
+  EXPECT_THROW((void)make(card_with(PairKind::soft_solid, "good"), PairKind::soft_soft), BadInput);
+  LawCard broken = card_with(PairKind::soft_solid, "good");
+  broken.pairs[0].normal.b.value = std::nan("");
+  EXPECT_THROW((void)make(broken, PairKind::soft_solid), BadInput);
+}
+
+}  // namespace
