@@ -8,7 +8,8 @@ namespace softgrain {
 ExitStatus command_microsim(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("microsim: one scene is needed (softgrain microsim SCENE.toml)");
   const Scene scene = Scene::load(options.inputs.front(), options.overrides);
-  if (scene.root().choice("kind", {"soft-particle", "particles"}) == "particles") return run_particles_scene(scene, options);
+  if (scene.root().choice("kind", {"soft-particle", "particles"}) == "particles")
+    return run_particles_scene(scene, options);
   return run_soft_particle_scene(scene, options);
 }
 

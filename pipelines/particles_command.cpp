@@ -23,7 +23,10 @@ json particles_json(const System3& s) {
   json out = json::array();
   for (Slot i = 0; i < std::min(s.particles.grains, kMostListed); ++i) {
     const auto u = static_cast<std::size_t>(i);
-    out.push_back({{"id", i}, {"position", s.particles.sphere[u].x.v}, {"velocity", s.particles.velocity[u].v}, {"spin", s.particles.spin[u].v}});
+    out.push_back({{"id", i},
+                   {"position", s.particles.sphere[u].x.v},
+                   {"velocity", s.particles.velocity[u].v},
+                   {"spin", s.particles.spin[u].v}});
   }
   return out;
 }
@@ -32,7 +35,9 @@ json walls_json(const ParticlesScene& scene, const System3& s) {
   json out = json::array();
   for (std::size_t w = 0; w < scene.wall_name.size(); ++w) {
     const std::size_t u = static_cast<std::size_t>(s.particles.grains) + w;
-    out.push_back({{"name", scene.wall_name[w]}, {"position", s.particles.sphere[u].x.v}, {"velocity", s.particles.velocity[u].v}});
+    out.push_back({{"name", scene.wall_name[w]},
+                   {"position", s.particles.sphere[u].x.v},
+                   {"velocity", s.particles.velocity[u].v}});
   }
   return out;
 }
@@ -46,8 +51,11 @@ json body_json(const ParticlesScene& scene, const System3& s, Slot slot) {
 json contacts_json(const ParticlesScene& scene, const ParticlesResult& result) {
   json out = json::array();
   for (const ContactHistory& c : result.contacts)
-    out.push_back({{"pair", {body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)}}, {"count", c.count},
-                   {"duration", c.duration}, {"max_force", c.max_force}, {"max_overlap", c.max_overlap}});
+    out.push_back({{"pair", {body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)}},
+                   {"count", c.count},
+                   {"duration", c.duration},
+                   {"max_force", c.max_force},
+                   {"max_overlap", c.max_overlap}});
   return out;
 }
 
@@ -56,13 +64,24 @@ json time_json(double seconds) { return std::isfinite(seconds) ? json(seconds) :
 
 json summary_json(const ParticlesScene& scene, const ParticlesResult& result) {
   const System3& s = result.system;
-  json out = {{"status", result.usable ? "good" : "not usable"}, {"kind", "particles"}, {"title", scene.title},
-              {"particle_count", s.particles.grains}, {"time", s.time}, {"steps", s.step}, {"step", scene.time.step},
-              {"natural_time", time_json(scene.time.natural_time)}, {"shortest_impact", time_json(scene.time.contact_time)},
-              {"step_limited_by", scene.time.limited_by}, {"kinetic_energy", kinetic_energy(s.particles)},
-              {"frames", result.trajectory.time.size()}, {"particles", particles_json(s)}, {"walls", walls_json(scene, s)}};
-  out["cost"] = {{"loop_passes", s.cost.loop_passes}, {"contact_evaluations", s.cost.contact_evaluations},
-                 {"rebuilds", s.neighbours.rebuilds}, {"seconds", s.cost.seconds}};
+  json out = {{"status", result.usable ? "good" : "not usable"},
+              {"kind", "particles"},
+              {"title", scene.title},
+              {"particle_count", s.particles.grains},
+              {"time", s.time},
+              {"steps", s.step},
+              {"step", scene.time.step},
+              {"natural_time", time_json(scene.time.natural_time)},
+              {"shortest_impact", time_json(scene.time.contact_time)},
+              {"step_limited_by", scene.time.limited_by},
+              {"kinetic_energy", kinetic_energy(s.particles)},
+              {"frames", result.trajectory.time.size()},
+              {"particles", particles_json(s)},
+              {"walls", walls_json(scene, s)}};
+  out["cost"] = {{"loop_passes", s.cost.loop_passes},
+                 {"contact_evaluations", s.cost.contact_evaluations},
+                 {"rebuilds", s.neighbours.rebuilds},
+                 {"seconds", s.cost.seconds}};
   if (result.watched) out["contacts"] = contacts_json(scene, result);
   if (!result.usable) out["reason"] = result.reason;
   return out;
@@ -71,8 +90,9 @@ json summary_json(const ParticlesScene& scene, const ParticlesResult& result) {
 std::string people_text(const ParticlesResult& result, const RunContext& context) {
   const System3& s = result.system;
   const std::string end = result.usable ? "" : "NOT USABLE: " + result.reason + "\n";
-  return end + fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J\ntrajectory: {}", s.particles.grains,
-                           s.step, s.time, s.cost.seconds, kinetic_energy(s.particles), context.path("run.h5"));
+  return end + fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J\ntrajectory: {}",
+                           s.particles.grains, s.step, s.time, s.cost.seconds, kinetic_energy(s.particles),
+                           context.path("run.h5"));
 }
 
 ParticlesResult run_with_progress(const ParticlesScene& scene, const RunContext& context) {

@@ -20,8 +20,9 @@ PowerTerm term(const ThresholdPowerLaw& law) {
 }
 
 void require_sound(const ThresholdPowerLaw& law, PairKind kind, const char* part) {
-  const bool sound = std::isfinite(law.a.value) && law.a.value > 0.0 && std::isfinite(law.b.value) && law.b.value > 0.0 &&
-                     std::isfinite(law.delta.value) && law.delta.value >= 0.0 && law.delta.value < 1.0;
+  const bool sound = std::isfinite(law.a.value) && law.a.value > 0.0 && std::isfinite(law.b.value) &&
+                     law.b.value > 0.0 && std::isfinite(law.delta.value) && law.delta.value >= 0.0 &&
+                     law.delta.value < 1.0;
   if (!sound) unusable(kind, std::string(part) + " part needs a > 0, b > 0 and delta in [0, 1)");
 }
 
@@ -45,7 +46,8 @@ PowerTerm tangential_term(const PairLaw& law, bool use_secant) {
 
 }  // namespace
 
-SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping, bool use_secant) {
+SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
+                              bool use_secant) {
   const PairLaw& law = usable_law(card, kind);
   SoftContact out;
   out.normal = term(law.normal);

@@ -6,10 +6,12 @@
 
 namespace softgrain {
 
-/// The fitted law of `kind` for a material of Young's modulus `modulus` [Pa], Coulomb coefficient `friction` and viscous damping
-/// `damping` (fraction of critical). Tangential stiffness from the initial slope, or from the secant at 1 degree with
-/// `use_secant`; when only one of them was fitted, that one. Throws BadInput when the card has no usable law of this kind
+/// The fitted law of `kind` for a material of Young's modulus `modulus` [Pa], Coulomb coefficient `friction` and
+/// viscous damping `damping` (fraction of critical). Tangential stiffness from the initial slope, or from the secant at
+/// 1 degree with `use_secant`; when only one of them was fitted, that one. Throws BadInput when the card has no usable
+/// law of this kind
 /// ("no threshold crossing", "not run") - an underdetermined law is accepted: it reproduces its data within its range.
-SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping, bool use_secant);
+SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
+                              bool use_secant);
 
 }  // namespace softgrain

@@ -44,9 +44,11 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
   }
   // A body without contacts gets a share of the mean stiffness per size, so that a new contact does not throw it.
   const double floor_per_radius = radii > 0.0 ? 0.1 * sum / radii : 0.0;
+  // With no contact anywhere, weights alone pull: a body then moves its radius in a step of 1, before the limit on moves.
+  const double pull = sum > 0.0 ? 0.0 : worst_net_force(p);
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     const double r = p.sphere[u].r;
-    const double floor = std::max(floor_per_radius * r, 1e-300);
+    const double floor = std::max({floor_per_radius * r, r > 0.0 ? pull / r : 0.0, 1e-300});
     if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = 1.0 / std::max(stiffness_.translation[u], floor);
     if (p.inverse_inertia[u] > 0.0)
       inverse_inertia_[u] = 1.0 / std::max(stiffness_.rotation[u], 0.4 * floor * r * r);
@@ -119,9 +121,12 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
       const double scale = std::max(stiffness_.mean_force(), options_.force_floor);
       const double worst = worst_net_force(s.particles);
       result.residual = scale > 0.0 ? worst / scale : 0.0;
-      if (!std::isfinite(worst)) result.end = RelaxationEnd::diverged;
-      if (worst <= options_.tolerance * scale) result.end = RelaxationEnd::converged;
-      if (result.end == RelaxationEnd::not_run && result.passes >= options_.max_passes) result.end = RelaxationEnd::capped;
+      if (!std::isfinite(worst))
+        result.end = RelaxationEnd::diverged;
+      else if (worst <= options_.tolerance * scale)
+        result.end = RelaxationEnd::converged;
+      else if (result.passes >= options_.max_passes)
+        result.end = RelaxationEnd::capped;
       if (result.end != RelaxationEnd::not_run) break;
       scale_masses(s);
     }

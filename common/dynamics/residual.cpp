@@ -9,11 +9,15 @@ namespace softgrain {
 
 namespace {
 
+/// Whether x is worse than what was seen so far. Not a number is worst of all, and stays so.
+bool exceeds(double x, double worst) { return !(x <= worst) && !std::isnan(worst); }
+
 template <int D>
 double net_force2(const Particles<D>& p, std::size_t u) {
-  double f2 = p.inverse_mass[u] > 0.0 ? norm2(p.force[u]) : 0.0;
-  if (p.inverse_inertia[u] > 0.0) f2 = std::max(f2, norm2(p.torque[u]) / (p.sphere[u].r * p.sphere[u].r));
-  return f2;
+  const double f2 = p.inverse_mass[u] > 0.0 ? norm2(p.force[u]) : 0.0;
+  if (!(p.inverse_inertia[u] > 0.0)) return f2;
+  const double m2 = norm2(p.torque[u]) / (p.sphere[u].r * p.sphere[u].r);
+  return exceeds(m2, f2) ? m2 : f2;
 }
 
 template <int D>
@@ -27,7 +31,10 @@ double smaller_radius(const System<D>& s, const ContactRecord<D>& c) {
 template <int D>
 double worst_net_force(const Particles<D>& p) {
   double worst = 0.0;
-  for (std::size_t u = 0; u < p.force.size(); ++u) worst = std::max(worst, net_force2(p, u));
+  for (std::size_t u = 0; u < p.force.size(); ++u) {
+    const double f2 = net_force2(p, u);
+    if (exceeds(f2, worst)) worst = f2;
+  }
   return std::sqrt(worst);
 }
 
@@ -38,7 +45,7 @@ Residual residual(const System<D>& s) {
   double worst = -1.0;
   for (Slot i = 0; i < p.size(); ++i) {
     const double f2 = net_force2(p, static_cast<std::size_t>(i));
-    if (f2 <= worst) continue;
+    if (!exceeds(f2, worst)) continue;
     worst = f2;
     out.worst_body = i;
   }

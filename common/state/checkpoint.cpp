@@ -48,12 +48,14 @@ void require_match(const h5::Group& root, const std::string& path, const std::st
     throw BadInput(path + ": checkpoint of schema " + std::to_string(root.integer("schema")) + ", this program reads " +
                    std::to_string(kCheckpointSchema) + "; run without --resume");
   if (root.integer("fingerprint") != fingerprint(scene_text))
-    throw BadInput(path + ": belongs to another scene (or other --set values); run without --resume, or into another directory");
+    throw BadInput(
+        path + ": belongs to another scene (or other --set values); run without --resume, or into another directory");
 }
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, const std::string& scene_text, const std::function<void(const h5::Group&)>& content) {
+void write_checkpoint(const std::string& path, const std::string& scene_text,
+                      const std::function<void(const h5::Group&)>& content) {
   h5::AtomicFile file(path, true);
   {
     const h5::Group root = file.root();

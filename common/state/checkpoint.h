@@ -10,11 +10,13 @@
 
 namespace softgrain {
 
-/// Writes `path` (temporary file, flush, rename; the old one stays as path.previous), with schema and a fingerprint of the scene.
-void write_checkpoint(const std::string& path, const std::string& scene_text, const std::function<void(const h5::Group&)>& content);
+/// Writes `path` (temporary file, flush, rename; the old one stays as path.previous), with schema and a fingerprint of
+/// the scene.
+void write_checkpoint(const std::string& path, const std::string& scene_text,
+                      const std::function<void(const h5::Group&)>& content);
 
-/// Opens the newest sound checkpoint for this scene: `path`, else path.previous (then `note` says so). Nothing when neither
-/// exists. Throws BadInput when it belongs to another scene or schema, FileTrouble when all copies are damaged.
+/// Opens the newest sound checkpoint for this scene: `path`, else path.previous (then `note` says so). Nothing when
+/// neither exists. Throws BadInput when it belongs to another scene or schema, FileTrouble when all copies are damaged.
 std::optional<h5::Group> open_checkpoint(const std::string& path, const std::string& scene_text, std::string& note);
 
 /// Removes the checkpoint and its previous copy after a run has ended well.

@@ -48,7 +48,8 @@ std::vector<Vec<N>> read_vectors(const h5::Group& g, const std::string& name, st
 }
 
 /// Indices within [low, high).
-std::vector<std::int32_t> read_slots(const h5::Group& g, const std::string& name, std::size_t size, Count low, Count high) {
+std::vector<std::int32_t> read_slots(const h5::Group& g, const std::string& name, std::size_t size, Count low,
+                                     Count high) {
   const std::vector<Count> values = g.integers(name);
   if (values.size() != size) damaged(name);
   std::vector<std::int32_t> out;
@@ -164,7 +165,8 @@ void write_contacts(const h5::Group& g, const ContactList<D>& list) {
   write_slots(g, "j", list.j);
   write_slots(g, "image", list.image);
   std::vector<Count> sections;
-  for (const ContactSection& s : list.sections) sections.insert(sections.end(), {s.begin, s.end, static_cast<Count>(s.geometry), s.law});
+  for (const ContactSection& s : list.sections)
+    sections.insert(sections.end(), {s.begin, s.end, static_cast<Count>(s.geometry), s.law});
   g.write("sections", sections, {list.sections.size(), 4});
   write_vectors(g, "spring", list.spring);
   g.write("memory", list.memory);
@@ -176,12 +178,12 @@ void read_sections(const h5::Group& g, std::vector<ContactSection>& sections, Co
   Count end = 0;
   sections.clear();
   for (std::size_t k = 0; k < values.size(); k += 4) {
-    const bool sound = values[k] == end && values[k + 1] > end && values[k + 2] >= 0 && values[k + 2] < 3 && values[k + 3] >= 0 &&
-                       values[k + 3] < laws;
+    const bool sound = values[k] == end && values[k + 1] > end && values[k + 2] >= 0 && values[k + 2] < 3 &&
+                       values[k + 3] >= 0 && values[k + 3] < laws;
     if (!sound) damaged("sections");
     end = values[k + 1];
-    sections.push_back({static_cast<std::int32_t>(values[k]), static_cast<std::int32_t>(end), static_cast<Geometry>(values[k + 2]),
-                        static_cast<std::int32_t>(values[k + 3])});
+    sections.push_back({static_cast<std::int32_t>(values[k]), static_cast<std::int32_t>(end),
+                        static_cast<Geometry>(values[k + 2]), static_cast<std::int32_t>(values[k + 3])});
   }
   if (end != pairs) damaged("sections");
 }

@@ -7,13 +7,14 @@
 
 namespace softgrain {
 
-/// Writes bodies, velocities, forces of the last pass, cell, contact histories, neighbour references, clock and counters.
+/// Writes bodies, velocities, forces of the last pass, cell, contact histories, neighbour references, clock and
+/// counters.
 template <int D>
 void write_system(const h5::Group& group, const System<D>& system);
 
-/// Restores what write_system wrote into a system that already has its materials and laws. The neighbour list is taken over as
-/// it was, so that later rebuilds fall on the same steps; constants of the pairs come from the laws. Needs no force pass before
-/// the next step. Throws FileTrouble.
+/// Restores what write_system wrote into a system that already has its materials and laws. The neighbour list is taken
+/// over as it was, so that later rebuilds fall on the same steps; constants of the pairs come from the laws. Needs no
+/// force pass before the next step. Throws FileTrouble.
 template <int D>
 void read_system(const h5::Group& group, System<D>& system);
 

@@ -105,8 +105,8 @@ void ContactMonitor::save(const h5::Group& group) const {
   std::vector<double> numbers;
   for (const auto& [key, w] : watched_) {
     pairs.insert(pairs.end(), {key.first, key.second, w.count});
-    numbers.insert(numbers.end(), {w.duration, w.begin, w.seen, w.overlap, w.force.before, w.force.last, w.force.top, w.depth.before,
-                                   w.depth.last, w.depth.top});
+    numbers.insert(numbers.end(), {w.duration, w.begin, w.seen, w.overlap, w.force.before, w.force.last, w.force.top,
+                                   w.depth.before, w.depth.last, w.depth.top});
   }
   group.write("pairs", pairs, {watched_.size(), 3});
   group.write("numbers", numbers, {watched_.size(), 10});
@@ -115,7 +115,8 @@ void ContactMonitor::save(const h5::Group& group) const {
 void ContactMonitor::load(const h5::Group& group) {
   const std::vector<std::int64_t> pairs = group.integers("pairs");
   const std::vector<double> v = group.doubles("numbers");
-  if (pairs.size() % 3 != 0 || v.size() != pairs.size() / 3 * 10) throw FileTrouble("saved contacts do not fit together");
+  if (pairs.size() % 3 != 0 || v.size() != pairs.size() / 3 * 10)
+    throw FileTrouble("saved contacts do not fit together");
   watched_.clear();
   of_contact_.clear();
   build_ = 0;

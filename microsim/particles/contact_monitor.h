@@ -25,8 +25,8 @@ struct ContactHistory {
 /// Beginnings and ends are interpolated linearly between steps (free flight), maxima by a parabola through three steps.
 class ContactMonitor {
  public:
-  /// To be called after every step, and once before the first. Looks at the committed state; writes nothing but scratch of the
-  /// contact list that the next pass overwrites.
+  /// To be called after every step, and once before the first. Looks at the committed state; writes nothing but scratch
+  /// of the contact list that the next pass overwrites.
   void observe(System3& system);
 
   /// All pairs that have touched, by slots; contacts that last are counted up to the last observation.
@@ -46,10 +46,10 @@ class ContactMonitor {
   };
   struct Watched {
     std::int64_t count = 0;
-    double duration = 0.0;      ///< of contacts that have ended
-    double begin = 0.0;         ///< of the present one
-    double seen = 0.0;          ///< time of the last observation
-    double overlap = 0.0;       ///< then; negative: gap
+    double duration = 0.0;  ///< of contacts that have ended
+    double begin = 0.0;     ///< of the present one
+    double seen = 0.0;      ///< time of the last observation
+    double overlap = 0.0;   ///< then; negative: gap
     Peak force;
     Peak depth;
   };

@@ -22,7 +22,11 @@ using Clock = std::chrono::steady_clock;
 class ParticlesRun {
  public:
   ParticlesRun(const ParticlesScene& scene, const ParticlesControl& control)
-      : scene_(scene), control_(control), integrator_(scene.time.step), due_(scene.checkpoint_seconds), started_(Clock::now()) {}
+      : scene_(scene),
+        control_(control),
+        integrator_(scene.time.step),
+        due_(scene.checkpoint_seconds),
+        started_(Clock::now()) {}
 
   ParticlesResult run();
 
@@ -85,7 +89,9 @@ void ParticlesRun::require_sound() const {
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
     const double move = norm(p.velocity[u]) * scene_.time.step;
-    if (std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u])) && move < p.sphere[u].r) continue;
+    if (std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u])) &&
+        move < p.sphere[u].r)
+      continue;
     throw NotUsable("particle " + std::to_string(i) + " is lost: " +
                     (std::isfinite(move) ? "it moves more than its radius in one step" : "its motion is not finite"));
   }
@@ -104,8 +110,8 @@ void ParticlesRun::save_if_due() {
   if (control_.checkpoint.empty()) return;
   if (interrupt_requested()) {
     save();
-    throw Interrupted("interrupted at step " + std::to_string(system_.step) + " of " + std::to_string(scene_.time.steps) +
-                      "; go on with --resume (" + control_.checkpoint + ")");
+    throw Interrupted("interrupted at step " + std::to_string(system_.step) + " of " +
+                      std::to_string(scene_.time.steps) + "; go on with --resume (" + control_.checkpoint + ")");
   }
   const bool by_steps = scene_.checkpoint_steps > 0 && system_.step % scene_.checkpoint_steps == 0;
   const bool by_time = system_.step % kCheckInterval == 0 && due_.due();
@@ -142,7 +148,8 @@ ParticlesResult ParticlesRun::run() {
     advance();
   } catch (const NotUsable& e) {
     std::ostringstream reason;
-    reason << e.what() << " (step " << system_.step << " of " << scene_.time.steps << ", time " << system_.time << " s)";
+    reason << e.what() << " (step " << system_.step << " of " << scene_.time.steps << ", time " << system_.time
+           << " s)";
     return result(false, reason.str());
   }
   return result(true, "");
@@ -150,7 +157,9 @@ ParticlesResult ParticlesRun::run() {
 
 }  // namespace
 
-ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control) { return ParticlesRun(scene, control).run(); }
+ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control) {
+  return ParticlesRun(scene, control).run();
+}
 
 namespace {
 
@@ -168,7 +177,8 @@ void write_bodies(const h5::Group& g, const ParticlesScene& scene, const System3
   g.write("mass", mass);
   g.attribute_of("mass", "unit", "kg");
   g.write("material", std::vector<std::int64_t>(p.material.begin(), p.material.begin() + p.grains));
-  for (std::size_t m = 0; m < s.materials.size(); ++m) g.attribute("material_" + std::to_string(m), s.materials[m].name);
+  for (std::size_t m = 0; m < s.materials.size(); ++m)
+    g.attribute("material_" + std::to_string(m), s.materials[m].name);
   for (std::size_t w = 0; w < scene.wall_name.size(); ++w) g.attribute("wall_" + std::to_string(w), scene.wall_name[w]);
 }
 
@@ -186,7 +196,8 @@ void write_histories(const h5::Group& g, const std::vector<ContactHistory>& cont
 
 }  // namespace
 
-void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result, const Provenance& provenance) {
+void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result,
+                        const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
   root.attribute("kind", "particles");

@@ -14,29 +14,31 @@ namespace softgrain {
 
 /// What the caller provides.
 struct ParticlesControl {
-  std::string checkpoint;                          ///< path; empty: none is written or read
-  bool resume = false;                             ///< go on from the checkpoint when there is one
-  std::function<void(const std::string&)> say;     ///< a line for people; may be empty
-  std::function<void(std::int64_t step)> progress; ///< now and then; may be empty
+  std::string checkpoint;                           ///< path; empty: none is written or read
+  bool resume = false;                              ///< go on from the checkpoint when there is one
+  std::function<void(const std::string&)> say;      ///< a line for people; may be empty
+  std::function<void(std::int64_t step)> progress;  ///< now and then; may be empty
 };
 
 /// Systems up to this size have their contacts watched.
 inline constexpr Slot kMostWatched = 1000;
 
 struct ParticlesResult {
-  System3 system;                        ///< final state
+  System3 system;  ///< final state
   Trajectory trajectory;
   bool watched = false;                  ///< contacts were watched
   std::vector<ContactHistory> contacts;  ///< of every pair that touched
   bool usable = false;
-  std::string reason;                    ///< why not: lost or diverged particle, with step and time
+  std::string reason;  ///< why not: lost or diverged particle, with step and time
 };
 
-/// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or interruptions.
-/// Throws Interrupted after writing the checkpoint when a signal came; BadInput, FileTrouble for the checkpoint.
+/// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or
+/// interruptions. Throws Interrupted after writing the checkpoint when a signal came; BadInput, FileTrouble for the
+/// checkpoint.
 ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control);
 
 /// run.h5: provenance, bodies, trajectory, contacts, and the final state in full. Atomic. Throws FileTrouble.
-void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result, const Provenance& provenance);
+void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result,
+                        const Provenance& provenance);
 
 }  // namespace softgrain

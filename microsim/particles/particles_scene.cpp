@@ -25,7 +25,8 @@ void read_cell(const SceneTable& root, Cell<3>& cell) {
     if (!(size[k] > 0.0)) t.reject("size", "every component must be above 0");
   cell = box_cell<3>(size, {periodic[0], periodic[1], periodic[2]});
   const double rate = t.number("shear_rate", Unit::frequency, Range::any(), 0.0);
-  if (rate != 0.0 && !(periodic[0] && periodic[1])) t.reject("shear_rate", "needs a cell that is periodic along x and y");
+  if (rate != 0.0 && !(periodic[0] && periodic[1]))
+    t.reject("shear_rate", "needs a cell that is periodic along x and y");
   cell.velocity_gradient[0][1] = rate;
 }
 
@@ -36,7 +37,8 @@ void require_walls_fit_cell(const SceneTable& root, const Cell<3>& cell) {
     if (t.text("shape") != "plane") t.reject("shape", "the inside of a sphere cannot be combined with a periodic cell");
     const Vec3 normal = t.vector3("normal", Unit::none);
     for (int k = 0; k < 3; ++k)
-      if (cell.periodic[static_cast<std::size_t>(k)] && normal[k] != 0.0) t.reject("normal", "must not point along a periodic axis of the cell");
+      if (cell.periodic[static_cast<std::size_t>(k)] && normal[k] != 0.0)
+        t.reject("normal", "must not point along a periodic axis of the cell");
   }
 }
 
@@ -63,8 +65,10 @@ std::set<std::pair<std::int32_t, std::int32_t>> meeting_materials(const Particle
 void require_contacts(const Scene& scene, const System3& s) {
   for (const auto& [a, b] : meeting_materials(s.particles)) {
     if (s.laws.index(a, b) != LawSet::kNoContact) continue;
-    throw BadInput(scene.root().where("contact") + ": contact: no law for the materials '" + s.materials[static_cast<std::size_t>(a)].name + "' and '" +
-                   s.materials[static_cast<std::size_t>(b)].name + "', which can touch: add [[contact]] with this pair");
+    throw BadInput(scene.root().where("contact") + ": contact: no law for the materials '" +
+                   s.materials[static_cast<std::size_t>(a)].name + "' and '" +
+                   s.materials[static_cast<std::size_t>(b)].name +
+                   "', which can touch: add [[contact]] with this pair");
   }
 }
 
@@ -77,7 +81,8 @@ void require_walls_solid(const Scene& scene, const System3& s, const std::vector
       if (index == LawSet::kNoContact) continue;
       const auto* law = std::get_if<SoftContact>(&s.laws.law(index));
       if (law != nullptr && (law->partner_is_soft || !law->i_is_soft))
-        throw BadInput(scene.root().where("wall") + ": wall: " + description[static_cast<std::size_t>(index)] + " makes a wall the soft body; walls must be solid");
+        throw BadInput(scene.root().where("wall") + ": wall: " + description[static_cast<std::size_t>(index)] +
+                       " makes a wall the soft body; walls must be solid");
     }
 }
 
@@ -90,7 +95,8 @@ void read_output(const SceneTable& t, ParticlesScene& out) {
   const double frames = static_cast<double>(out.time.steps) / static_cast<double>(out.output_stride);
   const double bytes = frames * 72.0 * static_cast<double>(out.system.particles.size());
   if (bytes > kMostFrameBytes)
-    t.reject("every", std::to_string(static_cast<std::int64_t>(frames)) + " frames take " + std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
+    t.reject("every", std::to_string(static_cast<std::int64_t>(frames)) + " frames take " +
+                          std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
 }
 
 void read_checkpoint(const SceneTable& t, ParticlesScene& out) {

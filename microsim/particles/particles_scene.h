@@ -14,17 +14,17 @@ namespace softgrain {
 /// A scene ready to run.
 struct ParticlesScene {
   std::string title;
-  System3 system;                       ///< bodies in their first positions, nothing evaluated yet
-  std::vector<std::string> wall_name;   ///< of the slots from particles.grains on
+  System3 system;                      ///< bodies in their first positions, nothing evaluated yet
+  std::vector<std::string> wall_name;  ///< of the slots from particles.grains on
   SceneTime time;
-  std::int64_t output_stride = 0;       ///< steps between recorded frames; 0: only the first and the last state
-  std::int64_t checkpoint_steps = 0;    ///< 0: by wall time alone
-  double checkpoint_seconds = 300.0;    ///< wall time between checkpoints [s]
-  std::string text;                     ///< the scene as it is used
+  std::int64_t output_stride = 0;     ///< steps between recorded frames; 0: only the first and the last state
+  std::int64_t checkpoint_steps = 0;  ///< 0: by wall time alone
+  double checkpoint_seconds = 300.0;  ///< wall time between checkpoints [s]
+  std::string text;                   ///< the scene as it is used
 };
 
-/// Reads and checks everything, computes the step. Throws BadInput with file:line (also for particles that lie in a file of
-/// their own), FileTrouble for files that cannot be read.
+/// Reads and checks everything, computes the step. Throws BadInput with file:line (also for particles that lie in a
+/// file of their own), FileTrouble for files that cannot be read.
 ParticlesScene read_particles_scene(const Scene& scene);
 
 }  // namespace softgrain

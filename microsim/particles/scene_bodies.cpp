@@ -46,7 +46,8 @@ bool holds_centre(const SceneWall& wall, const Vec3& x) { return !wall.plane && 
 
 /// The first sphere-inside that holds the centre, -1 without.
 std::ptrdiff_t wall_around(const Builder& b, const Vec3& x) {
-  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const SceneWall& w) { return holds_centre(w, x); });
+  const auto found =
+      std::find_if(b.walls.begin(), b.walls.end(), [&](const SceneWall& w) { return holds_centre(w, x); });
   return found == b.walls.end() ? -1 : found - b.walls.begin();
 }
 
@@ -88,26 +89,30 @@ void require_distinct_centres(const Builder& b) {
   std::vector<Slot> order(b.grains.size());
   std::iota(order.begin(), order.end(), 0);
   const auto centre = [&](Slot k) -> const auto& { return b.grains[static_cast<std::size_t>(k)].x.v; };
-  std::sort(order.begin(), order.end(), [&](Slot a, Slot c) { return centre(a) != centre(c) ? centre(a) < centre(c) : a < c; });
+  std::sort(order.begin(), order.end(),
+            [&](Slot a, Slot c) { return centre(a) != centre(c) ? centre(a) < centre(c) : a < c; });
   for (std::size_t k = 1; k < order.size(); ++k)
     if (centre(order[k - 1]) == centre(order[k]))
-      throw BadInput(b.out.where_of(order[k]) + ": position: particle " + std::to_string(order[k]) + " has the same centre as particle " +
-                     std::to_string(order[k - 1]) + " (" + b.out.where_of(order[k - 1]) + ")");
+      throw BadInput(b.out.where_of(order[k]) + ": position: particle " + std::to_string(order[k]) +
+                     " has the same centre as particle " + std::to_string(order[k - 1]) + " (" +
+                     b.out.where_of(order[k - 1]) + ")");
 }
 
 void require_fits(const Builder& b, Slot k) {
   const NewBody<3>& grain = b.grains[static_cast<std::size_t>(k)];
   const SceneWall& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
   if (grain.r < wall.body.r) return;
-  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " + std::to_string(wall.body.r) +
-                 ", the radius of the sphere around it, '" + wall.name + "' (" + wall.where + ")");
+  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " +
+                 std::to_string(wall.body.r) + ", the radius of the sphere around it, '" + wall.name + "' (" +
+                 wall.where + ")");
 }
 
 /// Radii and densities so extreme that the mass is no number.
 void require_mass(const Builder& b, Slot k) {
   const NewBody<3>& grain = b.grains[static_cast<std::size_t>(k)];
   if (grain.inertia > 0.0 && std::isfinite(grain.mass) && std::isfinite(1.0 / grain.inertia)) return;
-  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": the mass of this particle is out of the range of numbers");
+  throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) +
+                 ": the mass of this particle is out of the range of numbers");
 }
 
 /// Slots of the walls: sphere-insides follow the particles, planes come last.
@@ -147,8 +152,10 @@ void place_walls(Builder& b) {
     if (!w.plane) continue;
     if (w.needs_mass) w.body.mass = total;
     if (w.body.mass > 0.0 && w.body.mass < heaviest)
-      throw BadInput(w.where + ": mass = " + std::to_string(w.body.mass) + ": a wall moved by a force must weigh at least as much as the heaviest particle, " +
-                     std::to_string(heaviest) + " kg (left out: the mass of all particles, " + std::to_string(total) + " kg)");
+      throw BadInput(w.where + ": mass = " + std::to_string(w.body.mass) +
+                     ": a wall moved by a force must weigh at least as much as the heaviest particle, " +
+                     std::to_string(heaviest) + " kg (left out: the mass of all particles, " + std::to_string(total) +
+                     " kg)");
     const Slot slot = add_plane(b.out.particles, w.body, w.normal);
     b.out.particles.plane_load[static_cast<std::size_t>(slot - b.out.particles.first_plane())] = w.load;
     b.out.wall_name.push_back(w.name);
@@ -167,7 +174,8 @@ SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materia
   Builder b{scene, materials, read_walls(root, materials), {}, {}, {}};
   for (const SceneTable& t : root.tables("particle")) add_table(b, t);
   add_file(b, root.table_or_empty("particles"));
-  if (b.grains.empty()) throw BadInput(scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
+  if (b.grains.empty())
+    throw BadInput(scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
   require_distinct_centres(b);
   place_grains(b, wall_slots(b));
   place_walls(b);

@@ -14,16 +14,17 @@ namespace softgrain {
 /// Bodies as slots: particles in the order of the scene ([[particle]] tables, then the file), sphere-insides, planes.
 struct SceneBodies {
   Particles<3> particles;
-  std::vector<std::string> wall_name;  ///< slot order (from `particles.grains` on); given, or "wall-1", "wall-2"... in scene order
-  std::vector<std::string> where;      ///< "file:line" of particles that have a table of their own
-  std::string many_file;               ///< path of the file with the others
+  std::vector<std::string>
+      wall_name;  ///< slot order (from `particles.grains` on); given, or "wall-1", "wall-2"... in scene order
+  std::vector<std::string> where;  ///< "file:line" of particles that have a table of their own
+  std::string many_file;           ///< path of the file with the others
 
   /// "file:line" of a particle, for messages.
   [[nodiscard]] std::string where_of(Slot particle) const;
 };
 
-/// [[particle]], [particles] and [[wall]]. Throws BadInput: no particle, coincident centres, a particle without density, one
-/// that does not fit into its sphere.
+/// [[particle]], [particles] and [[wall]]. Throws BadInput: no particle, coincident centres, a particle without
+/// density, one that does not fit into its sphere.
 SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materials);
 
 }  // namespace softgrain

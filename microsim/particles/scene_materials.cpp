@@ -59,8 +59,10 @@ AnyLaw read_hertz(const SceneTable& t, const Material& a, const Material& b) {
   const double restitution = read_restitution(t);
   const bool rescaled = t.choice("tangential", {"mindlin", "rescaled"}, "mindlin") == "rescaled";
   for (const Material* m : {&a, &b})
-    if (!m->rigid && !(m->youngs_modulus > 0.0)) t.reject("pair", "the law needs E and nu of material '" + m->name + "'");
-  if (a.rigid && b.rigid) t.reject("pair", "a contact of two rigid materials has no finite stiffness; use law = \"linear-spring\"");
+    if (!m->rigid && !(m->youngs_modulus > 0.0))
+      t.reject("pair", "the law needs E and nu of material '" + m->name + "'");
+  if (a.rigid && b.rigid)
+    t.reject("pair", "a contact of two rigid materials has no finite stiffness; use law = \"linear-spring\"");
   return hertz_law(HertzCoefficients::of(a, b, friction, restitution), rescaled);
 }
 
@@ -87,8 +89,10 @@ SoftContact read_card_law(const Scene& scene, const SceneTable& t, PairKind kind
   }
 }
 
-void set_card_law(const Scene& scene, const SceneTable& t, const std::vector<Material>& materials, const PairOfMaterials& pair, LawSet& laws) {
-  const PairKind kind = t.choice("kind", {"soft-solid", "soft-soft"}) == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+void set_card_law(const Scene& scene, const SceneTable& t, const std::vector<Material>& materials,
+                  const PairOfMaterials& pair, LawSet& laws) {
+  const PairKind kind =
+      t.choice("kind", {"soft-solid", "soft-soft"}) == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
   SoftContact law = read_card_law(scene, t, kind);
   if (kind == PairKind::soft_soft) {
     laws.set(pair.first, pair.second, law);
@@ -109,14 +113,16 @@ void read_contact(const Scene& scene, const SceneTable& t, const std::vector<Mat
   const std::int32_t before = out.laws.index(pair.first, pair.second);
   if (before != LawSet::kNoContact)
     t.reject("pair", "has a law already: " + out.description[static_cast<std::size_t>(before)]);
-  if (out.laws.size() + 2 > static_cast<std::int32_t>(LawSet::kMostLaws)) t.reject("pair", "more than 64 laws in one scene");
+  if (out.laws.size() + 2 > static_cast<std::int32_t>(LawSet::kMostLaws))
+    t.reject("pair", "more than 64 laws in one scene");
   const std::string law = t.choice("law", {"hertz-tsuji", "linear-spring", "law-card"});
   const Material& a = materials[static_cast<std::size_t>(pair.first)];
   const Material& b = materials[static_cast<std::size_t>(pair.second)];
   if (law == "hertz-tsuji") out.laws.set(pair.first, pair.second, read_hertz(t, a, b));
   if (law == "linear-spring") out.laws.set(pair.first, pair.second, read_linear(t));
   if (law == "law-card") set_card_law(scene, t, materials, pair, out.laws);
-  out.description.resize(static_cast<std::size_t>(out.laws.size()), law + " of " + pair.text + " (" + t.where("pair") + ")");
+  out.description.resize(static_cast<std::size_t>(out.laws.size()),
+                         law + " of " + pair.text + " (" + t.where("pair") + ")");
 }
 
 }  // namespace

@@ -74,7 +74,9 @@ std::string limit_sentence(const StepLimit& limit, const System3& s, const std::
 /// As many steps as fill the time.
 std::int64_t steps_to(const SceneTable& t, double end, double step) {
   const double steps = std::ceil(end / step * (1.0 - 1e-12));
-  if (!(steps <= kMostSteps)) t.reject("end", "takes " + shown(steps) + " steps of " + shown(step) + " s, at most " + shown(kMostSteps) + " are allowed");
+  if (!(steps <= kMostSteps))
+    t.reject("end", "takes " + shown(steps) + " steps of " + shown(step) + " s, at most " + shown(kMostSteps) +
+                        " are allowed");
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
@@ -89,7 +91,8 @@ void take_step(const SceneTable& t, SceneTime& out) {
   out.step = t.number("step", Unit::time, Range::positive());
   const double limit = kLargestStepFraction * out.natural_time;
   if (out.step > limit)
-    t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(kLargestStepFraction) + " sqrt(m/k), " + out.limited_by);
+    t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(kLargestStepFraction) + " sqrt(m/k), " +
+                         out.limited_by);
   out.steps = steps_to(t, out.end, out.step);
 }
 
@@ -104,7 +107,8 @@ double shortest_impact(const System3& s, double end) {
     for (std::int32_t m = 0; m < s.laws.materials(); ++m) {
       const std::int32_t law = s.laws.index(s.particles.material[u], m);
       if (law == LawSet::kNoContact) continue;
-      shortest = std::min(shortest, impact_time(s.laws.law(law), s.particles.sphere[u].r, s.particles.inverse_mass[u], speed));
+      shortest =
+          std::min(shortest, impact_time(s.laws.law(law), s.particles.sphere[u].r, s.particles.inverse_mass[u], speed));
     }
   }
   return shortest;
@@ -113,7 +117,8 @@ double shortest_impact(const System3& s, double end) {
 SceneTime read_time(const SceneTable& t, const System3& system, const std::vector<std::string>& law_description) {
   SceneTime out;
   out.end = t.number("end", Unit::time, Range::positive());
-  const double fraction = t.number("step_fraction", Unit::none, Range{0.0, kLargestStepFraction, true, false}, kDefaultFraction);
+  const double fraction =
+      t.number("step_fraction", Unit::none, Range{0.0, kLargestStepFraction, true, false}, kDefaultFraction);
   const StepLimit limit = step_limit(system);
   out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
   if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);

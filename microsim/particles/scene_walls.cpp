@@ -28,7 +28,8 @@ void read_motion(const SceneTable& t, SceneWall& wall) {
   const std::string motion = t.choice("motion", {"fixed", "velocity", "force"}, "fixed");
   if (motion == "velocity") wall.body.velocity = t.vector3("velocity", Unit::velocity);
   if (motion != "force") return;
-  if (!wall.plane) t.reject("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
+  if (!wall.plane)
+    t.reject("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
   wall.load = t.number("force", Unit::force);
   wall.needs_mass = !t.has("mass");
   if (!wall.needs_mass) wall.body.mass = t.number("mass", Unit::mass, Range::positive());

@@ -11,7 +11,7 @@ namespace {
 struct Column {
   const char* name;
   const char* unit;
-  std::vector<double> Trajectory::* values;
+  std::vector<double> Trajectory::*values;
   std::size_t width;  ///< numbers per body; 0: one number per frame
 };
 
@@ -56,7 +56,9 @@ void write_trajectory(const h5::Group& group, const Trajectory& t) {
   const std::size_t frames = t.time.size();
   for (const Column& c : kColumns) {
     const std::vector<double>& values = t.*c.values;
-    const h5::Shape shape = c.width == 0 ? h5::Shape{frames} : h5::Shape{frames, frames == 0 ? 0 : values.size() / (frames * c.width), c.width};
+    const h5::Shape shape = c.width == 0
+                                ? h5::Shape{frames}
+                                : h5::Shape{frames, frames == 0 ? 0 : values.size() / (frames * c.width), c.width};
     group.write(c.name, values, shape);
     group.attribute_of(c.name, "unit", c.unit);
   }

@@ -10,15 +10,15 @@ namespace softgrain {
 
 /// One entry, or one block of 3 numbers per body, per frame; frames follow each other.
 struct Trajectory {
-  std::vector<double> time;                   ///< [s]
-  std::vector<double> position;               ///< of particles [m]
-  std::vector<double> velocity;               ///< [m/s]
-  std::vector<double> spin;                   ///< [rad/s]
-  std::vector<double> wall_position;          ///< centre of a sphere-inside, point of a plane [m]
-  std::vector<double> cell_edges;             ///< row-major 3 x 3 [m]
-  std::vector<double> translational_energy;   ///< of particles [J]
-  std::vector<double> rotational_energy;      ///< [J]
-  std::vector<double> gravitational_energy;   ///< -sum m g.x [J]; zero at the origin
+  std::vector<double> time;                  ///< [s]
+  std::vector<double> position;              ///< of particles [m]
+  std::vector<double> velocity;              ///< [m/s]
+  std::vector<double> spin;                  ///< [rad/s]
+  std::vector<double> wall_position;         ///< centre of a sphere-inside, point of a plane [m]
+  std::vector<double> cell_edges;            ///< row-major 3 x 3 [m]
+  std::vector<double> translational_energy;  ///< of particles [J]
+  std::vector<double> rotational_energy;     ///< [J]
+  std::vector<double> gravitational_energy;  ///< -sum m g.x [J]; zero at the origin
 };
 
 /// Appends the system as it is.

@@ -36,16 +36,19 @@ std::string read_unpacked(const std::string& path) {
 }
 
 /// Four numbers separated by blanks or tabs, all finite, and nothing else.
-std::array<double, 4> four_numbers(std::string_view line, const std::string& path, std::int64_t number, const char* what) {
+std::array<double, 4> four_numbers(std::string_view line, const std::string& path, std::int64_t number,
+                                   const char* what) {
   constexpr std::string_view kBlank = " \t\r";
   std::array<double, 4> out{};
   for (double& value : out) {
     line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-    if (error != std::errc{} || !std::isfinite(value)) wrong(path, number, "must be four finite numbers, " + std::string(what));
+    if (error != std::errc{} || !std::isfinite(value))
+      wrong(path, number, "must be four finite numbers, " + std::string(what));
     line.remove_prefix(static_cast<std::size_t>(end - line.data()));
   }
-  if (line.find_first_not_of(kBlank) != std::string_view::npos) wrong(path, number, "must be four numbers, " + std::string(what));
+  if (line.find_first_not_of(kBlank) != std::string_view::npos)
+    wrong(path, number, "must be four numbers, " + std::string(what));
   return out;
 }
 
@@ -73,7 +76,8 @@ XyzrFile read_xyzr(const std::string& path) {
   const std::size_t n = count_of(head[0], path);
   for (std::size_t k = 0; k < n; ++k) {
     const std::int64_t line = xyzr_line(k);
-    if (rest.empty()) wrong(path, line, "the file ends after " + std::to_string(k) + " of " + std::to_string(n) + " spheres");
+    if (rest.empty())
+      wrong(path, line, "the file ends after " + std::to_string(k) + " of " + std::to_string(n) + " spheres");
     const auto v = four_numbers(next_line(rest), path, line, "x y z r");
     if (!(v[3] > 0.0)) wrong(path, line, "r = " + std::to_string(v[3]) + ": must be above 0");
     file.position.push_back({{v[0], v[1], v[2]}});

@@ -10,9 +10,9 @@
 namespace softgrain {
 
 struct XyzrFile {
-  Vec3 box{};                    ///< Lx Ly Lz [m], as written; not used as a cell
-  std::vector<Vec3> position;    ///< [m]
-  std::vector<double> radius;    ///< [m], > 0
+  Vec3 box{};                  ///< Lx Ly Lz [m], as written; not used as a cell
+  std::vector<Vec3> position;  ///< [m]
+  std::vector<double> radius;  ///< [m], > 0
 };
 
 /// Line of a sphere in its file.

@@ -34,13 +34,17 @@ void expect_momenta_kept(const ImpactSetup& setup, bool rescaled, double e) {
   const Vec3 l = angular_momentum(s.particles);
   const double p_scale = norm(p);
   const double l_scale = norm(l) + p_scale * setup.radius;
-  const double step = hertz_impact(std::sqrt(effective_radius(setup)) * HertzCoefficients::of(kGlass, kGlass, 0.0, 1.0).inverse_d,
-                                   effective_mass(s), setup.speed).duration / 300.0;
+  const double step =
+      hertz_impact(std::sqrt(effective_radius(setup)) * HertzCoefficients::of(kGlass, kGlass, 0.0, 1.0).inverse_d,
+                   effective_mass(s), setup.speed)
+          .duration /
+      300.0;
   const ImpactOutcome out = collide(s, setup.partner, step, 3000);
   EXPECT_TRUE(out.ended);
   EXPECT_LT(out.energy_ratio, 0.999) << "friction must have done something";
   EXPECT_LT(norm(momentum(s.particles) - p), 1e-12 * p_scale);
-  // The force acts during a step while arms turn: the angular momentum of velocity Verlet is kept up to the order of the step.
+  // The force acts during a step while arms turn: the angular momentum of velocity Verlet is kept up to the order of
+  // the step.
   EXPECT_LT(norm(angular_momentum(s.particles) - l), 1e-7 * l_scale);
 }
 
@@ -70,7 +74,8 @@ TEST(Conservation, ActionAndReactionOfAState) {
   EXPECT_LT(norm(moment), 1e-14 * scale * p.sphere[1].r);
 }
 
-// ---- force = -dE/dx -------------------------------------------------------------------------------------------------------
+// ---- force = -dE/dx
+// -------------------------------------------------------------------------------------------------------
 
 const SoftContact kSoft{{0.6, 2.2, -0.6 * std::pow(0.05, 2.2)}, {}, 0.05, 1e8, 0.0, 0.0, true, true};
 
@@ -80,7 +85,9 @@ double contact_energy(const AnyLaw& law, const ContactRecord<3>& c, double radiu
   if (const auto* soft = std::get_if<SoftContact>(&law)) {
     // E R^3 int_delta^D (a d^b + c) dd
     const double d = c.overlap / radius;
-    const auto primitive = [&](double x) { return soft->normal.a * std::pow(x, soft->normal.b + 1.0) / (soft->normal.b + 1.0) + soft->normal.c * x; };
+    const auto primitive = [&](double x) {
+      return soft->normal.a * std::pow(x, soft->normal.b + 1.0) / (soft->normal.b + 1.0) + soft->normal.c * x;
+    };
     return soft->modulus * radius * radius * radius * (primitive(d) - primitive(soft->delta));
   }
   return 0.4 * c.normal_force * c.overlap;
@@ -105,7 +112,8 @@ System3 crowd(const AnyLaw& law, bool periodic) {
   RandomStream random(5, RandomPurpose::test, 3);
   const auto places = shaken_lattice<3>({{0.5, 0.5, 0.5}}, 0.24, 4, 9);
   const bool walls = !periodic && !std::holds_alternative<SoftContact>(law);
-  for (const Vec3& x : places) add_grain(s.particles, solid_sphere<3>(x, 0.11 + 0.04 * random.uniform(), 2500.0, walls ? 64 : -1));
+  for (const Vec3& x : places)
+    add_grain(s.particles, solid_sphere<3>(x, 0.11 + 0.04 * random.uniform(), 2500.0, walls ? 64 : -1));
   if (periodic) {
     s.cell = box_cell<3>({{0.96, 0.96, 0.96}}, {true, true, true});
     s.cell.edges[0][1] = 0.3;
@@ -137,7 +145,8 @@ void expect_gradient(const AnyLaw& law, bool periodic) {
       System3 down = s;
       up.particles.sphere[u].x[k] += h;
       down.particles.sphere[u].x[k] -= h;
-      EXPECT_NEAR(-(energy(up, law) - energy(down, law)) / (2.0 * h), s.particles.force[u][k], 1e-6 * largest) << u << " " << k;
+      EXPECT_NEAR(-(energy(up, law) - energy(down, law)) / (2.0 * h), s.particles.force[u][k], 1e-6 * largest)
+          << u << " " << k;
     }
 }
 

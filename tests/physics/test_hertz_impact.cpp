@@ -14,7 +14,8 @@ const Material kSteel{"steel", 7800.0, 2.1e11, 0.3, false};
 void expect_closed_form(const ImpactSetup& setup) {
   const HertzCoefficients k = HertzCoefficients::of(kSteel, kSteel, 0.0, 1.0);
   System3 s = impact_system(setup, hertz_law(k, false), kSteel);
-  const HertzImpact expected = hertz_impact(std::sqrt(effective_radius(setup)) * k.inverse_d, effective_mass(s), setup.speed);
+  const HertzImpact expected =
+      hertz_impact(std::sqrt(effective_radius(setup)) * k.inverse_d, effective_mass(s), setup.speed);
   const ImpactOutcome out = collide(s, setup.partner, expected.duration / 200.0, 2000);
   EXPECT_NEAR(out.duration / expected.duration, 1.0, 1e-4);
   EXPECT_NEAR(out.max_overlap / expected.overlap, 1.0, 1e-4);
@@ -80,8 +81,8 @@ TEST(Integrator, EnergyErrorOfAHertzGasIsFourfoldSmallerAtHalfTheStep) {
   EXPECT_NEAR(coarse / fine, 4.0, 0.6) << coarse << " " << fine;
 }
 
-/// Error of position and velocity after a while of a ball that swings on a linear spring with dashpot under gravity, always in
-/// contact: x'' = -w^2 (x - x_rest) - 2 zeta w x'.
+/// Error of position and velocity after a while of a ball that swings on a linear spring with dashpot under gravity,
+/// always in contact: x'' = -w^2 (x - x_rest) - 2 zeta w x'.
 double oscillator_error(double zeta, int steps) {
   const double w = 2.0 * std::numbers::pi;
   const double amplitude = 1e-3;

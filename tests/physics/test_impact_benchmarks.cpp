@@ -15,7 +15,9 @@ namespace {
 using namespace softgrain;
 using namespace softgrain::test;
 
-std::string scene(const std::string& name) { return std::string(SOFTGRAIN_REFERENCE_DIR) + "/scenes/" + name + ".toml"; }
+std::string scene(const std::string& name) {
+  return std::string(SOFTGRAIN_REFERENCE_DIR) + "/scenes/" + name + ".toml";
+}
 
 /// Rows of numbers of a text file; other lines are left out.
 std::vector<std::vector<double>> table(const std::string& file) {
@@ -43,7 +45,8 @@ void expect_contact(const nlohmann::json& summary, const Expected& expected) {
   EXPECT_NEAR(contact["max_force"].get<double>() / expected.force, 1.0, 1e-4);
   EXPECT_NEAR(contact["max_overlap"].get<double>() / expected.overlap, 1.0, 1e-4);
   EXPECT_NEAR(contact["duration"].get<double>() / expected.duration, 1.0, 1e-4);
-  EXPECT_LE(summary["step"].get<double>(), expected.duration / 200.0 * 1.001) << "resolution that the scene is run with";
+  EXPECT_LE(summary["step"].get<double>(), expected.duration / 200.0 * 1.001)
+      << "resolution that the scene is run with";
 }
 
 /// Force on particle 0 from the change of its velocity along `axis` between frames.
@@ -65,7 +68,8 @@ ForceCurve force_curve(const std::string& directory, std::size_t axis) {
   ForceCurve out;
   for (std::size_t k = 1; k < time.size(); ++k) {
     out.time.push_back(0.5 * (time[k] + time[k - 1]));
-    out.force.push_back(mass * std::abs(velocity[k * width + axis] - velocity[(k - 1) * width + axis]) / (time[k] - time[k - 1]));
+    out.force.push_back(mass * std::abs(velocity[k * width + axis] - velocity[(k - 1) * width + axis]) /
+                        (time[k] - time[k - 1]));
   }
   return out;
 }
@@ -150,7 +154,8 @@ TEST(ImpactBenchmarks, ObliqueImpactBeyondThirtyDegrees) {
     set << "--set 'particle.0.velocity=[" << vx << ", 0.0, " << -3.9 * std::cos(angle) << "]'";
     const auto summary = run_scene(scene("oblique_impact"), directory.path(), set.str() + " --set time.end='60 us'");
     ASSERT_EQ(summary["contacts"].size(), 1U);
-    EXPECT_NEAR(summary["particles"][0]["velocity"][0].get<double>() / vx, row[1], 0.016 * row[1]) << row[0] << " degrees";
+    EXPECT_NEAR(summary["particles"][0]["velocity"][0].get<double>() / vx, row[1], 0.016 * row[1])
+        << row[0] << " degrees";
   }
 }
 

@@ -1,4 +1,5 @@
-// Friction must not make energy. The rescaled spring never does; the published form does a little, and how much is known.
+// Friction must not make energy. The rescaled spring never does; the published form does a little, and how much is
+// known.
 #include <gtest/gtest.h>
 
 #include "tests/support/impact.h"
@@ -10,15 +11,18 @@ using namespace softgrain::test;
 
 const Material kOxide{"oxide", 4000.0, 3.8e11, 0.23, false};
 
-/// Energy after over before, for an impact at `degrees` from the normal with a backspin of `spin_share` of the sliding speed.
+/// Energy after over before, for an impact at `degrees` from the normal with a backspin of `spin_share` of the sliding
+/// speed.
 double energy_ratio(const Material& material, Partner partner, bool rescaled, double e, double friction, double degrees,
                     double spin_share) {
   const double angle = degrees * std::numbers::pi / 180.0;
-  ImpactSetup setup{partner, 0.0025, partner == Partner::shell_inside ? 3.0 : 2.0, 3.9 * std::cos(angle), 3.9 * std::sin(angle)};
+  ImpactSetup setup{partner, 0.0025, partner == Partner::shell_inside ? 3.0 : 2.0, 3.9 * std::cos(angle),
+                    3.9 * std::sin(angle)};
   setup.spin[1] = -spin_share * setup.sliding_speed / setup.radius;
   const HertzCoefficients k = HertzCoefficients::of(material, material, friction, e);
   System3 s = impact_system(setup, hertz_law(k, rescaled), material);
-  const double duration = hertz_impact(std::sqrt(effective_radius(setup)) * k.inverse_d, effective_mass(s), setup.speed).duration;
+  const double duration =
+      hertz_impact(std::sqrt(effective_radius(setup)) * k.inverse_d, effective_mass(s), setup.speed).duration;
   const ImpactOutcome out = collide(s, partner, duration / 4000.0, 40000);
   EXPECT_TRUE(out.ended);
   return out.energy_ratio;
@@ -51,12 +55,14 @@ double largest_creation(double friction) {
 }
 
 TEST(Passivity, WhatThePublishedSpringMakesIsBounded) {
-  // Measured on a fine grid of angles, spins and Poisson's ratios: 0.015 %, 0.13 %, 0.37 %, 1.3 % (and 8.6 % at mu = 5).
+  // Measured on a fine grid of angles, spins and Poisson's ratios: 0.015 %, 0.13 %, 0.37 %, 1.3 % (and 8.6 % at mu =
+  // 5).
   const std::vector<std::pair<double, double>> bounds{{0.1, 2e-4}, {0.3, 1.5e-3}, {0.5, 4e-3}, {1.0, 1.5e-2}};
   for (const auto& [friction, bound] : bounds) {
     const double most = largest_creation(friction);
     EXPECT_LT(most, bound) << "mu " << friction;
-    EXPECT_GT(most, 0.25 * bound) << "mu " << friction << ": if this form has become passive, say so in the documentation";
+    EXPECT_GT(most, 0.25 * bound) << "mu " << friction
+                                  << ": if this form has become passive, say so in the documentation";
   }
 }
 

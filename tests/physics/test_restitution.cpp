@@ -1,5 +1,5 @@
-// The restitution asked for comes out, whatever the sizes and speeds. Convention: nothing is clipped, the contact ends at zero
-// overlap (the dashpot may pull at the very end).
+// The restitution asked for comes out, whatever the sizes and speeds. Convention: nothing is clipped, the contact ends
+// at zero overlap (the dashpot may pull at the very end).
 #include <gtest/gtest.h>
 
 #include "tests/support/impact.h"

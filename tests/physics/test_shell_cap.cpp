@@ -1,4 +1,5 @@
-// Grains live in a shell from which a plane cuts a cap: whatever the plane does, none may leave the shell or pass the plane.
+// Grains live in a shell from which a plane cuts a cap: whatever the plane does, none may leave the shell or pass the
+// plane.
 #include <gtest/gtest.h>
 
 #include "common/dynamics/verlet.h"
@@ -17,8 +18,10 @@ void expect_inside(const System3& s, double shell_limit) {
   const auto shell = static_cast<std::size_t>(p.grains);
   const Slot plane = p.first_plane();
   for (std::size_t u = 0; u < kInner; ++u) {
-    EXPECT_LT(norm(p.sphere[u].x - p.sphere[shell].x) + p.sphere[u].r - p.sphere[shell].r, shell_limit) << "grain " << u;
-    EXPECT_GT(dot(p.sphere[u].x - p.sphere[static_cast<std::size_t>(plane)].x, p.normal_of(plane)), 0.0) << "grain " << u;
+    EXPECT_LT(norm(p.sphere[u].x - p.sphere[shell].x) + p.sphere[u].r - p.sphere[shell].r, shell_limit)
+        << "grain " << u;
+    EXPECT_GT(dot(p.sphere[u].x - p.sphere[static_cast<std::size_t>(plane)].x, p.normal_of(plane)), 0.0)
+        << "grain " << u;
   }
 }
 

@@ -56,9 +56,11 @@ class ParticlesBadInput : public ::testing::Test {
   }
   void expect_text(const std::string& text, const std::vector<std::string>& words) {
     write_text_atomic(directory_.file("scene.toml"), text);
-    const ProgramOutcome outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") + "'");
+    const ProgramOutcome outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" +
+                                                   directory_.file("out") + "'");
     EXPECT_EQ(outcome.status, 2) << outcome.output << "\n" << text;
-    for (const std::string& word : words) EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
   }
   void expect_file(const std::string& content, const std::vector<std::string>& words) {
     write_text_atomic(directory_.file("many.xyzr"), content);
@@ -69,7 +71,8 @@ class ParticlesBadInput : public ::testing::Test {
 
 TEST_F(ParticlesBadInput, TheGoodSceneIsGood) {
   write_text_atomic(directory_.file("scene.toml"), kGood);
-  const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") + "'");
+  const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" +
+                                       directory_.file("out") + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
 }
 
@@ -82,11 +85,14 @@ TEST_F(ParticlesBadInput, Particles) {
   expect("radius = 0.01", "radus = 0.01", {"radius", "radus", "scene.toml:"});
   expect("position = [0.0, 0.0, 0.05]", "position = [0.0, inf, 0.05]", {"scene.toml:22: position", "finite"});
   expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.05]", {"scene.toml:22: position", "three"});
-  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.1]", {"scene.toml:26: position", "same centre", "scene.toml:22"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.1]",
+         {"scene.toml:26: position", "same centre", "scene.toml:22"});
   expect("material = \"glass\"", "material = \"glas\"", {"scene.toml:20: material", "nearest is 'glass'"});
   expect("material = \"glass\"", "material = \"bare\"", {"scene.toml:20: material", "density"});
-  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.05]\ninside = \"nowhere\"", {"scene.toml:23: inside", "no wall"});
-  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.05]\nmass = 1.0", {"scene.toml:23: unknown key 'mass'"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.05]\ninside = \"nowhere\"",
+         {"scene.toml:23: inside", "no wall"});
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, 0.05]\nmass = 1.0",
+         {"scene.toml:23: unknown key 'mass'"});
 }
 
 TEST_F(ParticlesBadInput, EmptyScenes) {
@@ -108,34 +114,45 @@ TEST_F(ParticlesBadInput, Contacts) {
   expect("mu = 0.3", "mu = -0.3", {"scene.toml:13: mu"});
   expect("mu = 0.3\n", "", {"mu", "scene.toml:"});
   expect("law = \"hertz-tsuji\"", "law = \"hertz-tsuij\"", {"scene.toml:11: law", "nearest is \"hertz-tsuji\""});
-  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"rigit\"]", {"scene.toml:15: pair", "nearest is 'rigid'"});
-  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"glass\"]", {"scene.toml:15: pair", "already", "scene.toml:10"});
-  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"bare\"]", {"'glass'", "'rigid'", "no law", "scene.toml:"});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"rigit\"]",
+         {"scene.toml:15: pair", "nearest is 'rigid'"});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"glass\"]",
+         {"scene.toml:15: pair", "already", "scene.toml:10"});
+  expect("pair = [\"glass\", \"rigid\"]", "pair = [\"glass\", \"bare\"]",
+         {"'glass'", "'rigid'", "no law", "scene.toml:"});
   expect("pair = [\"glass\", \"rigid\"]", "pair = [\"rigid\", \"rigid\"]", {"scene.toml:15: pair", "two rigid"});
   expect("mu = 0.3", "mu = 0.3\ntangential = \"spring\"", {"scene.toml:14: tangential"});
   expect("mu = 0.3", "mu = 0.3\nnormal_stiffness = 1.0", {"scene.toml:14: unknown key 'normal_stiffness'"});
-  expect("law = \"hertz-tsuji\"", "law = \"linear-spring\"\nnormal_stiffness = 1e3\ntangential_stiffness = 0.0", {"scene.toml:13: tangential_stiffness"});
+  expect("law = \"hertz-tsuji\"", "law = \"linear-spring\"\nnormal_stiffness = 1e3\ntangential_stiffness = 0.0",
+         {"scene.toml:13: tangential_stiffness"});
 }
 
 TEST_F(ParticlesBadInput, Walls) {
   expect("shape = \"plane\"", "shape = \"box\"", {"scene.toml:28: shape"});
   expect("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 0.0]", {"scene.toml:30: normal"});
-  expect("material = \"rigid\"", "material = \"rigid\"\nmotion = \"force\"\nforce = 1.0\nmass = 1e-9", {"scene.toml:28", "mass", "heaviest"});
+  expect("material = \"rigid\"", "material = \"rigid\"\nmotion = \"force\"\nforce = 1.0\nmass = 1e-9",
+         {"scene.toml:28", "mass", "heaviest"});
   expect("material = \"rigid\"", "material = \"rigid\"\nmotion = \"velocity\"", {"velocity", "scene.toml:"});
-  expect("shape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]", "shape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.05]\nradius = 0.009",
-         {"scene.toml:22", "radius", "wall-1"});
-  expect("material = \"rigid\"\n", "material = \"rigid\"\nname = \"a\"\n[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"rigid\"\nname = \"a\"\n",
+  expect("shape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]",
+         "shape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.05]\nradius = 0.009", {"scene.toml:22", "radius", "wall-1"});
+  expect("material = \"rigid\"\n",
+         "material = \"rigid\"\nname = \"a\"\n[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, "
+         "0.0, 1.0]\nmaterial = \"rigid\"\nname = \"a\"\n",
          {"scene.toml:38: name", "scene.toml:28"});
 }
 
 TEST_F(ParticlesBadInput, CellTimeAndOutput) {
-  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true]\n[time]", {"scene.toml:34: periodic", "three"});
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true]\n[time]",
+         {"scene.toml:34: periodic", "three"});
   expect("[time]", "[cell]\nsize = [1.0, 1.0, 0.0]\nperiodic = [true, true, false]\n[time]", {"scene.toml:33: size"});
-  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\n[time]", {"scene.toml:30: normal", "periodic"});
-  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, false, false]\nshear_rate = 1.0\n[time]", {"scene.toml:35: shear_rate"});
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\n[time]",
+         {"scene.toml:30: normal", "periodic"});
+  expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, false, false]\nshear_rate = 1.0\n[time]",
+         {"scene.toml:35: shear_rate"});
   expect("end = 1e-3", "end = 0.0", {"scene.toml:33: end"});
   expect("end = 1e-3", "", {"end", "scene.toml:32"});
-  expect("end = 1e-3", "end = 1e-3\nstep = 1e-2", {"scene.toml:34: step", "limit", "particle 0", "hertz-tsuji of glass and rigid", "scene.toml:15"});
+  expect("end = 1e-3", "end = 1e-3\nstep = 1e-2",
+         {"scene.toml:34: step", "limit", "particle 0", "hertz-tsuji of glass and rigid", "scene.toml:15"});
   expect("end = 1e-3", "end = 1e-3\nstep = \"fast\"", {"scene.toml:34: step"});
   expect("end = 1e-3", "end = 1e30", {"scene.toml:33: end", "steps"});
   expect("end = 1e-3", "end = 1e-3\nstep_fraction = 0.7", {"scene.toml:34: step_fraction", "0.6"});
@@ -159,7 +176,8 @@ TEST_F(ParticlesBadInput, MissingFilesAreFileTrouble) {
   std::string text = kGood;
   text += "[particles]\nfile = \"nothing.xyzr\"\nmaterial = \"glass\"\n";
   write_text_atomic(directory_.file("scene.toml"), text);
-  const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") + "'");
+  const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" +
+                                       directory_.file("out") + "'");
   EXPECT_EQ(outcome.status, 4) << outcome.output;
   EXPECT_NE(outcome.output.find("nothing.xyzr"), std::string::npos);
 }

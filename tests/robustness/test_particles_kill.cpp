@@ -60,8 +60,10 @@ every_steps = 2500
   RandomStream random(4, RandomPurpose::test, 0);
   for (int n = 0; n < 60; ++n) {
     std::string position;
-    for (const int k : {n % 4, n / 4 % 4, n / 16}) position += (position.empty() ? "" : ", ") + std::to_string(0.026 * (k - 1.5) + 1e-3 * random.uniform());
-    text += "[[particle]]\nmaterial = \"glass\"\nradius = " + std::to_string(0.010 + 0.002 * random.uniform()) + "\nposition = [" + position + "]\n";
+    for (const int k : {n % 4, n / 4 % 4, n / 16})
+      position += (position.empty() ? "" : ", ") + std::to_string(0.026 * (k - 1.5) + 1e-3 * random.uniform());
+    text += "[[particle]]\nmaterial = \"glass\"\nradius = " + std::to_string(0.010 + 0.002 * random.uniform()) +
+            "\nposition = [" + position + "]\n";
   }
   return text;
 }
@@ -72,8 +74,8 @@ pid_t start(const std::string& scene, const std::string& out, bool resume) {
   const int quiet = ::open("/dev/null", O_WRONLY);
   ::dup2(quiet, STDOUT_FILENO);
   ::dup2(quiet, STDERR_FILENO);
-  ::execl(SOFTGRAIN_PROGRAM, SOFTGRAIN_PROGRAM, "microsim", scene.c_str(), "--out", out.c_str(), "--threads", "1", "--quiet",
-          resume ? "--resume" : nullptr, static_cast<char*>(nullptr));
+  ::execl(SOFTGRAIN_PROGRAM, SOFTGRAIN_PROGRAM, "microsim", scene.c_str(), "--out", out.c_str(), "--threads", "1",
+          "--quiet", resume ? "--resume" : nullptr, static_cast<char*>(nullptr));
   ::_exit(127);
 }
 
@@ -91,7 +93,8 @@ int end_when(pid_t child, const std::function<bool()>& ready, int signal) {
 
 int end_after(pid_t child, double seconds, int signal) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  return end_when(child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
+  return end_when(
+      child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
 }
 
 constexpr double kPatience = 100.0;  // seconds
@@ -127,7 +130,9 @@ nlohmann::json without_circumstances(nlohmann::json summary) {
   return summary;
 }
 
-nlohmann::json summary_of(const std::string& directory) { return nlohmann::json::parse(read_text(directory + "/summary.json")); }
+nlohmann::json summary_of(const std::string& directory) {
+  return nlohmann::json::parse(read_text(directory + "/summary.json"));
+}
 
 class ParticlesKill : public ::testing::Test {
  protected:
@@ -137,7 +142,8 @@ class ParticlesKill : public ::testing::Test {
   }
   /// A run that is asked to end once `file` exists.
   void stop_at(const std::string& out, const std::string& file) {
-    const int status = end_when(start(scene_, out, false), [&] { return fs::exists(out + "/" + file); }, SIGTERM);
+    const int status = end_when(
+        start(scene_, out, false), [&] { return fs::exists(out + "/" + file); }, SIGTERM);
     ASSERT_TRUE(WIFEXITED(status));
     ASSERT_EQ(WEXITSTATUS(status), 130);
   }
@@ -179,7 +185,8 @@ TEST_F(ParticlesKill, ATerminatedRunSaysSoAndResumes) {
 TEST_F(ParticlesKill, ACheckpointOfAnotherSceneIsRefused) {
   const std::string out = directory_.file("stopped");
   stop_at(out, "checkpoint.h5");
-  const auto outcome = run_the_program("microsim '" + scene_ + "' --out '" + out + "' --quiet --resume --set time.end=0.7");
+  const auto outcome =
+      run_the_program("microsim '" + scene_ + "' --out '" + out + "' --quiet --resume --set time.end=0.7");
   EXPECT_EQ(outcome.status, 2) << outcome.output;
   EXPECT_NE(outcome.output.find("another scene"), std::string::npos) << outcome.output;
 }

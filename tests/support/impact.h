@@ -30,12 +30,12 @@ enum class Partner { sphere, plane, shell_inside };
 
 struct ImpactSetup {
   Partner partner = Partner::sphere;
-  double radius = 0.01;         ///< of the moving sphere
-  double ratio = 1.0;           ///< radius of the partner over it (sphere, shell)
-  double speed = 1.0;           ///< along the line of centres
-  double sliding_speed = 0.0;   ///< across it
-  Vec3 spin{};                  ///< of the moving sphere
-  bool free_shell = false;      ///< the shell has a mass
+  double radius = 0.01;        ///< of the moving sphere
+  double ratio = 1.0;          ///< radius of the partner over it (sphere, shell)
+  double speed = 1.0;          ///< along the line of centres
+  double sliding_speed = 0.0;  ///< across it
+  Vec3 spin{};                 ///< of the moving sphere
+  bool free_shell = false;     ///< the shell has a mass
 };
 
 /// The moving sphere is body 0; the normal towards it is +z; they begin a thousandth of the overlap apart.

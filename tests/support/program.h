@@ -24,7 +24,8 @@ inline ProgramOutcome run_the_program(const std::string& arguments) {
   FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) return outcome;
   std::array<char, 4096> buffer{};
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) outcome.output.append(buffer.data(), n);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.output.append(buffer.data(), n);
   const int status = ::pclose(pipe);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
@@ -32,7 +33,8 @@ inline ProgramOutcome run_the_program(const std::string& arguments) {
 
 /// Runs `microsim SCENE --out DIRECTORY more`; expects success and returns the summary.
 inline nlohmann::json run_scene(const std::string& scene, const std::string& directory, const std::string& more = "") {
-  const ProgramOutcome outcome = run_the_program("microsim '" + scene + "' --out '" + directory + "' --quiet --threads 1 " + more);
+  const ProgramOutcome outcome =
+      run_the_program("microsim '" + scene + "' --out '" + directory + "' --quiet --threads 1 " + more);
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   if (outcome.status != 0) return nlohmann::json::object();
   return nlohmann::json::parse(read_text(directory + "/summary.json"));

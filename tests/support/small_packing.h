@@ -54,8 +54,8 @@ std::vector<Vec<D>> shaken_lattice(const Vec<D>& centre, double a, int per_axis,
   return out;
 }
 
-/// Lattices of grains inside a shell of radius 1 at the origin and outside at x = 4; planes z = -0.6 (cuts the shell) and a
-/// slope; random velocities and spins.
+/// Lattices of grains inside a shell of radius 1 at the origin and outside at x = 4; planes z = -0.6 (cuts the shell)
+/// and a slope; random velocities and spins.
 template <int D>
 System<D> shell_and_plane_system(double friction, double restitution, bool rescaled) {
   System<D> s = hertz_system<D>(friction, restitution, rescaled);
@@ -98,7 +98,8 @@ template <int N>
 void expect_same_bits(const std::vector<Vec<N>>& a, const std::vector<Vec<N>>& b, const char* what) {
   ASSERT_EQ(a.size(), b.size()) << what;
   for (std::size_t u = 0; u < a.size(); ++u)
-    for (int k = 0; k < N; ++k) ASSERT_TRUE(same_bits(a[u][k], b[u][k])) << what << " of " << u << ": " << a[u][k] << ", " << b[u][k];
+    for (int k = 0; k < N; ++k)
+      ASSERT_TRUE(same_bits(a[u][k], b[u][k])) << what << " of " << u << ": " << a[u][k] << ", " << b[u][k];
 }
 
 /// Motion, forces and histories of two systems are the same bits.
@@ -106,7 +107,8 @@ template <int D>
 void expect_same_state(const System<D>& a, const System<D>& b) {
   ASSERT_EQ(a.particles.size(), b.particles.size());
   for (std::size_t u = 0; u < a.particles.sphere.size(); ++u) {
-    for (int k = 0; k < D; ++k) ASSERT_TRUE(same_bits(a.particles.sphere[u].x[k], b.particles.sphere[u].x[k])) << "position of " << u;
+    for (int k = 0; k < D; ++k)
+      ASSERT_TRUE(same_bits(a.particles.sphere[u].x[k], b.particles.sphere[u].x[k])) << "position of " << u;
     ASSERT_TRUE(same_bits(a.particles.sphere[u].r, b.particles.sphere[u].r)) << "radius of " << u;
   }
   expect_same_bits(a.particles.velocity, b.particles.velocity, "velocity");

@@ -61,7 +61,8 @@ void expect_same_pairs(Box box, double ratio) {
   const Particles<D> p = cloud<D>(cell, n, ratio, static_cast<std::uint64_t>(ratio) + 17U * static_cast<unsigned>(box));
   const std::vector<double> skin = default_skin(p);
   const Found grid = sorted(candidate_pairs(p, cell, skin));
-  EXPECT_EQ(grid, sorted(candidate_pairs_brute_force(p, cell, skin))) << "ratio " << ratio << ", box " << static_cast<int>(box);
+  EXPECT_EQ(grid, sorted(candidate_pairs_brute_force(p, cell, skin)))
+      << "ratio " << ratio << ", box " << static_cast<int>(box);
   EXPECT_FALSE(grid.empty());
   EXPECT_EQ(std::adjacent_find(grid.begin(), grid.end()), grid.end()) << "a pair was found twice";
 }
@@ -80,7 +81,8 @@ TEST(Neighbours, DegenerateArrangements) {
   EXPECT_TRUE(candidate_pairs(p, cell, {}).empty());
   add_grain(p, solid_sphere<3>({}, 1.0, 1.0));
   EXPECT_TRUE(candidate_pairs(p, cell, {0.1}).empty());
-  for (int k = 1; k < 40; ++k) add_grain(p, solid_sphere<3>({{1.9 * k, 0.0, 0.0}}, k % 2 == 0 ? 1.0 : 1e-3, 1.0));  // a line
+  for (int k = 1; k < 40; ++k)
+    add_grain(p, solid_sphere<3>({{1.9 * k, 0.0, 0.0}}, k % 2 == 0 ? 1.0 : 1e-3, 1.0));  // a line
   const std::vector<double> skin(40, 0.05);
   EXPECT_EQ(sorted(candidate_pairs(p, cell, skin)), sorted(candidate_pairs_brute_force(p, cell, skin)));
 }
@@ -99,7 +101,8 @@ void expect_complete_list(const System<D>& s) {
   const std::vector<double> none(static_cast<std::size_t>(s.particles.size()), 0.0);
   Found listed;
   for (std::size_t c = 0; c < s.contacts.i.size(); ++c)
-    if (s.contacts.j[c] < s.particles.grains) listed.emplace_back(s.contacts.i[c], s.contacts.j[c], s.contacts.image[c]);
+    if (s.contacts.j[c] < s.particles.grains)
+      listed.emplace_back(s.contacts.i[c], s.contacts.j[c], s.contacts.image[c]);
   std::sort(listed.begin(), listed.end());
   for (const auto& touching : sorted(candidate_pairs_brute_force(s.particles, s.cell, none)))
     ASSERT_TRUE(std::binary_search(listed.begin(), listed.end(), touching))
@@ -132,7 +135,8 @@ void shear_and_watch(double rate) {
   }
   EXPECT_GT(s.neighbours.rebuilds, 20);
   for (int c = 1; c < D; ++c)
-    for (int r = 0; r < c; ++r) EXPECT_LT(std::abs(s.cell.edges[r][c]), 0.75 * s.cell.edges[r][r]) << "the cell must not tilt away";
+    for (int r = 0; r < c; ++r)
+      EXPECT_LT(std::abs(s.cell.edges[r][c]), 0.75 * s.cell.edges[r][r]) << "the cell must not tilt away";
 }
 
 TEST(Neighbours, NoContactIsMissedWhileACellIsSheared) {

@@ -30,8 +30,8 @@ mu = 0.4
 )";
 
 std::string particle(double x, double y, double z, double r, const std::string& more = "") {
-  return "[[particle]]\nmaterial = \"glass\"\nradius = " + std::to_string(r) + "\nposition = [" + std::to_string(x) + ", " + std::to_string(y) + ", " +
-         std::to_string(z) + "]\n" + more;
+  return "[[particle]]\nmaterial = \"glass\"\nradius = " + std::to_string(r) + "\nposition = [" + std::to_string(x) +
+         ", " + std::to_string(y) + ", " + std::to_string(z) + "]\n" + more;
 }
 
 ParticlesScene read(const std::string& text) { return read_particles_scene(Scene::parse(text, "scene.toml")); }
@@ -40,10 +40,13 @@ ParticlesResult run(const ParticlesScene& scene) { return run_particles(scene, {
 
 /// Grains that fall into a sphere cut by a plane.
 std::string crowd() {
-  std::string text = "gravity = [0.0, 0.0, -9.81]\n" + kHead +
-                     "[[wall]]\nname = \"bowl\"\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\nmaterial = \"glass\"\n"
-                     "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, -0.06]\nnormal = [0.0, 0.0, 2.0]\nmaterial = \"glass\"\n";
-  for (int n = 0; n < 27; ++n) text += particle(0.025 * (n % 3 - 1) + 1e-4 * n, 0.025 * (n / 3 % 3 - 1), 0.025 * (n / 9 - 1), 0.011);
+  std::string text =
+      "gravity = [0.0, 0.0, -9.81]\n" + kHead +
+      "[[wall]]\nname = \"bowl\"\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\nmaterial = "
+      "\"glass\"\n"
+      "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, -0.06]\nnormal = [0.0, 0.0, 2.0]\nmaterial = \"glass\"\n";
+  for (int n = 0; n < 27; ++n)
+    text += particle(0.025 * (n % 3 - 1) + 1e-4 * n, 0.025 * (n / 3 % 3 - 1), 0.025 * (n / 9 - 1), 0.011);
   return text;
 }
 
@@ -63,16 +66,21 @@ TEST(ParticlesScene, ReadsWhatIsWritten) {
 }
 
 TEST(ParticlesScene, ParticlesBelongToTheSphereThatIsNamed) {
-  const std::string walls = "[[wall]]\nname = \"a\"\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\nmaterial = \"glass\"\n"
-                            "[[wall]]\nname = \"b\"\nshape = \"sphere-inside\"\ncenter = [0.05, 0.0, 0.0]\nradius = 0.1\nmaterial = \"glass\"\n";
-  const ParticlesScene scene = read(kHead + walls + particle(0.04, 0.0, 0.0, 0.01) + particle(0.03, 0.0, 0.0, 0.01, "inside = \"b\"\n") +
-                                    particle(0.02, 0.0, 0.0, 0.01, "inside = \"none\"\n") + particle(0.5, 0.0, 0.0, 0.01) + "[time]\nend = 1e-3\n");
+  const std::string walls =
+      "[[wall]]\nname = \"a\"\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.1\nmaterial = "
+      "\"glass\"\n"
+      "[[wall]]\nname = \"b\"\nshape = \"sphere-inside\"\ncenter = [0.05, 0.0, 0.0]\nradius = 0.1\nmaterial = "
+      "\"glass\"\n";
+  const ParticlesScene scene = read(
+      kHead + walls + particle(0.04, 0.0, 0.0, 0.01) + particle(0.03, 0.0, 0.0, 0.01, "inside = \"b\"\n") +
+      particle(0.02, 0.0, 0.0, 0.01, "inside = \"none\"\n") + particle(0.5, 0.0, 0.0, 0.01) + "[time]\nend = 1e-3\n");
   EXPECT_EQ(scene.system.particles.shell, (std::vector<std::int32_t>{4, 5, -1, -1, -1, -1}));
 }
 
 TEST(ParticlesScene, AutomaticStepResolvesImpactsAndDividesTheEnd) {
-  const ParticlesScene scene = read(kHead + particle(-0.02, 0.0, 0.0, 0.01, "velocity = [3.0, 0.0, 0.0]\n") +
-                                    particle(0.02, 0.0, 0.0, 0.01, "velocity = [-3.0, 0.0, 0.0]\n") + "[time]\nend = 0.01\n");
+  const ParticlesScene scene =
+      read(kHead + particle(-0.02, 0.0, 0.0, 0.01, "velocity = [3.0, 0.0, 0.0]\n") +
+           particle(0.02, 0.0, 0.0, 0.01, "velocity = [-3.0, 0.0, 0.0]\n") + "[time]\nend = 0.01\n");
   EXPECT_LE(scene.time.step, scene.time.contact_time / 200.0);
   EXPECT_LE(scene.time.step, 0.05 * scene.time.natural_time);
   EXPECT_DOUBLE_EQ(scene.time.step * static_cast<double>(scene.time.steps), 0.01);
@@ -86,20 +94,25 @@ TEST(ParticlesScene, FilesOfManySpheresPlainAndPacked) {
   ASSERT_EQ(gzwrite(packed, content.data(), static_cast<unsigned>(content.size())), static_cast<int>(content.size()));
   gzclose(packed);
   for (const char* name : {"a.xyzr", "a.xyzr.gz"}) {
-    const ParticlesScene scene = read_particles_scene(Scene::parse(
-        kHead + particle(0.5, 0.0, 0.0, 0.01) + "[particles]\nfile = \"" + name + "\"\nmaterial = \"glass\"\n[time]\nend = 1e-3\n", directory.file("scene.toml")));
+    const ParticlesScene scene =
+        read_particles_scene(Scene::parse(kHead + particle(0.5, 0.0, 0.0, 0.01) + "[particles]\nfile = \"" + name +
+                                              "\"\nmaterial = \"glass\"\n[time]\nend = 1e-3\n",
+                                          directory.file("scene.toml")));
     ASSERT_EQ(scene.system.particles.grains, 3) << name;
     EXPECT_TRUE(scene.system.particles.sphere[1].x == (Vec3{{0.0, 0.25, 0.5}}));
     EXPECT_EQ(scene.system.particles.sphere[2].r, 0.02);
   }
   std::filesystem::resize_file(directory.file("a.xyzr.gz"), 25);
-  EXPECT_THROW((void)read_particles_scene(Scene::parse(kHead + "[particles]\nfile = \"a.xyzr.gz\"\nmaterial = \"glass\"\n[time]\nend = 1e-3\n", directory.file("scene.toml"))),
+  EXPECT_THROW((void)read_particles_scene(
+                   Scene::parse(kHead + "[particles]\nfile = \"a.xyzr.gz\"\nmaterial = \"glass\"\n[time]\nend = 1e-3\n",
+                                directory.file("scene.toml"))),
                FileTrouble);
 }
 
 TEST(ParticlesRun, OutputWatchingAndCheckpointsDoNotChangeTheTrajectory) {
   const TemporaryDirectory directory;
-  ParticlesScene scene = read(crowd() + "[time]\nend = 0.15\nstep = 5e-5\n[output]\nevery = 1e-3\n[checkpoint]\nevery_steps = 700\n");
+  ParticlesScene scene =
+      read(crowd() + "[time]\nend = 0.15\nstep = 5e-5\n[output]\nevery = 1e-3\n[checkpoint]\nevery_steps = 700\n");
   ParticlesControl control;
   control.checkpoint = directory.file("checkpoint.h5");
   const ParticlesResult watched = run_particles(scene, control);
@@ -152,14 +165,17 @@ TEST(ParticlesRun, ALostParticleEndsTheRunAndIsNamed) {
   EXPECT_NE(fast.reason.find(" 9 "), std::string::npos) << fast.reason;
 }
 
-/// A plate of given mass under a force squeezes a column of balls: at rest the contact forces carry it, gravity does not act on it.
+/// A plate of given mass under a force squeezes a column of balls: at rest the contact forces carry it, gravity does
+/// not act on it.
 TEST(ParticlesRun, AWallUnderAForceComesToRestOnIt) {
   std::string head = kHead;
   head.replace(head.find("restitution = 0.8"), 17, "restitution = 0.1");
-  const std::string text = head + particle(0.0, 0.0, 0.01, 0.01) + particle(0.0, 0.0, 0.03, 0.01) +
-                           "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"glass\"\n"
-                           "[[wall]]\nname = \"plate\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0401]\nnormal = [0.0, 0.0, -1.0]\nmaterial = \"glass\"\n"
-                           "motion = \"force\"\nforce = 0.5\nmass = 0.02\n[time]\nend = 1.5\n";
+  const std::string text =
+      head + particle(0.0, 0.0, 0.01, 0.01) + particle(0.0, 0.0, 0.03, 0.01) +
+      "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"glass\"\n"
+      "[[wall]]\nname = \"plate\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0401]\nnormal = [0.0, 0.0, -1.0]\nmaterial "
+      "= \"glass\"\n"
+      "motion = \"force\"\nforce = 0.5\nmass = 0.02\n[time]\nend = 1.5\n";
   const ParticlesResult out = run(read(text));
   ASSERT_TRUE(out.usable) << out.reason;
   const auto& p = out.system.particles;
@@ -173,9 +189,10 @@ TEST(ParticlesRun, AWallUnderAForceComesToRestOnIt) {
 }
 
 TEST(ParticlesRun, AMovingWallCarriesItsParticles) {
-  const std::string text = kHead + particle(0.0, 0.0, 0.0, 0.02) +
-                           "[[wall]]\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.021\nmaterial = \"glass\"\n"
-                           "motion = \"velocity\"\nvelocity = [0.1, 0.0, 0.0]\n[time]\nend = 2.0\n";
+  const std::string text =
+      kHead + particle(0.0, 0.0, 0.0, 0.02) +
+      "[[wall]]\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.021\nmaterial = \"glass\"\n"
+      "motion = \"velocity\"\nvelocity = [0.1, 0.0, 0.0]\n[time]\nend = 2.0\n";
   const ParticlesResult out = run(read(text));
   ASSERT_TRUE(out.usable) << out.reason;
   EXPECT_NEAR(out.system.particles.sphere[1].x[0], 0.2, 1e-12);
@@ -184,8 +201,10 @@ TEST(ParticlesRun, AMovingWallCarriesItsParticles) {
 
 /// Two free particles in a sheared cell: one that leaves through the upper face comes back with the speed of its image.
 TEST(ParticlesRun, AShearedCellGivesImagesTheirVelocity) {
-  const std::string text = kHead + particle(0.5, 0.9, 0.5, 0.01, "velocity = [0.0, 1.0, 0.0]\n") + particle(0.1, 0.1, 0.1, 0.01) +
-                           "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\nshear_rate = 0.5\n[time]\nend = 0.3\nstep = 1e-4\n";
+  const std::string text = kHead + particle(0.5, 0.9, 0.5, 0.01, "velocity = [0.0, 1.0, 0.0]\n") +
+                           particle(0.1, 0.1, 0.1, 0.01) +
+                           "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\nshear_rate = "
+                           "0.5\n[time]\nend = 0.3\nstep = 1e-4\n";
   const ParticlesResult out = run(read(text));
   ASSERT_TRUE(out.usable) << out.reason;
   EXPECT_NEAR(out.system.particles.velocity[0][0], -0.5, 1e-12);
@@ -194,8 +213,10 @@ TEST(ParticlesRun, AShearedCellGivesImagesTheirVelocity) {
 
 TEST(ParticlesRun, ContactsThatLastAndComeBackAreCounted) {
   // A ball that bounces three times on a plane, and one that rests on it from the beginning.
-  const std::string text = "gravity = [0.0, 0.0, -9.81]\n" + kHead + particle(0.0, 0.0, 0.0101, 0.01) + particle(1.0, 0.0, 0.00995, 0.01) +
-                           "[[wall]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"glass\"\n[time]\nend = 0.02\n";
+  const std::string text = "gravity = [0.0, 0.0, -9.81]\n" + kHead + particle(0.0, 0.0, 0.0101, 0.01) +
+                           particle(1.0, 0.0, 0.00995, 0.01) +
+                           "[[wall]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, "
+                           "0.0, 1.0]\nmaterial = \"glass\"\n[time]\nend = 0.02\n";
   const ParticlesResult out = run(read(text));
   ASSERT_EQ(out.contacts.size(), 2U);
   EXPECT_GE(out.contacts[0].count, 1);

@@ -52,7 +52,9 @@ TEST(SoftContactFromCard, ScalesWithModulusAndRadius) {
 }
 
 TEST(SoftContactFromCard, UnusableLawsAreRefused) {
-  const auto make = [](const LawCard& card, PairKind kind) { return make_soft_contact(card, kind, 1e5, 0.3, 0.0, false); };
+  const auto make = [](const LawCard& card, PairKind kind) {
+    return make_soft_contact(card, kind, 1e5, 0.3, 0.0, false);
+  };
   for (const char* status : {"no threshold crossing", "not run"})
     EXPECT_THROW((void)make(card_with(PairKind::soft_solid, status), PairKind::soft_solid), BadInput) << status;
   EXPECT_NO_THROW((void)make(card_with(PairKind::soft_solid, "underdetermined"), PairKind::soft_solid));

@@ -83,7 +83,8 @@ TEST(SystemIo, AStateOfOtherDimensionOrLengthIsRefused) {
 }
 
 void write_number(const std::string& path, const std::string& scene, double number) {
-  write_checkpoint(path, scene, [&](const h5::Group& g) { g.create("a").write("x", std::vector<double>(1000, number)); });
+  write_checkpoint(path, scene,
+                   [&](const h5::Group& g) { g.create("a").write("x", std::vector<double>(1000, number)); });
 }
 
 double read_number(const h5::Group& g) { return g.open("a").doubles("x").back(); }
