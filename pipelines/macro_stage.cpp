@@ -1,9 +1,10 @@
 #include "pipelines/macro_stage.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include "common/contact/soft_contact_from_card.h"
-#include "common/io/interrupt.h"
+#include "common/dynamics/force_pass.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "macrosim/compression.h"
@@ -42,6 +43,7 @@ void read_progress(const h5::Group& group, CompressionState& state) {
 /// What the tasks share.
 struct Stage {
   const MacroSetup& setup;
+  const LawCard& card;
   const SoftLaws& laws;
   double inner_solid_fraction;
   const std::vector<ShellPacking>& contents;
@@ -49,6 +51,33 @@ struct Stage {
   const TaskStore& store;
   const std::vector<MacroPacking>& packings;
 };
+
+std::int32_t law_of(const System3& s, const ContactRecord<3>& c) {
+  const auto& material = s.particles.material;
+  return s.laws.index(material[static_cast<std::size_t>(c.i)], material[static_cast<std::size_t>(c.j)]);
+}
+
+double reference_radius(const System3& s, const SoftContact& law, const ContactRecord<3>& c) {
+  const double rj = c.j < s.particles.grains ? s.particles.sphere[static_cast<std::size_t>(c.j)].r : 0.0;
+  return law.pair_constants({s.particles.sphere[static_cast<std::size_t>(c.i)].r, rj, 0.0, 0.0}).a;
+}
+
+/// Largest Delta among the soft contacts of a law run, against the range its laws were fitted in; empty when inside.
+std::string extrapolation_note(const System3& s, const LawCard& card) {
+  double beyond = 0.0;
+  std::string note;
+  for (const ContactRecord<3>& c : contact_records(s)) {
+    const auto* soft = std::get_if<SoftContact>(&s.laws.law(law_of(s, c)));
+    if (soft == nullptr) continue;
+    const double delta = c.overlap / reference_radius(s, *soft, c);
+    const PairLaw* law = card.find(soft->partner_is_soft ? PairKind::soft_soft : PairKind::soft_solid);
+    if (law == nullptr || delta - law->delta_max <= beyond) continue;
+    beyond = delta - law->delta_max;
+    note = fmt::format("soft contacts reach Delta = {:.2f} at the end, the {} law was fitted up to {:.2f} and is extrapolated", delta,
+                       to_string(law->kind), law->delta_max);
+  }
+  return note;
+}
 
 MacroCurve run_one(const Stage& stage, std::int64_t sample, bool resolved, Progress& progress) {
   const MacroSpec& spec = stage.setup.spec;
@@ -66,6 +95,7 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, bool resolved, Progr
     progress.advance(share - done);
     done = share;
   });
+  if (!resolved && state.curve.note.empty()) state.curve.note = extrapolation_note(state.macro.system, stage.card);
   return state.curve;
 }
 
@@ -111,7 +141,7 @@ std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& 
                                         const Provenance& provenance) {
   const SoftLaws laws = laws_from_card(card, setup.spec);
   const auto packings = make_packings(setup, seed, context, provenance);
-  const Stage stage{setup, laws, mean_solid_fraction(contents), contents, seed, store, packings};
+  const Stage stage{setup, card, laws, mean_solid_fraction(contents), contents, seed, store, packings};
   const auto n = static_cast<std::size_t>(setup.samples);
   std::vector<MacroCurve> curves(setup.resolved ? 2 * n : n);
   {

@@ -167,7 +167,10 @@ std::vector<std::string> measurement_remarks(const Measurements& data) {
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
   std::vector<std::string> out;
   for (const MacroCurve& c : curves)
-    if (!c.usable) out.push_back(fmt::format("macro run '{}' of sample {} is not usable: {}", c.engine, c.sample, c.note));
+    if (!c.usable)
+      out.push_back(fmt::format("macro run '{}' of sample {} is not usable: {}", c.engine, c.sample, c.note));
+    else if (!c.note.empty())
+      out.push_back(fmt::format("macro run '{}' of sample {}: {}", c.engine, c.sample, c.note));
   if (curves.empty()) return out;
   out.emplace_back("a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains stands in for the friction limit of soft contacts");
   out.emplace_back("the pair law was measured with one contact; in a packing with contacts all around it is known to be too low, by a factor 2 to 14");
