@@ -12,10 +12,6 @@ namespace softgrain {
 
 namespace {
 
-/// The mean contact force never counts for less than this share of E R^2 (R the largest radius) when residuals are judged: loose
-/// states before the first stress would otherwise be relaxed for ever. As a stress it is 3e-6 E, the size of start_pressure.
-constexpr double kForceFloor = 1e-5;
-
 /// Nominal strain of the whole test after increment n of N, as a step from the state before: keeps increments equal in length.
 Vec3 increment(const MacroSpec& spec, std::int64_t n, std::int64_t total) {
   const auto at = [&](std::int64_t k) { return spec.strain_end * static_cast<double>(k) / static_cast<double>(total); };
@@ -35,7 +31,7 @@ DampedOptions relaxation_options(const MacroSpec& spec, const System3& s) {
   options.tolerance = spec.tolerance;
   options.max_passes = spec.max_passes;
   const double r = largest_radius(s.particles);
-  options.force_floor = kForceFloor * spec.youngs_modulus * r * r;
+  options.force_floor = spec.force_floor * spec.youngs_modulus * r * r;
   return options;
 }
 

@@ -29,6 +29,8 @@ struct MacroSpec {
   std::int64_t steps = 30;              ///< recorded points
   std::int64_t increments_per_step = 2; ///< relaxed strain increments per recorded point
   double tolerance = 1e-2;              ///< largest net force over mean contact force at recorded points
+  double force_floor = 1.0e-4;          ///< the mean contact force never counts for less than this, over E R^2 (R the largest radius):
+                                        ///< else loose states before the first stress would be relaxed for ever
   std::int64_t max_passes = 20000;      ///< per relaxation
   bool kt_secant = false;               ///< tangential law: secant at 1 degree instead of the initial slope
 };

@@ -24,6 +24,7 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   spec.steps = t.count("steps", 1, 100000, spec.steps);
   spec.increments_per_step = t.count("increments_per_step", 1, 10000, spec.increments_per_step);
   spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
+  spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
   spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
   spec.kt_secant = t.choice("kt", {"initial", "secant"}, "initial") == "secant";
 }
