@@ -1,0 +1,80 @@
+// Scenes of explicit particles whose contacts follow a law card.
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/data/law_card.h"
+#include "common/dynamics/force_pass.h"
+#include "microsim/particles/particles_run.h"
+#include "tests/support/small_packing.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+PairLaw good_law(PairKind kind, double a) {
+  PairLaw law;
+  law.kind = kind;
+  law.status = "good";
+  law.normal.a = {a, 0.01, 0.9 * a, 1.1 * a};
+  law.normal.b = {2.2, 0.02, 2.1, 2.3};
+  law.normal.delta = {0.05, 0.001, 0.04, 0.06};
+  const double c = -a * std::pow(0.05, 2.2);
+  law.normal.c = {c, 1e-5, 1.1 * c, 0.9 * c};
+  law.tangential_initial = law.normal;
+  law.has_tangential_initial = true;
+  law.covariance.assign(49, 0.0);
+  law.delta_max = 0.4;
+  law.packings = 8;
+  law.points = 40;
+  return law;
+}
+
+class ParticlesLawCard : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    LawCard card;
+    card.relaxation = "damped";
+    card.pairs = {good_law(PairKind::soft_solid, 0.6)};
+    save_card(card, directory_.file("law.toml"));
+  }
+  /// `pair` and `more` go into the contact; a soft and a solid ball overlap by 0.2 of the soft radius.
+  ParticlesScene read(const std::string& pair, const std::string& more, bool soft_first, const std::string& wall = "") {
+    const std::string soft = "[[particle]]\nmaterial = \"bag\"\nradius = 0.02\nposition = [0.0, 0.0, 0.0]\n";
+    const std::string solid = "[[particle]]\nmaterial = \"stone\"\nradius = 0.05\nposition = [0.066, 0.0, 0.0]\n";
+    const std::string text =
+        "kind = \"particles\"\n[material.bag]\ndensity = 1500.0\n[material.stone]\ndensity = 2500.0\n"
+        "[[contact]]\npair = " +
+        pair +
+        "\nlaw = \"law-card\"\nfile = \"law.toml\"\nE = \"0.5 MPa\"\nmu = 0.3\ndamping = 0.1\nkt = \"initial\"\n" +
+        more + (soft_first ? soft + solid : solid + soft) + wall + "[time]\nend = 1e-3\nstep = 1e-5\n";
+    return read_particles_scene(Scene::parse(text, directory_.file("scene.toml")));
+  }
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ParticlesLawCard, ForceDoesNotDependOnTheOrderOfPairOrBodies) {
+  // E R^2 (a D^b + c), R the soft radius
+  const double expected = 0.5e6 * 0.02 * 0.02 * 0.6 * (std::pow(0.2, 2.2) - std::pow(0.05, 2.2));
+  for (const char* pair : {"[\"bag\", \"stone\"]", "[\"stone\", \"bag\"]"})
+    for (const bool soft_first : {true, false}) {
+      ParticlesScene scene = read(pair, "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", soft_first);
+      force_pass(scene.system, 0.0);
+      EXPECT_NEAR(std::abs(scene.system.particles.force[0][0]), expected, 1e-9 * expected) << pair << soft_first;
+      EXPECT_TRUE(run_particles(scene, {}).usable);
+    }
+}
+
+TEST_F(ParticlesLawCard, UnusableCombinationsAreBadInput) {
+  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\n", true), BadInput);
+  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"rigid\"\n", true), BadInput);
+  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-soft\"\n", true), BadInput)
+      << "the card has no such law";
+  const std::string solid_wall =
+      "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, -0.05]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"bag\"\n";
+  EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", true, solid_wall),
+               BadInput);
+}
+
+}  // namespace
