@@ -53,24 +53,30 @@ bool collides(const std::vector<MacroBody>& bodies, std::size_t placed, const Ve
   return false;
 }
 
-/// Largest first at random places of a cube that they fill to 30 %.
-MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample) {
-  constexpr double kLooseFraction = 0.30;
+/// Largest first at random places of a cube; false when one finds none.
+bool place(std::vector<MacroBody>& bodies, double edge, RandomStream& random) {
   constexpr int kTrials = 100000;
-  double volume = 0.0;
-  for (const MacroBody& b : bodies) volume += kSphereVolume * cube(b.r);
-  const double edge = std::cbrt(volume / kLooseFraction);
-  RandomStream random(seed, RandomPurpose::macro_positions, sample);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const double r = bodies[k].r;
-    if (2.0 * r >= edge) throw BadInput("macro: too few bodies: one grain of radius " + std::to_string(r) + " m fills the box");
     int trial = 0;
     do {
       for (int a = 0; a < 3; ++a) bodies[k].x[a] = r + random.uniform() * (edge - 2.0 * r);
     } while (collides(bodies, k, bodies[k].x, r) && ++trial < kTrials);
-    if (trial == kTrials) throw NotUsable("macro: could not place all bodies without overlap");
+    if (trial == kTrials) return false;
   }
-  return {{}, {{edge, edge, edge}}, std::move(bodies)};
+  return true;
+}
+
+/// In a cube that they fill to 30 %; when so few bodies that walls are near find no place, in a larger one.
+MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample) {
+  double volume = 0.0;
+  for (const MacroBody& b : bodies) volume += kSphereVolume * cube(b.r);
+  RandomStream random(seed, RandomPurpose::macro_positions, sample);
+  for (double fraction = 0.30; fraction > 0.05; fraction *= 0.8) {
+    const double edge = std::cbrt(volume / fraction);
+    if (place(bodies, edge, random)) return {{}, {{edge, edge, edge}}, std::move(bodies)};
+  }
+  throw NotUsable("macro: could not place all bodies without overlap");
 }
 
 System3 hard_system(const MacroSpec& spec, const MacroPacking& packing, Box& box) {

@@ -67,22 +67,24 @@ void fit(const PipelineSetup& setup, const RunContext& context, const Provenance
   }
 }
 
-bool has_laws(const LawCard& card) {
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
-    const PairLaw* law = card.find(kind);
-    if (law == nullptr || (law->status != "good" && law->status != "underdetermined")) return false;
+/// What was measured and fitted is kept and said even when no macro run can follow: false, with a remark.
+bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
+  std::string why;
+  try {
+    result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context, provenance);
+    return true;
+  } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
+    why = e.what();
+  } catch (const NotUsable& e) {
+    why = e.what();
   }
-  return true;
+  result.remarks.push_back("no macro run: " + why);
+  result.usable = false;
+  return false;
 }
 
 void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
-  if (!setup.macro) return;
-  if (!has_laws(result.card)) {
-    result.remarks.emplace_back("no macro run: it needs a soft-solid and a soft-soft law that cross their threshold");
-    result.usable = false;
-    return;
-  }
-  result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context, provenance);
+  if (!setup.macro || !run_macro_samples(setup, store, context, provenance, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   if (!setup.macro->resolved) return;

@@ -182,6 +182,16 @@ TEST(Macro, SeedAndSampleAloneDecideTheStartingState) {
   EXPECT_FALSE(same(once, make_macro_packing(spec, 4, 0)));
 }
 
+/// Few bodies in a box have little room between its walls: they still find a place.
+TEST(Macro, FewBodiesStartToo) {
+  MacroSpec spec = small_spec();
+  for (const std::int64_t bodies : {1, 2, 3, 5, 8})
+    for (const std::uint64_t sample : {0U, 1U, 2U, 3U}) {
+      spec.bodies = bodies;
+      EXPECT_EQ(make_macro_packing(spec, 1, sample).bodies.size(), static_cast<std::size_t>(bodies)) << sample;
+    }
+}
+
 std::vector<ShellPacking> two_contents() {
   SoftParticleSpec spec;
   spec.trials = 1000;
