@@ -67,8 +67,6 @@ void describe_data(const RunList& runs, const FitOptions& options, const LawSamp
   const CurveMeans& normal = means[0];
   law.initial_angle_deg = options.initial_angle_deg;
   law.secant_angle_deg = options.secant_angle_deg;
-  law.has_tangential_initial = !samples[1].empty();
-  law.has_tangential_secant = !samples[2].empty();
   law.packings = count_packings(samples[0]);
   for (const CurveSamples& s : samples) law.points += count_values(s);
   report.normal_left_out = samples[0].left_out;

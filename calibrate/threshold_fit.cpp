@@ -119,6 +119,8 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   run_bootstrap(options, w, report);
   const auto p = w.joint.parameters.law_parameters();
   law.normal = estimated_law(report, p, 0, errors_known);
+  law.has_tangential_initial = w.curves[1].present();
+  law.has_tangential_secant = w.curves[2].present();
   if (w.curves[1].present()) law.tangential_initial = estimated_law(report, p, 1, errors_known);
   if (w.curves[2].present()) law.tangential_secant = estimated_law(report, p, 2, errors_known);
   if (law.packings >= 2) fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);

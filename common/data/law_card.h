@@ -56,7 +56,7 @@ struct PairLaw {
   ThresholdPowerLaw tangential_secant;   ///< secant at secant_angle_deg
   double initial_angle_deg = 0.05;
   double secant_angle_deg = 1.0;
-  bool has_tangential_initial = false;   ///< whether data for it existed
+  bool has_tangential_initial = false;   ///< whether it was fitted; without it soft contacts have no tangential spring
   bool has_tangential_secant = false;
   std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
   double delta_min = 0.0;          ///< validity: range of Delta that was fitted

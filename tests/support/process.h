@@ -1,0 +1,55 @@
+// The built program as a process of its own: started, watched, and ended by a signal.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace softgrain::test {
+
+/// Starts the program with these arguments, its output discarded.
+inline pid_t start_program(const std::vector<std::string>& arguments) {
+  std::vector<char*> words{const_cast<char*>(SOFTGRAIN_PROGRAM)};
+  for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
+  words.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  const int quiet = ::open("/dev/null", O_WRONLY);
+  ::dup2(quiet, STDOUT_FILENO);
+  ::dup2(quiet, STDERR_FILENO);
+  ::execv(SOFTGRAIN_PROGRAM, words.data());
+  ::_exit(127);
+}
+
+/// Waits until `ready` says so, then sends `signal`; a program that ends before is left alone. Returns the wait status.
+inline int signal_when(pid_t child, const std::function<bool()>& ready, int signal) {
+  int status = 0;
+  while (!ready()) {
+    if (::waitpid(child, &status, WNOHANG) == child) return status;
+    ::usleep(1000);
+  }
+  ::kill(child, signal);
+  ::waitpid(child, &status, 0);
+  return status;
+}
+
+inline int signal_after(pid_t child, double seconds, int signal) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  return signal_when(child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
+}
+
+inline int wait_for(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return status;
+}
+
+inline bool ended_with(int wait_status, int exit_status) { return WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == exit_status; }
+
+}  // namespace softgrain::test
