@@ -30,7 +30,8 @@ Replicate refit(const BootstrapInput& input, std::uint64_t seed, std::uint64_t i
   out.law = joint.parameters.law_parameters();
   const bool finite = std::all_of(out.law.begin(), out.law.end(), [](double x) { return std::isfinite(x); });
   if (!finite || joint.fit.end == FitEnd::failed || joint.fit.rank_deficient) return out;
-  const bool bound = joint.delta_at_limit || std::find(joint.exponent_at_bound.begin(), joint.exponent_at_bound.end(), true) != joint.exponent_at_bound.end();
+  const bool bound = joint.delta_at_limit || std::find(joint.exponent_at_bound.begin(), joint.exponent_at_bound.end(),
+                                                       true) != joint.exponent_at_bound.end();
   out.outcome = bound ? Outcome::at_bound : Outcome::inside;
   return out;
 }

@@ -14,7 +14,7 @@ struct BootstrapInput {
   std::array<CurveSamples, kLawCurves> samples;  ///< curves that take no part are empty
   FitCurves curves;                              ///< the full ensemble: its sigma weights every replicate
   double delta_limit = 0.0;
-  JointParameters start;                         ///< the fit to the full ensemble
+  JointParameters start;  ///< the fit to the full ensemble
 };
 
 struct BootstrapResult {

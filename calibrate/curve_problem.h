@@ -18,7 +18,8 @@ struct Observations {
   std::size_t predictors = 1;
 };
 
-/// Residuals f(x_i; p) - y_i. `model(p, x)` is generic in the type of p (double or Dual<N>): `[](const auto* p, const double* x)`.
+/// Residuals f(x_i; p) - y_i. `model(p, x)` is generic in the type of p (double or Dual<N>): `[](const auto* p, const
+/// double* x)`.
 template <std::size_t N, class Model>
 LeastSquaresProblem curve_problem(Observations data, Model model) {
   const auto shared = std::make_shared<const Observations>(std::move(data));

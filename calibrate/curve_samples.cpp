@@ -53,13 +53,15 @@ std::vector<std::vector<TangentialPoint>> by_delta(const PackingRun& run, const 
 }
 
 template <class Stiffness>
-CurveSamples stiffness_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection, Stiffness stiffness) {
+CurveSamples stiffness_samples(const RunList& runs, const SoftParticleSpec& spec, const CurveSelection& selection,
+                               Stiffness stiffness) {
   std::vector<Entry> entries;
   int left_out = 0;
   const double unit = spec.youngs_modulus * spec.shell_radius;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     for (const auto& points : by_delta(*runs[i], selection)) {
-      left_out += static_cast<int>(std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.converged; }));
+      left_out +=
+          static_cast<int>(std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.converged; }));
       if (const auto kt = stiffness(points)) entries.push_back({points.front().delta, i, *kt / unit});
     }
   }
@@ -117,8 +119,10 @@ CurveSamples normal_samples(const RunList& runs, const SoftParticleSpec& spec, c
   for (std::size_t i = 0; i < runs.size(); ++i) {
     for (const NormalPoint& p : runs[i]->normal) {
       if (!inside(p.delta, selection)) continue;
-      if (p.converged && std::isfinite(p.force)) entries.push_back({p.delta, i, p.force / unit});
-      else ++left_out;
+      if (p.converged && std::isfinite(p.force))
+        entries.push_back({p.delta, i, p.force / unit});
+      else
+        ++left_out;
     }
   }
   return arrange(std::move(entries), runs.size(), left_out);

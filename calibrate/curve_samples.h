@@ -28,11 +28,13 @@ struct CurveMeans {
   std::vector<double> count;      ///< packings with a value
 };
 
-/// Means where packing i counts `multiplicity[i]` times (empty: once each). Deltas without any value keep count 0 and mean 0.
+/// Means where packing i counts `multiplicity[i]` times (empty: once each). Deltas without any value keep count 0 and
+/// mean 0.
 CurveMeans means_of(const CurveSamples& samples, std::span<const int> multiplicity = {});
 
-/// Error per single packing at each Delta: the deviation, but no less than a floor, because the scatter vanishes below the
-/// threshold: `scatter_floor` times the pooled deviation (root of the mean square over Delta), and 1e-4 of the largest mean.
+/// Error per single packing at each Delta: the deviation, but no less than a floor, because the scatter vanishes below
+/// the threshold: `scatter_floor` times the pooled deviation (root of the mean square over Delta), and 1e-4 of the
+/// largest mean.
 std::vector<double> floored_deviations(const CurveMeans& means, double scatter_floor);
 
 /// Which runs and points enter.

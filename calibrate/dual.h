@@ -1,4 +1,5 @@
-// Forward automatic differentiation: a number with its gradient over N parameters. Exact to rounding, unlike differences.
+// Forward automatic differentiation: a number with its gradient over N parameters. Exact to rounding, unlike
+// differences.
 #pragma once
 
 #include <array>
@@ -34,7 +35,9 @@ struct Dual {
   friend Dual operator+(const Dual& a, const Dual& b) { return combine(a, 1.0, b, 1.0, a.v + b.v); }
   friend Dual operator-(const Dual& a, const Dual& b) { return combine(a, 1.0, b, -1.0, a.v - b.v); }
   friend Dual operator*(const Dual& a, const Dual& b) { return combine(a, b.v, b, a.v, a.v * b.v); }
-  friend Dual operator/(const Dual& a, const Dual& b) { return combine(a, 1.0 / b.v, b, -a.v / (b.v * b.v), a.v / b.v); }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    return combine(a, 1.0 / b.v, b, -a.v / (b.v * b.v), a.v / b.v);
+  }
 
   friend Dual exp(const Dual& a) { return a.chain(std::exp(a.v), std::exp(a.v)); }
   friend Dual log(const Dual& a) { return a.chain(std::log(a.v), 1.0 / a.v); }

@@ -33,7 +33,8 @@ bool evaluate_jacobian(const LeastSquaresProblem& problem, const Vector& p, Vect
 }
 
 /// On a bound (to rounding) with the descent direction pointing out of it.
-std::vector<bool> active_bounds(const LeastSquaresProblem& problem, const Vector& p, const Vector& r, const Vector& jacobian) {
+std::vector<bool> active_bounds(const LeastSquaresProblem& problem, const Vector& p, const Vector& r,
+                                const Vector& jacobian) {
   std::vector<bool> active(p.size(), false);
   for (std::size_t j = 0; j < problem.bounds.size(); ++j) {
     const ParameterBounds& b = problem.bounds[j];
@@ -52,7 +53,8 @@ void keep_gsl_from_aborting() {
 }
 
 /// Singular value decomposition of the free columns, each divided by its norm: J_free = U S V^T diag(norm).
-/// One-sided Jacobi keeps small singular values accurate. Rows of zeros are added when there are fewer residuals than columns.
+/// One-sided Jacobi keeps small singular values accurate. Rows of zeros are added when there are fewer residuals than
+/// columns.
 struct Decomposition {
   std::vector<std::size_t> free;  ///< column of each free parameter
   Vector norm;
@@ -75,7 +77,8 @@ Decomposition decompose(const Vector& jacobian, std::size_t rows, const std::vec
     double sum = 0.0;
     for (std::size_t i = 0; i < rows; ++i) sum += jacobian[i * n + d.free[c]] * jacobian[i * n + d.free[c]];
     d.norm.push_back(std::sqrt(sum));
-    for (std::size_t i = 0; i < rows && sum > 0.0; ++i) gsl_matrix_set(d.u.get(), i, c, jacobian[i * n + d.free[c]] / d.norm[c]);
+    for (std::size_t i = 0; i < rows && sum > 0.0; ++i)
+      gsl_matrix_set(d.u.get(), i, c, jacobian[i * n + d.free[c]] / d.norm[c]);
   }
   keep_gsl_from_aborting();
   gsl_linalg_SV_decomp_jacobi(d.u.get(), d.v.get(), d.s.get());
@@ -153,8 +156,10 @@ void polish(const LeastSquaresProblem& problem, std::vector<double>& p, double r
     const Linearisation there = linearise(problem, next, rank_tolerance);
     const bool smaller_step = step_in_deviations(there, next, problem.residuals) < left;
     // S carries the rounding of the residuals; the step does not, so it decides when S stands still.
-    const bool better = there.defined && (there.residual_sum_of_squares < here.residual_sum_of_squares ||
-                                          (smaller_step && there.residual_sum_of_squares <= here.residual_sum_of_squares * (1.0 + 1e-9)));
+    const bool better =
+        there.defined &&
+        (there.residual_sum_of_squares < here.residual_sum_of_squares ||
+         (smaller_step && there.residual_sum_of_squares <= here.residual_sum_of_squares * (1.0 + 1e-9)));
     if (!better) return;
     p = std::move(next);
     here = there;

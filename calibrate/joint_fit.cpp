@@ -52,7 +52,8 @@ std::vector<double> kinks(const FitCurves& curves, double limit) {
     for (const double d : c.means.delta)
       if (d > 0.0 && d < limit) out.push_back(d);
   std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end(), [limit](double a, double b) { return b - a < 1e-9 * limit; }), out.end());
+  out.erase(std::unique(out.begin(), out.end(), [limit](double a, double b) { return b - a < 1e-9 * limit; }),
+            out.end());
   return out;
 }
 
@@ -60,7 +61,10 @@ std::vector<double> kinks(const FitCurves& curves, double limit) {
 class IntervalFits {
  public:
   IntervalFits(const FitCurves& curves, double limit)
-      : shape_(joint_shape(curves)), layout_(shape_.present), problem_(joint_problem(curves, shape_)), kinks_(kinks(curves, limit)) {
+      : shape_(joint_shape(curves)),
+        layout_(shape_.present),
+        problem_(joint_problem(curves, shape_)),
+        kinks_(kinks(curves, limit)) {
     options_.scale_covariance = false;
     options_.thorough = false;
     options_.max_iterations = 200;
@@ -76,8 +80,9 @@ class IntervalFits {
     return std::min(k, intervals() - 1);
   }
 
-  /// Takes a solution that was bounded to one interval and sets delta free: last digits, and a covariance that knows of delta.
-  /// On a kink (possible when a mean there is negative) the slope differs from side to side and no step can vanish.
+  /// Takes a solution that was bounded to one interval and sets delta free: last digits, and a covariance that knows of
+  /// delta. On a kink (possible when a mean there is negative) the slope differs from side to side and no step can
+  /// vanish.
   LeastSquaresFit release(const LeastSquaresFit& bounded) {
     problem_.bounds[0] = {0.0, kinks_.back()};
     LeastSquaresFit free = fit_least_squares(problem_, {bounded.parameters}, options_);
@@ -103,7 +108,8 @@ class IntervalFits {
     out.delta_at_limit = out.parameters.delta >= kinks_.back() - tolerance;
     for (std::size_t j = 0; j < kLawCurves; ++j) {
       const double b = out.parameters.exponent[j];
-      out.exponent_at_bound[j] = shape_.present[j] && (b <= kExponentBounds.low * (1.0 + 1e-9) || b >= kExponentBounds.high * (1.0 - 1e-9));
+      out.exponent_at_bound[j] =
+          shape_.present[j] && (b <= kExponentBounds.low * (1.0 + 1e-9) || b >= kExponentBounds.high * (1.0 - 1e-9));
     }
     out.fit = std::move(fit);
     return out;
@@ -134,7 +140,9 @@ JointFit fit_joint(const FitCurves& curves, double delta_limit) {
     LeastSquaresFit fit = fits.solve(k, start_at(curves, fits.shape(), fits.middle(k)));
     iterations += fit.iterations;
     // On a kink two intervals meet with equal sums; the one that sees its true slope there reports convergence.
-    const bool tie = best.end != FitEnd::not_run && std::abs(fit.residual_sum_of_squares - best.residual_sum_of_squares) <= 1e-9 * best.residual_sum_of_squares;
+    const bool tie =
+        best.end != FitEnd::not_run &&
+        std::abs(fit.residual_sum_of_squares - best.residual_sum_of_squares) <= 1e-9 * best.residual_sum_of_squares;
     const bool better = tie ? fit.end == FitEnd::converged && best.end != FitEnd::converged
                             : fit.residual_sum_of_squares < best.residual_sum_of_squares;
     if (better) best = std::move(fit);

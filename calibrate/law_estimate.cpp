@@ -28,9 +28,11 @@ int count_packings(const CurveSamples& s) {
 }
 
 /// Values of a stiffness curve on the rows of the normal curve; NaN where it was not measured.
-void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, std::vector<double>& mean, std::vector<double>& deviation) {
+void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, std::vector<double>& mean,
+                    std::vector<double>& deviation) {
   for (const double d : rows) {
-    const auto it = std::find_if(means.delta.begin(), means.delta.end(), [d](double x) { return std::abs(x - d) < 1e-7; });
+    const auto it =
+        std::find_if(means.delta.begin(), means.delta.end(), [d](double x) { return std::abs(x - d) < 1e-7; });
     const auto k = static_cast<std::size_t>(it - means.delta.begin());
     const bool found = it != means.delta.end();
     mean.push_back(found ? means.mean[k] : std::numeric_limits<double>::quiet_NaN());
@@ -41,7 +43,8 @@ void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, st
 double constant_of(double a, double b, double delta) { return delta > 0.0 ? -a * std::pow(delta, b) : 0.0; }
 
 /// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2.
-double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b, double delta) {
+double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b,
+                      double delta) {
   if (delta <= 0.0) return 0.0;
   const double p = std::pow(delta, b);
   const std::array<std::size_t, 3> rows{i, j, 2};
@@ -62,7 +65,8 @@ Estimate estimate(double value, double error, const FitReport& report, Pick pick
 
 }  // namespace
 
-void describe_data(const RunList& runs, const FitOptions& options, const LawSamples& samples, const LawMeans& means, FitReport& report) {
+void describe_data(const RunList& runs, const FitOptions& options, const LawSamples& samples, const LawMeans& means,
+                   FitReport& report) {
   PairLaw& law = report.law;
   const CurveMeans& normal = means[0];
   law.initial_angle_deg = options.initial_angle_deg;
@@ -81,7 +85,8 @@ void describe_data(const RunList& runs, const FitOptions& options, const LawSamp
   law.delta_max = normal.delta.back();
   for (const PackingRun* run : runs)
     for (const NormalPoint& p : run->normal)
-      if (p.converged && p.delta >= law.delta_min - 1e-7 && p.delta <= law.delta_max + 1e-7) law.max_overlap = std::max(law.max_overlap, p.max_overlap);
+      if (p.converged && p.delta >= law.delta_min - 1e-7 && p.delta <= law.delta_max + 1e-7)
+        law.max_overlap = std::max(law.max_overlap, p.max_overlap);
 }
 
 void fill_goodness(const FitCurves& curves, const JointParameters& found, double noise_floor, PairLaw& law) {
@@ -104,7 +109,8 @@ void fill_goodness(const FitCurves& curves, const JointParameters& found, double
   law.quality = freedom > 0.0 ? gsl_cdf_chisq_Q(chi2, freedom) : 0.0;
 }
 
-ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double, 7>& p, std::size_t curve, bool errors_known) {
+ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double, 7>& p, std::size_t curve,
+                                bool errors_known) {
   const std::size_t i = kRowOfA[curve];
   const std::size_t j = i + 1;
   const auto& cov = report.law.covariance;
@@ -113,17 +119,21 @@ ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double
   law.a = estimate(p[i], error(i), report, [i](const auto& r) { return r[i]; });
   law.b = estimate(p[j], error(j), report, [j](const auto& r) { return r[j]; });
   law.delta = estimate(p[2], error(2), report, [](const auto& r) { return r[2]; });
-  law.c = estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity, report,
-                   [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); });
+  law.c =
+      estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity,
+               report, [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); });
   return law;
 }
 
 std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<const double> deltas) {
   const PairLaw& law = report.law;
   const std::size_t i = kRowOfA[static_cast<std::size_t>(curve)];
-  const std::array<const ThresholdPowerLaw*, kLawCurves> laws{&law.normal, &law.tangential_initial, &law.tangential_secant};
+  const std::array<const ThresholdPowerLaw*, kLawCurves> laws{&law.normal, &law.tangential_initial,
+                                                              &law.tangential_secant};
   const ThresholdPowerLaw& best = *laws[static_cast<std::size_t>(curve)];
-  const auto value = [](double a, double b, double delta, double d) { return d <= delta ? 0.0 : a * std::pow(d, b) + constant_of(a, b, delta); };
+  const auto value = [](double a, double b, double delta, double d) {
+    return d <= delta ? 0.0 : a * std::pow(d, b) + constant_of(a, b, delta);
+  };
   std::vector<Band> out;
   for (const double d : deltas) {
     std::vector<double> values;

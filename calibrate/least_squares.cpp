@@ -18,7 +18,8 @@ namespace {
 constexpr double kStepTolerance = 1e-5;
 /// Restarts of one strategy with parameters rescaled to where the last run ended.
 constexpr int kMaxRounds = 4;
-/// Sums closer than this share are equal: the earlier end point stays (models with a symmetry have several equal minima).
+/// Sums closer than this share are equal: the earlier end point stays (models with a symmetry have several equal
+/// minima).
 constexpr double kSumTie = 1e-9;
 /// Further starts, spread a decade around the given ones, tried only while the best end point is not usable.
 constexpr std::size_t kSpreadStarts = 16;
@@ -28,10 +29,12 @@ void require_consistent(const LeastSquaresProblem& problem, const std::vector<st
   if (!problem.evaluate || problem.residuals == 0) throw BadInput("fit: no residuals given");
   for (const auto& start : starts) {
     if (start.size() != starts.front().size()) throw BadInput("fit: starts have different numbers of parameters");
-    if (!problem.bounds.empty() && problem.bounds.size() != start.size()) throw BadInput("fit: one pair of bounds per parameter is needed");
+    if (!problem.bounds.empty() && problem.bounds.size() != start.size())
+      throw BadInput("fit: one pair of bounds per parameter is needed");
     for (std::size_t j = 0; j < problem.bounds.size(); ++j)
       if (!(problem.bounds[j].low <= start[j] && start[j] <= problem.bounds[j].high))
-        throw BadInput(fmt::format("fit: start value {} of parameter {} lies outside its bounds [{}, {}]", start[j], j, problem.bounds[j].low, problem.bounds[j].high));
+        throw BadInput(fmt::format("fit: start value {} of parameter {} lies outside its bounds [{}, {}]", start[j], j,
+                                   problem.bounds[j].low, problem.bounds[j].high));
   }
 }
 
@@ -52,8 +55,8 @@ double sum_of_squares(const LeastSquaresProblem& problem, const std::vector<doub
 }
 
 /// One strategy from one start, restarted with new scales as long as that lowers S, then polished.
-EndPoint run_strategy(const LeastSquaresProblem& problem, const std::vector<double>& start, const TrustRegionStrategy& strategy,
-                      const LeastSquaresOptions& options, int& iterations) {
+EndPoint run_strategy(const LeastSquaresProblem& problem, const std::vector<double>& start,
+                      const TrustRegionStrategy& strategy, const LeastSquaresOptions& options, int& iterations) {
   EndPoint best;
   std::vector<double> p = start;
   for (int round = 0; round < (options.thorough ? kMaxRounds : 1); ++round) {
@@ -73,7 +76,8 @@ EndPoint run_strategy(const LeastSquaresProblem& problem, const std::vector<doub
 }
 
 /// Covariance, deviations and the reason of the end, from the linearisation at the best point.
-void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& options, const EndPoint& best, LeastSquaresFit& fit) {
+void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& options, const EndPoint& best,
+              LeastSquaresFit& fit) {
   const std::size_t n = best.parameters.size();
   fit.parameters = best.parameters;
   const Linearisation at = linearise(problem, best.parameters, options.rank_tolerance);
@@ -101,11 +105,13 @@ void describe(const LeastSquaresProblem& problem, const LeastSquaresOptions& opt
     fit.message = fmt::format("converged: the step left is {:.1e} standard deviations", fit.step_left);
   } else {
     fit.end = best.capped ? FitEnd::capped : FitEnd::stalled;
-    fit.message = fmt::format("{}: a step of {:.1e} standard deviations is left ({})", to_string(fit.end), fit.step_left, best.message);
+    fit.message = fmt::format("{}: a step of {:.1e} standard deviations is left ({})", to_string(fit.end),
+                              fit.step_left, best.message);
   }
   if (fit.rank_deficient)
-    fit.message += fmt::format("; the data determine {} of {} free parameters", fit.rank,
-                               n - static_cast<std::size_t>(std::count(fit.at_bound.begin(), fit.at_bound.end(), true)));
+    fit.message +=
+        fmt::format("; the data determine {} of {} free parameters", fit.rank,
+                    n - static_cast<std::size_t>(std::count(fit.at_bound.begin(), fit.at_bound.end(), true)));
 }
 
 /// A clearly lower sum; or a slightly lower one at the same minimum (more digits).
@@ -132,12 +138,14 @@ void run_strategies(const LeastSquaresProblem& problem, const std::vector<double
   }
 }
 
-/// The k-th start around a given one: each parameter times 10^u, u even over [-1, 1] (Weyl sequence over square roots of primes).
+/// The k-th start around a given one: each parameter times 10^u, u even over [-1, 1] (Weyl sequence over square roots
+/// of primes).
 std::vector<double> spread_start(const LeastSquaresProblem& problem, const std::vector<double>& start, std::size_t k) {
   constexpr std::array<double, 12> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   std::vector<double> p = start;
   for (std::size_t j = 0; j < p.size(); ++j) {
-    const double x = static_cast<double>(k) * std::sqrt(kPrimes[j % kPrimes.size()]) * (1.0 + static_cast<double>(j / kPrimes.size()));
+    const double x = static_cast<double>(k) * std::sqrt(kPrimes[j % kPrimes.size()]) *
+                     (1.0 + static_cast<double>(j / kPrimes.size()));
     p[j] *= std::pow(10.0, 2.0 * (x - std::floor(x)) - 1.0);
     if (!problem.bounds.empty()) p[j] = std::clamp(p[j], problem.bounds[j].low, problem.bounds[j].high);
   }
@@ -148,11 +156,16 @@ std::vector<double> spread_start(const LeastSquaresProblem& problem, const std::
 
 std::string to_string(FitEnd end) {
   switch (end) {
-    case FitEnd::not_run: return "not run";
-    case FitEnd::converged: return "converged";
-    case FitEnd::stalled: return "stalled";
-    case FitEnd::capped: return "capped";
-    case FitEnd::failed: return "failed";
+    case FitEnd::not_run:
+      return "not run";
+    case FitEnd::converged:
+      return "converged";
+    case FitEnd::stalled:
+      return "stalled";
+    case FitEnd::capped:
+      return "capped";
+    case FitEnd::failed:
+      return "failed";
   }
   return "unknown";
 }

@@ -1,5 +1,6 @@
 // A general fitter for non-linear least squares: minimise S(p) = sum_i r_i(p)^2, within bounds, from several starts.
-// Ceres does the trust-region work behind this header; the result says why it ended and how well it determines each parameter.
+// Ceres does the trust-region work behind this header; the result says why it ended and how well it determines each
+// parameter.
 #pragma once
 
 #include <cstddef>
@@ -31,10 +32,12 @@ struct LeastSquaresProblem {
 };
 
 struct LeastSquaresOptions {
-  int max_iterations = 5000;       ///< of each trust-region run
-  bool thorough = true;            ///< try every strategy and keep the best; false: the first one alone
-  bool scale_covariance = true;    ///< covariance times S/(degrees of freedom); false when residuals are in units of known errors
-  double rank_tolerance = 1e-11;   ///< singular values of the column-scaled Jacobian below this share of the largest count as zero
+  int max_iterations = 5000;  ///< of each trust-region run
+  bool thorough = true;       ///< try every strategy and keep the best; false: the first one alone
+  bool scale_covariance =
+      true;  ///< covariance times S/(degrees of freedom); false when residuals are in units of known errors
+  double rank_tolerance =
+      1e-11;  ///< singular values of the column-scaled Jacobian below this share of the largest count as zero
 };
 
 enum class FitEnd {
@@ -49,12 +52,12 @@ std::string to_string(FitEnd end);
 
 struct LeastSquaresFit {
   FitEnd end = FitEnd::not_run;
-  std::string message = "not run";           ///< one sentence: why it ended
+  std::string message = "not run";  ///< one sentence: why it ended
   std::vector<double> parameters;
-  std::vector<double> covariance;            ///< n x n row-major; rows of parameters at a bound are zero
-  std::vector<double> standard_deviations;   ///< infinite where the data do not determine the parameter
-  std::vector<bool> at_bound;                ///< S would fall further outside the bound
-  int rank = 0;                              ///< of the Jacobian over parameters that are not at a bound
+  std::vector<double> covariance;           ///< n x n row-major; rows of parameters at a bound are zero
+  std::vector<double> standard_deviations;  ///< infinite where the data do not determine the parameter
+  std::vector<bool> at_bound;               ///< S would fall further outside the bound
+  int rank = 0;                             ///< of the Jacobian over parameters that are not at a bound
   bool rank_deficient = false;
   double residual_sum_of_squares = std::numeric_limits<double>::infinity();
   double residual_standard_deviation = 0.0;  ///< sqrt(S / degrees of freedom)
@@ -67,9 +70,10 @@ struct LeastSquaresFit {
   [[nodiscard]] bool usable() const { return end == FitEnd::converged && !rank_deficient; }
 };
 
-/// Runs every strategy from every start, polishes each end point and keeps the one with the smallest S. While that one is
-/// not usable (and `thorough` holds) further starts are spread around the given ones, a decade to either side.
-/// Throws BadInput when starts, bounds and residuals do not fit together; a fit that goes wrong is reported, not thrown.
+/// Runs every strategy from every start, polishes each end point and keeps the one with the smallest S. While that one
+/// is not usable (and `thorough` holds) further starts are spread around the given ones, a decade to either side.
+/// Throws BadInput when starts, bounds and residuals do not fit together; a fit that goes wrong is reported, not
+/// thrown.
 LeastSquaresFit fit_least_squares(const LeastSquaresProblem& problem, const std::vector<std::vector<double>>& starts,
                                   const LeastSquaresOptions& options = {});
 

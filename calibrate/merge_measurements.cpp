@@ -19,31 +19,45 @@ struct Quantity {
 /// Everything that must agree before two files belong to one ensemble.
 std::vector<Quantity> conditions(const Measurements& m) {
   const SoftParticleSpec& s = m.spec;
-  return {{"shell_radius", s.shell_radius},   {"E", s.youngs_modulus},          {"nu", s.poisson_ratio},
-          {"mu", s.friction},                 {"density", s.density},           {"restitution", s.restitution},
-          {"exponent", s.exponent},           {"polydispersity", s.polydispersity}, {"rmax_over_shell", s.rmax_over_shell},
-          {"beta", s.beta},                   {"trials", static_cast<double>(s.trials)}, {"shell_turns", m.shell_turns ? 1.0 : 0.0},
+  return {{"shell_radius", s.shell_radius},
+          {"E", s.youngs_modulus},
+          {"nu", s.poisson_ratio},
+          {"mu", s.friction},
+          {"density", s.density},
+          {"restitution", s.restitution},
+          {"exponent", s.exponent},
+          {"polydispersity", s.polydispersity},
+          {"rmax_over_shell", s.rmax_over_shell},
+          {"beta", s.beta},
+          {"trials", static_cast<double>(s.trials)},
+          {"shell_turns", m.shell_turns ? 1.0 : 0.0},
           {"approach_speed", m.approach_speed}};
 }
 
-void require_same(const Measurements& first, const Measurements& other, const std::string& first_name, const std::string& other_name) {
+void require_same(const Measurements& first, const Measurements& other, const std::string& first_name,
+                  const std::string& other_name) {
   const auto a = conditions(first);
   const auto b = conditions(other);
   for (std::size_t k = 0; k < a.size(); ++k)
     if (a[k].value != b[k].value)
-      throw BadInput(fmt::format("cannot merge {} and {}: {} = {} and {}", first_name, other_name, a[k].name, a[k].value, b[k].value));
+      throw BadInput(fmt::format("cannot merge {} and {}: {} = {} and {}", first_name, other_name, a[k].name,
+                                 a[k].value, b[k].value));
 }
 
-/// A packing is the same when its radii are (every grain was grown to a random neighbour: no two packings agree by chance).
+/// A packing is the same when its radii are (every grain was grown to a random neighbour: no two packings agree by
+/// chance).
 using Measured = std::map<std::tuple<std::vector<double>, PairKind, std::string>, std::string>;
 
 void require_new(const PackingRun& run, const Measurements& part, const std::string& name, Measured& seen) {
   if (run.packing < 0 || run.packing >= static_cast<std::int64_t>(part.packings.size()))
-    throw BadInput(fmt::format("{}: a run refers to packing {}, the file holds {}", name, run.packing, part.packings.size()));
+    throw BadInput(
+        fmt::format("{}: a run refers to packing {}, the file holds {}", name, run.packing, part.packings.size()));
   const PackingInfo& packing = part.packings[static_cast<std::size_t>(run.packing)];
   if (packing.radii.empty()) return;
   const auto [at, fresh] = seen.try_emplace({packing.radii, run.kind, run.relaxation}, name);
-  if (!fresh) throw BadInput(fmt::format("cannot merge {} and {}: packing {} ({}, {}) was measured in both", at->second, name, packing.seed, to_string(run.kind), run.relaxation));
+  if (!fresh)
+    throw BadInput(fmt::format("cannot merge {} and {}: packing {} ({}, {}) was measured in both", at->second, name,
+                               packing.seed, to_string(run.kind), run.relaxation));
 }
 
 }  // namespace

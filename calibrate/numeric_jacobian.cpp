@@ -12,7 +12,8 @@ constexpr std::size_t kLevels = 8;
 constexpr double kShrink = 2.0;
 
 /// Central difference of all residuals over parameter j with step h.
-bool central(const ResidualFunction& evaluate, std::vector<double> p, std::size_t j, double h, std::vector<double>& out) {
+bool central(const ResidualFunction& evaluate, std::vector<double> p, std::size_t j, double h,
+             std::vector<double>& out) {
   std::vector<double> below(out.size());
   const double x = p[j];
   p[j] = x + h;
@@ -59,8 +60,10 @@ bool ridders_jacobian(const ResidualFunction& evaluate, std::size_t residuals, s
     std::vector<std::vector<double>> differences;
     for (std::size_t level = 0; level < kLevels; ++level, h /= kShrink) {
       std::vector<double> d(residuals);
-      if (central(evaluate, p, j, h, d)) differences.push_back(std::move(d));
-      else differences.clear();
+      if (central(evaluate, p, j, h, d))
+        differences.push_back(std::move(d));
+      else
+        differences.clear();
     }
     if (differences.empty()) return false;
     for (std::size_t i = 0; i < residuals; ++i) jacobian[i * p.size() + j] = extrapolate(differences, i);

@@ -7,8 +7,8 @@ namespace softgrain {
 namespace {
 
 /// Gradient of half the sum of squares over the fit's parameters that one packing contributes.
-std::vector<double> score_of(std::size_t packing, const JointParameters& p, const JointLayout& layout, const FitCurves& curves,
-                             const std::array<const CurveSamples*, kLawCurves>& samples) {
+std::vector<double> score_of(std::size_t packing, const JointParameters& p, const JointLayout& layout,
+                             const FitCurves& curves, const std::array<const CurveSamples*, kLawCurves>& samples) {
   std::vector<double> score(layout.size, 0.0);
   for (std::size_t j = 0; j < kLawCurves; ++j) {
     for (std::size_t k = 0; p.present[j] && k < samples[j]->delta.size(); ++k) {
@@ -51,7 +51,8 @@ std::vector<double> packing_covariance(const JointFit& joint, const FitCurves& c
     const std::vector<double> score = score_of(g, joint.parameters, layout, curves, samples);
     std::vector<double> influence(layout.size, 0.0);
     for (std::size_t r = 0; r < layout.size; ++r)
-      for (std::size_t c = 0; c < layout.size; ++c) influence[r] += joint.fit.covariance[r * layout.size + c] * score[c];
+      for (std::size_t c = 0; c < layout.size; ++c)
+        influence[r] += joint.fit.covariance[r * layout.size + c] * score[c];
     const auto law = as_law(influence, joint.parameters, layout);
     for (std::size_t r = 0; r < 7; ++r)
       for (std::size_t c = 0; c < 7; ++c) out[r * 7 + c] += correction * law[r] * law[c];

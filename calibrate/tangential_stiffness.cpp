@@ -13,7 +13,9 @@ constexpr double kAngleTolerance = 1e-6;
 
 bool usable(const TangentialPoint& p) { return p.converged && std::isfinite(p.force_parallel); }
 
-bool same_angle(double a, double b) { return std::abs(a - b) <= kAngleTolerance * std::max(std::abs(a), std::abs(b)) + 1e-12; }
+bool same_angle(double a, double b) {
+  return std::abs(a - b) <= kAngleTolerance * std::max(std::abs(a), std::abs(b)) + 1e-12;
+}
 
 std::optional<double> force_at(const std::vector<TangentialPoint>& points, double angle_deg) {
   for (const TangentialPoint& p : points)
@@ -23,13 +25,17 @@ std::optional<double> force_at(const std::vector<TangentialPoint>& points, doubl
 
 }  // namespace
 
-double tangential_displacement(double angle_deg, double shell_radius) { return std::numbers::pi * shell_radius * angle_deg / 180.0; }
+double tangential_displacement(double angle_deg, double shell_radius) {
+  return std::numbers::pi * shell_radius * angle_deg / 180.0;
+}
 
 std::optional<double> initial_slope(const std::vector<TangentialPoint>& points, double angle_deg, double shell_radius) {
   double n = 0.0;
   double sum_h = 0.0;
   double sum_f = 0.0;
-  const auto used = [&](const TangentialPoint& p) { return usable(p) && std::abs(p.angle_deg) <= angle_deg * (1.0 + kAngleTolerance); };
+  const auto used = [&](const TangentialPoint& p) {
+    return usable(p) && std::abs(p.angle_deg) <= angle_deg * (1.0 + kAngleTolerance);
+  };
   for (const TangentialPoint& p : points) {
     if (!used(p)) continue;
     n += 1.0;

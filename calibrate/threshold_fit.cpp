@@ -17,15 +17,19 @@ namespace {
 
 /// Clear points (mean above noise and two standard errors) that each curve needs: normal a, b, delta; tangential a, b.
 constexpr std::array<std::size_t, kLawCurves> kClearNeeded{3, 2, 2};
-constexpr std::array<const char*, kLawCurves> kCurveNames{"normal force", "initial tangential stiffness", "secant tangential stiffness"};
+constexpr std::array<const char*, kLawCurves> kCurveNames{"normal force", "initial tangential stiffness",
+                                                          "secant tangential stiffness"};
 /// Share of replicates beyond which an interval end is not determined.
 constexpr double kTolerableShare = 0.025;
 
 void require_valid(const FitOptions& o) {
-  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg > 0.0)) throw BadInput("fit: angles must be above 0 degrees");
-  if (!(o.delta_high > o.delta_low) || o.delta_low < 0.0) throw BadInput(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
+  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg > 0.0))
+    throw BadInput("fit: angles must be above 0 degrees");
+  if (!(o.delta_high > o.delta_low) || o.delta_low < 0.0)
+    throw BadInput(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
   if (!(o.noise_floor >= 0.0)) throw BadInput(fmt::format("fit: noise_floor = {}: must be 0 or above", o.noise_floor));
-  if (!(o.scatter_floor > 0.0 && o.scatter_floor <= 1.0)) throw BadInput(fmt::format("fit: scatter_floor = {}: must lie in (0, 1]", o.scatter_floor));
+  if (!(o.scatter_floor > 0.0 && o.scatter_floor <= 1.0))
+    throw BadInput(fmt::format("fit: scatter_floor = {}: must lie in (0, 1]", o.scatter_floor));
   if (o.min_packings < 2) throw BadInput(fmt::format("fit: min_packings = {}: must be 2 or above", o.min_packings));
   if (o.replicates < 0) throw BadInput(fmt::format("fit: replicates = {}: must be 0 or above", o.replicates));
 }
@@ -59,9 +63,11 @@ struct Work {
 };
 
 Work collect(const RunList& runs, const SoftParticleSpec& spec, const FitOptions& options) {
-  const CurveSelection selection{options.delta_low, options.delta_high, options.initial_angle_deg, options.secant_angle_deg};
+  const CurveSelection selection{options.delta_low, options.delta_high, options.initial_angle_deg,
+                                 options.secant_angle_deg};
   Work w;
-  w.samples = {normal_samples(runs, spec, selection), initial_slope_samples(runs, spec, selection), secant_samples(runs, spec, selection)};
+  w.samples = {normal_samples(runs, spec, selection), initial_slope_samples(runs, spec, selection),
+               secant_samples(runs, spec, selection)};
   for (std::size_t j = 0; j < kLawCurves; ++j) {
     w.means[j] = means_of(w.samples[j]);
     w.clear[j] = clear_deltas(w.means[j], options.noise_floor);
@@ -74,7 +80,8 @@ void prepare(const FitOptions& options, Work& w) {
   for (std::size_t j = 0; j < kLawCurves; ++j) {
     if (w.samples[j].empty()) continue;
     if (w.clear[j].size() < kClearNeeded[j])
-      w.reasons.push_back(fmt::format("{}: {} points clearly above zero, {} needed", kCurveNames[j], w.clear[j].size(), kClearNeeded[j]));
+      w.reasons.push_back(fmt::format("{}: {} points clearly above zero, {} needed", kCurveNames[j], w.clear[j].size(),
+                                      kClearNeeded[j]));
     if (j > 0 && w.clear[j].size() < kClearNeeded[j]) continue;
     w.curves[j] = {w.means[j], floored_deviations(w.means[j], options.scatter_floor)};
   }
@@ -85,37 +92,49 @@ void prepare(const FitOptions& options, Work& w) {
 /// Reasons that the fit itself gives against its use.
 void judge_fit(Work& w) {
   const JointFit& joint = w.joint;
-  if (joint.fit.rank_deficient) w.reasons.push_back("rank-deficient covariance: " + joint.fit.message);
-  else if (joint.fit.end != FitEnd::converged) w.reasons.push_back("the optimiser did not converge: " + joint.fit.message);
+  if (joint.fit.rank_deficient)
+    w.reasons.push_back("rank-deficient covariance: " + joint.fit.message);
+  else if (joint.fit.end != FitEnd::converged)
+    w.reasons.push_back("the optimiser did not converge: " + joint.fit.message);
   if (joint.delta_at_zero) w.reasons.emplace_back("delta is at its lower bound 0: the data show no threshold");
   if (joint.delta_at_limit)
-    w.reasons.push_back(fmt::format("delta is at its upper bound {:.4g}, where three clear points are left", w.delta_limit));
+    w.reasons.push_back(
+        fmt::format("delta is at its upper bound {:.4g}, where three clear points are left", w.delta_limit));
   for (std::size_t j = 0; j < kLawCurves; ++j)
-    if (joint.exponent_at_bound[j]) w.reasons.push_back(fmt::format("exponent of the {} is at its bound {:.4g}", kCurveNames[j], joint.parameters.exponent[j]));
+    if (joint.exponent_at_bound[j])
+      w.reasons.push_back(
+          fmt::format("exponent of the {} is at its bound {:.4g}", kCurveNames[j], joint.parameters.exponent[j]));
 }
 
 void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   const bool enough = report.law.packings >= options.min_packings;
-  if (!enough) w.reasons.push_back(fmt::format("{} packing{}, {} needed for an interval", report.law.packings, report.law.packings == 1 ? "" : "s", options.min_packings));
-  else if (options.replicates < 1) w.reasons.emplace_back("no bootstrap replicates were asked for");
+  if (!enough)
+    w.reasons.push_back(fmt::format("{} packing{}, {} needed for an interval", report.law.packings,
+                                    report.law.packings == 1 ? "" : "s", options.min_packings));
+  else if (options.replicates < 1)
+    w.reasons.emplace_back("no bootstrap replicates were asked for");
   if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient) return;
   BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters};
-  BootstrapResult result = bootstrap(input, options.replicates, options.seed, static_cast<std::uint64_t>(report.law.kind) + 1);
+  BootstrapResult result =
+      bootstrap(input, options.replicates, options.seed, static_cast<std::uint64_t>(report.law.kind) + 1);
   report.replicates = std::move(result.replicates);
   report.replicates_failed = result.failed;
   report.replicates_at_bound = result.at_bound;
   const double total = options.replicates;
   if (result.failed > kTolerableShare * total)
-    w.reasons.push_back(fmt::format("{:.1f} % of bootstrap replicates are rank-deficient", 100.0 * result.failed / total));
+    w.reasons.push_back(
+        fmt::format("{:.1f} % of bootstrap replicates are rank-deficient", 100.0 * result.failed / total));
   if (result.at_bound > kTolerableShare * total)
-    w.reasons.push_back(fmt::format("unbounded interval: {:.1f} % of bootstrap replicates ran to a bound", 100.0 * result.at_bound / total));
+    w.reasons.push_back(fmt::format("unbounded interval: {:.1f} % of bootstrap replicates ran to a bound",
+                                    100.0 * result.at_bound / total));
 }
 
 void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   PairLaw& law = report.law;
   law.covariance.assign(49, 0.0);
   const bool errors_known = law.packings >= 2 && !w.joint.fit.rank_deficient;
-  if (errors_known) law.covariance = packing_covariance(w.joint, w.curves, {&w.samples[0], &w.samples[1], &w.samples[2]});
+  if (errors_known)
+    law.covariance = packing_covariance(w.joint, w.curves, {&w.samples[0], &w.samples[1], &w.samples[2]});
   run_bootstrap(options, w, report);
   const auto p = w.joint.parameters.law_parameters();
   law.normal = estimated_law(report, p, 0, errors_known);
@@ -141,9 +160,11 @@ std::string chosen_relaxation(const Measurements& data, const FitOptions& option
   std::string names;
   for (const std::string& name : present) names += (names.empty() ? "\"" : ", \"") + name + "\"";
   if (present.empty()) throw BadInput("fit: the measurements hold no runs");
-  if (options.relaxation.empty() && present.size() > 1) throw BadInput("fit: relaxation is not given and the measurements hold " + names + "; choose one");
+  if (options.relaxation.empty() && present.size() > 1)
+    throw BadInput("fit: relaxation is not given and the measurements hold " + names + "; choose one");
   if (options.relaxation.empty()) return *present.begin();
-  if (present.count(options.relaxation) == 0) throw BadInput(fmt::format("fit: relaxation = \"{}\": the measurements hold {}", options.relaxation, names));
+  if (present.count(options.relaxation) == 0)
+    throw BadInput(fmt::format("fit: relaxation = \"{}\": the measurements hold {}", options.relaxation, names));
   return options.relaxation;
 }
 
@@ -164,7 +185,10 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
   }
   if (w.clear[0].empty()) {
     const double largest = *std::max_element(w.means[0].mean.begin(), w.means[0].mean.end());
-    conclude(report.law, "no threshold crossing", {fmt::format("no mean force clearly above the noise floor {:.1e} E Rs^2 up to Delta = {:.4g} (largest mean {:.1e})", options.noise_floor, report.law.delta_max, largest)});
+    conclude(report.law, "no threshold crossing",
+             {fmt::format(
+                 "no mean force clearly above the noise floor {:.1e} E Rs^2 up to Delta = {:.4g} (largest mean {:.1e})",
+                 options.noise_floor, report.law.delta_max, largest)});
     return report;
   }
   prepare(options, w);

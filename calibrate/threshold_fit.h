@@ -2,9 +2,9 @@
 //
 //   f(D) = 0 (D < delta), a D^b + c (D >= delta), c = -a delta^b          [SP 1.5], D = hn/Rs, f = Fn/(E Rs^2)
 //
-// jointly for the normal force, the initial slope of kt/(E Rs) and its secant, with one delta. Points are weighted by one over
-// the sample standard deviation over packings at their Delta (floored, see floored_deviations). Standard errors come from a
-// covariance whose clusters are packings; 95 % intervals from a bootstrap over packings.
+// jointly for the normal force, the initial slope of kt/(E Rs) and its secant, with one delta. Points are weighted by
+// one over the sample standard deviation over packings at their Delta (floored, see floored_deviations). Standard
+// errors come from a covariance whose clusters are packings; 95 % intervals from a bootstrap over packings.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@
 namespace softgrain {
 
 struct FitOptions {
-  std::string relaxation;           ///< which relaxation's runs; empty: the only one present
-  double delta_low = 0.0;           ///< fitted range of Delta
+  std::string relaxation;  ///< which relaxation's runs; empty: the only one present
+  double delta_low = 0.0;  ///< fitted range of Delta
   double delta_high = std::numeric_limits<double>::infinity();
   double initial_angle_deg = 0.05;  ///< largest |angle| of the initial slope [degree]
   double secant_angle_deg = 1.0;    ///< angle of the secant [degree]
@@ -37,19 +37,20 @@ struct FitOptions {
 struct FitReport {
   PairLaw law;
   std::vector<std::array<double, 7>> replicates;  ///< bootstrap, order of kLawParameterNames, parameters of a D^b + c
-  int replicates_failed = 0;      ///< resamples whose fit did not converge or was rank-deficient; not among `replicates`
-  int replicates_at_bound = 0;    ///< among `replicates`, with an exponent or the upper end of delta at its bound
-  int normal_left_out = 0;        ///< normal points that were measured but not converged
-  int tangential_left_out = 0;    ///< the same for tangential points
-  int iterations = 0;             ///< of the optimiser over all intervals of delta
-  std::string fit_message;        ///< why the optimiser ended
+  int replicates_failed = 0;    ///< resamples whose fit did not converge or was rank-deficient; not among `replicates`
+  int replicates_at_bound = 0;  ///< among `replicates`, with an exponent or the upper end of delta at its bound
+  int normal_left_out = 0;      ///< normal points that were measured but not converged
+  int tangential_left_out = 0;  ///< the same for tangential points
+  int iterations = 0;           ///< of the optimiser over all intervals of delta
+  std::string fit_message;      ///< why the optimiser ended
 };
 
 /// Fits one pair kind. status of the law:
-///   "good"; "no threshold crossing" (no mean force clearly above the noise floor: above it and above two standard errors);
-///   "underdetermined" (best values are in the card, but must not be used: the reason says why); "not run" (no such data).
-/// `quality` is the chi^2 tail probability of the packing means above threshold. Means at neighbouring Delta come from the same
-/// packings and move together, so it is a guide, not a test of level; 0 without degrees of freedom or scatter.
+///   "good"; "no threshold crossing" (no mean force clearly above the noise floor: above it and above two standard
+///   errors); "underdetermined" (best values are in the card, but must not be used: the reason says why); "not run" (no
+///   such data).
+/// `quality` is the chi^2 tail probability of the packing means above threshold. Means at neighbouring Delta come from
+/// the same packings and move together, so it is a guide, not a test of level; 0 without degrees of freedom or scatter.
 /// Throws BadInput for options out of range or an ambiguous relaxation.
 FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions& options = {});
 

@@ -61,7 +61,9 @@ LeastSquaresProblem joint_problem(const FitCurves& curves, const JointParameters
 JointParameters joint_shape(const FitCurves& curves);
 
 /// Weight of a mean in the fit: sqrt(n)/sigma.
-inline double mean_weight(const FitCurve& curve, std::size_t k) { return std::sqrt(curve.means.count[k]) / curve.sigma[k]; }
+inline double mean_weight(const FitCurve& curve, std::size_t k) {
+  return std::sqrt(curve.means.count[k]) / curve.sigma[k];
+}
 
 /// Row of a in law_parameters() for each curve; b follows it, delta is row 2.
 inline constexpr std::array<std::size_t, kLawCurves> kRowOfA{0, 3, 5};

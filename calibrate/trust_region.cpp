@@ -17,7 +17,8 @@ using Vector = std::vector<double>;
 /// Residuals over scaled parameters q_j = p_j / scale_j, one parameter block.
 class ScaledCost final : public ceres::CostFunction {
  public:
-  ScaledCost(const LeastSquaresProblem& problem, const Vector& scale) : problem_(problem), scale_(scale), p_(scale.size()) {
+  ScaledCost(const LeastSquaresProblem& problem, const Vector& scale)
+      : problem_(problem), scale_(scale), p_(scale.size()) {
     set_num_residuals(static_cast<int>(problem.residuals));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(scale.size()));
   }
@@ -83,8 +84,10 @@ void set_bounds(ceres::Problem& ceres_problem, double* q, const LeastSquaresProb
     if (std::isfinite(b.low)) ceres_problem.SetParameterLowerBound(q, static_cast<int>(j), b.low / scale[j]);
     if (std::isfinite(b.high)) ceres_problem.SetParameterUpperBound(q, static_cast<int>(j), b.high / scale[j]);
   }
-  if (fixed.size() == scale.size()) ceres_problem.SetParameterBlockConstant(q);
-  else if (!fixed.empty()) ceres_problem.SetManifold(q, new ceres::SubsetManifold(static_cast<int>(scale.size()), fixed));
+  if (fixed.size() == scale.size())
+    ceres_problem.SetParameterBlockConstant(q);
+  else if (!fixed.empty())
+    ceres_problem.SetManifold(q, new ceres::SubsetManifold(static_cast<int>(scale.size()), fixed));
 }
 
 /// Ceres reports unusual steps through glog; libraries of this project do not print.

@@ -11,17 +11,17 @@ namespace softgrain {
 /// How steps are chosen. All act on parameters divided by their size, so that units do not matter.
 struct TrustRegionStrategy {
   std::string name;
-  bool dogleg = false;           ///< else Levenberg-Marquardt
-  bool subspace = false;         ///< dogleg over the plane of both directions, not the path alone
-  bool non_monotonic = false;    ///< S may rise for a few steps
-  double initial_radius = 1.0e4; ///< in units of the scaled parameters
+  bool dogleg = false;            ///< else Levenberg-Marquardt
+  bool subspace = false;          ///< dogleg over the plane of both directions, not the path alone
+  bool non_monotonic = false;     ///< S may rise for a few steps
+  double initial_radius = 1.0e4;  ///< in units of the scaled parameters
 };
 
 /// The strategies in the order in which they are tried.
 const std::vector<TrustRegionStrategy>& trust_region_strategies();
 
 struct TrustRegionEnd {
-  bool ran = false;              ///< false: the model could not be evaluated at the start
+  bool ran = false;  ///< false: the model could not be evaluated at the start
   bool capped = false;
   int iterations = 0;
   std::vector<double> parameters;

@@ -16,9 +16,9 @@ namespace softgrain {
 /// Neighbour list bookkeeping: where bodies were when the list was made and how far each may move before the next.
 template <int D>
 struct NeighbourState {
-  std::vector<Vec<D>> reference;    ///< positions at the last rebuild; empty: list must be built
-  std::vector<double> skin;         ///< per body [m]: a pair's margin is the sum of both, each may move its own share
-  Matrix<D> reference_edges{};      ///< of the cell, likewise
+  std::vector<Vec<D>> reference;  ///< positions at the last rebuild; empty: list must be built
+  std::vector<double> skin;       ///< per body [m]: a pair's margin is the sum of both, each may move its own share
+  Matrix<D> reference_edges{};    ///< of the cell, likewise
   std::int64_t rebuilds = 0;
 };
 
@@ -31,7 +31,7 @@ struct System {
   Vec<D> gravity{};
   ContactList<D> contacts;
   NeighbourState<D> neighbours;
-  double time = 0.0;        ///< [s]
+  double time = 0.0;  ///< [s]
   std::int64_t step = 0;
   Cost cost;
 };

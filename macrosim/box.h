@@ -18,14 +18,16 @@ Box add_box(System3& system, const Vec3& low, const Vec3& high, std::int32_t mat
 Vec3 box_low(const System3& system, const Box& box);
 Vec3 box_high(const System3& system, const Box& box);
 
-/// Strains the box by the factors 1 - strain per axis about its centre, opposite planes symmetrically, and takes the bodies along
-/// affinely (grains inside shells move with their shell).
+/// Strains the box by the factors 1 - strain per axis about its centre, opposite planes symmetrically, and takes the
+/// bodies along affinely (grains inside shells move with their shell).
 void strain_box(System3& system, const Box& box, const Vec3& strain);
 
-/// Mean of the normal forces of opposite planes over the area they close [Pa], compression positive, from the last pass.
+/// Mean of the normal forces of opposite planes over the area they close [Pa], compression positive, from the last
+/// pass.
 Vec3 wall_stress(const System3& system, const Box& box);
 
-/// The same from the contacts inside: sum over contacts of force times branch over the volume [Pa]; equal in equilibrium.
+/// The same from the contacts inside: sum over contacts of force times branch over the volume [Pa]; equal in
+/// equilibrium.
 Vec3 contact_stress(const System3& system, const Box& box);
 
 }  // namespace softgrain

@@ -3,16 +3,17 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/core/error.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/io/interrupt.h"
-#include "common/core/error.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Nominal strain of the whole test after increment n of N, as a step from the state before: keeps increments equal in length.
+/// Nominal strain of the whole test after increment n of N, as a step from the state before: keeps increments equal in
+/// length.
 Vec3 increment(const MacroSpec& spec, std::int64_t n, std::int64_t total) {
   const auto at = [&](std::int64_t k) { return spec.strain_end * static_cast<double>(k) / static_cast<double>(total); };
   const double factor = 1.0 - (1.0 - at(n)) / (1.0 - at(n - 1));
@@ -49,14 +50,14 @@ void record(CompressionState& state, const MacroSpec& spec, double strain, const
   c.residual.push_back(rest.residual);
   if (rest.end == RelaxationEnd::converged) return;
   c.usable = false;
-  c.note = "relaxation " + to_string(rest.end) + " at strain " + std::to_string(strain) + " (residual " + std::to_string(rest.residual) +
-           " of the mean contact force, wanted " + std::to_string(spec.tolerance) + ")";
+  c.note = "relaxation " + to_string(rest.end) + " at strain " + std::to_string(strain) + " (residual " +
+           std::to_string(rest.residual) + " of the mean contact force, wanted " + std::to_string(spec.tolerance) + ")";
 }
 
 }  // namespace
 
-MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro, const std::string& engine,
-                       std::int64_t sample) {
+MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,
+                       const std::string& engine, std::int64_t sample) {
   MacroCurve curve;
   curve.engine = engine;
   curve.test = spec.test;
@@ -84,8 +85,9 @@ void compress(CompressionState& state, const MacroSpec& spec, const CompressionO
       rest = relaxation.relax(s);
     }
     record(state, spec, spec.strain_end * static_cast<double>(point) / static_cast<double>(spec.steps), rest);
-    state.curve.cost += {s.cost.loop_passes - before.loop_passes, s.cost.contact_evaluations - before.contact_evaluations,
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+    state.curve.cost +=
+        {s.cost.loop_passes - before.loop_passes, s.cost.contact_evaluations - before.contact_evaluations,
+         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
     observer(state, static_cast<double>(point + 1) / static_cast<double>(spec.steps + 1));
     if (interrupt_requested()) throw Interrupted("stopped by a signal; finished points are saved");
   }

@@ -17,13 +17,13 @@ struct CompressionState {
 /// Called after each recorded point.
 using CompressionObserver = std::function<void(const CompressionState&, double share_done)>;
 
-/// Strains the box step by step to spec.strain_end (oedometric: z planes move, four stand; isotropic: all six), relaxing every
-/// increment; records strain (from the start), wall stress, contact stress, coordination, residual. Points that did not converge
-/// make the curve not usable, with a note. Throws NotUsable (lost grain) and Interrupted.
+/// Strains the box step by step to spec.strain_end (oedometric: z planes move, four stand; isotropic: all six),
+/// relaxing every increment; records strain (from the start), wall stress, contact stress, coordination, residual.
+/// Points that did not converge make the curve not usable, with a note. Throws NotUsable (lost grain) and Interrupted.
 void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer);
 
 /// A curve with the facts of the packing filled in.
-MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro, const std::string& engine,
-                       std::int64_t sample);
+MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,
+                       const std::string& engine, std::int64_t sample);
 
 }  // namespace softgrain

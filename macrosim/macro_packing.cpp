@@ -35,8 +35,9 @@ std::vector<MacroBody> draw_bodies(const MacroSpec& spec, std::uint64_t seed, st
   for (std::int64_t k = 0; k < spec.bodies; ++k) {
     MacroBody body;
     body.soft = spec.soft_share > 0.0 && soft <= spec.soft_share * all;
-    body.r = body.soft ? power_law_radius(spec.exponent, spec.soft_radius_max, spec.soft_polydispersity, random.uniform())
-                       : power_law_radius(spec.exponent, spec.solid_radius_max, spec.solid_polydispersity, random.uniform());
+    body.r = body.soft
+                 ? power_law_radius(spec.exponent, spec.soft_radius_max, spec.soft_polydispersity, random.uniform())
+                 : power_law_radius(spec.exponent, spec.solid_radius_max, spec.solid_polydispersity, random.uniform());
     all += cube(body.r);
     if (body.soft) soft += cube(body.r);
     bodies.push_back(body);
@@ -115,7 +116,8 @@ void compact(System3& s, const Box& box, double pressure, double youngs_modulus)
     step *= 0.5;
     if (step < 1e-7) break;
   }
-  throw NotUsable("macro: the preparation did not reach a pressure of " + std::to_string(pressure / youngs_modulus) + " E");
+  throw NotUsable("macro: the preparation did not reach a pressure of " + std::to_string(pressure / youngs_modulus) +
+                  " E");
 }
 
 }  // namespace
@@ -159,7 +161,8 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
     rows.insert(rows.end(), {b.x[0], b.x[1], b.x[2], b.r});
     soft.push_back(b.soft ? 1 : 0);
   }
-  const std::vector<double> corners{packing.low[0], packing.low[1], packing.low[2], packing.high[0], packing.high[1], packing.high[2]};
+  const std::vector<double> corners{packing.low[0],  packing.low[1],  packing.low[2],
+                                    packing.high[0], packing.high[1], packing.high[2]};
   group.write("box", corners);
   group.write("bodies", rows, {packing.bodies.size(), 4});
   group.write("soft", soft);

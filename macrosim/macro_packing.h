@@ -1,4 +1,5 @@
-// The initial state of a macro scene: bodies just in touch in a box. Law runs and resolved twins start from the same one.
+// The initial state of a macro scene: bodies just in touch in a box. Law runs and resolved twins start from the same
+// one.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ struct MacroBody {
 };
 
 struct MacroPacking {
-  Vec3 low{};    ///< corners of the box [m]
+  Vec3 low{};  ///< corners of the box [m]
   Vec3 high{};
   std::vector<MacroBody> bodies;
 
@@ -27,8 +28,9 @@ struct MacroPacking {
   [[nodiscard]] std::int64_t soft_count() const;
 };
 
-/// Radii from the power laws, random non-overlapping start, frictionless isotropic compaction of all bodies as hard grains until
-/// the wall pressure reaches start_pressure * E. Throws BadInput when the shares cannot be met, NotUsable when it does not jam.
+/// Radii from the power laws, random non-overlapping start, frictionless isotropic compaction of all bodies as hard
+/// grains until the wall pressure reaches start_pressure * E. Throws BadInput when the shares cannot be met, NotUsable
+/// when it does not jam.
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
 
 void write_macro_packing(const h5::Group& group, const MacroPacking& packing);

@@ -66,7 +66,8 @@ std::int64_t count_inner_grains(const MacroPacking& packing, const std::vector<S
 
 }  // namespace
 
-MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws, double inner_solid_fraction) {
+MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,
+                            double inner_solid_fraction) {
   MacroSystem out;
   System3& s = out.system;
   s.materials = {solid_material(spec, "solid"), solid_material(spec, "soft"), solid_material(spec, "wall")};
@@ -83,14 +84,16 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
   s.laws.set(1, 2, law);
   s.laws.set(1, 1, laws.soft_soft);
   for (const MacroBody& b : packing.bodies)
-    add_grain(s.particles, sphere_body(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
+    add_grain(s.particles,
+              sphere_body(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
   out.box = add_box(s, packing.low, packing.high, 2);
   return out;
 }
 
-MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing, const std::vector<ShellPacking>& contents,
-                                std::uint64_t seed, std::uint64_t sample) {
-  if (contents.empty() && packing.soft_count() > 0) throw BadInput("resolved twin: no packing to fill the soft particles with");
+MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing,
+                                const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample) {
+  if (contents.empty() && packing.soft_count() > 0)
+    throw BadInput("resolved twin: no packing to fill the soft particles with");
   MacroSystem out;
   System3& s = out.system;
   s.materials = {solid_material(spec, "grain"), solid_material(spec, "wall")};
@@ -111,7 +114,8 @@ MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packi
   }
   k = 0;
   for (const MacroBody& b : packing.bodies)
-    if (b.soft) add_shell(s.particles, sphere_body(b.x, b.r, spec.density * contents[k++ % contents.size()].solid_fraction(), 0));
+    if (b.soft)
+      add_shell(s.particles, sphere_body(b.x, b.r, spec.density * contents[k++ % contents.size()].solid_fraction(), 0));
   out.box = add_box(s, packing.low, packing.high, 1);
   return out;
 }

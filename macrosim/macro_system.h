@@ -22,12 +22,14 @@ struct SoftLaws {
   SoftContact soft_soft;
 };
 
-/// Materials 0 solid grain, 1 soft particle, 2 wall. A soft particle has the mass of its content. Planes use the soft-solid law.
-MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws, double inner_solid_fraction);
+/// Materials 0 solid grain, 1 soft particle, 2 wall. A soft particle has the mass of its content. Planes use the
+/// soft-solid law.
+MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,
+                            double inner_solid_fraction);
 
-/// The shelled twin: soft particle k holds packing k (cyclically), turned at random, scaled to its radius, in a rigid shell that
-/// moves with the forces on it and has the mass of its content [SP 1.9]. Materials 0 grain, 1 wall.
-MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing, const std::vector<ShellPacking>& contents,
-                                std::uint64_t seed, std::uint64_t sample);
+/// The shelled twin: soft particle k holds packing k (cyclically), turned at random, scaled to its radius, in a rigid
+/// shell that moves with the forces on it and has the mass of its content [SP 1.9]. Materials 0 grain, 1 wall.
+MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing,
+                                const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample);
 
 }  // namespace softgrain

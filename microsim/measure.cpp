@@ -80,7 +80,8 @@ bool is_among(const std::vector<double>& values, double x) {
 
 }  // namespace
 
-void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol, const MeasurementObserver& observer) {
+void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
+             const MeasurementObserver& observer) {
   for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
     const double delta = plan.deltas[k];
     const NormalPoint normal = normal_point(state, delta, protocol);

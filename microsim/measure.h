@@ -1,4 +1,5 @@
-// The measurement of one soft particle (or pair): normal force against overlap, tangential force against rotation [SP 1.4].
+// The measurement of one soft particle (or pair): normal force against overlap, tangential force against rotation
+// [SP 1.4].
 #pragma once
 
 #include <functional>
@@ -12,24 +13,27 @@ namespace softgrain {
 
 /// Which states are recorded.
 struct MeasurementPlan {
-  std::vector<double> deltas;            ///< ascending, Delta = hn/Rs
-  std::vector<double> tangential_deltas; ///< subset of deltas at which the first body is rotated
-  std::vector<double> angles_deg;        ///< rotations, both signs; each starts afresh from the relaxed state unless `cumulative`
-  double rotation_step_deg = 0.01;       ///< largest rotation between two evaluations of the springs
-  bool shell_turns = true;               ///< whether the first shell turns with its grains
-  bool cumulative = false;               ///< each angle goes on from the one before of its sign: cheaper, another path
+  std::vector<double> deltas;             ///< ascending, Delta = hn/Rs
+  std::vector<double> tangential_deltas;  ///< subset of deltas at which the first body is rotated
+  std::vector<double>
+      angles_deg;  ///< rotations, both signs; each starts afresh from the relaxed state unless `cumulative`
+  double rotation_step_deg = 0.01;  ///< largest rotation between two evaluations of the springs
+  bool shell_turns = true;          ///< whether the first shell turns with its grains
+  bool cumulative = false;          ///< each angle goes on from the one before of its sign: cheaper, another path
 };
 
 /// Everything a measurement needs to go on after the last recorded overlap.
 struct MeasurementState {
   SoftExperiment experiment;
-  PackingRun run;            ///< what was recorded so far; run.normal.size() says where to go on
+  PackingRun run;  ///< what was recorded so far; run.normal.size() says where to go on
 };
 
-/// Called after each recorded overlap with its tangential points: to save, to report progress (the share of the plan done).
+/// Called after each recorded overlap with its tangential points: to save, to report progress (the share of the plan
+/// done).
 using MeasurementObserver = std::function<void(const MeasurementState&, double share_done)>;
 
 /// Goes through the plan from where `state` stands. Throws NotUsable (lost grain...) and Interrupted.
-void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol, const MeasurementObserver& observer);
+void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
+             const MeasurementObserver& observer);
 
 }  // namespace softgrain

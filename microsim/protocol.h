@@ -10,12 +10,13 @@
 namespace softgrain {
 
 struct PublishedOptions {
-  double approach_speed = 0.0;   ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise
-  double stop_interval = 0.0;    ///< [s]; 0: 0.3 s at the published Rs, rho, E, scaled with Rs sqrt(rho/E) otherwise
-  int stops = 6;                 ///< stops of all motion, each after one interval; one more interval follows
-  double step_fraction = 0.2;    ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
-  double crowded_fraction = 0.5; ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
-  double tolerance = 1e-2;       ///< a point is called converged below this (largest net force over mean contact force)
+  double approach_speed = 0.0;  ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise
+  double stop_interval = 0.0;   ///< [s]; 0: 0.3 s at the published Rs, rho, E, scaled with Rs sqrt(rho/E) otherwise
+  int stops = 6;                ///< stops of all motion, each after one interval; one more interval follows
+  double step_fraction = 0.2;   ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
+  double crowded_fraction =
+      0.5;  ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
+  double tolerance = 1e-2;  ///< a point is called converged below this (largest net force over mean contact force)
 };
 
 struct DampedProtocolOptions {
@@ -48,7 +49,8 @@ class Protocol {
   virtual SettleResult settle(SoftExperiment& experiment, bool rotated) const = 0;
 };
 
-/// Six times { molecular dynamics for an interval; all velocities to zero }, one more interval [SP 1.4]. Name "published".
+/// Six times { molecular dynamics for an interval; all velocities to zero }, one more interval [SP 1.4]. Name
+/// "published".
 std::unique_ptr<Protocol> make_published_protocol(const PublishedOptions& options);
 /// Increments of overlap, each relaxed by mass-scaled dynamics with adaptive damping. Name "damped".
 std::unique_ptr<Protocol> make_damped_protocol(const DampedProtocolOptions& options);

@@ -13,8 +13,8 @@ namespace {
 
 /// The published experiment: Rs = 0.016 m, E = 5e5 Pa, rho = 2500 kg/m^3 (density is ours, it is not published).
 const SoftParticleSpec kPublished{};
-constexpr double kPublishedInterval = 0.3;   // s
-constexpr double kPublishedSpeed = 0.002;    // m/s, ours: slow enough for the law not to depend on it much
+constexpr double kPublishedInterval = 0.3;  // s
+constexpr double kPublishedSpeed = 0.002;   // m/s, ours: slow enough for the law not to depend on it much
 
 class PublishedProtocol : public Protocol {
  public:
@@ -49,8 +49,8 @@ class PublishedProtocol : public Protocol {
   }
 
  private:
-  /// The nominal step, shortened where grains are squeezed by many stiff contacts: a heavily damped contact evaluated once per
-  /// step otherwise keeps jittering, and the forces come out plausible and 10-15 % low.
+  /// The nominal step, shortened where grains are squeezed by many stiff contacts: a heavily damped contact evaluated
+  /// once per step otherwise keeps jittering, and the forces come out plausible and 10-15 % low.
   static double step(SoftExperiment& e, const PublishedOptions& options) {
     BodyStiffness sums;
     force_pass(e.system, 0.0, sums);
@@ -66,7 +66,8 @@ class PublishedProtocol : public Protocol {
   }
   [[nodiscard]] double speed(const SoftParticleSpec& spec) const {
     if (options_.approach_speed > 0.0) return options_.approach_speed;
-    return kPublishedSpeed * ((spec.shell_radius / natural_time(spec)) / (kPublished.shell_radius / natural_time(kPublished)));
+    return kPublishedSpeed *
+           ((spec.shell_radius / natural_time(spec)) / (kPublished.shell_radius / natural_time(kPublished)));
   }
   [[nodiscard]] double interval(const SoftParticleSpec& spec) const {
     if (options_.stop_interval > 0.0) return options_.stop_interval;
@@ -83,7 +84,9 @@ class PublishedProtocol : public Protocol {
 
 }  // namespace
 
-double force_floor(const SoftParticleSpec& spec) { return 1e-7 * spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
+double force_floor(const SoftParticleSpec& spec) {
+  return 1e-7 * spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
+}
 
 std::unique_ptr<Protocol> make_published_protocol(const PublishedOptions& options) {
   return std::make_unique<PublishedProtocol>(options);

@@ -116,7 +116,8 @@ PackingInfo describe(const ShellPacking& packing, const SoftParticleSpec& spec) 
   for (std::size_t i = 0; i < packing.radius.size(); ++i) {
     if (1.0 - norm(packing.position[i]) - packing.radius[i] < kTouching) ++contacts;
     for (std::size_t j = i + 1; j < packing.radius.size(); ++j)
-      if (norm(packing.position[i] - packing.position[j]) - packing.radius[i] - packing.radius[j] < kTouching) ++contacts;
+      if (norm(packing.position[i] - packing.position[j]) - packing.radius[i] - packing.radius[j] < kTouching)
+        ++contacts;
   }
   info.contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(info.grains);
   if (packing.radius.size() >= 3) {

@@ -38,7 +38,8 @@ LogMoments log_moments(double q, double length) {
   if (std::abs(y) < 1e-3) return {length * (0.5 - y / 12.0), length * length / 12.0};
   const double e = std::expm1(y);
   const double half = 0.5 * y;
-  return {length * (1.0 / y - 1.0 / e), length * length * (1.0 / (y * y) - 1.0 / (4.0 * std::sinh(half) * std::sinh(half)))};
+  return {length * (1.0 / y - 1.0 / e),
+          length * length * (1.0 / (y * y) - 1.0 / (4.0 * std::sinh(half) * std::sinh(half)))};
 }
 
 struct Score {
@@ -59,7 +60,8 @@ double root_of_score(Score& s) {
   gsl_root_fsolver_set(solver.get(), &f, -bound, bound);
   for (int k = 0; k < 200; ++k) {
     gsl_root_fsolver_iterate(solver.get());
-    if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()), gsl_root_fsolver_x_upper(solver.get()), 0.0, 1e-12) == GSL_SUCCESS)
+    if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()), gsl_root_fsolver_x_upper(solver.get()), 0.0,
+                               1e-12) == GSL_SUCCESS)
       break;
   }
   return gsl_root_fsolver_root(solver.get());

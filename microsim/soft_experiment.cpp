@@ -67,8 +67,8 @@ void rotate_inner_springs(SoftExperiment& e, double angle, bool shell_turns) {
       list.spring[c] = rotate(list.spring[c], axis, angle);
 }
 
-/// One small step of the rotation. Its duration is long against any collision, so that dashpots do not matter, and follows the
-/// natural time of the experiment, so that the dimensionless law is exactly the same for any E and Rs.
+/// One small step of the rotation. Its duration is long against any collision, so that dashpots do not matter, and
+/// follows the natural time of the experiment, so that the dimensionless law is exactly the same for any E and Rs.
 void rotation_step(SoftExperiment& e, double angle, bool shell_turns) {
   const double duration = 1024.0 * natural_time(e.spec);
   auto& p = e.system.particles;
@@ -86,12 +86,15 @@ void rotation_step(SoftExperiment& e, double angle, bool shell_turns) {
 
 }  // namespace
 
-double natural_time(const SoftParticleSpec& spec) { return spec.shell_radius * std::sqrt(spec.density / spec.youngs_modulus); }
+double natural_time(const SoftParticleSpec& spec) {
+  return spec.shell_radius * std::sqrt(spec.density / spec.youngs_modulus);
+}
 
 Vec3 SoftExperiment::force_on_second() const {
   Vec3 sum{};
   for (const ContactRecord<3>& c : contact_records(system)) {
-    const bool j_is_second = c.j >= first_grains && (c.j < system.particles.grains || c.j >= system.particles.first_plane());
+    const bool j_is_second =
+        c.j >= first_grains && (c.j < system.particles.grains || c.j >= system.particles.first_plane());
     if (c.i < first_grains && j_is_second) sum -= c.normal * c.normal_force + c.tangential_force;
   }
   return sum;
@@ -132,7 +135,8 @@ SoftExperiment make_soft_solid(const SoftParticleSpec& spec, const ShellPacking&
   return e;
 }
 
-SoftExperiment make_soft_soft(const SoftParticleSpec& spec, const ShellPacking& first, const ShellPacking& second, bool damped_contacts) {
+SoftExperiment make_soft_soft(const SoftParticleSpec& spec, const ShellPacking& first, const ShellPacking& second,
+                              bool damped_contacts) {
   SoftExperiment e{PairKind::soft_soft, spec, empty_system(spec, damped_contacts), 0, 0.0};
   const auto n1 = static_cast<Slot>(first.radius.size());
   const auto n2 = static_cast<Slot>(second.radius.size());

@@ -12,30 +12,33 @@ struct SoftExperiment {
   PairKind kind = PairKind::soft_solid;
   SoftParticleSpec spec;
   System3 system;
-  Slot first_grains = 0;     ///< grains [0, first_grains) belong to body 1
+  Slot first_grains = 0;        ///< grains [0, first_grains) belong to body 1
   double normal_overlap = 0.0;  ///< hn [m]
 
-  /// Net force on the second body from the first, of the state as it is; x is along the normal (compression positive) [N].
+  /// Net force on the second body from the first, of the state as it is; x is along the normal (compression positive)
+  /// [N].
   [[nodiscard]] Vec3 force_on_second() const;
 
-  /// Moves the second body rigidly by `distance` towards the first (shell and grains, or plane) in one stroke; tangential
-  /// springs follow. Contacts must be without dashpots.
+  /// Moves the second body rigidly by `distance` towards the first (shell and grains, or plane) in one stroke;
+  /// tangential springs follow. Contacts must be without dashpots.
   void push(double distance);
 
   /// Gives the second body, grains included, this approach speed on top of what it has [m/s].
   void add_approach_speed(double speed);
 
   /// Turns every grain of body 1 rigidly about the z axis through its centre by `degrees`, in steps no larger than
-  /// `step_degrees`: positions and inner springs turn together, springs to the second body (and to the shell when it stays) load
-  /// up and slide at the Coulomb limit on the way. Positive angles drag the second body towards +y.
+  /// `step_degrees`: positions and inner springs turn together, springs to the second body (and to the shell when it
+  /// stays) load up and slide at the Coulomb limit on the way. Positive angles drag the second body towards +y.
   void rotate_first(double degrees, double step_degrees, bool shell_turns);
 };
 
 /// Rs sqrt(rho/E), the unit in which all times of a measurement scale [s].
 double natural_time(const SoftParticleSpec& spec);
 
-/// Tsuji damping with the spec's restitution when `damped_contacts`, none otherwise (for relaxations with damping of their own).
+/// Tsuji damping with the spec's restitution when `damped_contacts`, none otherwise (for relaxations with damping of
+/// their own).
 SoftExperiment make_soft_solid(const SoftParticleSpec& spec, const ShellPacking& packing, bool damped_contacts);
-SoftExperiment make_soft_soft(const SoftParticleSpec& spec, const ShellPacking& first, const ShellPacking& second, bool damped_contacts);
+SoftExperiment make_soft_soft(const SoftParticleSpec& spec, const ShellPacking& first, const ShellPacking& second,
+                              bool damped_contacts);
 
 }  // namespace softgrain

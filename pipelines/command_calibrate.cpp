@@ -55,9 +55,15 @@ json reports_json(const std::vector<FitReport>& reports) {
 }
 
 json options_json(const FitOptions& o) {
-  return {{"delta_low", o.delta_low}, {"delta_high", std::isfinite(o.delta_high) ? json(o.delta_high) : json(nullptr)},
-          {"initial_angle_deg", o.initial_angle_deg}, {"secant_angle_deg", o.secant_angle_deg}, {"noise_floor", o.noise_floor},
-          {"scatter_floor", o.scatter_floor}, {"min_packings", o.min_packings}, {"replicates", o.replicates}, {"seed", o.seed}};
+  return {{"delta_low", o.delta_low},
+          {"delta_high", std::isfinite(o.delta_high) ? json(o.delta_high) : json(nullptr)},
+          {"initial_angle_deg", o.initial_angle_deg},
+          {"secant_angle_deg", o.secant_angle_deg},
+          {"noise_floor", o.noise_floor},
+          {"scatter_floor", o.scatter_floor},
+          {"min_packings", o.min_packings},
+          {"replicates", o.replicates},
+          {"seed", o.seed}};
 }
 
 std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
@@ -67,12 +73,17 @@ std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
   if (law.normal.b.value <= 0.0) return line + "\n";
   const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
   const ThresholdPowerLaw& n = law.normal;
-  line += fmt::format("\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta = {:.4g} [{:.4g}, {:.4g}]",
-                      newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value, n.delta.value, n.delta.low, n.delta.high);
+  line += fmt::format(
+      "\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta = {:.4g} "
+      "[{:.4g}, {:.4g}]",
+      newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value,
+      n.delta.value, n.delta.low, n.delta.high);
   const std::vector<double> at{law.delta_max};
   const Band band = law_band(report, LawCurve::normal, at).front();
-  line += fmt::format("\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]; {} packings, {} points, {} left out (not converged)\n", band.delta,
-                      newton * band.value, newton * band.low, newton * band.high, law.packings, law.points, report.normal_left_out + report.tangential_left_out);
+  line +=
+      fmt::format("\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]; {} packings, {} points, {} left out (not converged)\n",
+                  band.delta, newton * band.value, newton * band.low, newton * band.high, law.packings, law.points,
+                  report.normal_left_out + report.tangential_left_out);
   return line;
 }
 
@@ -88,12 +99,14 @@ ExitStatus command_calibrate(const CommonOptions& options) {
   const LawCard card = calibrate(data, fit, &reports);
   save_card(card, run.path("law.toml"), run.provenance(settings, fit.seed));
 
-  const bool good = std::all_of(card.pairs.begin(), card.pairs.end(), [](const PairLaw& law) { return law.status == "good"; });
+  const bool good =
+      std::all_of(card.pairs.begin(), card.pairs.end(), [](const PairLaw& law) { return law.status == "good"; });
   std::string people;
   for (const FitReport& report : reports) people += people_line(report, card.spec);
   people += "law card: " + run.path("law.toml") + "\n";
-  json summary = {{"status", good ? "good" : "not usable"}, {"inputs", options.inputs}, {"relaxation", card.relaxation},
-                  {"laws", laws_json(card)}, {"fits", reports_json(reports)}, {"options", options_json(fit)}};
+  json summary = {{"status", good ? "good" : "not usable"}, {"inputs", options.inputs},
+                  {"relaxation", card.relaxation},          {"laws", laws_json(card)},
+                  {"fits", reports_json(reports)},          {"options", options_json(fit)}};
   run.finish(std::move(summary), people);
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }

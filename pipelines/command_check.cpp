@@ -64,21 +64,31 @@ void check_measurements(const MeasureSetup& setup, Findings& out) {
   SoftExperiment e = make_soft_solid(setup.spec, packing, true);
   force_pass(e.system, 0.0);
   constexpr int kTrials = 500;
-  const double pass_time = seconds_of([&] { for (int k = 0; k < kTrials; ++k) force_pass(e.system, 0.0); }) / kTrials;
+  const double pass_time = seconds_of([&] {
+                             for (int k = 0; k < kTrials; ++k) force_pass(e.system, 0.0);
+                           }) /
+                           kTrials;
   const StepLimit limit = step_limit(e.system);
-  out.add("grains", packing.radius.size(), fmt::format("grains in the first packing: {}, solid fraction {:.3f}", packing.radius.size(), packing.solid_fraction()));
+  out.add("grains", packing.radius.size(),
+          fmt::format("grains in the first packing: {}, solid fraction {:.3f}", packing.radius.size(),
+                      packing.solid_fraction()));
   out.add("time_step", setup.published.step_fraction * limit.natural_time,
-          fmt::format("time step of the published protocol: {:.3g} s, set by grain {} (radius {:.3g} m) at a stiffness of {:.3g} N/m",
-                      setup.published.step_fraction * limit.natural_time, limit.body, e.system.particles.sphere[static_cast<std::size_t>(limit.body)].r, limit.stiffness));
+          fmt::format("time step of the published protocol: {:.3g} s, set by grain {} (radius {:.3g} m) at a stiffness "
+                      "of {:.3g} N/m",
+                      setup.published.step_fraction * limit.natural_time, limit.body,
+                      e.system.particles.sphere[static_cast<std::size_t>(limit.body)].r, limit.stiffness));
   double seconds = packing_time * static_cast<double>(setup.packings());
   for (const MeasureSeries& series : setup.series) {
     for (const PairKind kind : series.kinds) {
       const PointCounts points = count_points(series, kind);
-      const double weight = (kind == PairKind::soft_soft ? 2.2 : 1.0) * 2.0;  // the squeezed state has about twice the pairs of the first
-      seconds += weight * pass_time * (static_cast<double>(points.normal) * typical_passes(series.relaxation, false) +
-                                       static_cast<double>(points.rotated) * typical_passes(series.relaxation, true));
+      const double weight =
+          (kind == PairKind::soft_soft ? 2.2 : 1.0) * 2.0;  // the squeezed state has about twice the pairs of the first
+      seconds += weight * pass_time *
+                 (static_cast<double>(points.normal) * typical_passes(series.relaxation, false) +
+                  static_cast<double>(points.rotated) * typical_passes(series.relaxation, true));
       out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
-              fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind), series.packings, points.normal, points.rotated));
+              fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind),
+                          series.packings, points.normal, points.rotated));
     }
   }
   out.add("core_seconds_measuring", seconds, fmt::format("measuring: about {:.0f} s of one core", seconds));
@@ -90,7 +100,9 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out)
   constexpr double kBytesPerGrain = 300.0;
   constexpr double kBytesPerContact = 160.0;
   const double memory = resolved * (kBytesPerGrain + 3.0 * kBytesPerContact);
-  out.add("macro_bodies", setup.spec.bodies, fmt::format("macro: {} samples of {} bodies, {} compression to a strain of {}", setup.samples, setup.spec.bodies, setup.spec.test, setup.spec.strain_end));
+  out.add("macro_bodies", setup.spec.bodies,
+          fmt::format("macro: {} samples of {} bodies, {} compression to a strain of {}", setup.samples,
+                      setup.spec.bodies, setup.spec.test, setup.spec.strain_end));
   if (setup.resolved) {
     out.add("twin_grains", resolved, fmt::format("resolved twin: about {:.0f} grains per sample", resolved));
     out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
@@ -105,9 +117,14 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   if (kind == "particles") {
     const ParticlesScene particles = read_particles_scene(scene);
     const StepLimit limit = step_limit(particles.system);
-    out.add("bodies", particles.system.particles.size(), fmt::format("{} grains, {} walls", particles.system.particles.grains, particles.wall_name.size()));
-    out.add("time_step", particles.time.step, fmt::format("step {:.4g} s to {:.4g} s: {:.0f} steps", particles.time.step, particles.time.end, particles.time.end / particles.time.step));
-    if (limit.body >= 0) out.add("step_limit", limit.natural_time, fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+    out.add("bodies", particles.system.particles.size(),
+            fmt::format("{} grains, {} walls", particles.system.particles.grains, particles.wall_name.size()));
+    out.add("time_step", particles.time.step,
+            fmt::format("step {:.4g} s to {:.4g} s: {:.0f} steps", particles.time.step, particles.time.end,
+                        particles.time.end / particles.time.step));
+    if (limit.body >= 0)
+      out.add("step_limit", limit.natural_time,
+              fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
   } else if (kind == "macro") {
     (void)root.text("title", "");
     (void)root.text("law", "");
@@ -133,15 +150,17 @@ void check_card(const std::string& path, Findings& out) {
   out.add("kind", "law card", "law card, measured with the " + card.relaxation + " relaxation");
   for (const PairLaw& law : card.pairs)
     out.add(to_string(law.kind), {{"status", law.status}, {"delta_min", law.delta_min}, {"delta_max", law.delta_max}},
-            fmt::format("{}: {}, fitted for Delta from {:.3f} to {:.3f} on {} packings, largest grain overlap {:.2f} of the smaller radius", to_string(law.kind), law.status,
-                        law.delta_min, law.delta_max, law.packings, law.max_overlap));
+            fmt::format("{}: {}, fitted for Delta from {:.3f} to {:.3f} on {} packings, largest grain overlap {:.2f} "
+                        "of the smaller radius",
+                        to_string(law.kind), law.status, law.delta_min, law.delta_max, law.packings, law.max_overlap));
 }
 
 void check_data(const std::string& path, Findings& out) {
   const h5::Group root = h5::open_file(path);
   if (root.has("runs")) {
     const Measurements data = load_measurements(path);
-    out.add("kind", "measurements", fmt::format("measurements: {} packings, {} runs", data.packings.size(), data.runs.size()));
+    out.add("kind", "measurements",
+            fmt::format("measurements: {} packings, {} runs", data.packings.size(), data.runs.size()));
     return;
   }
   if (root.has("curves")) {

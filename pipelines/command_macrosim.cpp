@@ -18,7 +18,9 @@ namespace {
 /// Contents for the twins, made as they were made for the measurement behind the card.
 std::vector<ShellPacking> twin_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed) {
   std::vector<ShellPacking> contents(static_cast<std::size_t>(count));
-  parallel_tasks(count, [&](std::int64_t k) { contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k)); });
+  parallel_tasks(count, [&](std::int64_t k) {
+    contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
+  });
   return contents;
 }
 
@@ -32,8 +34,10 @@ std::string law_path(const Scene& scene, const SceneTable& root, const CommonOpt
 std::string people_text(const std::vector<MacroCurve>& curves, const RunContext& context) {
   std::string text;
   for (const MacroCurve& c : curves)
-    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {:.3f}, {:.1f} s{}\n", c.engine, c.sample, c.stress_axial.back(),
-                        c.strain.back(), c.stress_lateral.back() / c.stress_axial.back(), c.cost.seconds, c.usable ? "" : " (" + c.note + ")");
+    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {:.3f}, {:.1f} s{}\n",
+                        c.engine, c.sample, c.stress_axial.back(), c.strain.back(),
+                        c.stress_lateral.back() / c.stress_axial.back(), c.cost.seconds,
+                        c.usable ? "" : " (" + c.note + ")");
   return text + "report: " + context.path("report.html");
 }
 
@@ -65,10 +69,14 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   if (setup.resolved) summary["resolved"] = macro_json(curves, "shelled");
   if (setup.resolved && usable) {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
-    summary["comparison"] = {{"stress_error", c.axial_difference.mean}, {"speedup_seconds", c.speedup_seconds}, {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
+    summary["comparison"] = {{"stress_error", c.axial_difference.mean},
+                             {"speedup_seconds", c.speedup_seconds},
+                             {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
   }
   summary["remarks"] = macro_remarks(curves);
-  summary["files"] = {{"macro", context.path("macro.h5")}, {"initial", context.path("macro_initial.h5")}, {"report", context.path("report.html")}};
+  summary["files"] = {{"macro", context.path("macro.h5")},
+                      {"initial", context.path("macro_initial.h5")},
+                      {"report", context.path("report.html")}};
   summary["provenance"] = provenance_json(context.provenance(scene, seed));
   context.finish(summary, people_text(curves, context));
   write_report(context.directory());

@@ -22,15 +22,20 @@ namespace {
 using nlohmann::json;
 
 std::string law_line(const PairLaw& law) {
-  if (law.status == "no threshold crossing" || law.status == "not run") return fmt::format("{}: {} ({})", to_string(law.kind), law.status, law.reason);
-  return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}", to_string(law.kind),
-                     law.normal.a.value, law.normal.b.value, law.normal.delta.value, law.normal.b.value, law.delta_max, law.packings, law.status);
+  if (law.status == "no threshold crossing" || law.status == "not run")
+    return fmt::format("{}: {} ({})", to_string(law.kind), law.status, law.reason);
+  return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}",
+                     to_string(law.kind), law.normal.a.value, law.normal.b.value, law.normal.delta.value,
+                     law.normal.b.value, law.delta_max, law.packings, law.status);
 }
 
 json comparison_json(const Comparison& c) {
   json samples = json::array();
   for (const SampleComparison& s : c.samples)
-    samples.push_back({{"sample", s.sample}, {"strain_high", s.strain_high}, {"stress_error", s.axial_difference}, {"end_ratio", s.axial_end_ratio}});
+    samples.push_back({{"sample", s.sample},
+                       {"strain_high", s.strain_high},
+                       {"stress_error", s.axial_difference},
+                       {"end_ratio", s.axial_end_ratio}});
   return {{"stress_error", c.axial_difference.mean},
           {"stress_error_standard_error", c.axial_difference.error},
           {"lateral_stress_error", c.lateral_difference.mean},
@@ -68,10 +73,12 @@ void fit(const PipelineSetup& setup, const RunContext& context, const Provenance
 }
 
 /// What was measured and fitted is kept and said even when no macro run can follow: false, with a remark.
-bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
+bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const RunContext& context,
+                       const Provenance& provenance, PipelineResult& result) {
   std::string why;
   try {
-    result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings, context.seed(setup.measure.seed), store, context, provenance);
+    result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings,
+                                    context.seed(setup.measure.seed), store, context, provenance);
     return true;
   } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();
@@ -83,7 +90,8 @@ bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const
   return false;
 }
 
-void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
+void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context,
+               const Provenance& provenance, PipelineResult& result) {
   if (!setup.macro || !run_macro_samples(setup, store, context, provenance, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
@@ -97,7 +105,8 @@ void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunCont
   }
 }
 
-json summarise(const PipelineSetup& setup, const PipelineResult& r, const Provenance& provenance, const RunContext& context, double seconds) {
+json summarise(const PipelineSetup& setup, const PipelineResult& r, const Provenance& provenance,
+               const RunContext& context, double seconds) {
   const Measurements& data = r.measured.data;
   json s;
   s["status"] = r.usable ? "good" : "not usable";
@@ -117,7 +126,8 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Proven
   s["resolved"] = macro_json(r.curves, "shelled");
   if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
   s["remarks"] = r.remarks;
-  for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"}) s["files"][file] = context.path(file);
+  for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
+    s["files"][file] = context.path(file);
   s["provenance"] = provenance_json(provenance);
   return s;
 }
@@ -126,8 +136,11 @@ std::string people_text(const PipelineResult& r, const RunContext& context, doub
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
   if (r.comparison)
-    text += fmt::format("macro against its resolved twin: stress differs by {:.0f} %, {:.0f} times fewer contact evaluations, {:.0f} times less time\n",
-                        100.0 * r.comparison->axial_difference.mean, r.comparison->speedup_contact_evaluations, r.comparison->speedup_seconds);
+    text += fmt::format(
+        "macro against its resolved twin: stress differs by {:.0f} %, {:.0f} times fewer contact evaluations, {:.0f} "
+        "times less time\n",
+        100.0 * r.comparison->axial_difference.mean, r.comparison->speedup_contact_evaluations,
+        r.comparison->speedup_seconds);
   for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
   return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
 }

@@ -29,7 +29,8 @@ json law_json(const ThresholdPowerLaw& law, double unit, const char* unit_name) 
 }
 
 /// kt in N/m and in N per degree of rotation of the soft particle; the angle it was measured over.
-json tangential_json(const ThresholdPowerLaw& law, const SoftParticleSpec& spec, double angle_deg, const char* meaning) {
+json tangential_json(const ThresholdPowerLaw& law, const SoftParticleSpec& spec, double angle_deg,
+                     const char* meaning) {
   const double unit = spec.youngs_modulus * spec.shell_radius;
   const double per_degree = unit * std::numbers::pi * spec.shell_radius / 180.0;
   json out = law_json(law, unit, "N/m");
@@ -51,9 +52,12 @@ json pair_json(const PairLaw& law, const SoftParticleSpec& spec) {
   json out;
   out["status"] = law.status;
   out["reason"] = law.reason;
-  out["normal"] = normal ? law_json(law.normal, spec.youngs_modulus * spec.shell_radius * spec.shell_radius, "N") : json(nullptr);
-  out["tangential"] = initial ? tangential_json(law.tangential_initial, spec, law.initial_angle_deg, "initial slope") : json(nullptr);
-  out["tangential_secant"] = secant ? tangential_json(law.tangential_secant, spec, law.secant_angle_deg, "secant") : json(nullptr);
+  out["normal"] =
+      normal ? law_json(law.normal, spec.youngs_modulus * spec.shell_radius * spec.shell_radius, "N") : json(nullptr);
+  out["tangential"] =
+      initial ? tangential_json(law.tangential_initial, spec, law.initial_angle_deg, "initial slope") : json(nullptr);
+  out["tangential_secant"] =
+      secant ? tangential_json(law.tangential_secant, spec, law.secant_angle_deg, "secant") : json(nullptr);
   out["dimensionless"] = {{"normal", normal ? law_json(law.normal, 1.0, "E Rs^2") : json(nullptr)},
                           {"tangential", initial ? law_json(law.tangential_initial, 1.0, "E Rs") : json(nullptr)},
                           {"tangential_secant", secant ? law_json(law.tangential_secant, 1.0, "E Rs") : json(nullptr)}};

@@ -7,12 +7,13 @@
 
 namespace softgrain {
 
-/// { "soft-solid": { "status", "reason", "normal": {...}, "tangential": {...}, "tangential_secant": {...}, "dimensionless": {...},
+/// { "soft-solid": { "status", "reason", "normal": {...}, "tangential": {...}, "tangential_secant": {...},
+/// "dimensionless": {...},
 ///   "delta_range", "packings", "points", "max_overlap", "chi2_per_dof", "quality" }, "soft-soft": ... }
-/// Laws read F(D) = a D^b + c above delta, D = hn/Rs. Normal: a, c in N (times E Rs^2). Tangential: kt with a, c in N/m (times
-/// E Rs), and a_per_degree, c_per_degree in N per degree of rotation (times pi Rs/180); "tangential" is the initial slope.
-/// Every parameter x comes with x_standard_error and x_interval = [low, high] (95 %, bootstrap over packings); null: not known.
-/// A law that was not fitted is null.
+/// Laws read F(D) = a D^b + c above delta, D = hn/Rs. Normal: a, c in N (times E Rs^2). Tangential: kt with a, c in N/m
+/// (times E Rs), and a_per_degree, c_per_degree in N per degree of rotation (times pi Rs/180); "tangential" is the
+/// initial slope. Every parameter x comes with x_standard_error and x_interval = [low, high] (95 %, bootstrap over
+/// packings); null: not known. A law that was not fitted is null.
 nlohmann::json laws_json(const LawCard& card);
 
 }  // namespace softgrain

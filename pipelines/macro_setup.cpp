@@ -10,7 +10,8 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
   spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
   spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
   spec.solid_radius_max = t.number("solid_radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
-  spec.solid_polydispersity = t.number("solid_polydispersity", Unit::none, Range::above(1.0), spec.solid_polydispersity);
+  spec.solid_polydispersity =
+      t.number("solid_polydispersity", Unit::none, Range::above(1.0), spec.solid_polydispersity);
   spec.soft_radius_max = t.number("soft_radius_max", Unit::length, Range::positive(), spec.soft_radius_max);
   spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);

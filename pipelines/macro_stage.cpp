@@ -17,7 +17,8 @@ namespace {
 const char* const kCurveArrays[] = {"strain", "axial", "lateral", "axial_contacts", "coordination", "residual"};
 
 std::vector<double>* curve_array(MacroCurve& c, int k) {
-  std::vector<double>* const all[] = {&c.strain, &c.stress_axial, &c.stress_lateral, &c.stress_axial_contacts, &c.coordination, &c.residual};
+  std::vector<double>* const all[] = {&c.strain,       &c.stress_axial, &c.stress_lateral, &c.stress_axial_contacts,
+                                      &c.coordination, &c.residual};
   return all[k];
 }
 
@@ -73,8 +74,9 @@ std::string extrapolation_note(const System3& s, const LawCard& card) {
     const PairLaw* law = card.find(soft->partner_is_soft ? PairKind::soft_soft : PairKind::soft_solid);
     if (law == nullptr || delta - law->delta_max <= beyond) continue;
     beyond = delta - law->delta_max;
-    note = fmt::format("soft contacts reach Delta = {:.2f} at the end, the {} law was fitted up to {:.2f} and is extrapolated", delta,
-                       to_string(law->kind), law->delta_max);
+    note = fmt::format(
+        "soft contacts reach Delta = {:.2f} at the end, the {} law was fitted up to {:.2f} and is extrapolated", delta,
+        to_string(law->kind), law->delta_max);
   }
   return note;
 }
@@ -83,8 +85,9 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, bool resolved, Progr
   const MacroSpec& spec = stage.setup.spec;
   const MacroPacking& packing = stage.packings[static_cast<std::size_t>(sample)];
   CompressionState state;
-  state.macro = resolved ? make_shelled_system(spec, packing, stage.contents, stage.seed, static_cast<std::uint64_t>(sample))
-                         : make_law_system(spec, packing, stage.laws, stage.inner_solid_fraction);
+  state.macro = resolved
+                    ? make_shelled_system(spec, packing, stage.contents, stage.seed, static_cast<std::uint64_t>(sample))
+                    : make_law_system(spec, packing, stage.laws, stage.inner_solid_fraction);
   state.curve = begin_curve(spec, packing, state.macro, resolved ? "shelled" : "law", sample);
   const std::string task = "macro-" + state.curve.engine + "-" + std::to_string(sample);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
@@ -116,11 +119,13 @@ SoftLaws laws_from_card(const LawCard& card, const MacroSpec& spec) {
 double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
   double sum = 0.0;
   for (const ShellPacking& p : contents) sum += p.solid_fraction();
-  // Without contents the mass of soft particles is that of a solid of the same size; quasi-static results do not depend on it.
+  // Without contents the mass of soft particles is that of a solid of the same size; quasi-static results do not depend
+  // on it.
   return contents.empty() ? 1.0 : sum / static_cast<double>(contents.size());
 }
 
-std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context, const Provenance& provenance) {
+std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
+                                        const Provenance& provenance) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
@@ -129,15 +134,17 @@ std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t s
   });
   h5::AtomicFile file(context.path("macro_initial.h5"));
   write_provenance(file.root(), provenance);
-  for (std::size_t k = 0; k < packings.size(); ++k) write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
+  for (std::size_t k = 0; k < packings.size(); ++k)
+    write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
   file.commit();
   return packings;
 }
 
 }  // namespace
 
-std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card, const std::vector<ShellPacking>& contents,
-                                        std::uint64_t seed, const TaskStore& store, const RunContext& context,
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card,
+                                        const std::vector<ShellPacking>& contents, std::uint64_t seed,
+                                        const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance) {
   const SoftLaws laws = laws_from_card(card, setup.spec);
   const auto packings = make_packings(setup, seed, context, provenance);
@@ -146,11 +153,13 @@ std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& 
   std::vector<MacroCurve> curves(setup.resolved ? 2 * n : n);
   {
     Progress progress("macro with laws", static_cast<double>(n), context.quiet());
-    over_samples(setup.samples, [&](std::int64_t k) { curves[static_cast<std::size_t>(k)] = run_one(stage, k, false, progress); });
+    over_samples(setup.samples,
+                 [&](std::int64_t k) { curves[static_cast<std::size_t>(k)] = run_one(stage, k, false, progress); });
   }
   if (setup.resolved) {
     Progress progress("resolved twins", static_cast<double>(n), context.quiet());
-    over_samples(setup.samples, [&](std::int64_t k) { curves[n + static_cast<std::size_t>(k)] = run_one(stage, k, true, progress); });
+    over_samples(setup.samples,
+                 [&](std::int64_t k) { curves[n + static_cast<std::size_t>(k)] = run_one(stage, k, true, progress); });
   }
   save_macro(curves, context.path("macro.h5"), provenance);
   return curves;

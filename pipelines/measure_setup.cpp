@@ -24,7 +24,8 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   if (t.has("rmax")) {
     const double rmax = t.number("rmax", Unit::length, Range::positive());
     if (rmax >= spec.shell_radius)
-      t.reject("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) + " m) must be larger than the largest grain");
+      t.reject("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
+                           " m) must be larger than the largest grain");
     spec.rmax_over_shell = rmax / spec.shell_radius;
   } else {
     spec.rmax_over_shell = t.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, true}, spec.rmax_over_shell);
@@ -72,12 +73,14 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
   plan.angles_deg = t.numbers("angles_deg", Unit::angle_degree, Range::closed(-90.0, 90.0), {});
   for (const double a : plan.angles_deg)
     if (a == 0.0) t.reject("angles_deg", "0 is recorded anyway; leave it out");
-  plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange, plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
+  plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange,
+                                     plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
   require_subset(t, plan.tangential_deltas, plan.deltas);
   return plan;
 }
 
-MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, std::int64_t packings, const MeasurementPlan& common) {
+MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, std::int64_t packings,
+                          const MeasurementPlan& common) {
   MeasureSeries series;
   series.relaxation = relaxation;
   series.packings = packings;
@@ -112,14 +115,17 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   read_damped(measure.table_or_empty("damped"), setup.damped);
   read_published(measure.table_or_empty("published"), setup.published);
   MeasurementPlan common;
-  common.rotation_step_deg = measure.number("rotation_step_deg", Unit::angle_degree, Range{0.0, 5.0, true, false}, common.rotation_step_deg);
+  common.rotation_step_deg =
+      measure.number("rotation_step_deg", Unit::angle_degree, Range{0.0, 5.0, true, false}, common.rotation_step_deg);
   common.shell_turns = measure.flag("shell_turns", common.shell_turns);
   common.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  setup.series.push_back(read_series(measure, measure.choice("relaxation", {"damped", "published"}, "damped"), count, common));
+  setup.series.push_back(
+      read_series(measure, measure.choice("relaxation", {"damped", "published"}, "damped"), count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
     const std::string name = reference.choice("relaxation", {"damped", "published"}, "published");
-    if (name == setup.series[0].relaxation) reference.reject("relaxation", "the reference must differ from measure.relaxation");
+    if (name == setup.series[0].relaxation)
+      reference.reject("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, name, reference.count("count", 1, 100000, count), common));
   }
   return setup;

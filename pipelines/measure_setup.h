@@ -13,7 +13,7 @@ namespace softgrain {
 
 /// One series of measurements: which relaxation, how many packings, which states of which pair kind.
 struct MeasureSeries {
-  std::string relaxation;               ///< "damped" or "published"
+  std::string relaxation;  ///< "damped" or "published"
   std::int64_t packings = 0;
   std::vector<PairKind> kinds;
   MeasurementPlan soft_solid;
@@ -28,7 +28,8 @@ struct MeasureSetup {
   SoftParticleSpec spec;
   PublishedOptions published;
   DampedProtocolOptions damped;
-  std::vector<MeasureSeries> series;    ///< the first one feeds the fit; a second one is the reference it is compared with
+  std::vector<MeasureSeries>
+      series;  ///< the first one feeds the fit; a second one is the reference it is compared with
   std::uint64_t seed = 1;
 
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series

@@ -30,7 +30,8 @@ struct Task {
   /// Relative cost, for progress and for starting long tasks first.
   [[nodiscard]] double weight() const {
     const MeasurementPlan& plan = series->plan(kind);
-    const auto points = static_cast<double>(plan.deltas.size() + plan.tangential_deltas.size() * plan.angles_deg.size());
+    const auto points =
+        static_cast<double>(plan.deltas.size() + plan.tangential_deltas.size() * plan.angles_deg.size());
     return points * (kind == PairKind::soft_soft ? 2.2 : 1.0) * (series->relaxation == "published" ? 20.0 : 1.0);
   }
 };
@@ -46,7 +47,8 @@ std::vector<Task> list_tasks(const MeasureSetup& setup) {
 std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
   std::vector<std::size_t> order(tasks.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tasks[a].weight() > tasks[b].weight(); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return tasks[a].weight() > tasks[b].weight(); });
   return order;
 }
 
@@ -66,11 +68,14 @@ void write_run(const h5::Group& group, const MeasurementState& state) {
                 return std::vector<double>{p.delta, p.force, p.residual, p.max_overlap, p.converged ? 1.0 : 0.0};
               }));
   group.write("tangential", columns<TangentialPoint>(run.tangential, [](const TangentialPoint& p) {
-                return std::vector<double>{p.delta, p.angle_deg, p.force_parallel, p.force_perpendicular, p.residual, p.converged ? 1.0 : 0.0};
+                return std::vector<double>{
+                    p.delta, p.angle_deg, p.force_parallel, p.force_perpendicular, p.residual, p.converged ? 1.0 : 0.0};
               }));
-  group.write("cost", std::vector<double>{static_cast<double>(run.normal_cost.loop_passes), static_cast<double>(run.normal_cost.contact_evaluations),
+  group.write("cost", std::vector<double>{static_cast<double>(run.normal_cost.loop_passes),
+                                          static_cast<double>(run.normal_cost.contact_evaluations),
                                           run.normal_cost.seconds, static_cast<double>(run.tangential_cost.loop_passes),
-                                          static_cast<double>(run.tangential_cost.contact_evaluations), run.tangential_cost.seconds});
+                                          static_cast<double>(run.tangential_cost.contact_evaluations),
+                                          run.tangential_cost.seconds});
   group.attribute("normal_overlap", state.experiment.normal_overlap);
   write_system(group.create("system"), state.experiment.system);
 }
@@ -91,7 +96,8 @@ void read_run(const h5::Group& group, MeasurementState& state) {
 }
 
 /// Packings by index, generated in parallel.
-std::vector<ShellPacking> generate(const MeasureSetup& setup, std::uint64_t seed, std::int64_t count, bool second, Progress& progress) {
+std::vector<ShellPacking> generate(const MeasureSetup& setup, std::uint64_t seed, std::int64_t count, bool second,
+                                   Progress& progress) {
   std::vector<ShellPacking> packings(static_cast<std::size_t>(count));
   parallel_tasks(count, [&](std::int64_t k) {
     if (interrupt_requested()) throw Interrupted("stopped by a signal while packing");
@@ -122,9 +128,10 @@ PackingRun run_task(const Stage& stage, const Task& task) {
   const auto protocol = make_protocol(stage.setup, task.series->relaxation);
   const auto k = static_cast<std::size_t>(task.packing);
   MeasurementState state;
-  state.experiment = task.kind == PairKind::soft_solid
-                         ? make_soft_solid(stage.setup.spec, stage.first[k], protocol->damped_contacts())
-                         : make_soft_soft(stage.setup.spec, stage.first[k], stage.second[k], protocol->damped_contacts());
+  state.experiment =
+      task.kind == PairKind::soft_solid
+          ? make_soft_solid(stage.setup.spec, stage.first[k], protocol->damped_contacts())
+          : make_soft_soft(stage.setup.spec, stage.first[k], stage.second[k], protocol->damped_contacts());
   state.run.packing = task.packing;
   state.run.kind = task.kind;
   state.run.relaxation = task.series->relaxation;
@@ -143,9 +150,12 @@ PackingRun run_task(const Stage& stage, const Task& task) {
 
 }  // namespace
 
-std::uint64_t second_body_index(std::int64_t packing) { return (std::uint64_t{1} << 32) + static_cast<std::uint64_t>(packing); }
+std::uint64_t second_body_index(std::int64_t packing) {
+  return (std::uint64_t{1} << 32) + static_cast<std::uint64_t>(packing);
+}
 
-MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance) {
+MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context,
+                                const Provenance& provenance) {
   const auto start = Clock::now();
   const std::uint64_t seed = context.seed(setup.seed);
   MeasureResult result;

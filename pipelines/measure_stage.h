@@ -1,4 +1,5 @@
-// The measuring part of a pipeline: packings and runs in parallel, each saved as it goes, so that a stopped run goes on.
+// The measuring part of a pipeline: packings and runs in parallel, each saved as it goes, so that a stopped run goes
+// on.
 #pragma once
 
 #include <vector>
@@ -15,13 +16,14 @@ struct MeasureResult {
   Measurements data;
   std::vector<ShellPacking> packings;  ///< first bodies, to fill resolved twins with
   double wall_seconds = 0.0;
-  double packing_seconds = 0.0;        ///< part of it that went into generating packings
+  double packing_seconds = 0.0;  ///< part of it that went into generating packings
 };
 
 /// Packing index of the second body of a soft-soft pair: a stream of its own.
 std::uint64_t second_body_index(std::int64_t packing);
 
 /// Generates, measures and saves DIR/measurements.h5. Results do not depend on the number of threads.
-MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context, const Provenance& provenance);
+MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context,
+                                const Provenance& provenance);
 
 }  // namespace softgrain

@@ -6,8 +6,8 @@
 
 namespace softgrain {
 
-/// Runs task(0..count-1), in order of index where threads allow. After an error no further task starts; the error of the
-/// smallest index is thrown when all running ones have ended.
+/// Runs task(0..count-1), in order of index where threads allow. After an error no further task starts; the error of
+/// the smallest index is thrown when all running ones have ended.
 void parallel_tasks(std::int64_t count, const std::function<void(std::int64_t)>& task);
 
 }  // namespace softgrain

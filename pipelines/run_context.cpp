@@ -47,8 +47,9 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
   }
   omp_set_num_threads(threads_);
   const Provenance build = build_provenance();
-  logger_->sinks().front()->log({"softgrain", spdlog::level::info,
-                                 fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
+  logger_->sinks().front()->log(
+      {"softgrain", spdlog::level::info,
+       fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
 }
 
 Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {

@@ -19,10 +19,10 @@ namespace softgrain {
 
 /// Options of the command line that every command takes.
 struct CommonOptions {
-  std::vector<std::string> inputs;     ///< positional arguments
-  std::string out;                     ///< --out DIR; empty: chosen from the scene's name under results/
-  int threads = 0;                     ///< --threads N (>= 1); 0 = not given: all cores
-  std::uint64_t seed = 0;              ///< --seed N
+  std::vector<std::string> inputs;  ///< positional arguments
+  std::string out;                  ///< --out DIR; empty: chosen from the scene's name under results/
+  int threads = 0;                  ///< --threads N (>= 1); 0 = not given: all cores
+  std::uint64_t seed = 0;           ///< --seed N
   bool seed_given = false;
   std::vector<std::string> overrides;  ///< --set key=value
   bool resume = false;                 ///< --resume
@@ -44,14 +44,17 @@ class RunContext {
   [[nodiscard]] bool quiet() const { return options_.quiet; }
   [[nodiscard]] bool resume() const { return options_.resume; }
   /// Seed from --seed, else from the scene (`scene_seed`).
-  [[nodiscard]] std::uint64_t seed(std::uint64_t scene_seed) const { return options_.seed_given ? options_.seed : scene_seed; }
+  [[nodiscard]] std::uint64_t seed(std::uint64_t scene_seed) const {
+    return options_.seed_given ? options_.seed : scene_seed;
+  }
   [[nodiscard]] Provenance provenance(const Scene& scene, std::uint64_t used_seed) const;
 
   /// A line for people: to log.txt always, to standard error unless --quiet.
   void say(const std::string& line) const;
 
-  /// Writes DIR/summary.json (atomic; "status", "command", "version", "commit" added when absent), prints it on standard
-  /// output with --json, else prints `people` (a few lines: what was found, how sure, where the files are) on standard output.
+  /// Writes DIR/summary.json (atomic; "status", "command", "version", "commit" added when absent), prints it on
+  /// standard output with --json, else prints `people` (a few lines: what was found, how sure, where the files are) on
+  /// standard output.
   void finish(nlohmann::json summary, const std::string& people) const;
 
  private:

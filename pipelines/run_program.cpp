@@ -23,7 +23,7 @@ constexpr int kMostThreads = 4096;
 struct Command {
   const char* name;
   const char* does;
-  const char* inputs;       ///< name of the positional arguments in the help
+  const char* inputs;  ///< name of the positional arguments in the help
   const char* inputs_help;
   int least;
   int most;
@@ -31,13 +31,19 @@ struct Command {
 };
 
 constexpr std::array<Command, 7> kCommands{{
-    {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run", 1, 1, command_run},
-    {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml", "scene to run", 1, 1, command_microsim},
-    {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA.h5", "files of measurements", 1, 1000, command_calibrate},
-    {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1, command_macrosim},
-    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN", "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, command_compare},
+    {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
+     1, 1, command_run},
+    {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml",
+     "scene to run", 1, 1, command_microsim},
+    {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA.h5",
+     "files of measurements", 1, 1000, command_calibrate},
+    {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
+     command_macrosim},
+    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN",
+     "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, command_compare},
     {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, command_report},
-    {"check", "Validates a scene, card or result file and says what follows from it, without running", "FILE", "file to check", 1, 1, command_check},
+    {"check", "Validates a scene, card or result file and says what follows from it, without running", "FILE",
+     "file to check", 1, 1, command_check},
 }};
 
 constexpr const char* kFooter =
@@ -61,8 +67,9 @@ CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t h
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
             const bool number = error == std::errc{} && end == text.data() + text.size();
             if (number && value >= low && value <= high) return "";
-            const std::string limit = high == std::numeric_limits<std::int64_t>::max() ? fmt::format("at least {}", low)
-                                                                                       : fmt::format("from {} to {}", low, high);
+            const std::string limit = high == std::numeric_limits<std::int64_t>::max()
+                                          ? fmt::format("at least {}", low)
+                                          : fmt::format("from {} to {}", low, high);
             return fmt::format("{} {}: must be a whole number, {}", option, text, limit);
           },
           "", "whole number"};
@@ -72,24 +79,32 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
   app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
   app.add_option("--out", o.out, "Run directory; default results/<name of the first input>")->option_text("DIR");
   app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
-      ->option_text("N")->transform(whole_number("--threads", 1, kMostThreads));
+      ->option_text("N")
+      ->transform(whole_number("--threads", 1, kMostThreads));
   app.add_option("--seed", o.seed, "Seed of the random numbers; default that of the scene")
-      ->option_text("N")->transform(whole_number("--seed", 0, std::numeric_limits<std::int64_t>::max()));
+      ->option_text("N")
+      ->transform(whole_number("--seed", 0, std::numeric_limits<std::int64_t>::max()));
   app.add_option("--set", o.overrides, "Replaces a key of the scene: --set packing.beta=2.5 (repeatable)")
-      ->option_text("KEY=VALUE")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+      ->option_text("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
   app.add_flag("--resume", o.resume, "Continues from the checkpoint in the run directory");
   app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
   app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
   if (command.function == command_macrosim)
-    app.add_option("--law", o.law, "Law card of the soft particles; default that of the scene")->option_text("LAW.toml");
+    app.add_option("--law", o.law, "Law card of the soft particles; default that of the scene")
+        ->option_text("LAW.toml");
 }
 
 /// Counted here and not by the parser, so that an unknown option is named before what follows it.
 void require_inputs(const Command& command, const CommonOptions& options) {
   const auto given = static_cast<int>(options.inputs.size());
   if (given >= command.least && given <= command.most) return;
-  const std::string wanted = command.least < command.most ? fmt::format("at least {}", command.least) : fmt::format("{}", command.least);
-  throw BadInput(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted, command.inputs, given, command.name));
+  const std::string wanted =
+      command.least < command.most ? fmt::format("at least {}", command.least) : fmt::format("{}", command.least);
+  throw BadInput(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted, command.inputs,
+                             given, command.name));
 }
 
 /// A first word that is no command: names the nearest.
@@ -104,7 +119,8 @@ void require_command(int argc, char** argv) {
   const std::string word = argv[1];
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::string near = nearest_word(word, names);
-  throw BadInput("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") + "commands are " + list);
+  throw BadInput("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                 "commands are " + list);
 }
 
 /// Parses and runs. CLI::ParseError (help, version, mistakes) and Error go up.

@@ -19,7 +19,8 @@ struct MeanDeviation {
   double deviation = 0.0;
 };
 
-MeanDeviation mean_deviation(const std::vector<PackingInfo>& packings, const std::function<double(const PackingInfo&)>& value) {
+MeanDeviation mean_deviation(const std::vector<PackingInfo>& packings,
+                             const std::function<double(const PackingInfo&)>& value) {
   MeanDeviation out;
   const auto n = static_cast<double>(packings.size());
   for (const PackingInfo& p : packings) out.mean += value(p) / n;
@@ -44,7 +45,10 @@ json rows_json(const std::vector<RatioRow>& rows) {
 }
 
 json cost_json(const PointCost& c) {
-  return {{"points", c.points}, {"loop_passes_per_point", c.loop_passes}, {"contact_evaluations_per_point", c.contact_evaluations}, {"seconds_per_point", c.seconds}};
+  return {{"points", c.points},
+          {"loop_passes_per_point", c.loop_passes},
+          {"contact_evaluations_per_point", c.contact_evaluations},
+          {"seconds_per_point", c.seconds}};
 }
 
 }  // namespace
@@ -95,7 +99,11 @@ json forces_json(const Measurements& data, const std::string& relaxation) {
   for (const auto& [kind, rows] : forces)
     for (const auto& [delta, values] : rows) {
       const MeanError m = mean_error(values);
-      out[kind].push_back({{"delta", delta}, {"force", m.mean}, {"standard_error", m.error}, {"deviation", m.deviation}, {"packings", m.n}});
+      out[kind].push_back({{"delta", delta},
+                           {"force", m.mean},
+                           {"standard_error", m.error},
+                           {"deviation", m.deviation},
+                           {"packings", m.n}});
     }
   return out;
 }
@@ -159,7 +167,10 @@ std::vector<std::string> measurement_remarks(const Measurements& data) {
       for (const TangentialPoint& p : run.tangential) bad += p.converged ? 0 : 1;
       all += static_cast<std::int64_t>(run.normal.size() + run.tangential.size());
     }
-    if (bad > 0) out.push_back(fmt::format("{} of {} points of the {} relaxation did not meet its criterion and are left out of the fit", bad, all, relaxation));
+    if (bad > 0)
+      out.push_back(
+          fmt::format("{} of {} points of the {} relaxation did not meet its criterion and are left out of the fit",
+                      bad, all, relaxation));
   }
   return out;
 }
@@ -172,13 +183,18 @@ std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
     else if (!c.note.empty())
       out.push_back(fmt::format("macro run '{}' of sample {}: {}", c.engine, c.sample, c.note));
   if (curves.empty()) return out;
-  out.emplace_back("a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains stands in for the friction limit of soft contacts");
-  out.emplace_back("the pair law was measured with one contact; in a packing with contacts all around it is known to be too low, by a factor 2 to 14");
+  out.emplace_back(
+      "a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains "
+      "stands in for the friction limit of soft contacts");
+  out.emplace_back(
+      "the pair law was measured with one contact; in a packing with contacts all around it is known to be too low, by "
+      "a factor 2 to 14");
   return out;
 }
 
 json provenance_json(const Provenance& p) {
-  return {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"threads", p.threads}, {"seed", p.seed}, {"command", p.command}, {"scene", p.scene}};
+  return {{"version", p.version}, {"commit", p.commit},   {"compiler", p.compiler}, {"threads", p.threads},
+          {"seed", p.seed},       {"command", p.command}, {"scene", p.scene}};
 }
 
 }  // namespace softgrain

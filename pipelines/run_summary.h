@@ -16,7 +16,8 @@ nlohmann::json packings_json(const Measurements& data);
 /// {points, loop_passes, contact_evaluations, seconds, relaxation} of one relaxation; also per point.
 nlohmann::json measurement_json(const Measurements& data, const std::string& relaxation);
 
-/// Per pair kind and Delta: mean force [N], its standard error, sample deviation and number of packings (converged points only).
+/// Per pair kind and Delta: mean force [N], its standard error, sample deviation and number of packings (converged
+/// points only).
 nlohmann::json forces_json(const Measurements& data, const std::string& relaxation);
 
 /// Per Delta: both means, ratio and its standard error, and loop passes per point of both relaxations; for kt too.

@@ -37,7 +37,8 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   summary["provenance"] = provenance_json(context.provenance(scene, seed));
   context.finish(summary, fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\nreport: {}",
                                       result.data.packings.size(), summary["packings"]["solid_fraction"].get<double>(),
-                                      summary["measurement"]["points"].get<std::int64_t>(), result.wall_seconds, context.path("report.html")));
+                                      summary["measurement"]["points"].get<std::int64_t>(), result.wall_seconds,
+                                      context.path("report.html")));
   write_report(context.directory());
   store.clear();
   return remarks.empty() ? ExitStatus::good : ExitStatus::not_usable;

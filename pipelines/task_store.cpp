@@ -12,7 +12,9 @@ std::mutex& hdf5_mutex() {
 }
 
 TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed)
-    : context_(context), directory_(context.path("work")), fingerprint_(scene.text() + "\n# seed " + std::to_string(seed)) {
+    : context_(context),
+      directory_(context.path("work")),
+      fingerprint_(scene.text() + "\n# seed " + std::to_string(seed)) {
   std::error_code error;
   if (!context.resume()) std::filesystem::remove_all(directory_, error);
   std::filesystem::create_directories(directory_, error);

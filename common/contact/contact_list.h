@@ -1,4 +1,5 @@
-// The contacts and near pairs of a system with their history: structure of arrays, sorted, in sections of one geometry and law.
+// The contacts and near pairs of a system with their history: structure of arrays, sorted, in sections of one geometry
+// and law.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +28,13 @@ struct ContactList {
   std::vector<PairConstants> constants;  ///< of the law
   std::vector<Vec<D>> spring;            ///< committed history
   std::vector<Vec<D>> spring_next;       ///< history of the state tried last
-  std::vector<double> memory;            ///< committed history of laws with a memory; empty when no law of the scene has one
+  std::vector<double> memory;  ///< committed history of laws with a memory; empty when no law of the scene has one
   std::vector<double> memory_next;
-  std::vector<double> particle_sum;      ///< scratch of laws with a particle pass, per body; empty when no law has one
+  std::vector<double> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
   std::vector<ContactSection> sections;
-  bool has_spring = false;               ///< some law of the scene has a tangential spring
+  bool has_spring = false;  ///< some law of the scene has a tangential spring
   bool has_memory = false;
-  std::uint64_t build = 0;               ///< number of the build, unique in the process; not part of a saved state
+  std::uint64_t build = 0;  ///< number of the build, unique in the process; not part of a saved state
 
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(i.size()); }
 

@@ -1,5 +1,5 @@
-// What the loop hands to a law and what the law hands back. A law never commits history: it returns the new one, the caller
-// decides (minimisers try states that are thrown away).
+// What the loop hands to a law and what the law hands back. A law never commits history: it returns the new one, the
+// caller decides (minimisers try states that are thrown away).
 #pragma once
 
 #include "common/core/vec.h"
@@ -15,35 +15,35 @@ struct PairConstants {
 /// Geometry and kinematics of one contact. `normal` points to body i; overlap > 0.
 template <int D>
 struct ContactState {
-  double overlap = 0.0;       ///< h [m]
+  double overlap = 0.0;  ///< h [m]
   Vec<D> normal{};
   double normal_speed = 0.0;  ///< of i relative to j along the normal, separation positive [m/s]
   Vec<D> sliding{};           ///< tangential velocity of i relative to j at the contact point [m/s]
   double dt = 0.0;            ///< time since the history was committed [s]
   PairConstants constants{};
-  Vec<D> spring{};            ///< history: tangential spring [m]
-  double memory = 0.0;        ///< history: one number for laws that ask for it
-  double sum_i = 0.0;         ///< of the particle pass, for laws that ask for it: what all contacts of body i added up to
+  Vec<D> spring{};      ///< history: tangential spring [m]
+  double memory = 0.0;  ///< history: one number for laws that ask for it
+  double sum_i = 0.0;   ///< of the particle pass, for laws that ask for it: what all contacts of body i added up to
   double sum_j = 0.0;
 };
 
 /// Answer of a law: force on i is normal_force * normal + tangential_force.
 template <int D>
 struct ContactResponse {
-  double normal_force = 0.0;      ///< [N], repulsion positive
-  double elastic_force = 0.0;     ///< its part without damping [N]
-  Vec<D> tangential_force{};      ///< [N]
-  double normal_stiffness = 0.0;  ///< d elastic_force / d overlap [N/m]
+  double normal_force = 0.0;          ///< [N], repulsion positive
+  double elastic_force = 0.0;         ///< its part without damping [N]
+  Vec<D> tangential_force{};          ///< [N]
+  double normal_stiffness = 0.0;      ///< d elastic_force / d overlap [N/m]
   double tangential_stiffness = 0.0;  ///< [N/m]
-  bool sliding = false;           ///< at the Coulomb limit
-  Vec<D> spring{};                ///< new history
-  double memory = 0.0;            ///< new history
+  bool sliding = false;               ///< at the Coulomb limit
+  Vec<D> spring{};                    ///< new history
+  double memory = 0.0;                ///< new history
 };
 
 /// What a law is asked for when a pair enters the list.
 struct PairBodies {
   double radius_i = 0.0;
-  double radius_j = 0.0;          ///< 0 for a plane, negative for the inside of a shell
+  double radius_j = 0.0;  ///< 0 for a plane, negative for the inside of a shell
   double inverse_mass_i = 0.0;
   double inverse_mass_j = 0.0;
 

@@ -13,17 +13,17 @@ namespace softgrain {
 
 /// How the tangential spring answers to a changing contact radius.
 enum class Tangential {
-  none,      ///< frictionless: no spring, no torque, no history
-  mindlin,   ///< the published total form Ft = -sqrt(R12 h) Dt ht
-  rescaled   ///< spring shortened as the contact grows (dFt = -kt dht while loading): never creates energy
+  none,     ///< frictionless: no spring, no torque, no history
+  mindlin,  ///< the published total form Ft = -sqrt(R12 h) Dt ht
+  rescaled  ///< spring shortened as the contact grows (dFt = -kt dht while loading): never creates energy
 };
 
 /// Coefficients of a pair of materials.
 struct HertzCoefficients {
-  double inverse_d = 0.0;   ///< 1/D, D = 3/4 [(1-nu1^2)/E1 + (1-nu2^2)/E2] [Pa]
-  double shear = 0.0;       ///< Dt, 1/Dt = (2-nu1)/(8 G1) + (2-nu2)/(8 G2) [Pa]
-  double friction = 0.0;    ///< mu
-  double damping = 0.0;     ///< alpha(e)
+  double inverse_d = 0.0;  ///< 1/D, D = 3/4 [(1-nu1^2)/E1 + (1-nu2^2)/E2] [Pa]
+  double shear = 0.0;      ///< Dt, 1/Dt = (2-nu1)/(8 G1) + (2-nu2)/(8 G2) [Pa]
+  double friction = 0.0;   ///< mu
+  double damping = 0.0;    ///< alpha(e)
 
   static HertzCoefficients of(const Material& m1, const Material& m2, double friction, double restitution);
 };
@@ -37,7 +37,8 @@ inline double tsuji_alpha(double restitution) {
   return -std::sqrt(5.0) * l / std::sqrt(l * l + std::numbers::pi * std::numbers::pi);
 }
 
-inline HertzCoefficients HertzCoefficients::of(const Material& m1, const Material& m2, double friction, double restitution) {
+inline HertzCoefficients HertzCoefficients::of(const Material& m1, const Material& m2, double friction,
+                                               double restitution) {
   const double normal = 0.75 * (m1.normal_compliance() + m2.normal_compliance());
   const double tangential = m1.tangential_compliance() + m2.tangential_compliance();
   if (!(normal > 0.0)) throw std::invalid_argument("a contact of two rigid materials has no finite stiffness");

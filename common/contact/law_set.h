@@ -1,5 +1,5 @@
-// The laws of a scene and which pair of materials uses which. The variant is opened once per section of the contact list,
-// never per contact.
+// The laws of a scene and which pair of materials uses which. The variant is opened once per section of the contact
+// list, never per contact.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,8 @@ class LawSet {
   static constexpr std::size_t kMostLaws = 64;    ///< the sort key of the contact list has room for so many
 
   explicit LawSet(std::int32_t materials = 0)
-      : materials_(materials), table_(static_cast<std::size_t>(materials) * static_cast<std::size_t>(materials), kNoContact) {}
+      : materials_(materials),
+        table_(static_cast<std::size_t>(materials) * static_cast<std::size_t>(materials), kNoContact) {}
 
   /// `law` serves bodies i of material m1 with j of m2 (and the reverse unless `ordered`).
   void set(std::int32_t m1, std::int32_t m2, const AnyLaw& law, bool ordered = false) {
@@ -46,7 +47,8 @@ class LawSet {
 
  private:
   [[nodiscard]] std::size_t at(std::int32_t m1, std::int32_t m2) const {
-    if (m1 < 0 || m2 < 0 || m1 >= materials_ || m2 >= materials_) throw std::out_of_range("material without a law table row");
+    if (m1 < 0 || m2 < 0 || m1 >= materials_ || m2 >= materials_)
+      throw std::out_of_range("material without a law table row");
     return static_cast<std::size_t>(m1) * static_cast<std::size_t>(materials_) + static_cast<std::size_t>(m2);
   }
 

@@ -9,8 +9,9 @@
 
 namespace softgrain {
 
-/// Fn = kn h - eta vn with eta = 2 zeta sqrt(kn m12), zeta = -ln e / sqrt(ln^2 e + pi^2) (restitution e at any speed, contact
-/// ending at zero force of the undamped clock, as for the Tsuji form); Ft = -kt ht, |Ft| <= mu max(Fn, 0). SI units.
+/// Fn = kn h - eta vn with eta = 2 zeta sqrt(kn m12), zeta = -ln e / sqrt(ln^2 e + pi^2) (restitution e at any speed,
+/// contact ending at zero force of the undamped clock, as for the Tsuji form); Ft = -kt ht, |Ft| <= mu max(Fn, 0). SI
+/// units.
 struct LinearSpring {
   static constexpr bool has_tangential = true;
   static constexpr bool has_memory = false;

@@ -1,4 +1,5 @@
-// The fitted law of a soft contact, ready for the loop: threshold power law in Delta = h/R, R the smaller shell [SP 1.5, 1.6].
+// The fitted law of a soft contact, ready for the loop: threshold power law in Delta = h/R, R the smaller shell
+// [SP 1.5, 1.6].
 #pragma once
 
 #include <algorithm>
@@ -29,10 +30,10 @@ struct SoftContact {
 
   PowerTerm normal;
   PowerTerm tangential;
-  double delta = 0.0;        ///< threshold of both
-  double modulus = 0.0;      ///< E [Pa]
-  double friction = 0.0;     ///< mu_soft
-  double damping = 0.0;      ///< zeta, fraction of critical
+  double delta = 0.0;            ///< threshold of both
+  double modulus = 0.0;          ///< E [Pa]
+  double friction = 0.0;         ///< mu_soft
+  double damping = 0.0;          ///< zeta, fraction of critical
   bool partner_is_soft = false;  ///< soft-soft: the smaller radius counts; soft-solid: the soft one's
   bool i_is_soft = true;         ///< soft-solid: which of the two is soft
 

@@ -40,9 +40,9 @@ constexpr int home_image() {
 /// `edges` is upper triangular: column k is the k-th edge vector (so edge 0 lies along x). Lengths in m, rate in 1/s.
 template <int D>
 struct Cell {
-  Matrix<D> edges{};                 ///< unused along open axes
-  Matrix<D> velocity_gradient{};     ///< d(edges)/dt = velocity_gradient * edges
-  std::array<bool, D> periodic{};    ///< open by default
+  Matrix<D> edges{};               ///< unused along open axes
+  Matrix<D> velocity_gradient{};   ///< d(edges)/dt = velocity_gradient * edges
+  std::array<bool, D> periodic{};  ///< open by default
 
   [[nodiscard]] bool any_periodic() const {
     bool any = false;

@@ -9,10 +9,10 @@ namespace softgrain {
 /// Exit statuses of the command line.
 enum class ExitStatus : int {
   good = 0,
-  bad_input = 2,    ///< scene, card or option is wrong; nothing was run
-  not_usable = 3,   ///< ran, but the result must not be used as it is
-  file_trouble = 4, ///< disk, permissions, missing or damaged file
-  interrupted = 130 ///< stopped by a signal, checkpoint written
+  bad_input = 2,     ///< scene, card or option is wrong; nothing was run
+  not_usable = 3,    ///< ran, but the result must not be used as it is
+  file_trouble = 4,  ///< disk, permissions, missing or damaged file
+  interrupted = 130  ///< stopped by a signal, checkpoint written
 };
 
 /// Base of all errors that end a command with a stated exit status.

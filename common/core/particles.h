@@ -19,19 +19,20 @@ struct alignas(32) Sphere {
 template <int D>
 struct Particles {
   std::vector<Sphere<D>> sphere;
-  std::vector<Vec<D>> velocity;          ///< [m/s]
-  std::vector<Rot<D>> spin;              ///< [rad/s]
-  std::vector<Vec<D>> force;             ///< of the last pass, on the body [N]
-  std::vector<Rot<D>> torque;            ///< [N m]
-  std::vector<double> inverse_mass;      ///< [1/kg]; 0: not moved by forces
-  std::vector<double> inverse_inertia;   ///< [1/(kg m^2)]; 0: not turned by torques
-  std::vector<std::int32_t> material;    ///< index into the materials of the scene
-  std::vector<std::int32_t> shell;       ///< slot of the shell this grain lives in, -1: none
-  std::vector<Vec<D>> plane_normal;      ///< one per plane, unit, into the space of the grains
-  std::vector<double> plane_load;        ///< one per plane: outside force along its normal [N]; acts on planes moved by forces
-  std::int32_t grains = 0;               ///< slots [0, grains)
-  std::int32_t shells = 0;               ///< slots [grains, grains + shells)
-  std::int32_t planes = 0;               ///< the rest
+  std::vector<Vec<D>> velocity;         ///< [m/s]
+  std::vector<Rot<D>> spin;             ///< [rad/s]
+  std::vector<Vec<D>> force;            ///< of the last pass, on the body [N]
+  std::vector<Rot<D>> torque;           ///< [N m]
+  std::vector<double> inverse_mass;     ///< [1/kg]; 0: not moved by forces
+  std::vector<double> inverse_inertia;  ///< [1/(kg m^2)]; 0: not turned by torques
+  std::vector<std::int32_t> material;   ///< index into the materials of the scene
+  std::vector<std::int32_t> shell;      ///< slot of the shell this grain lives in, -1: none
+  std::vector<Vec<D>> plane_normal;     ///< one per plane, unit, into the space of the grains
+  std::vector<double>
+      plane_load;           ///< one per plane: outside force along its normal [N]; acts on planes moved by forces
+  std::int32_t grains = 0;  ///< slots [0, grains)
+  std::int32_t shells = 0;  ///< slots [grains, grains + shells)
+  std::int32_t planes = 0;  ///< the rest
 
   [[nodiscard]] std::int32_t size() const { return grains + shells + planes; }
   [[nodiscard]] std::int32_t first_plane() const { return grains + shells; }

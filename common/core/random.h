@@ -1,4 +1,5 @@
-// Counter-based random numbers (Random123, Philox 4x64): a number depends on seed, purpose and index alone, never on threads.
+// Counter-based random numbers (Random123, Philox 4x64): a number depends on seed, purpose and index alone, never on
+// threads.
 #pragma once
 
 #include <Random123/philox.h>
@@ -8,7 +9,15 @@
 namespace softgrain {
 
 /// What a stream is for; streams of different purpose never share numbers.
-enum class RandomPurpose : std::uint64_t { radii = 1, positions = 2, bootstrap = 3, macro_radii = 4, macro_positions = 5, test = 6, rotation = 7 };
+enum class RandomPurpose : std::uint64_t {
+  radii = 1,
+  positions = 2,
+  bootstrap = 3,
+  macro_radii = 4,
+  macro_positions = 5,
+  test = 6,
+  rotation = 7
+};
 
 /// A sequence of independent numbers keyed by (seed, purpose, index).
 class RandomStream {

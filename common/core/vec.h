@@ -1,4 +1,5 @@
-// Small fixed-size vectors of the kernels. Dimension is a template argument; rotations are a vector in 3D, a number in 2D.
+// Small fixed-size vectors of the kernels. Dimension is a template argument; rotations are a vector in 3D, a number in
+// 2D.
 #pragma once
 
 #include <array>

@@ -13,10 +13,11 @@
 
 namespace softgrain {
 
-/// Writes field(record) of every record as the data set `name`; numbers with a fraction as doubles, all others as int64.
+/// Writes field(record) of every record as the data set `name`; numbers with a fraction as doubles, all others as
+/// int64.
 template <class Record, class Field>
-void write_column(const h5::Group& group, const std::string& name, const std::string& unit, const std::vector<Record>& records,
-                  Field field) {
+void write_column(const h5::Group& group, const std::string& name, const std::string& unit,
+                  const std::vector<Record>& records, Field field) {
   using Value = std::decay_t<decltype(field(records.front()))>;
   using Stored = std::conditional_t<std::is_floating_point_v<Value>, double, std::int64_t>;
   std::vector<Stored> values;
@@ -41,7 +42,9 @@ void read_integers(const h5::Group& group, const std::string& name, std::vector<
 }
 
 /// Number of records of a group: the length of its data set `name`.
-inline std::size_t column_length(const h5::Group& group, const std::string& name) { return group.integers(name).size(); }
+inline std::size_t column_length(const h5::Group& group, const std::string& name) {
+  return group.integers(name).size();
+}
 
 /// Hands out consecutive parts of a long list; a part that reaches beyond the end means a damaged file.
 class Slices {
@@ -49,7 +52,8 @@ class Slices {
   explicit Slices(std::size_t total) : total_(total) {}
   /// First index of the next `length` elements. Throws FileTrouble.
   std::size_t next(std::int64_t length) {
-    if (length < 0 || static_cast<std::uint64_t>(length) > total_ - used_) throw FileTrouble("counts do not fit the data");
+    if (length < 0 || static_cast<std::uint64_t>(length) > total_ - used_)
+      throw FileTrouble("counts do not fit the data");
     const std::size_t first = used_;
     used_ += static_cast<std::size_t>(length);
     return first;

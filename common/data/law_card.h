@@ -1,5 +1,6 @@
 // The law of a soft contact as fitted: a card for people (TOML) and a table for programs (HDF5).
-// Everything inside is dimensionless (physics: Fn = E Rs^2 f(Delta), kt = E Rs g(Delta)), so one card serves any E and Rs.
+// Everything inside is dimensionless (physics: Fn = E Rs^2 f(Delta), kt = E Rs g(Delta)), so one card serves any E and
+// Rs.
 #pragma once
 
 #include <array>
@@ -38,12 +39,12 @@ struct LawTableRows {
   std::vector<double> force_deviation;  ///< sample standard deviation over packings
   std::vector<double> kt_initial_mean;  ///< kt/(E Rs), initial slope
   std::vector<double> kt_initial_deviation;
-  std::vector<double> kt_secant_mean;   ///< kt/(E Rs), secant at 1 degree
+  std::vector<double> kt_secant_mean;  ///< kt/(E Rs), secant at 1 degree
   std::vector<double> kt_secant_deviation;
 };
 
 /// Names of the jointly fitted parameters, in the order of PairLaw::covariance.
-inline constexpr std::array<const char*, 7> kLawParameterNames{"a_n",   "b_n",   "delta", "a_t_initial",
+inline constexpr std::array<const char*, 7> kLawParameterNames{"a_n",         "b_n",        "delta",     "a_t_initial",
                                                                "b_t_initial", "a_t_secant", "b_t_secant"};
 
 /// What was found for one pair kind.
@@ -56,23 +57,23 @@ struct PairLaw {
   ThresholdPowerLaw tangential_secant;   ///< secant at secant_angle_deg
   double initial_angle_deg = 0.05;
   double secant_angle_deg = 1.0;
-  bool has_tangential_initial = false;   ///< whether it was fitted; without it soft contacts have no tangential spring
+  bool has_tangential_initial = false;  ///< whether it was fitted; without it soft contacts have no tangential spring
   bool has_tangential_secant = false;
   std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
   double delta_min = 0.0;          ///< validity: range of Delta that was fitted
   double delta_max = 0.0;
-  double max_overlap = 0.0;        ///< largest grain overlap over the smaller radius inside that range
+  double max_overlap = 0.0;  ///< largest grain overlap over the smaller radius inside that range
   int packings = 0;
   int points = 0;
   double chi2_per_dof = 0.0;
-  double quality = 0.0;            ///< probability of a larger chi^2 (GSL), computed on packing means
+  double quality = 0.0;  ///< probability of a larger chi^2 (GSL), computed on packing means
   LawTableRows table;
 };
 
 struct LawCard {
   int schema = 1;
-  SoftParticleSpec spec;           ///< of the measurement behind the law
-  std::string relaxation;          ///< which relaxation measured it
+  SoftParticleSpec spec;   ///< of the measurement behind the law
+  std::string relaxation;  ///< which relaxation measured it
   std::vector<PairLaw> pairs;
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;
@@ -81,7 +82,8 @@ struct LawCard {
 /// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws FileTrouble.
 void save_card(const LawCard& card, const std::string& toml_path, const Provenance& provenance = build_provenance());
 
-/// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, FileTrouble for files.
+/// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, FileTrouble
+/// for files.
 LawCard load_card(const std::string& toml_path);
 
 }  // namespace softgrain

@@ -34,13 +34,14 @@ struct LawTableColumn {
   const char* name;
   std::vector<double> LawTableRows::*values;
 };
-inline constexpr std::array<LawTableColumn, 7> kLawTableColumns{{{"delta", &LawTableRows::delta},
-                                                                 {"force_mean", &LawTableRows::force_mean},
-                                                                 {"force_deviation", &LawTableRows::force_deviation},
-                                                                 {"kt_initial_mean", &LawTableRows::kt_initial_mean},
-                                                                 {"kt_initial_deviation", &LawTableRows::kt_initial_deviation},
-                                                                 {"kt_secant_mean", &LawTableRows::kt_secant_mean},
-                                                                 {"kt_secant_deviation", &LawTableRows::kt_secant_deviation}}};
+inline constexpr std::array<LawTableColumn, 7> kLawTableColumns{
+    {{"delta", &LawTableRows::delta},
+     {"force_mean", &LawTableRows::force_mean},
+     {"force_deviation", &LawTableRows::force_deviation},
+     {"kt_initial_mean", &LawTableRows::kt_initial_mean},
+     {"kt_initial_deviation", &LawTableRows::kt_initial_deviation},
+     {"kt_secant_mean", &LawTableRows::kt_secant_mean},
+     {"kt_secant_deviation", &LawTableRows::kt_secant_deviation}}};
 
 /// The card as TOML.
 std::string card_text(const LawCard& card, const Provenance& provenance);

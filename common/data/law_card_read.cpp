@@ -78,7 +78,8 @@ void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& an
 PairLaw read_pair(const SceneTable& table) {
   constexpr std::int64_t kMany = std::numeric_limits<int>::max();
   PairLaw law;
-  law.kind = table.choice("kind", {"soft-solid", "soft-soft"}) == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+  law.kind =
+      table.choice("kind", {"soft-solid", "soft-soft"}) == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
   law.status = table.choice("status", {"good", "no threshold crossing", "underdetermined", "not run"});
   law.reason = table.text("reason", "");
   law.packings = static_cast<int>(table.count("packings", 0, kMany));
@@ -88,8 +89,10 @@ PairLaw read_pair(const SceneTable& table) {
   read_validity(table.table("validity"), law);
   const bool good = law.status == "good" || law.status == "underdetermined";
   law.normal = read_law(table.table("normal"), good);
-  read_tangential(table.table("tangential_initial"), law.tangential_initial, law.initial_angle_deg, law.has_tangential_initial, good);
-  read_tangential(table.table("tangential_secant"), law.tangential_secant, law.secant_angle_deg, law.has_tangential_secant, good);
+  read_tangential(table.table("tangential_initial"), law.tangential_initial, law.initial_angle_deg,
+                  law.has_tangential_initial, good);
+  read_tangential(table.table("tangential_secant"), law.tangential_secant, law.secant_angle_deg,
+                  law.has_tangential_secant, good);
   law.covariance = read_covariance(table);
   return law;
 }
@@ -103,7 +106,8 @@ SoftParticleSpec read_spec(const SceneTable& table) {
   s.density = table.number("density", Unit::density, Range::positive());
   s.restitution = table.number("restitution", Unit::none, Range::closed(0.0, 1.0));
   s.exponent = table.number("exponent", Unit::none);
-  s.polydispersity = table.number("polydispersity", Unit::none, Range{1.0, std::numeric_limits<double>::infinity(), false, false});
+  s.polydispersity =
+      table.number("polydispersity", Unit::none, Range{1.0, std::numeric_limits<double>::infinity(), false, false});
   s.rmax_over_shell = table.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, false});
   s.beta = table.number("beta", Unit::none, Range::positive());
   s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());

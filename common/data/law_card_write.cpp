@@ -43,23 +43,28 @@ std::string row(const double* values, std::size_t n) {
 /// "73.67 N" or "12.3 N/m = 0.0034 N/degree" for the measured E and Rs, as a comment.
 std::string dimensional(double value, bool tangential, const SoftParticleSpec& spec) {
   if (!std::isfinite(value)) return "";
-  if (!tangential) return fmt::format("  # {:.6g} N", value * spec.youngs_modulus * spec.shell_radius * spec.shell_radius);
+  if (!tangential)
+    return fmt::format("  # {:.6g} N", value * spec.youngs_modulus * spec.shell_radius * spec.shell_radius);
   const double stiffness = value * spec.youngs_modulus * spec.shell_radius;
-  return fmt::format("  # {:.6g} N/m = {:.6g} N/degree", stiffness, stiffness * std::numbers::pi * spec.shell_radius / 180.0);
+  return fmt::format("  # {:.6g} N/m = {:.6g} N/degree", stiffness,
+                     stiffness * std::numbers::pi * spec.shell_radius / 180.0);
 }
 
 void write_head(Out out, const LawCard& card, const Provenance& provenance) {
   fmt::format_to(out, "# Contact law of a soft particle: fitted parameters and what they were fitted to.\n");
   fmt::format_to(out, "# The measured curve behind each law is in the .h5 file of the same name.\n");
-  fmt::format_to(out, "# All parameters are dimensionless, so one card serves every E and Rs; comments give the values for the\n");
-  fmt::format_to(out, "# measured E = {} Pa and Rs = {} m.\n", real(card.spec.youngs_modulus), real(card.spec.shell_radius));
+  fmt::format_to(
+      out, "# All parameters are dimensionless, so one card serves every E and Rs; comments give the values for the\n");
+  fmt::format_to(out, "# measured E = {} Pa and Rs = {} m.\n", real(card.spec.youngs_modulus),
+                 real(card.spec.shell_radius));
   fmt::format_to(out, "schema = {}\n\n[provenance]\n", card.schema);
   fmt::format_to(out, "version = {}\ncommit = {}\n", quoted(provenance.version), quoted(provenance.commit));
   fmt::format_to(out, "compiler = {}\ncommand = {}\n", quoted(provenance.compiler), quoted(provenance.command));
   fmt::format_to(out, "seed = {}\nthreads = {}\n", quoted(fmt::format("{}", provenance.seed)), provenance.threads);
   fmt::format_to(out, "\n[definitions]\n");
   fmt::format_to(out, "form = \"F(Delta) = 0 for Delta < delta, a Delta^b + c for Delta >= delta, c = -a delta^b\"\n");
-  fmt::format_to(out, "Delta = \"total overlap hn over the shell radius Rs; for unequal radii hn/R of the smaller shell\"\n");
+  fmt::format_to(
+      out, "Delta = \"total overlap hn over the shell radius Rs; for unequal radii hn/R of the smaller shell\"\n");
   fmt::format_to(out, "normal = \"Fn = E Rs^2 F(Delta), compression positive\"\n");
   fmt::format_to(out, "tangential = \"kt = E Rs F(Delta), force per tangential displacement ht = pi Rs angle/180\"\n");
   fmt::format_to(out, "interval_95 = \"bootstrap over packings\"\n");
@@ -67,7 +72,8 @@ void write_head(Out out, const LawCard& card, const Provenance& provenance) {
 
 void write_measurement(Out out, const LawCard& card) {
   const SoftParticleSpec& s = card.spec;
-  fmt::format_to(out, "\n# The soft particle that was measured.\n[measurement]\nrelaxation = {}\n", quoted(card.relaxation));
+  fmt::format_to(out, "\n# The soft particle that was measured.\n[measurement]\nrelaxation = {}\n",
+                 quoted(card.relaxation));
   fmt::format_to(out, "shell_radius = {}  # Rs [m]\n", real(s.shell_radius));
   fmt::format_to(out, "youngs_modulus = {}  # E [Pa]\n", real(s.youngs_modulus));
   fmt::format_to(out, "poisson_ratio = {}  # nu\n", real(s.poisson_ratio));
@@ -82,7 +88,8 @@ void write_measurement(Out out, const LawCard& card) {
 }
 
 void write_estimate(Out out, const std::string& table, const Estimate& e, const std::string& comment) {
-  fmt::format_to(out, "[{}]\nvalue = {}{}\nunit = \"1\"\nstandard_error = {}\n", table, real(e.value), comment, real(e.standard_error));
+  fmt::format_to(out, "[{}]\nvalue = {}{}\nunit = \"1\"\nstandard_error = {}\n", table, real(e.value), comment,
+                 real(e.standard_error));
   fmt::format_to(out, "interval_95 = {{ low = {}, high = {} }}\n", real(e.low), real(e.high));
 }
 
@@ -92,7 +99,8 @@ void write_part(Out out, const PairLaw& pair, const LawPartName& part, const Sof
   if (part.tangential) {
     const char* meaning = initial ? "slope at ht = 0, from angles up to this one" : "secant at this angle";
     fmt::format_to(out, "fitted = {}\n", initial ? pair.has_tangential_initial : pair.has_tangential_secant);
-    fmt::format_to(out, "angle_deg = {}  # {}\n", real(initial ? pair.initial_angle_deg : pair.secant_angle_deg), meaning);
+    fmt::format_to(out, "angle_deg = {}  # {}\n", real(initial ? pair.initial_angle_deg : pair.secant_angle_deg),
+                   meaning);
   }
   for (const LawParameterName& p : kLawParameters) {
     const Estimate& estimate = pair.*part.law.*p.estimate;
@@ -106,16 +114,21 @@ void write_covariance(Out out, const PairLaw& pair) {
   bool finite = pair.covariance.size() == n * n;
   for (const double x : pair.covariance) finite = finite && std::isfinite(x);
   if (!finite) return;
-  fmt::format_to(out, "\n# Rows and columns in the order of the rows; zero where a parameter was not fitted.\n[pair.covariance]\n");
-  for (std::size_t k = 0; k < n; ++k) fmt::format_to(out, "{} = {}\n", kLawParameterNames[k], row(&pair.covariance[k * n], n));
+  fmt::format_to(
+      out,
+      "\n# Rows and columns in the order of the rows; zero where a parameter was not fitted.\n[pair.covariance]\n");
+  for (std::size_t k = 0; k < n; ++k)
+    fmt::format_to(out, "{} = {}\n", kLawParameterNames[k], row(&pair.covariance[k * n], n));
 }
 
 void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
-  fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind), quoted(pair.status), quoted(pair.reason));
+  fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind),
+                 quoted(pair.status), quoted(pair.reason));
   fmt::format_to(out, "packings = {}\npoints = {}\n", pair.packings, pair.points);
   fmt::format_to(out, "chi2_per_dof = {}\n", real(pair.chi2_per_dof));
   fmt::format_to(out, "quality = {}  # probability of a larger chi^2\n", real(pair.quality));
-  fmt::format_to(out, "\n# Range of Delta that was fitted, and the largest grain overlap over the smaller radius inside it.\n");
+  fmt::format_to(
+      out, "\n# Range of Delta that was fitted, and the largest grain overlap over the smaller radius inside it.\n");
   fmt::format_to(out, "[pair.validity]\ndelta_min = {}\ndelta_max = {}\n", real(pair.delta_min), real(pair.delta_max));
   fmt::format_to(out, "max_overlap = {}\n", real(pair.max_overlap));
   for (const LawPartName& part : kLawParts) write_part(out, pair, part, spec);

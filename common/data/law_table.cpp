@@ -1,5 +1,5 @@
-// Layout of law.h5: "spec"; per pair kind a group with attributes, "table" (the measured curve) and, per law, a group of its
-// parameters as rows (value, standard_error, low, high); "covariance" 7 x 7. All dimensionless.
+// Layout of law.h5: "spec"; per pair kind a group with attributes, "table" (the measured curve) and, per law, a group
+// of its parameters as rows (value, standard_error, low, high); "covariance" 7 x 7. All dimensionless.
 #include <array>
 
 #include "common/core/error.h"
@@ -27,7 +27,8 @@ void write_parameters(const h5::Group& group, const PairLaw& pair) {
 void write_curve(const h5::Group& group, const LawTableRows& rows) {
   const h5::Group table = group.create("table");
   table.attribute("units", "delta 1, force Fn/(E Rs^2), kt kt/(E Rs)");
-  for (const LawTableColumn& column : kLawTableColumns) table.write(column.name, std::span<const double>(rows.*column.values));
+  for (const LawTableColumn& column : kLawTableColumns)
+    table.write(column.name, std::span<const double>(rows.*column.values));
 }
 
 void write_pair(const h5::Group& root, const PairLaw& pair) {

@@ -1,5 +1,5 @@
-// Layout of measurements.h5: "spec", "packings", "runs" (one row per run), "normal" and "tangential" (one row per point, the
-// points of a run are consecutive; "runs" says how many it has).
+// Layout of measurements.h5: "spec", "packings", "runs" (one row per run), "normal" and "tangential" (one row per
+// point, the points of a run are consecutive; "runs" says how many it has).
 #include "common/data/measurements.h"
 
 #include <algorithm>
@@ -86,15 +86,19 @@ std::vector<TangentialPoint> read_tangential(const h5::Group& root) {
   return points;
 }
 
-void write_cost(const h5::Group& group, const std::string& prefix, const std::vector<PackingRun>& runs, Cost PackingRun::*cost) {
+void write_cost(const h5::Group& group, const std::string& prefix, const std::vector<PackingRun>& runs,
+                Cost PackingRun::*cost) {
   write_column(group, prefix + "_loop_passes", "1", runs, [cost](const auto& r) { return (r.*cost).loop_passes; });
-  write_column(group, prefix + "_contact_evaluations", "1", runs, [cost](const auto& r) { return (r.*cost).contact_evaluations; });
+  write_column(group, prefix + "_contact_evaluations", "1", runs,
+               [cost](const auto& r) { return (r.*cost).contact_evaluations; });
   write_column(group, prefix + "_seconds", "s", runs, [cost](const auto& r) { return (r.*cost).seconds; });
 }
 
-void read_cost(const h5::Group& group, const std::string& prefix, std::vector<PackingRun>& runs, Cost PackingRun::*cost) {
+void read_cost(const h5::Group& group, const std::string& prefix, std::vector<PackingRun>& runs,
+               Cost PackingRun::*cost) {
   read_integers(group, prefix + "_loop_passes", runs, [cost](auto& r, auto v) { (r.*cost).loop_passes = v; });
-  read_integers(group, prefix + "_contact_evaluations", runs, [cost](auto& r, auto v) { (r.*cost).contact_evaluations = v; });
+  read_integers(group, prefix + "_contact_evaluations", runs,
+                [cost](auto& r, auto v) { (r.*cost).contact_evaluations = v; });
   read_doubles(group, prefix + "_seconds", runs, [cost](auto& r, double v) { (r.*cost).seconds = v; });
 }
 
@@ -114,7 +118,8 @@ void write_runs(const h5::Group& root, const std::vector<PackingRun>& runs) {
   group.attribute("kinds", "0 soft-solid, 1 soft-soft");
   write_column(group, "packing", "1", runs, [](const auto& r) { return r.packing; });
   write_column(group, "kind", "1", runs, [](const auto& r) { return r.kind == PairKind::soft_solid ? 0 : 1; });
-  write_column(group, "relaxation", "1", runs, [&](const auto& r) { return std::find(names.begin(), names.end(), r.relaxation) - names.begin(); });
+  write_column(group, "relaxation", "1", runs,
+               [&](const auto& r) { return std::find(names.begin(), names.end(), r.relaxation) - names.begin(); });
   write_column(group, "normal_points", "1", runs, [](const auto& r) { return r.normal.size(); });
   write_column(group, "tangential_points", "1", runs, [](const auto& r) { return r.tangential.size(); });
   write_cost(group, "normal", runs, &PackingRun::normal_cost);
@@ -146,8 +151,12 @@ std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
   std::vector<PackingRun> runs(column_length(group, "packing"));
   const std::vector<std::string> names = read_relaxations(group);
   read_integers(group, "packing", runs, [&](auto& r, auto v) { r.packing = below(v, packings, "packing of a run"); });
-  read_integers(group, "kind", runs, [](auto& r, auto v) { r.kind = below(v, 2, "kind of a run") == 0 ? PairKind::soft_solid : PairKind::soft_soft; });
-  read_integers(group, "relaxation", runs, [&](auto& r, auto v) { r.relaxation = names[static_cast<std::size_t>(below(v, names.size(), "relaxation of a run"))]; });
+  read_integers(group, "kind", runs, [](auto& r, auto v) {
+    r.kind = below(v, 2, "kind of a run") == 0 ? PairKind::soft_solid : PairKind::soft_soft;
+  });
+  read_integers(group, "relaxation", runs, [&](auto& r, auto v) {
+    r.relaxation = names[static_cast<std::size_t>(below(v, names.size(), "relaxation of a run"))];
+  });
   read_cost(group, "normal", runs, &PackingRun::normal_cost);
   read_cost(group, "tangential", runs, &PackingRun::tangential_cost);
   const std::vector<NormalPoint> normal = read_normal(root);
@@ -155,7 +164,8 @@ std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
   Slices normal_slices(normal.size());
   Slices tangential_slices(tangential.size());
   read_integers(group, "normal_points", runs, [&](auto& r, auto v) { r.normal = take(normal, normal_slices, v); });
-  read_integers(group, "tangential_points", runs, [&](auto& r, auto v) { r.tangential = take(tangential, tangential_slices, v); });
+  read_integers(group, "tangential_points", runs,
+                [&](auto& r, auto v) { r.tangential = take(tangential, tangential_slices, v); });
   normal_slices.finish();
   tangential_slices.finish();
   return runs;

@@ -13,44 +13,44 @@ namespace softgrain {
 
 /// The soft particle that was measured [SP 1.1-1.3]. SI units.
 struct SoftParticleSpec {
-  double shell_radius = 0.016;     ///< Rs [m]
-  double youngs_modulus = 5.0e5;   ///< E [Pa]
-  double poisson_ratio = 0.3;      ///< nu
-  double friction = 0.3;           ///< mu, Coulomb coefficient
-  double density = 2500.0;         ///< rho [kg/m^3]
-  double restitution = 0.5;        ///< e of the Tsuji damping (dynamic runs)
-  double exponent = 3.5;           ///< b of the size distribution P(r) ~ r^-b
-  double polydispersity = 10.0;    ///< Pi = rmax/rmin
-  double rmax_over_shell = 0.5;    ///< rmax/Rs
-  double beta = 3.0;               ///< volume of drawn grains over the volume of the shell
-  std::int64_t trials = 10000;     ///< I, random positions tried per grain
+  double shell_radius = 0.016;    ///< Rs [m]
+  double youngs_modulus = 5.0e5;  ///< E [Pa]
+  double poisson_ratio = 0.3;     ///< nu
+  double friction = 0.3;          ///< mu, Coulomb coefficient
+  double density = 2500.0;        ///< rho [kg/m^3]
+  double restitution = 0.5;       ///< e of the Tsuji damping (dynamic runs)
+  double exponent = 3.5;          ///< b of the size distribution P(r) ~ r^-b
+  double polydispersity = 10.0;   ///< Pi = rmax/rmin
+  double rmax_over_shell = 0.5;   ///< rmax/Rs
+  double beta = 3.0;              ///< volume of drawn grains over the volume of the shell
+  std::int64_t trials = 10000;    ///< I, random positions tried per grain
 };
 
 /// One packing as generated.
 struct PackingInfo {
-  std::uint64_t seed = 0;            ///< index of the packing in the random stream of the run
+  std::uint64_t seed = 0;  ///< index of the packing in the random stream of the run
   std::int64_t grains = 0;
-  double solid_fraction = 0.0;       ///< volume of grains over volume of the shell
-  double contacts_per_grain = 0.0;   ///< grain-grain and grain-shell contacts over grains, at the start
-  double exponent = 0.0;             ///< maximum-likelihood exponent of the radii after growth
-  double exponent_error = 0.0;       ///< its standard error
-  std::vector<double> radii;         ///< [m], one per grain
+  double solid_fraction = 0.0;      ///< volume of grains over volume of the shell
+  double contacts_per_grain = 0.0;  ///< grain-grain and grain-shell contacts over grains, at the start
+  double exponent = 0.0;            ///< maximum-likelihood exponent of the radii after growth
+  double exponent_error = 0.0;      ///< its standard error
+  std::vector<double> radii;        ///< [m], one per grain
 };
 
 /// One relaxed state of increasing normal overlap.
 struct NormalPoint {
-  double delta = 0.0;          ///< Delta = hn/Rs
-  double force = 0.0;          ///< Fn on the second body, compression positive [N]
-  double residual = 0.0;       ///< largest net force on a grain over the mean contact force (or floor)
-  double max_overlap = 0.0;    ///< largest overlap over the smaller radius
-  bool converged = false;      ///< the relaxation's own criterion was met
+  double delta = 0.0;        ///< Delta = hn/Rs
+  double force = 0.0;        ///< Fn on the second body, compression positive [N]
+  double residual = 0.0;     ///< largest net force on a grain over the mean contact force (or floor)
+  double max_overlap = 0.0;  ///< largest overlap over the smaller radius
+  bool converged = false;    ///< the relaxation's own criterion was met
 };
 
 /// One relaxed state after rotating the first soft particle at fixed normal overlap.
 struct TangentialPoint {
-  double delta = 0.0;          ///< Delta of the normal state it starts from
-  double angle_deg = 0.0;      ///< rotation [degree], either sign; 0 is the state before rotation (prestrain)
-  double force_parallel = 0.0; ///< force on the second body along the tangential displacement of positive angle [N]
+  double delta = 0.0;           ///< Delta of the normal state it starts from
+  double angle_deg = 0.0;       ///< rotation [degree], either sign; 0 is the state before rotation (prestrain)
+  double force_parallel = 0.0;  ///< force on the second body along the tangential displacement of positive angle [N]
   double force_perpendicular = 0.0;  ///< across it, in the contact plane [N]
   double residual = 0.0;
   bool converged = false;
@@ -58,9 +58,9 @@ struct TangentialPoint {
 
 /// All points of one packing (pair of packings for soft-soft) under one relaxation.
 struct PackingRun {
-  std::int64_t packing = 0;    ///< index into Measurements::packings (first body)
+  std::int64_t packing = 0;  ///< index into Measurements::packings (first body)
   PairKind kind = PairKind::soft_solid;
-  std::string relaxation;      ///< "published" or "damped"
+  std::string relaxation;  ///< "published" or "damped"
   std::vector<NormalPoint> normal;
   std::vector<TangentialPoint> tangential;
   Cost normal_cost;
@@ -69,8 +69,8 @@ struct PackingRun {
 
 struct Measurements {
   SoftParticleSpec spec;
-  bool shell_turns = true;     ///< whether the first shell turns with its grains in tangential runs
-  double approach_speed = 0.0; ///< [m/s], of the published relaxation
+  bool shell_turns = true;      ///< whether the first shell turns with its grains in tangential runs
+  double approach_speed = 0.0;  ///< [m/s], of the published relaxation
   std::vector<PackingInfo> packings;
   std::vector<PackingRun> runs;
 };

@@ -1,4 +1,5 @@
-// Grains inside a unit shell: what the packing generator makes, measurements start from and resolved twins are filled with.
+// Grains inside a unit shell: what the packing generator makes, measurements start from and resolved twins are filled
+// with.
 #pragma once
 
 #include <cstdint>

@@ -46,8 +46,7 @@ void write_format(const h5::Group& root, const std::string& format) {
 }
 
 void require_format(const h5::Group& root, const std::string& format, const std::string& path) {
-  if (!root.has_attribute("format") || root.text("format") != format)
-    throw FileTrouble(path + ": holds no " + format);
+  if (!root.has_attribute("format") || root.text("format") != format) throw FileTrouble(path + ": holds no " + format);
   const std::int64_t schema = root.integer("schema_version");
   if (schema != kSchemaVersion)
     throw FileTrouble(path + ": schema version " + std::to_string(schema) + ", this program reads version " +

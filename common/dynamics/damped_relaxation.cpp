@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kMassInterval = 10;
 
 // FIRE, in units where a body alone on its springs has frequency 1 (mass = stiffness).
-constexpr double kLargestStep = 1.0;    // 2/sqrt(2) is the limit of stability (Gershgorin) for a fixed stiffness
+constexpr double kLargestStep = 1.0;  // 2/sqrt(2) is the limit of stability (Gershgorin) for a fixed stiffness
 constexpr double kFirstStep = 0.3;
 constexpr double kGrow = 1.1;
 constexpr double kShrink = 0.5;
@@ -44,14 +44,14 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
   }
   // A body without contacts gets a share of the mean stiffness per size, so that a new contact does not throw it.
   const double floor_per_radius = radii > 0.0 ? 0.1 * sum / radii : 0.0;
-  // With no contact anywhere, weights alone pull: a body then moves its radius in a step of 1, before the limit on moves.
+  // With no contact anywhere, weights alone pull: a body then moves its radius in a step of 1, before the limit on
+  // moves.
   const double pull = sum > 0.0 ? 0.0 : worst_net_force(p);
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     const double r = p.sphere[u].r;
     const double floor = std::max({floor_per_radius * r, r > 0.0 ? pull / r : 0.0, 1e-300});
     if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = 1.0 / std::max(stiffness_.translation[u], floor);
-    if (p.inverse_inertia[u] > 0.0)
-      inverse_inertia_[u] = 1.0 / std::max(stiffness_.rotation[u], 0.4 * floor * r * r);
+    if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = 1.0 / std::max(stiffness_.rotation[u], 0.4 * floor * r * r);
   }
 }
 

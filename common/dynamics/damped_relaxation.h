@@ -11,17 +11,17 @@
 namespace softgrain {
 
 struct DampedOptions {
-  double tolerance = 1e-2;       ///< largest net force over mean contact force at the end
-  double force_floor = 0.0;      ///< the mean contact force never counts for less than this [N]
+  double tolerance = 1e-2;   ///< largest net force over mean contact force at the end
+  double force_floor = 0.0;  ///< the mean contact force never counts for less than this [N]
   std::int64_t max_passes = 20000;
-  double max_move = 0.05;        ///< largest move of a body per pass, in its radius
+  double max_move = 0.05;  ///< largest move of a body per pass, in its radius
 };
 
-/// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate whatever
-/// their size. Damping adapts to the motion (FIRE, Bitzek et al. 2006): velocities are steered towards the forces, the step
-/// grows while the motion goes downhill, and everything stops when it goes uphill. It acts on the motion of bodies against the
-/// frame, never on contacts: contact damping proportional to sqrt(k m) is unstable under mass scaling.
-/// Contact laws must be without damping (their dashpots would see pseudo-velocities).
+/// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate
+/// whatever their size. Damping adapts to the motion (FIRE, Bitzek et al. 2006): velocities are steered towards the
+/// forces, the step grows while the motion goes downhill, and everything stops when it goes uphill. It acts on the
+/// motion of bodies against the frame, never on contacts: contact damping proportional to sqrt(k m) is unstable under
+/// mass scaling. Contact laws must be without damping (their dashpots would see pseudo-velocities).
 template <int D>
 class DampedRelaxation {
  public:
@@ -37,11 +37,11 @@ class DampedRelaxation {
 
   DampedOptions options_;
   BodyStiffness stiffness_;
-  std::vector<double> inverse_mass_;     ///< pseudo, per body
+  std::vector<double> inverse_mass_;  ///< pseudo, per body
   std::vector<double> inverse_inertia_;
-  double step_ = 0.0;                    ///< in units of the pseudo-time of one body on its own springs
-  double mixing_ = 0.0;                  ///< share of the velocity that is turned into the direction of the force
-  std::int64_t downhill_ = 0;            ///< passes since the motion last went uphill
+  double step_ = 0.0;          ///< in units of the pseudo-time of one body on its own springs
+  double mixing_ = 0.0;        ///< share of the velocity that is turned into the direction of the force
+  std::int64_t downhill_ = 0;  ///< passes since the motion last went uphill
 };
 
 }  // namespace softgrain

@@ -7,8 +7,8 @@
 
 namespace softgrain {
 
-/// Moves every body by its entry of `moves` [m] in one stroke and lets the tangential springs follow (history is committed).
-/// Velocities are zero afterwards. Contact laws must be without damping.
+/// Moves every body by its entry of `moves` [m] in one stroke and lets the tangential springs follow (history is
+/// committed). Velocities are zero afterwards. Contact laws must be without damping.
 template <int D>
 void displace(System<D>& system, const std::vector<Vec<D>>& moves);
 

@@ -148,7 +148,8 @@ void gather(System<D>& s, const ParallelScratch<D>& scratch) {
     const auto u = static_cast<std::size_t>(b);
     Vec<D> force{};
     Rot<D> torque{};
-    for (auto k = static_cast<std::size_t>(scratch.adjacency.start[u]); k < static_cast<std::size_t>(scratch.adjacency.start[u + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(scratch.adjacency.start[u]);
+         k < static_cast<std::size_t>(scratch.adjacency.start[u + 1]); ++k) {
       const auto c = static_cast<std::size_t>(scratch.adjacency.contact[k]);
       const Contribution<D>& from = scratch.contributions[c];
       if (!from.active) continue;

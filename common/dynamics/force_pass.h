@@ -8,8 +8,8 @@
 
 namespace softgrain {
 
-/// One loop pass: updates the neighbour list when needed, evaluates every contact over a time `dt` since the last commit and
-/// sums forces and torques per body (gravity not included). History is left uncommitted in contacts.*_next.
+/// One loop pass: updates the neighbour list when needed, evaluates every contact over a time `dt` since the last
+/// commit and sums forces and torques per body (gravity not included). History is left uncommitted in contacts.*_next.
 /// Sums run in list order for every body, whatever the number of threads: the result is bitwise the same.
 template <int D>
 void force_pass(System<D>& system, double dt);
@@ -34,9 +34,9 @@ struct ContactRecord {
   Slot i = 0;
   Slot j = 0;
   double overlap = 0.0;
-  Vec<D> normal{};       ///< to i
-  Vec<D> branch{};       ///< x_i - x_j (from a point of the plane for planes) [m]
-  Vec<D> point{};        ///< of contact, image near i [m]
+  Vec<D> normal{};  ///< to i
+  Vec<D> branch{};  ///< x_i - x_j (from a point of the plane for planes) [m]
+  Vec<D> point{};   ///< of contact, image near i [m]
   double normal_force = 0.0;
   Vec<D> tangential_force{};
   bool sliding = false;

@@ -1,5 +1,5 @@
-// The one pair loop: geometry and law are types, what happens with each contact is the sink's business (forces, stiffness,
-// records). Everything that looks at contacts goes through here.
+// The one pair loop: geometry and law are types, what happens with each contact is the sink's business (forces,
+// stiffness, records). Everything that looks at contacts goes through here.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace softgrain {
 template <int D>
 struct ContactGeometry {
   double overlap = 0.0;
-  Vec<D> normal{};      ///< to body i
+  Vec<D> normal{};  ///< to body i
   double arm_i = 0.0;
   double arm_j = 0.0;
-  Vec<D> branch{};      ///< x_i - x_j (image of j nearest to i), for spheres and shells [m]
+  Vec<D> branch{};  ///< x_i - x_j (image of j nearest to i), for spheres and shells [m]
 };
 
 namespace detail {
@@ -79,8 +79,8 @@ inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j,
 }
 
 template <int D, Geometry kGeometry, bool kPeriodic, class Law, class Sink>
-void run_section(System<D>& s, const ContactSection& section, const Law& law, double dt, std::int32_t begin, std::int32_t end,
-                 Sink& sink) {
+void run_section(System<D>& s, const ContactSection& section, const Law& law, double dt, std::int32_t begin,
+                 std::int32_t end, Sink& sink) {
   ContactList<D>& list = s.contacts;
   (void)section;
   for (std::int32_t k = begin; k < end; ++k) {
@@ -119,8 +119,8 @@ void run_section(System<D>& s, const ContactSection& section, const Law& law, do
   }
 }
 
-/// The pass over particles that a law may ask for: every contact adds law.share(state, of_i) to the sums of its bodies, before any
-/// contact is evaluated. Laws that do not ask compile to nothing.
+/// The pass over particles that a law may ask for: every contact adds law.share(state, of_i) to the sums of its bodies,
+/// before any contact is evaluated. Laws that do not ask compile to nothing.
 template <int D, Geometry kGeometry, bool kPeriodic, class Law>
 void sum_section(System<D>& s, const ContactSection& section, const Law& law) {
   if constexpr (Law::needs_particle_pass) {
@@ -161,8 +161,12 @@ void with_types(const System<D>& s, const ContactSection& section, Work&& work) 
             else
               work(law, std::integral_constant<G, G::sphere_sphere>{}, std::false_type{});
             break;
-          case G::sphere_shell: work(law, std::integral_constant<G, G::sphere_shell>{}, std::false_type{}); break;
-          case G::sphere_plane: work(law, std::integral_constant<G, G::sphere_plane>{}, std::false_type{}); break;
+          case G::sphere_shell:
+            work(law, std::integral_constant<G, G::sphere_shell>{}, std::false_type{});
+            break;
+          case G::sphere_plane:
+            work(law, std::integral_constant<G, G::sphere_plane>{}, std::false_type{});
+            break;
         }
       },
       s.laws.law(section.law));
@@ -172,7 +176,8 @@ void with_types(const System<D>& s, const ContactSection& section, Work&& work) 
 
 /// Runs the part [begin, end) of one section through `sink`.
 template <int D, class Sink>
-void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end, Sink& sink) {
+void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end,
+               Sink& sink) {
   detail::with_types(s, section, [&](const auto& law, auto geometry, auto periodic) {
     detail::run_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, section, law, dt, begin, end, sink);
   });
@@ -189,7 +194,8 @@ void particle_pass(System<D>& s) {
     });
 }
 
-/// Runs all contacts through `sink`, in list order. The committed history is not touched; spring_next holds the new one.
+/// Runs all contacts through `sink`, in list order. The committed history is not touched; spring_next holds the new
+/// one.
 template <int D, class Sink>
 void pair_loop(System<D>& s, double dt, Sink& sink) {
   particle_pass(s);

@@ -10,10 +10,14 @@ enum class RelaxationEnd { not_run, converged, capped, diverged };
 
 inline std::string to_string(RelaxationEnd end) {
   switch (end) {
-    case RelaxationEnd::converged: return "converged";
-    case RelaxationEnd::capped: return "capped";
-    case RelaxationEnd::diverged: return "diverged";
-    default: return "not run";
+    case RelaxationEnd::converged:
+      return "converged";
+    case RelaxationEnd::capped:
+      return "capped";
+    case RelaxationEnd::diverged:
+      return "diverged";
+    default:
+      return "not run";
   }
 }
 

@@ -6,11 +6,11 @@
 namespace softgrain {
 
 struct Residual {
-  double worst_force = 0.0;      ///< largest net force (or net moment over radius) on a body moved by forces [N]
-  double mean_contact = 0.0;     ///< mean normal contact force [N]
+  double worst_force = 0.0;   ///< largest net force (or net moment over radius) on a body moved by forces [N]
+  double mean_contact = 0.0;  ///< mean normal contact force [N]
   Slot worst_body = -1;
-  double max_overlap = 0.0;      ///< largest overlap over the smaller radius involved
-  std::int64_t contacts = 0;     ///< force-carrying
+  double max_overlap = 0.0;   ///< largest overlap over the smaller radius involved
+  std::int64_t contacts = 0;  ///< force-carrying
 
   /// worst_force over the larger of mean_contact and floor.
   [[nodiscard]] double relative(double floor) const {

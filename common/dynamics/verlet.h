@@ -7,9 +7,9 @@
 
 namespace softgrain {
 
-/// Advances a system by steps of `dt`. Forces are evaluated at full-step positions with full-step (predicted) velocities:
-/// half-step velocities in the tangential force give spurious friction at large size ratios (Vyas et al. 2024).
-/// Bodies with zero inverse mass move with the velocity and spin they were given.
+/// Advances a system by steps of `dt`. Forces are evaluated at full-step positions with full-step (predicted)
+/// velocities: half-step velocities in the tangential force give spurious friction at large size ratios (Vyas et al.
+/// 2024). Bodies with zero inverse mass move with the velocity and spin they were given.
 template <int D>
 class VelocityVerlet {
  public:
@@ -17,8 +17,8 @@ class VelocityVerlet {
 
   [[nodiscard]] double dt() const { return dt_; }
 
-  /// Forces of the state as it is, without advancing any history. Needed once before the first step and after any change
-  /// of positions from outside.
+  /// Forces of the state as it is, without advancing any history. Needed once before the first step and after any
+  /// change of positions from outside.
   void initialise(System<D>& system);
 
   void step(System<D>& system);
@@ -32,8 +32,8 @@ class VelocityVerlet {
   std::vector<Rot<D>> old_torque_;
 };
 
-/// Adds gravity to the forces of the last pass, for bodies moved by forces. A plane moved by forces feels no gravity: it goes
-/// along its normal alone, under its load and the normal part of what the grains do to it.
+/// Adds gravity to the forces of the last pass, for bodies moved by forces. A plane moved by forces feels no gravity:
+/// it goes along its normal alone, under its load and the normal part of what the grains do to it.
 template <int D>
 void add_gravity(System<D>& system);
 

@@ -16,7 +16,8 @@ Handle text_type(std::size_t size) {
 }
 
 /// Writes one value under `name` at the group or data set `place`, replacing an attribute of that name.
-void write_one(const Group::Impl& group, hid_t place, const std::string& name, hid_t stored, hid_t native, const void* value) {
+void write_one(const Group::Impl& group, hid_t place, const std::string& name, hid_t stored, hid_t native,
+               const void* value) {
   if (H5Aexists(place, name.c_str()) > 0) H5Adelete(place, name.c_str());
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute = group.checked(H5Acreate2(place, name.c_str(), stored, space.id(), H5P_DEFAULT, H5P_DEFAULT),
@@ -44,13 +45,15 @@ void read_number(const Group::Impl& group, const std::string& name, hid_t native
   const Handle attribute = open_attribute(group, name);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type.id());
-  if (kind != H5T_INTEGER && (integer_only || kind != H5T_FLOAT)) group.fail(name, "attribute of another type than expected");
+  if (kind != H5T_INTEGER && (integer_only || kind != H5T_FLOAT))
+    group.fail(name, "attribute of another type than expected");
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (H5Sget_simple_extent_npoints(space.id()) != 1) group.fail(name, "attribute holds more than one value");
   if (H5Aread(attribute.id(), native, value) < 0) group.fail(name, "damaged attribute");
 }
 
-std::string read_variable_text(const Group::Impl& group, const Handle& attribute, const Handle& type, const std::string& name) {
+std::string read_variable_text(const Group::Impl& group, const Handle& attribute, const Handle& type,
+                               const std::string& name) {
   char* text = nullptr;
   if (H5Aread(attribute.id(), type.id(), static_cast<void*>(&text)) < 0) group.fail(name, "damaged attribute");
   std::string value = text == nullptr ? "" : text;

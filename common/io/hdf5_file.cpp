@@ -71,7 +71,8 @@ Group open_file(const std::string& path) {
   if (fs::is_directory(path, ignored)) throw FileTrouble(path + ": is a directory, not a file");
   const Handle access = access_list();
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
-  if (file.id() < 0) throw FileTrouble(path + ": cannot be read as HDF5, is it damaged or cut short?" + library_message());
+  if (file.id() < 0)
+    throw FileTrouble(path + ": cannot be read as HDF5, is it damaged or cut short?" + library_message());
   return root_of(std::make_shared<File>(File{std::move(file), path}));
 }
 

@@ -1,4 +1,5 @@
-// The HDF5 C API behind one small RAII surface: groups, arrays of double/int64, attributes. Errors are FileTrouble with the path.
+// The HDF5 C API behind one small RAII surface: groups, arrays of double/int64, attributes. Errors are FileTrouble with
+// the path.
 #pragma once
 
 #include <cstdint>
@@ -48,11 +49,12 @@ class Group {
 /// Opens an existing file for reading. Throws FileTrouble (missing, not HDF5, truncated).
 Group open_file(const std::string& path);
 
-/// A file that appears under its name only when complete: written to `path + ".tmp"`, flushed to disk, renamed by commit().
-/// Destruction without commit() removes the temporary file.
+/// A file that appears under its name only when complete: written to `path + ".tmp"`, flushed to disk, renamed by
+/// commit(). Destruction without commit() removes the temporary file.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::string& path, bool keep_previous = false);  ///< keep_previous: old file stays as path + ".previous"
+  explicit AtomicFile(const std::string& path,
+                      bool keep_previous = false);  ///< keep_previous: old file stays as path + ".previous"
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

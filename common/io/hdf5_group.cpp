@@ -14,7 +14,9 @@ constexpr hsize_t kChunkElements = 65536;
 
 /// Halves the leading extents until a chunk is small enough.
 std::vector<hsize_t> chunk_of(std::vector<hsize_t> extents) {
-  const auto elements = [&] { return std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>()); };
+  const auto elements = [&] {
+    return std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>());
+  };
   for (std::size_t k = 0; k < extents.size(); ++k)
     while (extents[k] > 1 && elements() > kChunkElements) extents[k] = (extents[k] + 1) / 2;
   return extents;
@@ -40,21 +42,23 @@ void write_data(const Group::Impl& group, const std::string& name, std::span<con
   const Handle space(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), H5Sclose);
   const Handle properties = data_set_properties(extents);
   const Handle set = group.checked(
-      H5Dcreate2(group.handle.id(), name.c_str(), stored, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose,
-      name, "cannot be created");
+      H5Dcreate2(group.handle.id(), name.c_str(), stored, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+      H5Dclose, name, "cannot be created");
   if (!values.empty() && H5Dwrite(set.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     group.fail(name, "cannot be written");
 }
 
 Handle open_data(const Group::Impl& group, const std::string& name) {
-  return group.checked(H5Dopen2(group.handle.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name, "missing or damaged data set");
+  return group.checked(H5Dopen2(group.handle.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name,
+                       "missing or damaged data set");
 }
 
 /// Number of values; a header that promises more than the file stores is damaged.
 std::size_t checked_size(const Group::Impl& group, const Handle& set, const std::string& name) {
   const Handle space(H5Dget_space(set.id()), H5Sclose);
   const hssize_t elements = H5Sget_simple_extent_npoints(space.id());
-  if (elements < 0 || static_cast<hsize_t>(elements) > H5Dget_storage_size(set.id())) group.fail(name, "damaged data set");
+  if (elements < 0 || static_cast<hsize_t>(elements) > H5Dget_storage_size(set.id()))
+    group.fail(name, "damaged data set");
   return static_cast<std::size_t>(elements);
 }
 
@@ -123,7 +127,9 @@ void Group::write(const std::string& name, std::span<const std::int64_t> values,
   write_data(*impl_, name, values, shape, H5T_STD_I64LE, H5T_NATIVE_INT64);
 }
 
-std::vector<double> Group::doubles(const std::string& name) const { return read_data<double>(*impl_, name, H5T_NATIVE_DOUBLE); }
+std::vector<double> Group::doubles(const std::string& name) const {
+  return read_data<double>(*impl_, name, H5T_NATIVE_DOUBLE);
+}
 
 std::vector<std::int64_t> Group::integers(const std::string& name) const {
   return read_data<std::int64_t>(*impl_, name, H5T_NATIVE_INT64);

@@ -48,7 +48,8 @@ struct Group::Impl {
   /// Throws FileTrouble: "path: /group/item: problem (what HDF5 says)".
   [[noreturn]] void fail(const std::string& item, const std::string& problem) const;
   /// Returns a valid identifier as a handle, else fails.
-  [[nodiscard]] Handle checked(hid_t id, Handle::Close close, const std::string& item, const std::string& problem) const;
+  [[nodiscard]] Handle checked(hid_t id, Handle::Close close, const std::string& item,
+                               const std::string& problem) const;
 };
 
 /// The innermost message on the error stack of HDF5, in brackets; empty without one. Clears the stack.

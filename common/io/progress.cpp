@@ -13,9 +13,9 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kSilentStart{2.0};      ///< shorter work prints nothing
-constexpr Seconds kTerminalPeriod{0.2};   ///< between two updates of the bar
-constexpr Seconds kLinePeriod{30.0};      ///< between two lines of a log
+constexpr Seconds kSilentStart{2.0};     ///< shorter work prints nothing
+constexpr Seconds kTerminalPeriod{0.2};  ///< between two updates of the bar
+constexpr Seconds kLinePeriod{30.0};     ///< between two lines of a log
 constexpr std::size_t kBarWidth = 30;
 
 std::string readable_time(double seconds) {

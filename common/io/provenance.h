@@ -11,13 +11,13 @@ namespace softgrain {
 inline constexpr int kSchemaVersion = 1;
 
 struct Provenance {
-  std::string version;         ///< of softgrain
-  std::string commit;          ///< git commit at build time, "unknown" without git
-  std::string compiler;        ///< compiler and flags
+  std::string version;   ///< of softgrain
+  std::string commit;    ///< git commit at build time, "unknown" without git
+  std::string compiler;  ///< compiler and flags
   int threads = 1;
   std::uint64_t seed = 0;
-  std::string command;         ///< command line as given
-  std::string scene;           ///< whole scene, overrides applied
+  std::string command;  ///< command line as given
+  std::string scene;    ///< whole scene, overrides applied
 };
 
 /// Version, commit, compiler and flags are filled in; the rest is the caller's.

@@ -1,5 +1,5 @@
-// Strict reader of TOML scenes: every key is asked for by the code that uses it; a key nobody asked for is an error that
-// names the file, the line and the nearest known key. Numbers are SI, or strings with a unit ("16 mm", "0.5 MPa").
+// Strict reader of TOML scenes: every key is asked for by the code that uses it; a key nobody asked for is an error
+// that names the file, the line and the nearest known key. Numbers are SI, or strings with a unit ("16 mm", "0.5 MPa").
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,21 @@
 namespace softgrain {
 
 /// Physical dimension of a number in a scene; decides which units a string may carry.
-enum class Unit { none, length, mass, time, frequency, pressure, density, velocity, angular_velocity, force, acceleration, stiffness, angle_degree };
+enum class Unit {
+  none,
+  length,
+  mass,
+  time,
+  frequency,
+  pressure,
+  density,
+  velocity,
+  angular_velocity,
+  force,
+  acceleration,
+  stiffness,
+  angle_degree
+};
 
 /// Allowed values, either end open or closed.
 struct Range {
@@ -31,38 +45,44 @@ struct Range {
 };
 
 /// A table of a scene. Copies share the record of which keys were used.
-/// Every reader throws BadInput ("file:line: key = value: what is wrong, allowed range") on a wrong type, unit, NaN or range.
+/// Every reader throws BadInput ("file:line: key = value: what is wrong, allowed range") on a wrong type, unit, NaN or
+/// range.
 class SceneTable {
  public:
   struct Impl;
   explicit SceneTable(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
   [[nodiscard]] bool has(const std::string& key) const;  ///< also marks the key as known
-  [[nodiscard]] bool is_text(const std::string& key) const;  ///< present and in quotes (a word such as "auto", or a number with unit)
+  [[nodiscard]] bool is_text(
+      const std::string& key) const;  ///< present and in quotes (a word such as "auto", or a number with unit)
 
   [[nodiscard]] double number(const std::string& key, Unit unit, const Range& range = Range::any()) const;
   [[nodiscard]] double number(const std::string& key, Unit unit, const Range& range, double fallback) const;
   [[nodiscard]] std::int64_t count(const std::string& key, std::int64_t low, std::int64_t high) const;
-  [[nodiscard]] std::int64_t count(const std::string& key, std::int64_t low, std::int64_t high, std::int64_t fallback) const;
+  [[nodiscard]] std::int64_t count(const std::string& key, std::int64_t low, std::int64_t high,
+                                   std::int64_t fallback) const;
   [[nodiscard]] bool flag(const std::string& key, bool fallback) const;
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback) const;
   /// One of a list of words; the error names the nearest.
   [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words) const;
-  [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words, const std::string& fallback) const;
+  [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words,
+                                   const std::string& fallback) const;
   [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit) const;
   [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit, const Vec3& fallback) const;
   [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range = Range::any()) const;
-  [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range, const std::vector<double>& fallback) const;
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range,
+                                            const std::vector<double>& fallback) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;
   [[nodiscard]] std::vector<bool> flags(const std::string& key) const;
 
-  [[nodiscard]] SceneTable table(const std::string& key) const;            ///< required sub-table
+  [[nodiscard]] SceneTable table(const std::string& key) const;  ///< required sub-table
   /// Sub-table, or an empty one (all fallbacks hold) when absent.
   [[nodiscard]] SceneTable table_or_empty(const std::string& key) const;
-  [[nodiscard]] std::vector<SceneTable> tables(const std::string& key) const;  ///< [[array of tables]], empty when absent
-  [[nodiscard]] std::vector<std::string> keys() const;                     ///< names present, for tables with free names ([material.NAME])
-  [[nodiscard]] SceneTable named(const std::string& key) const;            ///< sub-table with a free name
+  [[nodiscard]] std::vector<SceneTable> tables(
+      const std::string& key) const;                    ///< [[array of tables]], empty when absent
+  [[nodiscard]] std::vector<std::string> keys() const;  ///< names present, for tables with free names ([material.NAME])
+  [[nodiscard]] SceneTable named(const std::string& key) const;  ///< sub-table with a free name
 
   /// "file:line" of a key (of the table itself when the key is absent), for messages of checks that span keys.
   [[nodiscard]] std::string where(const std::string& key) const;
@@ -79,7 +99,8 @@ class SceneTable {
 /// A scene file with its overrides applied.
 class Scene {
  public:
-  /// Reads `path`, then applies each "key.sub=value" (value in TOML, bare words taken as strings). Throws BadInput, FileTrouble.
+  /// Reads `path`, then applies each "key.sub=value" (value in TOML, bare words taken as strings). Throws BadInput,
+  /// FileTrouble.
   static Scene load(const std::string& path, const std::vector<std::string>& overrides = {});
   /// The same from a text (tests, embedded scenes); `name` stands for the file in messages.
   static Scene parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});

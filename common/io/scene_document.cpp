@@ -1,8 +1,8 @@
 // From text to a document: syntax, overrides, and back to text.
+#include <toml++/toml.h>
 #include <filesystem>
 #include <sstream>
 #include <utility>
-#include <toml++/toml.h>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
@@ -30,7 +30,8 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// A table with the one key "value". What is not TOML and does not begin like a TOML container or string is a bare word.
+/// A table with the one key "value". What is not TOML and does not begin like a TOML container or string is a bare
+/// word.
 toml::table parse_value(const std::string& value, const std::string& setting) {
   try {
     toml::table table = toml::parse("value = " + value);
@@ -48,7 +49,8 @@ toml::node& descend(toml::node& parent, const std::string& part, const std::stri
     const bool digits = !part.empty() && part.size() < 10 && part.find_first_not_of("0123456789") == std::string::npos;
     toml::node* element = digits ? array->get(std::stoul(part)) : nullptr;
     if (element == nullptr)
-      throw BadInput("--set " + setting + ": '" + part + "' must be a number from 0 to " + std::to_string(array->size()) + " - 1");
+      throw BadInput("--set " + setting + ": '" + part + "' must be a number from 0 to " +
+                     std::to_string(array->size()) + " - 1");
     return *element;
   }
   toml::table* table = parent.as_table();
@@ -86,7 +88,8 @@ toml::table parse_toml(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
-    throw BadInput(name + ":" + std::to_string(e.source().begin.line) + ": not valid TOML: " + std::string(e.description()));
+    throw BadInput(name + ":" + std::to_string(e.source().begin.line) +
+                   ": not valid TOML: " + std::string(e.description()));
   }
 }
 

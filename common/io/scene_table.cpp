@@ -1,7 +1,7 @@
 // Tables of a scene: finding keys, places for messages, keys that nobody asked for.
+#include <toml++/toml.h>
 #include <algorithm>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"

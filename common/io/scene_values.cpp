@@ -1,8 +1,8 @@
 // Values of a scene: numbers with units and ranges, counts, flags, words, vectors and lists.
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
@@ -24,7 +24,8 @@ std::string plain(double value) {
 std::string describe(const Range& range) {
   const bool low = std::isfinite(range.low);
   const bool high = std::isfinite(range.high);
-  if (low && high && !range.low_open && !range.high_open) return "must be from " + plain(range.low) + " to " + plain(range.high);
+  if (low && high && !range.low_open && !range.high_open)
+    return "must be from " + plain(range.low) + " to " + plain(range.high);
   std::string text = "must be ";
   if (low) text += (range.low_open ? "above " : "at least ") + plain(range.low);
   if (low && high) text += " and ";
@@ -33,7 +34,8 @@ std::string describe(const Range& range) {
 }
 
 bool holds(const Range& range, double value) {
-  return (range.low_open ? value > range.low : value >= range.low) && (range.high_open ? value < range.high : value <= range.high);
+  return (range.low_open ? value > range.low : value >= range.low) &&
+         (range.high_open ? value < range.high : value <= range.high);
 }
 
 /// Number of a node in SI, before any range: a number, or text with a unit.
@@ -57,7 +59,8 @@ double number_of(const Table& table, const std::string& key, const toml::node& n
 }
 
 /// An integer, also written as 1e4.
-std::int64_t count_of(const Table& table, const std::string& key, const toml::node& node, std::int64_t low, std::int64_t high) {
+std::int64_t count_of(const Table& table, const std::string& key, const toml::node& node, std::int64_t low,
+                      std::int64_t high) {
   std::int64_t value = 0;
   if (const auto integer = node.as_integer()) {
     value = integer->get();
@@ -69,8 +72,9 @@ std::int64_t count_of(const Table& table, const std::string& key, const toml::no
   }
   if (value < low || value > high) {
     const bool open = high == std::numeric_limits<std::int64_t>::max();
-    table.reject(key, node, open ? "must be at least " + std::to_string(low)
-                                 : "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    table.reject(key, node,
+                 open ? "must be at least " + std::to_string(low)
+                      : "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
   }
   return value;
 }
@@ -81,7 +85,8 @@ std::string text_of(const Table& table, const std::string& key, const toml::node
   return text->get();
 }
 
-std::string choice_of(const Table& table, const std::string& key, const toml::node& node, std::initializer_list<const char*> words) {
+std::string choice_of(const Table& table, const std::string& key, const toml::node& node,
+                      std::initializer_list<const char*> words) {
   const std::string value = text_of(table, key, node);
   const std::vector<std::string> known(words.begin(), words.end());
   if (std::find(known.begin(), known.end(), value) != known.end()) return value;
@@ -99,9 +104,11 @@ const toml::array& array_of(const Table& table, const std::string& key, const to
   return *array;
 }
 
-std::vector<double> numbers_of(const Table& table, const std::string& key, const toml::node& node, Unit unit, const Range& range) {
+std::vector<double> numbers_of(const Table& table, const std::string& key, const toml::node& node, Unit unit,
+                               const Range& range) {
   std::vector<double> values;
-  for (const toml::node& element : array_of(table, key, node)) values.push_back(number_of(table, key, element, unit, range));
+  for (const toml::node& element : array_of(table, key, node))
+    values.push_back(number_of(table, key, element, unit, range));
   return values;
 }
 
@@ -124,7 +131,8 @@ double SceneTable::number(const std::string& key, Unit unit, const Range& range,
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high) const {
   return count_of(*impl_, key, impl_->require(key), low, high);
 }
-std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high, std::int64_t fallback) const {
+std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high,
+                               std::int64_t fallback) const {
   const toml::node* node = impl_->find(key);
   return node == nullptr ? fallback : count_of(*impl_, key, *node, low, high);
 }
@@ -146,12 +154,15 @@ std::string SceneTable::text(const std::string& key, const std::string& fallback
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words) const {
   return choice_of(*impl_, key, impl_->require(key), words);
 }
-std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words, const std::string& fallback) const {
+std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words,
+                               const std::string& fallback) const {
   const toml::node* node = impl_->find(key);
   return node == nullptr ? fallback : choice_of(*impl_, key, *node, words);
 }
 
-Vec3 SceneTable::vector3(const std::string& key, Unit unit) const { return vector_of(*impl_, key, impl_->require(key), unit); }
+Vec3 SceneTable::vector3(const std::string& key, Unit unit) const {
+  return vector_of(*impl_, key, impl_->require(key), unit);
+}
 Vec3 SceneTable::vector3(const std::string& key, Unit unit, const Vec3& fallback) const {
   const toml::node* node = impl_->find(key);
   return node == nullptr ? fallback : vector_of(*impl_, key, *node, unit);
@@ -160,7 +171,8 @@ Vec3 SceneTable::vector3(const std::string& key, Unit unit, const Vec3& fallback
 std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range) const {
   return numbers_of(*impl_, key, impl_->require(key), unit, range);
 }
-std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range, const std::vector<double>& fallback) const {
+std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range,
+                                        const std::vector<double>& fallback) const {
   const toml::node* node = impl_->find(key);
   return node == nullptr ? fallback : numbers_of(*impl_, key, *node, unit, range);
 }

@@ -1,4 +1,5 @@
-// Units of numbers in scenes. Powers of ten are put into the exponent of the number's text, so that "0.7 mm" is exactly 0.0007.
+// Units of numbers in scenes. Powers of ten are put into the exponent of the number's text, so that "0.7 mm" is exactly
+// 0.0007.
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -24,11 +25,13 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr KnownUnit kLength[] = {{"m"}, {"km", 3}, {"cm", -2}, {"mm", -3}, {"um", -6}, {"µm", -6}, {"nm", -9}};
 constexpr KnownUnit kMass[] = {{"kg"}, {"t", 3}, {"g", -3}, {"mg", -6}, {"ug", -9}};
-constexpr KnownUnit kTime[] = {{"s"}, {"ms", -3}, {"us", -6}, {"µs", -6}, {"ns", -9}, {"min", 0, 60.0}, {"h", 0, 3600.0}};
+constexpr KnownUnit kTime[] = {{"s"},      {"ms", -3},       {"us", -6},      {"µs", -6},
+                               {"ns", -9}, {"min", 0, 60.0}, {"h", 0, 3600.0}};
 constexpr KnownUnit kFrequency[] = {{"Hz"}, {"1/s"}, {"kHz", 3}, {"MHz", 6}, {"1/min", 0, 1.0 / 60.0}};
 constexpr KnownUnit kPressure[] = {{"Pa"}, {"kPa", 3}, {"MPa", 6}, {"GPa", 9}, {"N/m^2"}, {"N/mm^2", 6}, {"bar", 5}};
 constexpr KnownUnit kDensity[] = {{"kg/m^3"}, {"g/cm^3", 3}, {"t/m^3", 3}};
-constexpr KnownUnit kVelocity[] = {{"m/s"}, {"cm/s", -2}, {"mm/s", -3}, {"um/s", -6}, {"µm/s", -6}, {"km/h", 0, 1.0 / 3.6}};
+constexpr KnownUnit kVelocity[] = {{"m/s"},      {"cm/s", -2}, {"mm/s", -3},
+                                   {"um/s", -6}, {"µm/s", -6}, {"km/h", 0, 1.0 / 3.6}};
 constexpr KnownUnit kAngularVelocity[] = {
     {"rad/s"}, {"1/s"}, {"deg/s", 0, kDegree}, {"rpm", 0, 2.0 * std::numbers::pi / 60.0}};
 constexpr KnownUnit kForce[] = {{"N"}, {"kN", 3}, {"MN", 6}, {"mN", -3}, {"uN", -6}, {"µN", -6}, {"nN", -9}};
@@ -38,19 +41,32 @@ constexpr KnownUnit kAngle[] = {{"deg"}, {"degree"}, {"degrees"}, {"rad", 0, 1.0
 
 std::span<const KnownUnit> known_units(Unit unit) {
   switch (unit) {
-    case Unit::none: return {};
-    case Unit::length: return kLength;
-    case Unit::mass: return kMass;
-    case Unit::time: return kTime;
-    case Unit::frequency: return kFrequency;
-    case Unit::pressure: return kPressure;
-    case Unit::density: return kDensity;
-    case Unit::velocity: return kVelocity;
-    case Unit::angular_velocity: return kAngularVelocity;
-    case Unit::force: return kForce;
-    case Unit::acceleration: return kAcceleration;
-    case Unit::stiffness: return kStiffness;
-    case Unit::angle_degree: return kAngle;
+    case Unit::none:
+      return {};
+    case Unit::length:
+      return kLength;
+    case Unit::mass:
+      return kMass;
+    case Unit::time:
+      return kTime;
+    case Unit::frequency:
+      return kFrequency;
+    case Unit::pressure:
+      return kPressure;
+    case Unit::density:
+      return kDensity;
+    case Unit::velocity:
+      return kVelocity;
+    case Unit::angular_velocity:
+      return kAngularVelocity;
+    case Unit::force:
+      return kForce;
+    case Unit::acceleration:
+      return kAcceleration;
+    case Unit::stiffness:
+      return kStiffness;
+    case Unit::angle_degree:
+      return kAngle;
   }
   return {};
 }

@@ -14,10 +14,10 @@ namespace {
 template <int D>
 struct Level {
   using Index = std::array<std::int64_t, static_cast<std::size_t>(D)>;
-  double reach = 0.0;                       ///< largest r + skin of the class
-  Index cells{};                            ///< per axis
-  std::vector<Slot> members;                ///< ascending
-  std::vector<std::int32_t> start;          ///< per cell, into sorted
+  double reach = 0.0;               ///< largest r + skin of the class
+  Index cells{};                    ///< per axis
+  std::vector<Slot> members;        ///< ascending
+  std::vector<std::int32_t> start;  ///< per cell, into sorted
   std::vector<Slot> sorted;
 };
 
@@ -101,7 +101,8 @@ void choose_cells(Level<D>& level, const Frame<D>& frame, double edge) {
 template <int D>
 std::int64_t cell_index(const Level<D>& level, const typename Level<D>::Index& c) {
   std::int64_t index = c[D - 1];
-  for (int k = D - 2; k >= 0; --k) index = index * level.cells[static_cast<std::size_t>(k)] + c[static_cast<std::size_t>(k)];
+  for (int k = D - 2; k >= 0; --k)
+    index = index * level.cells[static_cast<std::size_t>(k)] + c[static_cast<std::size_t>(k)];
   return index;
 }
 
@@ -198,8 +199,8 @@ void around(const Level<D>& level, const Cell<D>& cell, const typename Level<D>:
   }
 }
 
-/// An open axis with one cell is searched once: the cells beside it do not exist. A periodic axis with one or two cells is
-/// visited under every image, which is right: each image is a different neighbour.
+/// An open axis with one cell is searched once: the cells beside it do not exist. A periodic axis with one or two cells
+/// is visited under every image, which is right: each image is a different neighbour.
 template <int D>
 void search(const Particles<D>& p, const Cell<D>& cell, const std::vector<double>& skin, const Frame<D>& frame,
             const Level<D>& level, bool same_level, Slot i, std::vector<CandidatePair>& out) {
@@ -226,7 +227,8 @@ void search(const Particles<D>& p, const Cell<D>& cell, const std::vector<double
 }  // namespace
 
 template <int D>
-std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell, const std::vector<double>& skin) {
+std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
+                                           const std::vector<double>& skin) {
   std::vector<CandidatePair> out;
   if (particles.grains < 2) return out;
   const Frame<D> frame = make_frame(particles, cell);
@@ -267,7 +269,9 @@ std::vector<CandidatePair> candidate_pairs_brute_force(const Particles<D>& p, co
 
 template std::vector<CandidatePair> candidate_pairs<2>(const Particles<2>&, const Cell<2>&, const std::vector<double>&);
 template std::vector<CandidatePair> candidate_pairs<3>(const Particles<3>&, const Cell<3>&, const std::vector<double>&);
-template std::vector<CandidatePair> candidate_pairs_brute_force<2>(const Particles<2>&, const Cell<2>&, const std::vector<double>&);
-template std::vector<CandidatePair> candidate_pairs_brute_force<3>(const Particles<3>&, const Cell<3>&, const std::vector<double>&);
+template std::vector<CandidatePair> candidate_pairs_brute_force<2>(const Particles<2>&, const Cell<2>&,
+                                                                   const std::vector<double>&);
+template std::vector<CandidatePair> candidate_pairs_brute_force<3>(const Particles<3>&, const Cell<3>&,
+                                                                   const std::vector<double>&);
 
 }  // namespace softgrain

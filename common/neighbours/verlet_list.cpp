@@ -74,7 +74,8 @@ void list_shells(const System<D>& s, std::vector<ListedPair>& out) {
     const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
     if (law == LawSet::kNoContact) continue;
     const double gap = p.sphere[b].r - p.sphere[a].r - norm(p.sphere[a].x - p.sphere[b].x);
-    if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back(listed(Geometry::sphere_shell, law, i, shell, home_image<D>()));
+    if (gap < s.neighbours.skin[a] + s.neighbours.skin[b])
+      out.push_back(listed(Geometry::sphere_shell, law, i, shell, home_image<D>()));
   }
 }
 
@@ -90,7 +91,8 @@ void list_planes(const System<D>& s, std::vector<ListedPair>& out) {
       if (law == LawSet::kNoContact) continue;
       const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_plane, i, plane));
       const double gap = dot(p.sphere[a].x - p.sphere[b].x, n) - p.sphere[a].r + onset;
-      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back(listed(Geometry::sphere_plane, law, i, plane, home_image<D>()));
+      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b])
+        out.push_back(listed(Geometry::sphere_plane, law, i, plane, home_image<D>()));
     }
   }
 }
@@ -120,7 +122,8 @@ template <int D>
 void restore_history(ContactList<D>& list, const std::vector<SavedHistory<D>>& saved) {
   for (std::size_t c = 0; c < list.i.size(); ++c) {
     const std::uint64_t key = body_key(list.i[c], list.j[c]);
-    const auto found = std::lower_bound(saved.begin(), saved.end(), key, [](const auto& h, std::uint64_t k) { return h.key < k; });
+    const auto found =
+        std::lower_bound(saved.begin(), saved.end(), key, [](const auto& h, std::uint64_t k) { return h.key < k; });
     if (found == saved.end() || found->key != key) continue;
     if (list.has_spring) list.spring[c] = found->spring;
     if (list.has_memory) list.memory[c] = found->memory;
@@ -185,7 +188,8 @@ template <int D>
 void require_sound(const Particles<D>& p) {
   for (Slot i = 0; i < p.size(); ++i) {
     const auto u = static_cast<std::size_t>(i);
-    if (!std::isfinite(norm2(p.sphere[u].x))) throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
+    if (!std::isfinite(norm2(p.sphere[u].x)))
+      throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
     if (i >= p.grains || p.shell[u] < 0) continue;
     const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(p.shell[u])];
     if (norm(p.sphere[u].x - shell.x) - p.sphere[u].r > shell.r)
@@ -194,7 +198,8 @@ void require_sound(const Particles<D>& p) {
   }
 }
 
-/// Edge c loses whole edges r until its component along axis r is within half an edge: another basis of the same lattice.
+/// Edge c loses whole edges r until its component along axis r is within half an edge: another basis of the same
+/// lattice.
 template <int D>
 void reduce_tilt(Cell<D>& cell, int r, int c) {
   while (std::abs(cell.edges[r][c]) > 0.5000001 * cell.edges[r][r]) {
@@ -203,14 +208,16 @@ void reduce_tilt(Cell<D>& cell, int r, int c) {
   }
 }
 
-/// Brings positions home into a periodic cell; a body that crosses a moving boundary takes the velocity of its new image.
+/// Brings positions home into a periodic cell; a body that crosses a moving boundary takes the velocity of its new
+/// image.
 template <int D>
 void wrap(System<D>& s) {
   if (!s.cell.any_periodic()) return;
   // A strongly sheared cell is replaced by the equivalent one with the least tilt.
   for (int c = 1; c < D; ++c)
     for (int r = c - 1; r >= 0; --r)
-      if (s.cell.periodic[static_cast<std::size_t>(r)] && s.cell.periodic[static_cast<std::size_t>(c)]) reduce_tilt(s.cell, r, c);
+      if (s.cell.periodic[static_cast<std::size_t>(r)] && s.cell.periodic[static_cast<std::size_t>(c)])
+        reduce_tilt(s.cell, r, c);
   auto& p = s.particles;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);

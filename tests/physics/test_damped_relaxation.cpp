@@ -29,7 +29,9 @@ void add_floor_and_ceiling(System3& s, double gap) {
 }
 
 /// Force of a grain of glass against a plane of glass.
-double hertz_force(double overlap) { return std::sqrt(kRadius) * std::pow(overlap, 1.5) / (1.5 * glass().normal_compliance()); }
+double hertz_force(double overlap) {
+  return std::sqrt(kRadius) * std::pow(overlap, 1.5) / (1.5 * glass().normal_compliance());
+}
 
 RelaxationResult relax(System3& s, double tolerance, std::int64_t max_passes = 20000, double floor = 0.0) {
   DampedOptions options;
@@ -93,7 +95,8 @@ double residual_by_hand(const System3& s) {
     moment[j] -= cross(c.point - s.particles.sphere[j].x, f);
   }
   double worst = 0.0;
-  for (std::size_t u = 0; u < n; ++u) worst = std::max({worst, norm(force[u]), norm(moment[u]) / s.particles.sphere[u].r});
+  for (std::size_t u = 0; u < n; ++u)
+    worst = std::max({worst, norm(force[u]), norm(moment[u]) / s.particles.sphere[u].r});
   return worst / (sum / static_cast<double>(records.size()));
 }
 
@@ -144,7 +147,8 @@ TEST(DampedRelaxation, ABrokenStateIsCalledDiverged) {
 /// Enough pairs for the threaded loop: a lattice of overlapping grains in a box of two planes.
 System3 crowd() {
   System3 s = hertz_system<3>(0.3, 1.0, false);
-  for (const Vec3& x : test::shaken_lattice<3>({}, 0.0195, 16, 1)) add_grain(s.particles, solid_sphere<3>(x, kRadius, 2500.0));
+  for (const Vec3& x : test::shaken_lattice<3>({}, 0.0195, 16, 1))
+    add_grain(s.particles, solid_sphere<3>(x, kRadius, 2500.0));
   NewBody<3> plane;
   plane.x[2] = -0.155;
   add_plane(s.particles, plane, Vec3{{0.0, 0.0, 1.0}});

@@ -1,5 +1,5 @@
-// Macro scenes: a pair gives back the law it was given, the starting state is what it says, the resolved twin holds the same
-// bodies, stresses agree with each other, and increments are small enough.
+// Macro scenes: a pair gives back the law it was given, the starting state is what it says, the resolved twin holds the
+// same bodies, stresses agree with each other, and increments are small enough.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,9 @@ double law_value(const SoftContact& law, double ratio) {
 }
 
 /// Bodies in a box of 2 m that none of them touches by accident.
-MacroPacking in_a_large_box(const std::vector<MacroBody>& bodies) { return {{{-1.0, -1.0, -1.0}}, {{1.0, 1.0, 1.0}}, bodies}; }
+MacroPacking in_a_large_box(const std::vector<MacroBody>& bodies) {
+  return {{{-1.0, -1.0, -1.0}}, {{1.0, 1.0, 1.0}}, bodies};
+}
 
 /// Force along z on body 0 of two bodies, body 1 below.
 double force_on_first(const MacroPacking& packing, const SoftLaws& laws) {
@@ -64,7 +66,8 @@ TEST(Macro, SoftParticleAndWallGiveBackTheirLaw) {
   for (const double r : kRadii)
     for (const double ratio : kRatios) {
       const double force = force_on_first(in_a_large_box({{{{0.0, 0.0, -1.0 + r * (1.0 - ratio)}}, r, true}}), laws);
-      EXPECT_NEAR(force, kModulus * r * r * law_value(laws.soft_solid, ratio), allowed(laws.soft_solid, r, ratio)) << r << ", " << ratio;
+      EXPECT_NEAR(force, kModulus * r * r * law_value(laws.soft_solid, ratio), allowed(laws.soft_solid, r, ratio))
+          << r << ", " << ratio;
     }
 }
 
@@ -75,8 +78,10 @@ TEST(Macro, SoftAndSolidGiveBackTheirLawInEitherOrder) {
       const double solid = 0.7 * r;
       const double distance = r + solid - ratio * r;  // Delta refers to the soft one, whatever its partner's radius
       const double expected = kModulus * r * r * law_value(laws.soft_solid, ratio);
-      EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, r, true}, {{}, solid, false}}), laws), expected, allowed(laws.soft_solid, r, ratio));
-      EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, solid, false}, {{}, r, true}}), laws), expected, allowed(laws.soft_solid, r, ratio));
+      EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, r, true}, {{}, solid, false}}), laws),
+                  expected, allowed(laws.soft_solid, r, ratio));
+      EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, solid, false}, {{}, r, true}}), laws),
+                  expected, allowed(laws.soft_solid, r, ratio));
     }
 }
 
@@ -87,8 +92,10 @@ TEST(Macro, TwoSoftParticlesUseTheSmallerRadius) {
       for (const double larger : {1.0, 1.5}) {
         const double distance = r + larger * r - ratio * r;
         const double expected = kModulus * r * r * law_value(laws.soft_soft, ratio);
-        EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, larger * r, true}, {{}, r, true}}), laws), expected, allowed(laws.soft_soft, r, ratio));
-        EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, r, true}, {{}, larger * r, true}}), laws), expected, allowed(laws.soft_soft, r, ratio));
+        EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, larger * r, true}, {{}, r, true}}), laws),
+                    expected, allowed(laws.soft_soft, r, ratio));
+        EXPECT_NEAR(force_on_first(in_a_large_box({{{{0.0, 0.0, distance}}, r, true}, {{}, larger * r, true}}), laws),
+                    expected, allowed(laws.soft_soft, r, ratio));
       }
 }
 
@@ -105,11 +112,13 @@ TEST(Macro, BelowItsThresholdAPairIsNotThere) {
 
 TEST(Macro, ASoftParticleWeighsWhatItHolds) {
   const MacroSpec spec;
-  const MacroSystem macro = make_law_system(spec, in_a_large_box({{{}, 0.016, true}, {{{0.1, 0.0, 0.0}}, 0.016, false}}), some_laws(kModulus, 0.3), 0.7);
+  const MacroSystem macro = make_law_system(
+      spec, in_a_large_box({{{}, 0.016, true}, {{{0.1, 0.0, 0.0}}, 0.016, false}}), some_laws(kModulus, 0.3), 0.7);
   const double full = spec.density * kSphereVolume * 0.016 * 0.016 * 0.016;
   EXPECT_NEAR(1.0 / macro.system.particles.inverse_mass[0], 0.7 * full, 1e-12 * full);
   EXPECT_NEAR(1.0 / macro.system.particles.inverse_mass[1], full, 1e-12 * full);
-  EXPECT_NEAR(1.0 / macro.system.particles.inverse_inertia[0], 0.7 * 0.4 * full * 0.016 * 0.016, 1e-12 * full * 0.016 * 0.016);
+  EXPECT_NEAR(1.0 / macro.system.particles.inverse_inertia[0], 0.7 * 0.4 * full * 0.016 * 0.016,
+              1e-12 * full * 0.016 * 0.016);
 }
 
 MacroSpec small_spec() {
@@ -144,7 +153,8 @@ TEST(Macro, TheStartingStateIsJustJammed) {
     EXPECT_LE(pressure, 1.5 * spec.start_pressure);
     // Hertz: overlap/R ~ (p/E)^(2/3) = 5e-4; times up to 20 for the spread of forces.
     const auto& p = macro.system.particles;
-    for (const auto& c : contact_records(macro.system)) EXPECT_LT(c.overlap, 0.01 * p.sphere[static_cast<std::size_t>(c.i)].r);
+    for (const auto& c : contact_records(macro.system))
+      EXPECT_LT(c.overlap, 0.01 * p.sphere[static_cast<std::size_t>(c.i)].r);
     for (const MacroBody& b : packing.bodies)
       for (int k = 0; k < 3; ++k) {
         EXPECT_GT(b.x[k] - packing.low[k], 0.99 * b.r);
@@ -172,7 +182,8 @@ TEST(Macro, TheStartingStateHoldsTheSharesAskedFor) {
 TEST(Macro, SeedAndSampleAloneDecideTheStartingState) {
   const auto same = [](const MacroPacking& a, const MacroPacking& b) {
     bool equal = a.low == b.low && a.high == b.high && a.bodies.size() == b.bodies.size();
-    for (std::size_t k = 0; equal && k < a.bodies.size(); ++k) equal = a.bodies[k].x == b.bodies[k].x && a.bodies[k].r == b.bodies[k].r;
+    for (std::size_t k = 0; equal && k < a.bodies.size(); ++k)
+      equal = a.bodies[k].x == b.bodies[k].x && a.bodies[k].r == b.bodies[k].r;
     return equal;
   };
   const MacroSpec spec = small_spec();
@@ -246,7 +257,8 @@ TEST(Macro, TheTwinHoldsTheSameBodies) {
   EXPECT_EQ(box_high(twin.system, twin.box), packing.high);
 }
 
-MacroCurve compressed(const MacroSpec& spec, MacroSystem macro, const MacroPacking& packing, const char* engine, MacroSystem* end = nullptr) {
+MacroCurve compressed(const MacroSpec& spec, MacroSystem macro, const MacroPacking& packing, const char* engine,
+                      MacroSystem* end = nullptr) {
   CompressionState state;
   state.curve = begin_curve(spec, packing, macro, engine, 0);
   state.macro = std::move(macro);
@@ -256,17 +268,20 @@ MacroCurve compressed(const MacroSpec& spec, MacroSystem macro, const MacroPacki
 }
 
 MacroCurve law_curve(const MacroSpec& spec, const MacroPacking& packing, MacroSystem* end = nullptr) {
-  return compressed(spec, make_law_system(spec, packing, some_laws(spec.youngs_modulus, spec.friction), 0.7), packing, "law", end);
+  return compressed(spec, make_law_system(spec, packing, some_laws(spec.youngs_modulus, spec.friction), 0.7), packing,
+                    "law", end);
 }
 
-/// Out of equilibrium by the residual r, walls and contacts disagree by no more than r (mean contact forces per wall are many).
+/// Out of equilibrium by the residual r, walls and contacts disagree by no more than r (mean contact forces per wall
+/// are many).
 void expect_stresses_agree(const MacroSpec& spec, const MacroCurve& c) {
   ASSERT_TRUE(c.usable) << c.note;
   ASSERT_EQ(c.strain.size(), static_cast<std::size_t>(spec.steps + 1));
   EXPECT_GT(c.stress_axial.back(), 1e-4 * spec.youngs_modulus);
   for (std::size_t k = 1; k < c.strain.size(); ++k) {
     EXPECT_LE(c.residual[k], spec.tolerance);
-    EXPECT_NEAR(c.stress_axial_contacts[k], c.stress_axial[k], 2.0 * spec.tolerance * c.stress_axial.back()) << "strain " << c.strain[k];
+    EXPECT_NEAR(c.stress_axial_contacts[k], c.stress_axial[k], 2.0 * spec.tolerance * c.stress_axial.back())
+        << "strain " << c.strain[k];
   }
   EXPECT_NEAR(c.stress_axial_contacts.back(), c.stress_axial.back(), spec.tolerance * c.stress_axial.back());
 }
@@ -283,7 +298,8 @@ TEST(Macro, WallAndContactStressesOfTheTwinAgree) {
   spec.steps = 2;
   spec.strain_end = 0.2;
   const MacroPacking packing = make_macro_packing(spec, 3, 0);
-  expect_stresses_agree(spec, compressed(spec, make_shelled_system(spec, packing, two_contents(), 3, 0), packing, "shelled"));
+  expect_stresses_agree(spec,
+                        compressed(spec, make_shelled_system(spec, packing, two_contents(), 3, 0), packing, "shelled"));
 }
 
 TEST(Macro, OedometricStrainKeepsTheSidesStill) {
@@ -322,7 +338,8 @@ double halving_ratio(MacroSpec spec, std::int64_t increments, std::uint64_t samp
   return law_curve(spec, packing).stress_axial.back() / coarse;
 }
 
-/// As long as grains keep their neighbours the path is unique: at strain 0.02 increments of 0.00125 or less give the same stress.
+/// As long as grains keep their neighbours the path is unique: at strain 0.02 increments of 0.00125 or less give the
+/// same stress.
 TEST(Macro, HalvedIncrementsGiveTheSameStressWhileNothingRearranges) {
   MacroSpec spec = small_spec();
   spec.bodies = 100;
@@ -330,7 +347,8 @@ TEST(Macro, HalvedIncrementsGiveTheSameStressWhileNothingRearranges) {
   spec.strain_end = 0.02;
   spec.steps = 4;
   spec.tolerance = 1e-3;
-  for (const std::uint64_t sample : {0U, 1U, 2U}) EXPECT_NEAR(halving_ratio(spec, 4, sample), 1.0, 0.02) << "sample " << sample;
+  for (const std::uint64_t sample : {0U, 1U, 2U})
+    EXPECT_NEAR(halving_ratio(spec, 4, sample), 1.0, 0.02) << "sample " << sample;
 }
 
 /// Without friction the state is a minimum of the energy, whatever the increments.
@@ -341,11 +359,12 @@ TEST(Macro, WithoutFrictionIncrementsDoNotMatterAtSmallStrain) {
   spec.strain_end = 0.02;
   spec.steps = 4;
   spec.tolerance = 1e-4;
-  for (const std::uint64_t sample : {0U, 1U, 2U}) EXPECT_NEAR(halving_ratio(spec, 1, sample), 1.0, 1e-3) << "sample " << sample;
+  for (const std::uint64_t sample : {0U, 1U, 2U})
+    EXPECT_NEAR(halving_ratio(spec, 1, sample), 1.0, 1e-3) << "sample " << sample;
 }
 
-/// At large strain grains rearrange, and which way they go depends on the last digit: single small samples change by 5 to 50 %
-/// however short the increments. The mean over samples must not drift with them.
+/// At large strain grains rearrange, and which way they go depends on the last digit: single small samples change by 5
+/// to 50 % however short the increments. The mean over samples must not drift with them.
 TEST(Macro, AtLargeStrainTheMeanStressDoesNotDriftWithIncrements) {
   MacroSpec spec = small_spec();
   spec.bodies = 60;

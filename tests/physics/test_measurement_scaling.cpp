@@ -1,5 +1,5 @@
-// Dimensional analysis, exactly: force/(E Rs^2) depends on neither E nor Rs. By powers of two (so that square roots and fourth
-// roots are exact) the law is the same to the last bit, whatever the protocol.
+// Dimensional analysis, exactly: force/(E Rs^2) depends on neither E nor Rs. By powers of two (so that square roots and
+// fourth roots are exact) the law is the same to the last bit, whatever the protocol.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -44,14 +44,16 @@ PackingRun run(const SoftParticleSpec& spec, PairKind kind, MakeProtocol make, c
   const auto protocol = make(spec);
   const ShellPacking first = generate_shell_packing(spec, 9, 0);
   MeasurementState state;
-  state.experiment = kind == PairKind::soft_solid ? make_soft_solid(spec, first, protocol->damped_contacts())
-                                                  : make_soft_soft(spec, first, generate_shell_packing(spec, 9, 1), protocol->damped_contacts());
+  state.experiment = kind == PairKind::soft_solid
+                         ? make_soft_solid(spec, first, protocol->damped_contacts())
+                         : make_soft_soft(spec, first, generate_shell_packing(spec, 9, 1), protocol->damped_contacts());
   measure(state, plan, *protocol, [](const MeasurementState&, double) {});
   return state.run;
 }
 
 void expect_same_bits(double a, double b, const char* what, std::size_t k) {
-  EXPECT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b)) << what << " of point " << k << ": " << a << ", " << b;
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b))
+      << what << " of point " << k << ": " << a << ", " << b;
 }
 
 /// `factor` is that of E Rs^2, a power of two: the division is exact.
@@ -65,7 +67,8 @@ void expect_same_law(const PackingRun& a, const PackingRun& b, double factor) {
   ASSERT_EQ(a.tangential.size(), b.tangential.size());
   for (std::size_t k = 0; k < a.tangential.size(); ++k) {
     expect_same_bits(a.tangential[k].force_parallel, b.tangential[k].force_parallel / factor, "parallel force", k);
-    expect_same_bits(a.tangential[k].force_perpendicular, b.tangential[k].force_perpendicular / factor, "perpendicular force", k);
+    expect_same_bits(a.tangential[k].force_perpendicular, b.tangential[k].force_perpendicular / factor,
+                     "perpendicular force", k);
   }
   EXPECT_EQ(a.normal_cost.loop_passes, b.normal_cost.loop_passes);
   EXPECT_EQ(a.tangential_cost.loop_passes, b.tangential_cost.loop_passes);
@@ -101,13 +104,15 @@ TEST(MeasurementScaling, PublishedDefaultsFollowTheNaturalTime) {
 TEST(MeasurementScaling, DensityDropsOutOfTheDampedLaw) {
   SoftParticleSpec heavy = base_spec();
   heavy.density *= 256.0;
-  expect_same_law(run(base_spec(), PairKind::soft_solid, damped, kSolid), run(heavy, PairKind::soft_solid, damped, kSolid), 1.0);
+  expect_same_law(run(base_spec(), PairKind::soft_solid, damped, kSolid),
+                  run(heavy, PairKind::soft_solid, damped, kSolid), 1.0);
 }
 
 TEST(MeasurementScaling, DensityDropsOutOfThePublishedLawWhenTimesFollow) {
   SoftParticleSpec heavy = base_spec();
   heavy.density *= 256.0;
-  expect_same_law(run(base_spec(), PairKind::soft_solid, published, kSolid), run(heavy, PairKind::soft_solid, published, kSolid), 1.0);
+  expect_same_law(run(base_spec(), PairKind::soft_solid, published, kSolid),
+                  run(heavy, PairKind::soft_solid, published, kSolid), 1.0);
 }
 
 }  // namespace

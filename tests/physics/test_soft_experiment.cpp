@@ -1,4 +1,5 @@
-// The measuring arrangement: rigid rotation, forces between the bodies, Newton's third law, closed forms and symmetries.
+// The measuring arrangement: rigid rotation, forces between the bodies, Newton's third law, closed forms and
+// symmetries.
 #include "microsim/soft_experiment.h"
 
 #include <gtest/gtest.h>
@@ -182,7 +183,8 @@ TEST(SoftExperiment, PositiveAnglesDragTheSecondBodyTowardsPlusY) {
       SoftExperiment turned = e;
       turned.rotate_first(angle, 0.01, true);
       rest(turned, 1e-4);
-      EXPECT_GT((turned.force_on_second()[1] - prestrain) * angle, 0.0) << "packing " << index << ", " << angle << " degrees";
+      EXPECT_GT((turned.force_on_second()[1] - prestrain) * angle, 0.0)
+          << "packing " << index << ", " << angle << " degrees";
     }
   }
 }
@@ -198,8 +200,8 @@ TEST(SoftExperiment, ASingleCentralGrainGivesTheHertzForce) {
   }
 }
 
-/// Squeezed between the plane and the far side of the shell: R12 = R at the plane, R Rs/(Rs - R) at the shell, so the overlaps
-/// divide as 1 : ((Rs - R)/Rs)^(1/3).
+/// Squeezed between the plane and the far side of the shell: R12 = R at the plane, R Rs/(Rs - R) at the shell, so the
+/// overlaps divide as 1 : ((Rs - R)/Rs)^(1/3).
 TEST(SoftExperiment, AGrainBetweenPlaneAndShellSharesTheOverlap) {
   const SoftParticleSpec spec = small_spec();
   const double rs = spec.shell_radius;
@@ -216,8 +218,12 @@ TEST(SoftExperiment, AGrainBetweenPlaneAndShellSharesTheOverlap) {
 
 /// Mirror image under z -> -z: rotation about z keeps the symmetry, so the force across vanishes.
 TEST(SoftExperiment, AConfigurationSymmetricInZHasNoForceAcross) {
-  const ShellPacking symmetric = by_hand({{{0.45, 0.0, 0.0}}, {{-0.45, 0.1, 0.0}}, {{0.05, 0.3, 0.45}}, {{0.05, 0.3, -0.45}},
-                                          {{0.0, -0.4, 0.4}}, {{0.0, -0.4, -0.4}}},
+  const ShellPacking symmetric = by_hand({{{0.45, 0.0, 0.0}},
+                                          {{-0.45, 0.1, 0.0}},
+                                          {{0.05, 0.3, 0.45}},
+                                          {{0.05, 0.3, -0.45}},
+                                          {{0.0, -0.4, 0.4}},
+                                          {{0.0, -0.4, -0.4}}},
                                          {0.5, 0.45, 0.4, 0.4, 0.35, 0.35});
   SoftExperiment e = make_soft_solid(small_spec(), symmetric, false);
   press(e, 0.25);
@@ -234,7 +240,8 @@ TEST(SoftExperiment, AMeasurementRecordsItsPlan) {
   state.experiment = make_soft_solid(small_spec(), small_packing(0), false);
   const MeasurementPlan plan{{0.10, 0.20}, {0.20}, {-0.1, 0.1}, 0.01, true};
   int seen = 0;
-  measure(state, plan, *make_damped_protocol({}), [&](const MeasurementState&, double share) { EXPECT_DOUBLE_EQ(share, 0.5 * ++seen); });
+  measure(state, plan, *make_damped_protocol({}),
+          [&](const MeasurementState&, double share) { EXPECT_DOUBLE_EQ(share, 0.5 * ++seen); });
   ASSERT_EQ(state.run.normal.size(), 2U);
   EXPECT_EQ(state.run.normal[1].delta, 0.20);
   EXPECT_GT(state.run.normal[1].force, state.run.normal[0].force);

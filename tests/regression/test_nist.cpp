@@ -1,4 +1,5 @@
-// The general fitter against the certified answers of NIST's StRD sets: all 27, each from both starts, all by the same means.
+// The general fitter against the certified answers of NIST's StRD sets: all 27, each from both starts, all by the same
+// means.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,7 +78,8 @@ double digits(double value, double certified) {
   return value == certified ? 16.0 : -std::log10(std::abs(value - certified) / std::abs(certified));
 }
 
-// Models. p: parameters (double or dual numbers), x: predictors. `using std::...` lets plain numbers and duals share a formula.
+// Models. p: parameters (double or dual numbers), x: predictors. `using std::...` lets plain numbers and duals share a
+// formula.
 using std::atan;
 using std::cos;
 using std::exp;
@@ -85,7 +87,9 @@ using std::pow;
 using std::sin;
 
 constexpr auto kBennett5 = [](const auto* p, const double* x) { return p[0] * pow(p[1] + x[0], -1.0 / p[2]); };
-constexpr auto kSaturation = [](const auto* p, const double* x) { return p[0] * (1.0 - exp(-p[1] * x[0])); };  // BoxBOD, Misra1a
+constexpr auto kSaturation = [](const auto* p, const double* x) {
+  return p[0] * (1.0 - exp(-p[1] * x[0]));
+};  // BoxBOD, Misra1a
 constexpr auto kChwirut = [](const auto* p, const double* x) { return exp(-p[0] * x[0]) / (p[1] + p[2] * x[0]); };
 constexpr auto kDanWood = [](const auto* p, const double* x) {
   using T = std::decay_t<decltype(p[0])>;
@@ -95,7 +99,8 @@ constexpr auto kEnso = [](const auto* p, const double* x) {
   const double year = 2.0 * std::numbers::pi * x[0] / 12.0;
   const auto u = 2.0 * std::numbers::pi * x[0] / p[3];
   const auto w = 2.0 * std::numbers::pi * x[0] / p[6];
-  return p[0] + p[1] * std::cos(year) + p[2] * std::sin(year) + p[4] * cos(u) + p[5] * sin(u) + p[7] * cos(w) + p[8] * sin(w);
+  return p[0] + p[1] * std::cos(year) + p[2] * std::sin(year) + p[4] * cos(u) + p[5] * sin(u) + p[7] * cos(w) +
+         p[8] * sin(w);
 };
 constexpr auto kEckerle4 = [](const auto* p, const double* x) {
   const auto z = (x[0] - p[2]) / p[1];
@@ -115,9 +120,13 @@ constexpr auto kKirby2 = [](const auto* p, const double* x) {
 constexpr auto kLanczos = [](const auto* p, const double* x) {
   return p[0] * exp(-p[1] * x[0]) + p[2] * exp(-p[3] * x[0]) + p[4] * exp(-p[5] * x[0]);
 };
-constexpr auto kMgh09 = [](const auto* p, const double* x) { return p[0] * (x[0] * x[0] + x[0] * p[1]) / (x[0] * x[0] + x[0] * p[2] + p[3]); };
+constexpr auto kMgh09 = [](const auto* p, const double* x) {
+  return p[0] * (x[0] * x[0] + x[0] * p[1]) / (x[0] * x[0] + x[0] * p[2] + p[3]);
+};
 constexpr auto kMgh10 = [](const auto* p, const double* x) { return p[0] * exp(p[1] / (x[0] + p[2])); };
-constexpr auto kMgh17 = [](const auto* p, const double* x) { return p[0] + p[1] * exp(-x[0] * p[3]) + p[2] * exp(-x[0] * p[4]); };
+constexpr auto kMgh17 = [](const auto* p, const double* x) {
+  return p[0] + p[1] * exp(-x[0] * p[3]) + p[2] * exp(-x[0] * p[4]);
+};
 constexpr auto kMisra1b = [](const auto* p, const double* x) {
   const auto base = 1.0 + p[1] * x[0] / 2.0;
   return p[0] * (1.0 - 1.0 / (base * base));
@@ -129,17 +138,21 @@ constexpr auto kMisra1c = [](const auto* p, const double* x) {
 constexpr auto kMisra1d = [](const auto* p, const double* x) { return p[0] * p[1] * x[0] / (1.0 + p[1] * x[0]); };
 constexpr auto kNelson = [](const auto* p, const double* x) { return p[0] - p[1] * x[0] * exp(-p[2] * x[1]); };
 constexpr auto kRat42 = [](const auto* p, const double* x) { return p[0] / (1.0 + exp(p[1] - p[2] * x[0])); };
-constexpr auto kRat43 = [](const auto* p, const double* x) { return p[0] / pow(1.0 + exp(p[1] - p[2] * x[0]), 1.0 / p[3]); };
+constexpr auto kRat43 = [](const auto* p, const double* x) {
+  return p[0] / pow(1.0 + exp(p[1] - p[2] * x[0]), 1.0 / p[3]);
+};
 constexpr auto kRoszman1 = [](const auto* p, const double* x) {
   auto angle = atan(p[2] / (x[0] - p[3]));
   if (angle < 0.0) angle = angle + std::numbers::pi;  // the certified answer takes the arctangent in [0, pi)
   return p[0] - p[1] * x[0] - angle / std::numbers::pi;
 };
 
-/// A sum of three exponentials does not know their order: sorts (amplitude, rate) pairs by rate, as the certified ones are.
+/// A sum of three exponentials does not know their order: sorts (amplitude, rate) pairs by rate, as the certified ones
+/// are.
 void sort_exponentials(LeastSquaresFit& fit) {
   std::vector<std::size_t> order{0, 1, 2};
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return fit.parameters[2 * a + 1] < fit.parameters[2 * b + 1]; });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return fit.parameters[2 * a + 1] < fit.parameters[2 * b + 1]; });
   const LeastSquaresFit old = fit;
   for (std::size_t k = 0; k < 6; ++k) {
     fit.parameters[k] = old.parameters[2 * order[k / 2] + k % 2];
@@ -173,8 +186,8 @@ void expect_certified(const std::string& name, Model model, bool logarithm = fal
     EXPECT_GE(digits(fit.residual_sum_of_squares, set.residual_sum), exact_data ? 2.0 : 9.0);
     ::testing::Test::RecordProperty(name + "_digits_start" + std::to_string(start + 1), std::to_string(fewest));
     if (std::getenv("SOFTGRAIN_PRINT_DIGITS") != nullptr)
-      std::printf("%-9s start %zu: parameters %.1f digits, deviations %.1f, S %.1f (%s)\n", name.c_str(), start + 1, fewest,
-                  fewest_sd, digits(fit.residual_sum_of_squares, set.residual_sum), fit.strategy.c_str());
+      std::printf("%-9s start %zu: parameters %.1f digits, deviations %.1f, S %.1f (%s)\n", name.c_str(), start + 1,
+                  fewest, fewest_sd, digits(fit.residual_sum_of_squares, set.residual_sum), fit.strategy.c_str());
   }
 }
 

@@ -1,4 +1,5 @@
-// Statistics of the threshold fit over many synthetic ensembles: no bias beyond its error, honest errors, intervals that cover.
+// Statistics of the threshold fit over many synthetic ensembles: no bias beyond its error, honest errors, intervals
+// that cover.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,14 +59,16 @@ TEST(ThresholdCoverage, IntervalsCoverTheTruth) {
     const auto covers = [](const Estimate& x, double value) { return x.low <= value && value <= x.high; };
     b.add(law.normal.b.value, law.normal.b.standard_error, covers(law.normal.b, truth.normal.b));
     delta.add(law.normal.delta.value, law.normal.delta.standard_error, covers(law.normal.delta, truth.normal.delta));
-    a_t.add(law.tangential_initial.a.value, law.tangential_initial.a.standard_error, covers(law.tangential_initial.a, truth.a_initial));
+    a_t.add(law.tangential_initial.a.value, law.tangential_initial.a.standard_error,
+            covers(law.tangential_initial.a, truth.a_initial));
     const Band band = law_band(report, LawCurve::normal, at).front();
     const double f = truth.normal.value(0.2);
     force.add(band.value / f, 0.25 * (band.high - band.low) / f, band.low <= f && f <= band.high);
   }
   if (std::getenv("SOFTGRAIN_PRINT_DIGITS") != nullptr)
     for (const Tally* t : {&b, &delta, &a_t, &force})
-      std::printf("mean %.6f deviation %.6f stated %.6f coverage %.3f\n", t->mean(), t->deviation(), t->stated_error(), t->coverage());
+      std::printf("mean %.6f deviation %.6f stated %.6f coverage %.3f\n", t->mean(), t->deviation(), t->stated_error(),
+                  t->coverage());
   EXPECT_EQ(good, kEnsembles);
   // Bias: within four standard errors of the mean over ensembles, or one per cent.
   const auto unbiased = [](const Tally& t, double value) {

@@ -26,7 +26,8 @@ Outcome program(const std::string& arguments) {
   if (pipe == nullptr) return {};
   Outcome outcome;
   std::array<char, 4096> buffer{};
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) outcome.output.append(buffer.data(), n);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.output.append(buffer.data(), n);
   const int status = ::pclose(pipe);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
@@ -90,7 +91,8 @@ TEST(CommandLine, BadSceneIsNamedWithFileAndLine) {
   expect("run " + scene + " --out " + (directory / "out").string(), 2, "scene.toml:2: not valid TOML");
   expect("run " + scene + " --set =3 --out " + (directory / "out").string(), 2, "scene.toml:2");
   write_text_atomic(scene, "a = 1\n");
-  expect("run " + scene + " --set novalue --out " + (directory / "out").string(), 2, "--set novalue: must be of the form key=value");
+  expect("run " + scene + " --set novalue --out " + (directory / "out").string(), 2,
+         "--set novalue: must be of the form key=value");
   fs::remove_all(directory);
 }
 

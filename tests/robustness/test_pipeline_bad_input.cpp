@@ -19,14 +19,17 @@ namespace fs = std::filesystem;
 
 class PipelineBadInput : public ::testing::Test {
  protected:
-  /// Replaces the first `from` of the good pipeline by `to`; expects status 2 and, in one line, the place and all words.
-  void expect(const std::string& from, const std::string& to, const std::vector<std::string>& words, const std::string& more = "") {
+  /// Replaces the first `from` of the good pipeline by `to`; expects status 2 and, in one line, the place and all
+  /// words.
+  void expect(const std::string& from, const std::string& to, const std::vector<std::string>& words,
+              const std::string& more = "") {
     std::string text = kTinyPipeline;
     const auto at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
     expect_text(text.replace(at, from.size(), to), words, more);
   }
-  void expect_text(const std::string& text, const std::vector<std::string>& words, const std::string& more = "", const std::string& command = "run") {
+  void expect_text(const std::string& text, const std::vector<std::string>& words, const std::string& more = "",
+                   const std::string& command = "run") {
     write_text_atomic(directory_.file("scene.toml"), text);
     check(command + " '" + directory_.file("scene.toml") + "' --out '" + out() + "' " + more, 2, words);
     EXPECT_TRUE(nothing_done());
@@ -34,7 +37,8 @@ class PipelineBadInput : public ::testing::Test {
   static void check(const std::string& arguments, int status, const std::vector<std::string>& words) {
     const ProgramOutcome outcome = run_the_program(arguments);
     EXPECT_EQ(outcome.status, status) << arguments << "\n" << outcome.output;
-    for (const std::string& word : words) EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
     EXPECT_EQ(outcome.output.rfind("softgrain: ", 0), 0U) << outcome.output;
   }
@@ -45,7 +49,8 @@ class PipelineBadInput : public ::testing::Test {
 
 TEST_F(PipelineBadInput, UnknownKeysNameTheNearest) {
   expect("trials = 100", "trails = 100", {"scene.toml:9", "unknown key 'trails'", "nearest known key is 'trials'"});
-  expect("relaxation = \"damped\"", "relaxation = \"damped\"\nshell_turn = true", {"scene.toml:16", "nearest known key is 'shell_turns'"});
+  expect("relaxation = \"damped\"", "relaxation = \"damped\"\nshell_turn = true",
+         {"scene.toml:16", "nearest known key is 'shell_turns'"});
   expect("[macro]", "[makro]", {"scene.toml:27", "'makro'", "'macro'"});
   expect("bodies = 8", "bodys = 8", {"scene.toml:28", "'bodys'", "'bodies'"});
   expect("increment = 0.02", "incremnt = 0.02", {"scene.toml:17", "'increment'"});
@@ -94,8 +99,10 @@ TEST_F(PipelineBadInput, Measurements) {
   expect("deltas = [0.1, 0.2,", "deltas = [0.0, 0.2,", {"scene.toml:19: deltas", "above 0"});
   expect("deltas = [0.1, 0.2,", "deltas = [nan, 0.2,", {"scene.toml:19: deltas", "finite"});
   expect("deltas = [0.1, 0.2, 0.3, 0.35, 0.4, 0.45]", "deltas = []", {"scene.toml:19: deltas", "at least one"});
-  expect("tangential_deltas = [0.35,", "tangential_deltas = [0.34,", {"scene.toml:20: tangential_deltas", "0.34", "not among deltas"});
-  expect("angles_deg = [-0.05, 0.05]", "angles_deg = [-0.05, 0.0]", {"scene.toml:21: angles_deg", "0 is recorded anyway"});
+  expect("tangential_deltas = [0.35,", "tangential_deltas = [0.34,",
+         {"scene.toml:20: tangential_deltas", "0.34", "not among deltas"});
+  expect("angles_deg = [-0.05, 0.05]", "angles_deg = [-0.05, 0.0]",
+         {"scene.toml:21: angles_deg", "0 is recorded anyway"});
   expect("angles_deg = [-0.05, 0.05]", "angles_deg = [-91.0]", {"scene.toml:21: angles_deg", "-90"});
   expect("relaxation = \"damped\"", "relaxation = \"dampd\"", {"scene.toml:15: relaxation", "damped"});
   expect("increment = 0.02", "increment = 0", {"scene.toml:17: increment = 0", "above 0"});
@@ -128,7 +135,8 @@ TEST_F(PipelineBadInput, KindMustBeThatOfTheCommand) {
 
 TEST_F(PipelineBadInput, MissingTables) {
   expect_text("kind = \"pipeline\"\n", {"scene.toml", "missing table [measure]"});
-  expect_text("kind = \"pipeline\"\n[measure]\nrelaxation = \"damped\"\n", {"scene.toml:2", "soft_solid", "at least one"});
+  expect_text("kind = \"pipeline\"\n[measure]\nrelaxation = \"damped\"\n",
+              {"scene.toml:2", "soft_solid", "at least one"});
 }
 
 TEST_F(PipelineBadInput, OverridesAreNamedAsSuch) {
@@ -146,7 +154,9 @@ TEST_F(PipelineBadInput, FilesThatAreNotThere) {
   check("run '" + directory_.file("absent.toml") + "' --out '" + out() + "'", 4, {"absent.toml", "no such file"});
   check("calibrate '" + directory_.file("absent.h5") + "' --out '" + out() + "'", 4, {"absent.h5"});
   write_text_atomic(directory_.file("scene.toml"), "kind = \"macro\"\n[macro]\nbodies = 8\n");
-  check("macrosim '" + directory_.file("scene.toml") + "' --law '" + directory_.file("absent-law.toml") + "' --out '" + out() + "'", 4, {"absent-law.toml"});
+  check("macrosim '" + directory_.file("scene.toml") + "' --law '" + directory_.file("absent-law.toml") + "' --out '" +
+            out() + "'",
+        4, {"absent-law.toml"});
   check("macrosim '" + directory_.file("scene.toml") + "' --out '" + out() + "'", 2, {"scene.toml", "law", "--law"});
   EXPECT_TRUE(nothing_done());
 }
@@ -167,7 +177,8 @@ class DamagedFiles : public PipelineBadInput {
   void SetUp() override {
     write_text_atomic(directory_.file("scene.toml"), kTinyPipeline);
     const std::string good = directory_.file("good");
-    ASSERT_TRUE(ended_with(wait_for(start_program({"run", directory_.file("scene.toml"), "--out", good, "--quiet"})), 3));
+    ASSERT_TRUE(
+        ended_with(wait_for(start_program({"run", directory_.file("scene.toml"), "--out", good, "--quiet"})), 3));
     measurements_ = good + "/measurements.h5";
     law_ = good + "/law.toml";
   }
@@ -189,7 +200,8 @@ TEST_F(DamagedFiles, TruncatedLawCards) {
   const std::string text = read_text(law_);
   for (const double share : {0.9, 0.5, 0.2, 0.0}) {
     write_text_atomic(law_, text.substr(0, static_cast<std::size_t>(share * static_cast<double>(text.size()))));
-    const auto outcome = run_the_program("macrosim '" + directory_.file("macro.toml") + "' --law '" + law_ + "' --out '" + out() + "'");
+    const auto outcome =
+        run_the_program("macrosim '" + directory_.file("macro.toml") + "' --law '" + law_ + "' --out '" + out() + "'");
     EXPECT_TRUE(outcome.status == 2 || outcome.status == 4) << outcome.status << outcome.output;
     EXPECT_NE(outcome.output.find("law.toml"), std::string::npos) << outcome.output;
     EXPECT_TRUE(nothing_done());
@@ -199,7 +211,9 @@ TEST_F(DamagedFiles, TruncatedLawCards) {
 TEST_F(DamagedFiles, OtherFilesAreNotTakenForData) {
   check("calibrate '" + law_ + "' --out '" + out() + "'", 4, {"law.toml"});
   write_text_atomic(directory_.file("macro.toml"), "kind = \"macro\"\n[macro]\nbodies = 8\n");
-  check("macrosim '" + directory_.file("macro.toml") + "' --law '" + directory_.file("macro.toml") + "' --out '" + out() + "'", 2, {"macro.toml"});
+  check("macrosim '" + directory_.file("macro.toml") + "' --law '" + directory_.file("macro.toml") + "' --out '" +
+            out() + "'",
+        2, {"macro.toml"});
   EXPECT_TRUE(nothing_done());
 }
 

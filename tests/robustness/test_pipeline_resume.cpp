@@ -49,7 +49,8 @@ void expect_same(const PackingRun& a, const PackingRun& b, const std::string& wh
   ASSERT_EQ(a.tangential.size(), b.tangential.size()) << what;
   for (std::size_t k = 0; k < a.tangential.size(); ++k) {
     expect_same(a.tangential[k].force_parallel, b.tangential[k].force_parallel, what + " parallel force");
-    expect_same(a.tangential[k].force_perpendicular, b.tangential[k].force_perpendicular, what + " perpendicular force");
+    expect_same(a.tangential[k].force_perpendicular, b.tangential[k].force_perpendicular,
+                what + " perpendicular force");
   }
   expect_same(a.normal_cost, b.normal_cost, what);
   expect_same(a.tangential_cost, b.tangential_cost, what);
@@ -189,12 +190,15 @@ TEST_F(PipelineResume, ARunOfAnotherSceneIsNotGoneOnWith) {
   const std::string out = directory_.file("stopped");
   const auto begun = [&] { return fs::exists(out + "/work") && !fs::is_empty(out + "/work"); };
   ASSERT_TRUE(ended_with(signal_when(start(out, false), begun, SIGINT), 130));
-  const auto outcome = run_the_program("run '" + scene() + "' --out '" + out + "' --quiet --resume --set material.mu=0.4");
+  const auto outcome =
+      run_the_program("run '" + scene() + "' --out '" + out + "' --quiet --resume --set material.mu=0.4");
   EXPECT_EQ(outcome.status, 2) << outcome.output;
   EXPECT_NE(outcome.output.find("another scene"), std::string::npos) << outcome.output;
 }
 
-nlohmann::json summary_of(const std::string& directory) { return nlohmann::json::parse(read_text(directory + "/summary.json")); }
+nlohmann::json summary_of(const std::string& directory) {
+  return nlohmann::json::parse(read_text(directory + "/summary.json"));
+}
 
 std::string remarks_of(const nlohmann::json& summary) {
   std::string text;
@@ -209,16 +213,19 @@ TEST_F(PipelineResume, AnUnderdeterminedLawIsMarked) {
   EXPECT_NE(remarks_of(summary).find("soft-soft law: underdetermined"), std::string::npos) << remarks_of(summary);
 }
 
-/// Overlaps too small for any force: the run ends well-ordered, with status 3, its data and the reason, and without macro part.
+/// Overlaps too small for any force: the run ends well-ordered, with status 3, its data and the reason, and without
+/// macro part.
 TEST_F(PipelineResume, NoThresholdCrossingIsStatusThreeAndWritten) {
   const std::string out = directory_.file("shallow");
-  const auto outcome = run_the_program("run '" + scene() + "' --out '" + out +
-                                       "' --quiet --set measure.soft_solid.deltas=[0.005,0.01,0.02] --set measure.soft_solid.tangential_deltas=[0.02]"
-                                       " --set measure.soft_soft.deltas=[0.01,0.02]");
+  const auto outcome = run_the_program(
+      "run '" + scene() + "' --out '" + out +
+      "' --quiet --set measure.soft_solid.deltas=[0.005,0.01,0.02] --set measure.soft_solid.tangential_deltas=[0.02]"
+      " --set measure.soft_soft.deltas=[0.01,0.02]");
   EXPECT_EQ(outcome.status, 3) << outcome.output;
   const auto summary = summary_of(out);
   EXPECT_EQ(summary["status"], "not usable");
-  EXPECT_NE(remarks_of(summary).find("soft-solid law: no threshold crossing"), std::string::npos) << remarks_of(summary);
+  EXPECT_NE(remarks_of(summary).find("soft-solid law: no threshold crossing"), std::string::npos)
+      << remarks_of(summary);
   EXPECT_NE(remarks_of(summary).find("no macro run"), std::string::npos) << remarks_of(summary);
   EXPECT_EQ(load_measurements(out + "/measurements.h5").runs.size(), 8U);
   EXPECT_EQ(load_card(out + "/law.toml").pairs.at(0).status, "no threshold crossing");
@@ -227,9 +234,12 @@ TEST_F(PipelineResume, NoThresholdCrossingIsStatusThreeAndWritten) {
 /// One point of tangential stiffness makes no law: the card says that it was not fitted and can be read again.
 TEST_F(PipelineResume, AnUnfittedTangentialPartIsSaidInSummaryAndCard) {
   const std::string out = directory_.file("one");
-  const auto outcome = run_the_program("run '" + scene() + "' --out '" + out + "' --quiet --set measure.soft_solid.tangential_deltas=[0.1]");
+  const auto outcome = run_the_program("run '" + scene() + "' --out '" + out +
+                                       "' --quiet --set measure.soft_solid.tangential_deltas=[0.1]");
   EXPECT_EQ(outcome.status, 3) << outcome.output;
-  EXPECT_NE(remarks_of(summary_of(out)).find("soft-solid law: underdetermined: initial tangential stiffness"), std::string::npos) << outcome.output;
+  EXPECT_NE(remarks_of(summary_of(out)).find("soft-solid law: underdetermined: initial tangential stiffness"),
+            std::string::npos)
+      << outcome.output;
   const PairLaw law = load_card(out + "/law.toml").pairs.at(0);
   EXPECT_FALSE(law.has_tangential_initial);
   EXPECT_GT(law.normal.a.value, 0.0);

@@ -41,7 +41,8 @@ inline int signal_when(pid_t child, const std::function<bool()>& ready, int sign
 
 inline int signal_after(pid_t child, double seconds, int signal) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  return signal_when(child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
+  return signal_when(
+      child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
 }
 
 inline int wait_for(pid_t child) {
@@ -50,6 +51,8 @@ inline int wait_for(pid_t child) {
   return status;
 }
 
-inline bool ended_with(int wait_status, int exit_status) { return WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == exit_status; }
+inline bool ended_with(int wait_status, int exit_status) {
+  return WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == exit_status;
+}
 
 }  // namespace softgrain::test

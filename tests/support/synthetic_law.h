@@ -28,7 +28,7 @@ struct KnownLaw {
 /// How synthetic packings differ: each has its own factor on a, and noise per point proportional to the force.
 struct SyntheticOptions {
   KnownLaw normal;
-  double a_initial = 3.0;   ///< initial slope of kt/(E Rs); 0: no tangential points
+  double a_initial = 3.0;  ///< initial slope of kt/(E Rs); 0: no tangential points
   double b_initial = 1.2;
   double secant_share = 0.5;  ///< secant at 1 degree over initial slope
   std::vector<double> deltas{0.025, 0.05, 0.075, 0.10, 0.125, 0.15, 0.175, 0.20, 0.225, 0.25};
@@ -40,7 +40,8 @@ struct SyntheticOptions {
 };
 
 /// Parallel force after a rotation: F0 + kt0 ht inside 0.05 degree, through the secant at 1 degree.
-inline void add_tangential(PackingRun& run, const SoftParticleSpec& spec, double delta, double kt0, double share, double prestrain) {
+inline void add_tangential(PackingRun& run, const SoftParticleSpec& spec, double delta, double kt0, double share,
+                           double prestrain) {
   for (const double angle : {-1.0, -0.05, -0.025, 0.0, 0.025, 0.05, 1.0}) {
     const double ht = std::numbers::pi * spec.shell_radius * angle / 180.0;
     const double slope = std::abs(angle) > 0.5 ? share * kt0 : kt0;
@@ -68,7 +69,8 @@ inline Measurements synthetic(const SyntheticOptions& o) {
       const double force = o.normal.value(d) * factor * (1.0 + o.point_scatter * normal_number(stream));
       run.normal.push_back({d, force * force_unit, 1e-6, d, true});
       const double kt = tangential.value(d) * factor * (1.0 + o.point_scatter * normal_number(stream));
-      if (o.a_initial > 0.0) add_tangential(run, data.spec, d, kt * stiffness_unit, o.secant_share, 0.1 * force * force_unit);
+      if (o.a_initial > 0.0)
+        add_tangential(run, data.spec, d, kt * stiffness_unit, o.secant_share, 0.1 * force * force_unit);
     }
     data.runs.push_back(run);
   }

@@ -46,8 +46,10 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 TEST_F(Hdf5, NumbersComeBackBitForBit) {
-  const std::vector<double> doubles{0.1, -0.0, 1e-310, std::numeric_limits<double>::infinity(), std::nan("7"), 1.0 / 3.0};
-  const std::vector<std::int64_t> integers{0, -1, std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()};
+  const std::vector<double> doubles{0.1,           -0.0,     1e-310, std::numeric_limits<double>::infinity(),
+                                    std::nan("7"), 1.0 / 3.0};
+  const std::vector<std::int64_t> integers{0, -1, std::numeric_limits<std::int64_t>::max(),
+                                           std::numeric_limits<std::int64_t>::min()};
   {
     h5::AtomicFile file(path("a.h5"));
     const h5::Group group = file.root().create("group");

@@ -56,8 +56,8 @@ class LawCardFile : public testing::Test {
     card_.spec.shell_radius = 0.016;
     card_.pairs = {sample_pair(PairKind::soft_solid), sample_pair(PairKind::soft_soft)};
     card_.pairs[1].status = "no threshold crossing";
-    card_.pairs[1].normal.a = {std::nan(""), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-                               std::numeric_limits<double>::infinity()};
+    card_.pairs[1].normal.a = {std::nan(""), std::numeric_limits<double>::infinity(),
+                               -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
   void TearDown() override { fs::remove_all(directory_); }
   [[nodiscard]] std::string path() const { return (directory_ / "law.toml").string(); }
@@ -84,7 +84,8 @@ class LawCardFile : public testing::Test {
 };
 
 void expect_equal(const ThresholdPowerLaw& a, const ThresholdPowerLaw& b) {
-  for (const auto& field : {&ThresholdPowerLaw::a, &ThresholdPowerLaw::b, &ThresholdPowerLaw::c, &ThresholdPowerLaw::delta}) {
+  for (const auto& field :
+       {&ThresholdPowerLaw::a, &ThresholdPowerLaw::b, &ThresholdPowerLaw::c, &ThresholdPowerLaw::delta}) {
     EXPECT_EQ((a.*field).value, (b.*field).value);
     EXPECT_EQ((a.*field).standard_error, (b.*field).standard_error);
     EXPECT_EQ((a.*field).low, (b.*field).low);
@@ -166,15 +167,19 @@ TEST_F(LawCardFile, EditedMistakesAreNamedWithLine) {
   const std::string unknown = message_after("delta_max", "delta_maxi");
   EXPECT_NE(unknown.find("law.toml:"), std::string::npos) << unknown;
   EXPECT_NE(unknown.find("missing key 'delta_max'"), std::string::npos) << unknown;
-  EXPECT_NE(message_after("friction = 0.3", "friction = -0.3").find("friction = -0.3: must be at least 0"), std::string::npos);
+  EXPECT_NE(message_after("friction = 0.3", "friction = -0.3").find("friction = -0.3: must be at least 0"),
+            std::string::npos);
   EXPECT_NE(message_after("schema = 1", "schema = 2").find("schema = 2"), std::string::npos);
-  EXPECT_NE(message_after("kind = \"soft-solid\"", "kind = \"soft-solit\"").find("nearest is \"soft-solid\""), std::string::npos);
+  EXPECT_NE(message_after("kind = \"soft-solid\"", "kind = \"soft-solit\"").find("nearest is \"soft-solid\""),
+            std::string::npos);
   EXPECT_NE(message_after("kind = \"soft-soft\"", "kind = \"soft-solid\"").find("given before"), std::string::npos);
-  EXPECT_NE(message_after("restitution", "extra = 1\nrestitution").find("unknown key 'extra' in [measurement]"), std::string::npos);
+  EXPECT_NE(message_after("restitution", "extra = 1\nrestitution").find("unknown key 'extra' in [measurement]"),
+            std::string::npos);
 }
 
 TEST_F(LawCardFile, ALawThatJumpsIsRefused) {
-  EXPECT_NE(message_after("[pair.normal.delta]\nvalue = 0.065", "[pair.normal.delta]\nvalue = 0.1").find("-a delta^b"), std::string::npos);
+  EXPECT_NE(message_after("[pair.normal.delta]\nvalue = 0.065", "[pair.normal.delta]\nvalue = 0.1").find("-a delta^b"),
+            std::string::npos);
 }
 
 TEST_F(LawCardFile, DamagedTablesAndMissingCardsAreFileTrouble) {

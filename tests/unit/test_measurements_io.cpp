@@ -24,7 +24,8 @@ PackingRun sample_run(std::int64_t packing, PairKind kind, const std::string& re
   run.packing = packing;
   run.kind = kind;
   run.relaxation = relaxation;
-  for (int k = 0; k < normal; ++k) run.normal.push_back({0.05 * k, std::sqrt(k + 0.1), 1e-3 / (k + 1), 0.01 * k, k % 2 == 0});
+  for (int k = 0; k < normal; ++k)
+    run.normal.push_back({0.05 * k, std::sqrt(k + 0.1), 1e-3 / (k + 1), 0.01 * k, k % 2 == 0});
   for (int k = 0; k < tangential; ++k)
     run.tangential.push_back({0.2, -1.0 + 0.7 * k, 0.1 / (k + 3), -0.01 * k, 1e-5, k % 3 == 0});
   run.normal_cost = {100 + packing, 12345678901, 0.1};
@@ -38,9 +39,11 @@ Measurements sample() {
   data.spec.trials = 12345;
   data.shell_turns = false;
   data.approach_speed = 0.002;
-  data.packings = {{7, 3, 0.71, 0.8, 3.4, 0.2, {1e-3, 2e-3 / 3.0, 5e-4}}, {8, 0, 0.0, 0.0, std::nan(""), 0.0, {}},
+  data.packings = {{7, 3, 0.71, 0.8, 3.4, 0.2, {1e-3, 2e-3 / 3.0, 5e-4}},
+                   {8, 0, 0.0, 0.0, std::nan(""), 0.0, {}},
                    {std::uint64_t{1} << 63, 1, 0.6, 0.7, 3.6, 0.1, {4e-3}}};
-  data.runs = {sample_run(0, PairKind::soft_solid, "damped", 5, 3), sample_run(2, PairKind::soft_soft, "published", 0, 0),
+  data.runs = {sample_run(0, PairKind::soft_solid, "damped", 5, 3),
+               sample_run(2, PairKind::soft_soft, "published", 0, 0),
                sample_run(2, PairKind::soft_soft, "damped", 2, 1)};
   return data;
 }
@@ -61,7 +64,8 @@ void expect_equal(const PackingRun& a, const PackingRun& b) {
   for (std::size_t k = 0; k < a.normal.size(); ++k) {
     const NormalPoint& p = a.normal[k];
     const NormalPoint& q = b.normal[k];
-    EXPECT_EQ((std::array{p.delta, p.force, p.residual, p.max_overlap}), (std::array{q.delta, q.force, q.residual, q.max_overlap}));
+    EXPECT_EQ((std::array{p.delta, p.force, p.residual, p.max_overlap}),
+              (std::array{q.delta, q.force, q.residual, q.max_overlap}));
     EXPECT_EQ(p.converged, q.converged);
   }
   ASSERT_EQ(a.tangential.size(), b.tangential.size());

@@ -72,7 +72,9 @@ TEST(Scene, RangeMessageNamesPlaceValueAndLimit) {
             "scene.toml:3: beta = 0.9: must be above 1");
   EXPECT_EQ(message_of([&] { (void)packing.number("beta", Unit::none, Range::closed(1.0, 2.5)); }),
             "scene.toml:3: beta = 0.9: must be from 1 to 2.5");
-  EXPECT_EQ(message_of([&] { (void)packing.number("radius", Unit::length, Range{0.0, 1.0, false, true}); }),
+  EXPECT_EQ(message_of([&] {
+              (void)packing.number("radius", Unit::length, Range{0.0, 1.0, false, true});
+            }),
             "scene.toml:2: radius = 1: must be at least 0 and below 1");
 }
 
@@ -89,7 +91,8 @@ TEST(Scene, UnknownKeyNamesTheNearestAskedFor) {
 TEST(Scene, UnknownKeyWithoutNearOneListsTheKnown) {
   const Scene scene = parse("zzzzzz = 1\nbeta = 2.0\n");
   (void)scene.root().number("beta", Unit::none);
-  EXPECT_EQ(message_of([&] { scene.root().finish(); }), "scene.toml:1: unknown key 'zzzzzz' at the top level; known keys are beta");
+  EXPECT_EQ(message_of([&] { scene.root().finish(); }),
+            "scene.toml:1: unknown key 'zzzzzz' at the top level; known keys are beta");
 }
 
 TEST(Scene, UnknownKeysAreFoundInsideElementsOfArrays) {
@@ -126,8 +129,11 @@ TEST(Scene, WrongTypesAreRefused) {
 
 TEST(Scene, ChoiceNamesTheWordsAndTheNearest) {
   const Scene scene = parse("law = \"hertz-tsuij\"\n");
-  EXPECT_EQ(message_of([&] { (void)scene.root().choice("law", {"hertz-tsuji", "linear-spring"}); }),
-            "scene.toml:1: law = \"hertz-tsuij\": must be \"hertz-tsuji\" or \"linear-spring\"; nearest is \"hertz-tsuji\"");
+  EXPECT_EQ(
+      message_of([&] {
+        (void)scene.root().choice("law", {"hertz-tsuji", "linear-spring"});
+      }),
+      "scene.toml:1: law = \"hertz-tsuij\": must be \"hertz-tsuji\" or \"linear-spring\"; nearest is \"hertz-tsuji\"");
 }
 
 TEST(Scene, SyntaxErrorsCarryFileAndLine) {
@@ -160,8 +166,8 @@ TEST(Scene, OverridesAreNamedInMessages) {
 }
 
 TEST(Scene, BadOverridesAreRefused) {
-  for (const char* setting : {"packing.beta", "=3", "packing..beta=3", "packing.=3", "packing.beta.x=3", "contact.7.mu=1",
-                              "contact.x.mu=1", "packing.sizes=[1, 2", "packing.beta={a=}"})
+  for (const char* setting : {"packing.beta", "=3", "packing..beta=3", "packing.=3", "packing.beta.x=3",
+                              "contact.7.mu=1", "contact.x.mu=1", "packing.sizes=[1, 2", "packing.beta={a=}"})
     EXPECT_NE(message_of([&] { (void)parse(kText, {setting}); }).find("--set"), std::string::npos) << setting;
 }
 

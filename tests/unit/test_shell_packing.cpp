@@ -1,4 +1,5 @@
-// Packings inside a shell: geometry, the law of sizes before growth, growth to contact, reproducibility, solid fraction.
+// Packings inside a shell: geometry, the law of sizes before growth, growth to contact, reproducibility, solid
+// fraction.
 #include "microsim/shell_packing.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,9 @@ SoftParticleSpec quick_spec() {
   return spec;
 }
 
-double gap(const ShellPacking& p, std::size_t i, std::size_t j) { return norm(p.position[i] - p.position[j]) - p.radius[i] - p.radius[j]; }
+double gap(const ShellPacking& p, std::size_t i, std::size_t j) {
+  return norm(p.position[i] - p.position[j]) - p.radius[i] - p.radius[j];
+}
 
 double shell_gap(const ShellPacking& p, std::size_t i) { return 1.0 - norm(p.position[i]) - p.radius[i]; }
 
@@ -39,8 +42,10 @@ TEST(ShellPacking, NothingOverlapsAndEveryGrainTouchesSomething) {
     const ShellPacking p = generate_shell_packing(quick_spec(), 5, index);
     ASSERT_GT(p.radius.size(), 50U);
     ASSERT_EQ(p.radius.size(), p.position.size());
-    // The gap is measured after all have grown. A grain grown early may be met by a later one but never loses its own contact.
-    for (std::size_t i = 0; i < p.radius.size(); ++i) EXPECT_NEAR(nearest(p, i), 0.0, kRounding) << "grain " << i << " of packing " << index;
+    // The gap is measured after all have grown. A grain grown early may be met by a later one but never loses its own
+    // contact.
+    for (std::size_t i = 0; i < p.radius.size(); ++i)
+      EXPECT_NEAR(nearest(p, i), 0.0, kRounding) << "grain " << i << " of packing " << index;
   }
 }
 
@@ -53,7 +58,8 @@ TEST(ShellPacking, NoGrainIsSmallerThanTheLawAllows) {
   for (const double r : p.radius) EXPECT_LT(r, 1.0);
 }
 
-/// Slots keep the order of drawing, largest first. Growth blurs it grain by grain, not in the mean over a tenth of all grains.
+/// Slots keep the order of drawing, largest first. Growth blurs it grain by grain, not in the mean over a tenth of all
+/// grains.
 TEST(ShellPacking, LargestArePlacedFirst) {
   const ShellPacking q = generate_shell_packing(quick_spec(), 5, 0);
   const std::size_t tenth = q.radius.size() / 10;
@@ -87,7 +93,8 @@ TEST(ShellPacking, ThreadsDoNotMatter) {
   std::vector<ShellPacking> parallel(4);
   for (std::size_t k = 0; k < 4; ++k) serial[k] = generate_shell_packing(spec, 5, k);
 #pragma omp parallel for num_threads(2) schedule(dynamic, 1)
-  for (int k = 0; k < 4; ++k) parallel[static_cast<std::size_t>(k)] = generate_shell_packing(spec, 5, static_cast<std::uint64_t>(k));
+  for (int k = 0; k < 4; ++k)
+    parallel[static_cast<std::size_t>(k)] = generate_shell_packing(spec, 5, static_cast<std::uint64_t>(k));
   for (std::size_t k = 0; k < 4; ++k) EXPECT_TRUE(same(serial[k], parallel[k])) << k;
 }
 

@@ -1,4 +1,5 @@
-// Truncated power-law radii: closed forms of the distribution, and the exponent found back in samples with an honest error.
+// Truncated power-law radii: closed forms of the distribution, and the exponent found back in samples with an honest
+// error.
 #include "microsim/size_distribution.h"
 
 #include <gtest/gtest.h>
@@ -35,11 +36,13 @@ TEST(SizeDistribution, InverseCumulativeMeetsItsLimits) {
 TEST(SizeDistribution, InverseCumulativeAscends) {
   for (const double exponent : {1.5, 2.5, 3.5, 5.0}) {
     const PowerLawRadii law{exponent, 0.05, 0.5};
-    for (int k = 0; k < 1000; ++k) EXPECT_LT(law.radius(k * 1e-3), law.radius((k + 1) * 1e-3)) << exponent << ", u = " << k * 1e-3;
+    for (int k = 0; k < 1000; ++k)
+      EXPECT_LT(law.radius(k * 1e-3), law.radius((k + 1) * 1e-3)) << exponent << ", u = " << k * 1e-3;
   }
 }
 
-/// The complementary cumulative distribution is the integral of r^-b from r to rmax over that from rmin (Simpson's rule here).
+/// The complementary cumulative distribution is the integral of r^-b from r to rmax over that from rmin (Simpson's rule
+/// here).
 TEST(SizeDistribution, ShareAboveIsTheIntegralOfTheDensity) {
   const auto integral = [](double exponent, double low, double high) {
     constexpr int kSteps = 2000;  // in ln r
@@ -54,12 +57,14 @@ TEST(SizeDistribution, ShareAboveIsTheIntegralOfTheDensity) {
   for (const double exponent : {1.5, 3.5}) {
     const PowerLawRadii law{exponent, 0.05, 0.5};
     for (const double r : {0.06, 0.1, 0.3, 0.49})
-      EXPECT_NEAR(law.share_above(r), integral(exponent, r, law.rmax) / integral(exponent, law.rmin, law.rmax), 1e-10) << exponent << ", " << r;
+      EXPECT_NEAR(law.share_above(r), integral(exponent, r, law.rmax) / integral(exponent, law.rmin, law.rmax), 1e-10)
+          << exponent << ", " << r;
   }
 }
 
 TEST(SizeDistribution, ShareAboveInvertsTheRadius) {
-  for (const double u : {0.01, 0.3, 0.5, 0.9, 0.999}) EXPECT_NEAR(kPublished.share_above(kPublished.radius(u)), 1.0 - u, 1e-12);
+  for (const double u : {0.01, 0.3, 0.5, 0.9, 0.999})
+    EXPECT_NEAR(kPublished.share_above(kPublished.radius(u)), 1.0 - u, 1e-12);
   EXPECT_EQ(kPublished.share_above(0.01), 1.0);
   EXPECT_EQ(kPublished.share_above(kPublished.rmin), 1.0);
   EXPECT_EQ(kPublished.share_above(kPublished.rmax), 0.0);
@@ -74,8 +79,9 @@ TEST(SizeDistribution, ExponentOfALargeSampleIsFoundBack) {
   }
 }
 
-/// Scatter of the exponent over independent samples agrees with the standard error that each of them states. The scatter of 50
-/// numbers is itself known to 10 %: bounds at three of these, and the mean within four standard errors of the mean.
+/// Scatter of the exponent over independent samples agrees with the standard error that each of them states. The
+/// scatter of 50 numbers is itself known to 10 %: bounds at three of these, and the mean within four standard errors of
+/// the mean.
 TEST(SizeDistribution, StandardErrorIsTheScatterOverSamples) {
   constexpr int kSamples = 50;
   double mean = 0.0;

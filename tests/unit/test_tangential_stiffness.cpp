@@ -12,7 +12,8 @@ using namespace softgrain;
 
 constexpr double kShell = 0.016;
 
-/// F = F0 + k ht for |angle| <= 0.05 degree, bending to half the slope beyond: prestrain and a kink, as measured curves have.
+/// F = F0 + k ht for |angle| <= 0.05 degree, bending to half the slope beyond: prestrain and a kink, as measured curves
+/// have.
 std::vector<TangentialPoint> curve(double prestrain, double k, const std::vector<double>& angles) {
   std::vector<TangentialPoint> out;
   for (const double angle : angles) {

@@ -76,7 +76,8 @@ TEST_P(KinkPosition, IsFound) {
   EXPECT_NEAR(report.law.normal.delta.value, o.normal.delta, 1e-8) << report.fit_message;
   EXPECT_NEAR(report.law.normal.b.value, o.normal.b, 1e-6);
 }
-INSTANTIATE_TEST_SUITE_P(ThresholdFit, KinkPosition, ::testing::Values(0.01, 0.03, 0.05, 0.0625, 0.0999, 0.1, 0.14, 0.16, 0.18, 0.199));
+INSTANTIATE_TEST_SUITE_P(ThresholdFit, KinkPosition,
+                         ::testing::Values(0.01, 0.03, 0.05, 0.0625, 0.0999, 0.1, 0.14, 0.16, 0.18, 0.199));
 
 TEST(ThresholdFit, WalkFromAFarStartReachesTheSameThreshold) {
   const auto data = synthetic({});
@@ -152,8 +153,8 @@ TEST(ThresholdFit, OnePackingIsUnderdetermined) {
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
   EXPECT_EQ(law.status, "underdetermined");
   EXPECT_TRUE(mentions(law, "1 packing, 5 needed")) << law.reason;
-  EXPECT_EQ(law.chi2_per_dof, 0.0);  // one packing has no scatter to judge by
-  EXPECT_NEAR(law.normal.b.value, o.normal.b, 1e-6);   // the best values are still there
+  EXPECT_EQ(law.chi2_per_dof, 0.0);                      // one packing has no scatter to judge by
+  EXPECT_NEAR(law.normal.b.value, o.normal.b, 1e-6);     // the best values are still there
   EXPECT_TRUE(std::isinf(law.normal.b.standard_error));  // but no invented error
   EXPECT_TRUE(std::isinf(law.normal.b.high));
 }
@@ -227,8 +228,9 @@ TEST(ThresholdFit, EveryOptionChangesTheAnswer) {
   const PairLaw law = fit_pair_law(data, PairKind::soft_solid, base).law;
   const auto differs = [&](FitOptions options) {
     const PairLaw other = fit_pair_law(data, PairKind::soft_solid, options).law;
-    return other.normal.b.value != law.normal.b.value || other.normal.b.low != law.normal.b.low || other.status != law.status ||
-           other.tangential_initial.b.value != law.tangential_initial.b.value || other.has_tangential_secant != law.has_tangential_secant;
+    return other.normal.b.value != law.normal.b.value || other.normal.b.low != law.normal.b.low ||
+           other.status != law.status || other.tangential_initial.b.value != law.tangential_initial.b.value ||
+           other.has_tangential_secant != law.has_tangential_secant;
   };
   EXPECT_FALSE(differs(base));
   FitOptions options = base;
@@ -289,7 +291,8 @@ TEST(ThresholdFit, BandHoldsTheLawAndVanishesBelowThreshold) {
     EXPECT_LE(b.low, b.value);
     EXPECT_GE(b.high, b.value);
   }
-  EXPECT_NEAR(band[2].value, report.law.normal.a.value * std::pow(0.2, report.law.normal.b.value) + report.law.normal.c.value, 1e-12);
+  EXPECT_NEAR(band[2].value,
+              report.law.normal.a.value * std::pow(0.2, report.law.normal.b.value) + report.law.normal.c.value, 1e-12);
   // 15 % scatter over 16 packings: about +-7.5 % at 95 %.
   EXPECT_NEAR((band[2].high - band[2].low) / band[2].value, 0.15, 0.05);
 }
