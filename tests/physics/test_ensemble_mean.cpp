@@ -35,7 +35,8 @@ double force_of(const SoftParticleSpec& spec, std::uint64_t index) {
 std::vector<double> forces_of(const SoftParticleSpec& spec) {
   std::vector<double> forces(kPackings);
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int k = 0; k < kPackings; ++k) forces[static_cast<std::size_t>(k)] = force_of(spec, static_cast<std::uint64_t>(k));
+  for (int k = 0; k < kPackings; ++k)
+    forces[static_cast<std::size_t>(k)] = force_of(spec, static_cast<std::uint64_t>(k));
   return forces;
 }
 
@@ -54,10 +55,11 @@ Mean mean_of(const std::vector<double>& x) {
   return m;
 }
 
-/// The means differ by less than two standard errors of their difference as means of independent packings. The packings are the
-/// same, so the paired difference is known much better: +3.3(1.6) % for four times the density, -3.6(1.4) % from restitution 0.3 to
-/// 0.7. The second is small but significant: less damping lets inertia shake the frictional path loose and lowers the force.
-/// It stays below a third of the error of the mean over 24 packings, and is bounded here at 8 %.
+/// The means differ by less than two standard errors of their difference as means of independent packings. The packings
+/// are the same, so the paired difference is known much better: +3.3(1.6) % for four times the density, -3.6(1.4) %
+/// from restitution 0.3 to 0.7. The second is small but significant: less damping lets inertia shake the frictional
+/// path loose and lowers the force. It stays below a third of the error of the mean over 24 packings, and is bounded
+/// here at 8 %.
 void expect_same_mean(const SoftParticleSpec& a, const SoftParticleSpec& b, const char* what) {
   const auto x = forces_of(a);
   const auto y = forces_of(b);
@@ -66,8 +68,8 @@ void expect_same_mean(const SoftParticleSpec& a, const SoftParticleSpec& b, cons
   const Mean first = mean_of(x);
   const Mean second = mean_of(y);
   const Mean paired = mean_of(difference);
-  std::printf("%s: %.6f +- %.6f, %.6f +- %.6f, paired difference %.6f +- %.6f\n", what, first.value, first.error, second.value, second.error, paired.value,
-              paired.error);
+  std::printf("%s: %.6f +- %.6f, %.6f +- %.6f, paired difference %.6f +- %.6f\n", what, first.value, first.error,
+              second.value, second.error, paired.value, paired.error);
   EXPECT_LT(first.error, 0.15 * first.value) << what;
   EXPECT_LT(std::abs(second.value - first.value), 2.0 * std::hypot(first.error, second.error)) << what;
   EXPECT_LT(std::abs(paired.value), 0.08 * first.value) << what;
