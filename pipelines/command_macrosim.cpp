@@ -58,7 +58,9 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   const std::uint64_t seed = context.seed(scene_seed);
   const TaskStore store(context, scene, seed);
   const auto contents = setup.resolved ? twin_contents(card.spec, contents_count, seed) : std::vector<ShellPacking>{};
-  const auto curves = run_macro_stage(setup, card, contents, seed, store, context, context.provenance(scene, seed));
+  std::vector<MacroCurve> curves;
+  context.guard(
+      [&] { curves = run_macro_stage(setup, card, contents, seed, store, context, context.provenance(scene, seed)); });
 
   nlohmann::json summary;
   bool usable = true;

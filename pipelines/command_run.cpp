@@ -157,7 +157,7 @@ ExitStatus command_run(const CommonOptions& options) {
   const Provenance provenance = context.provenance(scene, seed);
   const TaskStore store(context, scene, seed);
   PipelineResult result;
-  result.measured = run_measure_stage(setup.measure, store, context, provenance);
+  context.guard([&] { result.measured = run_measure_stage(setup.measure, store, context, provenance); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
   fit(setup, context, provenance, result);
   run_macro(setup, store, context, provenance, result);

@@ -80,4 +80,13 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
     throw FileTrouble("standard output: cannot be written");
 }
 
+void RunContext::guard(const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const NotUsable& e) {
+    finish({{"status", "not usable"}, {"remarks", {e.what()}}}, "not usable: " + std::string(e.what()));
+    throw;
+  }
+}
+
 }  // namespace softgrain

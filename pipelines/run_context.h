@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -56,6 +57,10 @@ class RunContext {
   /// standard output with --json, else prints `people` (a few lines: what was found, how sure, where the files are) on
   /// standard output.
   void finish(nlohmann::json summary, const std::string& people) const;
+
+  /// Runs `work`; when it ends with NotUsable (a lost grain, a preparation that does not jam...) a summary that says so is
+  /// written before the error goes on, so that the directory never looks like a run that is still going.
+  void guard(const std::function<void()>& work) const;
 
  private:
   CommonOptions options_;

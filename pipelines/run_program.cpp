@@ -101,8 +101,9 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
 void require_inputs(const Command& command, const CommonOptions& options) {
   const auto given = static_cast<int>(options.inputs.size());
   if (given >= command.least && given <= command.most) return;
-  const std::string wanted =
-      command.least < command.most ? fmt::format("at least {}", command.least) : fmt::format("{}", command.least);
+  const std::string wanted = command.least == command.most ? fmt::format("{}", command.least)
+                             : given < command.least       ? fmt::format("at least {}", command.least)
+                                                           : fmt::format("at most {}", command.most);
   throw BadInput(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted, command.inputs,
                              given, command.name));
 }

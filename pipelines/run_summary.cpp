@@ -153,7 +153,7 @@ json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine
           {"loop_passes", cost.loop_passes},
           {"contact_evaluations", cost.contact_evaluations},
           {"seconds", cost.seconds},
-          {"usable", usable}};
+          {"usable", usable && samples > 0}};
 }
 
 std::vector<std::string> measurement_remarks(const Measurements& data) {

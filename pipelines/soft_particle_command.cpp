@@ -19,7 +19,8 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.seed);
   const TaskStore store(context, scene, seed);
-  const MeasureResult result = run_measure_stage(setup, store, context, context.provenance(scene, seed));
+  MeasureResult result;
+  context.guard([&] { result = run_measure_stage(setup, store, context, context.provenance(scene, seed)); });
 
   nlohmann::json summary;
   const auto remarks = measurement_remarks(result.data);

@@ -62,7 +62,7 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("run x.toml --bogus", 2, "--bogus");
   expect("run x.toml y.toml", 2, "run needs 1 PIPELINE.toml, 2 given");
   expect("run", 2, "run needs 1 PIPELINE.toml, 0 given");
-  expect("compare a", 2, "compare needs 2 RUN, 1 given");
+  expect("compare a b c", 2, "compare needs at most 2 RUN, 3 given");
   expect("run x.toml --law l.toml", 2, "--law");
 }
 
