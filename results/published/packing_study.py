@@ -18,7 +18,7 @@ def row(summary):
     for line in settings.splitlines():
         key, _, value = line.partition("=")
         values[key.strip()] = value.split("#")[0].strip().strip("'\"")
-    cells = [values["beta"], values["trials"], values["rmax_over_shell"], f"{packings['grains']:.0f}",
+    cells = [values["beta"], values["trials"], f"{float(values['rmax_over_shell']):.2f}", f"{packings['grains']:.0f}",
              f"{packings['solid_fraction']:.3f}", f"{packings['exponent']:.2f}"]
     forces = {round(f["delta"], 6): f for f in summary["forces"].get("soft-solid", [])}
     for delta in DELTAS:
