@@ -201,6 +201,28 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
   return report;
 }
 
+namespace {
+
+/// Bands on an even grid up to the end of the fitted range, for the curves that were fitted.
+void add_bands(PairLaw& law, const FitReport& report) {
+  constexpr int kSteps = 120;
+  if (report.replicates.empty() || !(law.delta_max > 0.0)) return;
+  for (int k = 0; k <= kSteps; ++k) law.band_delta.push_back(law.delta_max * k / kSteps);
+  const auto add = [&](const char* name, LawCurve curve) {
+    LawBandRows rows{name, {}, {}};
+    for (const Band& b : law_band(report, curve, law.band_delta)) {
+      rows.low.push_back(b.low);
+      rows.high.push_back(b.high);
+    }
+    law.bands.push_back(std::move(rows));
+  };
+  add("normal", LawCurve::normal);
+  if (law.has_tangential_initial) add("tangential_initial", LawCurve::tangential_initial);
+  if (law.has_tangential_secant) add("tangential_secant", LawCurve::tangential_secant);
+}
+
+}  // namespace
+
 LawCard calibrate(const Measurements& data, const FitOptions& options, std::vector<FitReport>* reports) {
   LawCard card;
   card.spec = data.spec;
@@ -209,6 +231,7 @@ LawCard calibrate(const Measurements& data, const FitOptions& options, std::vect
     if (select_runs(data, kind, card.relaxation).empty()) continue;
     FitReport report = fit_pair_law(data, kind, options);
     card.pairs.push_back(report.law);
+    add_bands(card.pairs.back(), report);
     if (reports != nullptr) reports->push_back(std::move(report));
   }
   return card;

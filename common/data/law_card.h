@@ -43,6 +43,13 @@ struct LawTableRows {
   std::vector<double> kt_secant_deviation;
 };
 
+/// 95 % band of one fitted curve, by bootstrap over packings. Dimensionless; kept in the table (law.h5), not in the card.
+struct LawBandRows {
+  std::string law;  ///< "normal", "tangential_initial" or "tangential_secant"
+  std::vector<double> low;
+  std::vector<double> high;
+};
+
 /// Names of the jointly fitted parameters, in the order of PairLaw::covariance.
 inline constexpr std::array<const char*, 7> kLawParameterNames{"a_n",         "b_n",        "delta",     "a_t_initial",
                                                                "b_t_initial", "a_t_secant", "b_t_secant"};
@@ -68,6 +75,8 @@ struct PairLaw {
   double chi2_per_dof = 0.0;
   double quality = 0.0;  ///< probability of a larger chi^2 (GSL), computed on packing means
   LawTableRows table;
+  std::vector<double> band_delta;  ///< Delta of the bands; empty without replicates
+  std::vector<LawBandRows> bands;
 };
 
 struct LawCard {

@@ -1,5 +1,6 @@
 // Layout of law.h5: "spec"; per pair kind a group with attributes, "table" (the measured curve) and, per law, a group
-// of its parameters as rows (value, standard_error, low, high); "covariance" 7 x 7. All dimensionless.
+// of its parameters as rows (value, standard_error, low, high); "covariance" 7 x 7; "band" with the 95 % bands. All
+// dimensionless.
 #include <array>
 
 #include "common/core/error.h"
@@ -52,6 +53,21 @@ void write_pair(const h5::Group& root, const PairLaw& pair) {
   if (pair.covariance.size() == n * n) group.write("covariance", std::span<const double>(pair.covariance), {n, n});
 }
 
+/// Group band/<pair kind>: delta, <law>_low, <law>_high.
+void write_bands(const h5::Group& root, const LawCard& card) {
+  const h5::Group bands = root.create("band");
+  bands.attribute("interval", "95 %, bootstrap over packings");
+  for (const PairLaw& pair : card.pairs) {
+    if (pair.bands.empty()) continue;
+    const h5::Group group = bands.create(to_string(pair.kind));
+    group.write("delta", std::span<const double>(pair.band_delta));
+    for (const LawBandRows& band : pair.bands) {
+      group.write(band.law + "_low", std::span<const double>(band.low));
+      group.write(band.law + "_high", std::span<const double>(band.high));
+    }
+  }
+}
+
 LawTableRows read_curve(const h5::Group& table, const std::string& path) {
   LawTableRows rows;
   for (const LawTableColumn& column : kLawTableColumns) {
@@ -73,6 +89,7 @@ void write_table(const LawCard& card, const std::string& path, const Provenance&
   root.attribute("relaxation", card.relaxation);
   write_spec(root, card.spec);
   for (const PairLaw& pair : card.pairs) write_pair(root, pair);
+  write_bands(root, card);
   write_provenance(root, provenance);
   file.commit();
 }
