@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "common/core/error.h"
 #include "common/core/random.h"
+#include "common/core/solid_sphere.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "macrosim/box.h"
 
 namespace softgrain {
 
 namespace {
-
-constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
 
 double cube(double x) { return x * x * x; }
 

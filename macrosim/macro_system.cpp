@@ -5,22 +5,11 @@
 
 #include "common/core/error.h"
 #include "common/core/random.h"
+#include "common/core/solid_sphere.h"
 
 namespace softgrain {
 
 namespace {
-
-constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
-
-NewBody<3> sphere_body(const Vec3& x, double r, double density, std::int32_t material) {
-  NewBody<3> body;
-  body.x = x;
-  body.r = r;
-  body.mass = density * kSphereVolume * r * r * r;
-  body.inertia = 0.4 * body.mass * r * r;
-  body.material = material;
-  return body;
-}
 
 Material solid_material(const MacroSpec& spec, const char* name) {
   return {name, spec.density, spec.youngs_modulus, spec.poisson_ratio, false};
@@ -50,7 +39,7 @@ void add_content(System3& s, const MacroSpec& spec, const MacroBody& body, const
   for (std::size_t k = 0; k < content.radius.size(); ++k) {
     const Vec3& y = content.position[k];
     const Vec3 turned = axes[0] * y[0] + axes[1] * y[1] + axes[2] * y[2];
-    NewBody<3> grain = sphere_body(body.x + turned * body.r, content.radius[k] * body.r, spec.density, 0);
+    NewBody<3> grain = solid_sphere(body.x + turned * body.r, content.radius[k] * body.r, spec.density, 0);
     grain.shell = shell;
     add_grain(s.particles, grain);
   }
@@ -85,7 +74,7 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
   s.laws.set(1, 1, laws.soft_soft);
   for (const MacroBody& b : packing.bodies)
     add_grain(s.particles,
-              sphere_body(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
+              solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
   out.box = add_box(s, packing.low, packing.high, 2);
   return out;
 }
@@ -105,7 +94,7 @@ MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packi
   const Slot first_shell = solids + static_cast<Slot>(out.inner_grains);
   RandomStream random(seed, RandomPurpose::rotation, sample);
   for (const MacroBody& b : packing.bodies)
-    if (!b.soft) add_grain(s.particles, sphere_body(b.x, b.r, spec.density, 0));
+    if (!b.soft) add_grain(s.particles, solid_sphere(b.x, b.r, spec.density, 0));
   std::size_t k = 0;
   for (const MacroBody& b : packing.bodies) {
     if (!b.soft) continue;
@@ -115,7 +104,8 @@ MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packi
   k = 0;
   for (const MacroBody& b : packing.bodies)
     if (b.soft)
-      add_shell(s.particles, sphere_body(b.x, b.r, spec.density * contents[k++ % contents.size()].solid_fraction(), 0));
+      add_shell(s.particles,
+                solid_sphere(b.x, b.r, spec.density * contents[k++ % contents.size()].solid_fraction(), 0));
   out.box = add_box(s, packing.low, packing.high, 1);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/solid_sphere.h"
 #include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
@@ -10,8 +11,6 @@
 namespace softgrain {
 
 namespace {
-
-constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
 
 System3 empty_system(const SoftParticleSpec& spec, bool damped_contacts) {
   System3 s;
@@ -24,11 +23,8 @@ System3 empty_system(const SoftParticleSpec& spec, bool damped_contacts) {
 
 void add_grains(System3& s, const SoftParticleSpec& spec, const ShellPacking& packing, const Vec3& centre, Slot shell) {
   for (std::size_t k = 0; k < packing.radius.size(); ++k) {
-    NewBody<3> grain;
-    grain.x = centre + packing.position[k] * spec.shell_radius;
-    grain.r = packing.radius[k] * spec.shell_radius;
-    grain.mass = spec.density * kSphereVolume * grain.r * grain.r * grain.r;
-    grain.inertia = 0.4 * grain.mass * grain.r * grain.r;
+    NewBody<3> grain = solid_sphere(centre + packing.position[k] * spec.shell_radius,
+                                    packing.radius[k] * spec.shell_radius, spec.density, 0);
     grain.shell = shell;
     add_grain(s.particles, grain);
   }

@@ -79,10 +79,8 @@ inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j,
 }
 
 template <int D, Geometry kGeometry, bool kPeriodic, class Law, class Sink>
-void run_section(System<D>& s, const ContactSection& section, const Law& law, double dt, std::int32_t begin,
-                 std::int32_t end, Sink& sink) {
+void run_section(System<D>& s, const Law& law, double dt, std::int32_t begin, std::int32_t end, Sink& sink) {
   ContactList<D>& list = s.contacts;
-  (void)section;
   for (std::int32_t k = begin; k < end; ++k) {
     const auto c = static_cast<std::size_t>(k);
     const auto i = static_cast<std::size_t>(list.i[c]);
@@ -179,7 +177,7 @@ template <int D, class Sink>
 void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end,
                Sink& sink) {
   detail::with_types(s, section, [&](const auto& law, auto geometry, auto periodic) {
-    detail::run_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, section, law, dt, begin, end, sink);
+    detail::run_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, law, dt, begin, end, sink);
   });
 }
 

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "common/core/error.h"
+#include "common/core/solid_sphere.h"
 #include "microsim/particles/scene_walls.h"
 #include "microsim/particles/xyzr_file.h"
 
 namespace softgrain {
 
 namespace {
-
-constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
 
 /// Everything that turns tables into bodies.
 struct Builder {
@@ -24,17 +22,6 @@ struct Builder {
   std::vector<NewBody<3>> grains;
   std::vector<std::ptrdiff_t> wall_of;  ///< per grain: index of its sphere-inside, -1 none
 };
-
-/// Mass 4/3 pi r^3 rho and inertia 2/5 m r^2 of a solid sphere.
-NewBody<3> solid_sphere(const Vec3& x, double r, std::int32_t material, double density) {
-  NewBody<3> body;
-  body.x = x;
-  body.r = r;
-  body.mass = density * kSphereVolume * r * r * r;
-  body.inertia = 0.4 * body.mass * r * r;
-  body.material = material;
-  return body;
-}
 
 double density_of(const Builder& b, const SceneTable& t, std::int32_t material) {
   const Material& m = b.materials[static_cast<std::size_t>(material)];
@@ -65,7 +52,7 @@ std::ptrdiff_t chosen_wall(const Builder& b, const SceneTable& t, const Vec3& x)
 void add_table(Builder& b, const SceneTable& t) {
   const std::int32_t material = material_index(b.materials, t, "material");
   const double r = t.number("radius", Unit::length, Range::positive());
-  NewBody<3> body = solid_sphere(t.vector3("position", Unit::length), r, material, density_of(b, t, material));
+  NewBody<3> body = solid_sphere(t.vector3("position", Unit::length), r, density_of(b, t, material), material);
   body.velocity = t.vector3("velocity", Unit::velocity, {});
   body.spin = t.vector3("spin", Unit::angular_velocity, {});
   b.grains.push_back(body);
@@ -80,7 +67,7 @@ void add_file(Builder& b, const SceneTable& t) {
   b.out.many_file = b.scene.resolve(t.text("file"));
   const XyzrFile file = read_xyzr(b.out.many_file);
   for (std::size_t k = 0; k < file.radius.size(); ++k) {
-    b.grains.push_back(solid_sphere(file.position[k], file.radius[k], material, density));
+    b.grains.push_back(solid_sphere(file.position[k], file.radius[k], density, material));
     b.wall_of.push_back(wall_around(b, file.position[k]));
   }
 }
