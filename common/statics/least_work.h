@@ -33,7 +33,9 @@ struct LeastWorkOptions {
   double work_tolerance = 1e-11;   ///< stop at dPi < this |Pi| ...
   double force_tolerance = 1e-13;  ///< ... or |grad|^2 < this N (E R^2)^2
   // Fast method.
-  double residual_tolerance = 1e-6;  ///< net force on every grain over its largest contact force
+  double residual_tolerance = 1e-6;  ///< net force on every grain over its largest contact force, or over
+                                     ///< 1e-3 of the mean contact force where that is larger (rattlers)
+  double force_floor = 1e-6;  ///< least force to compare with, in mean E times mean R^2 (packs that carry nothing)
   std::int64_t max_iterations = 20000;
 };
 

@@ -1,0 +1,190 @@
+// One contact of the least-work solver [QS 2.1]: Hertz force, tangential force with stick and slip, torsion, and their
+// derivatives. Value structs and inline evaluations; no storage.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/vec.h"
+#include "common/statics/least_work.h"
+
+namespace softgrain::statics {
+
+/// 3 x 3 matrix of a contact, rows.
+using Matrix3 = std::array<Vec3, 3>;
+
+/// What the normal force needs.
+struct NormalConstants {
+  double hertz = 0.0;        ///< 4/3 E* sqrt(R*) [Pa m^(1/2)]
+  double root_radius = 0.0;  ///< sqrt(R*)
+};
+
+/// What friction and torsion need, the reference state included.
+struct FrictionConstants {
+  double shear = 0.0;            ///< k*/a = 8/[(2-nu_i)/G_i + (2-nu_j)/G_j] [Pa]; 0: no friction
+  double twist = 0.0;            ///< k_t*/a^3 = 16/3 /(1/G_i + 1/G_j) [Pa]
+  double friction = 0.0;         ///< mu
+  bool fresh = false;            ///< apart in the reference state
+  double overlap0 = 0.0;         ///< of the reference state, negative when apart [m]
+  double contact_radius0 = 0.0;  ///< a0 [m]
+  double limit0 = 0.0;           ///< mu P0 [N]
+  Vec3 tangential0{};            ///< Q0, capped at mu P0
+  double torsion0 = 0.0;         ///< M0.n, capped at (3 pi/16) a0 mu P0
+};
+
+/// Where a contact is now. Displacements are those since the reference state.
+struct ContactPlace {
+  Vec3 normal{};                ///< unit, to i
+  double overlap = 0.0;         ///< h [m]
+  double arm_i = 0.0;           ///< distance of the centre of i from the contact disk; R_ij = -n arm_i
+  double arm_j = 0.0;           ///< R_ji = n arm_j; 0 for walls
+  double inverse_length = 0.0;  ///< 1/|r_ij|; 0 for walls, whose normal does not turn
+};
+
+/// h and n of two spheres; `r` = r_i - r_j of length `d`. Arms to the plane of the circle in which the spheres meet.
+inline ContactPlace place_of_spheres(const Vec3& r, double d, double radius_i, double radius_j) {
+  ContactPlace p;
+  p.inverse_length = 1.0 / d;
+  p.normal = r * p.inverse_length;
+  p.overlap = radius_i + radius_j - d;
+  const double shift = 0.5 * (radius_i - radius_j) * (radius_i + radius_j) * p.inverse_length;
+  p.arm_i = 0.5 * d + shift;
+  p.arm_j = 0.5 * d - shift;
+  return p;
+}
+
+/// A sphere whose centre is `distance` above a wall.
+inline ContactPlace place_at_wall(const Vec3& wall_normal, double distance, double radius) {
+  return {wall_normal, radius - distance, distance, 0.0, 0.0};
+}
+
+/// P, its stiffness dP/dh and its work (8/15) E* sqrt(R*) h^(5/2).
+struct NormalForce {
+  double force = 0.0;
+  double stiffness = 0.0;
+  double work = 0.0;
+};
+inline NormalForce hertz_force(const NormalConstants& c, double overlap) {
+  const double slope = c.hertz * std::sqrt(overlap);
+  const double force = slope * overlap;
+  return {force, 1.5 * slope, 0.4 * force * overlap};
+}
+
+/// u_s = T (u_i - u_j) + Omega_i x R_ij - Omega_j x R_ji.
+inline Vec3 sliding_displacement(const ContactPlace& p, const Vec3& moved, const Vec3& turn_i, const Vec3& turn_j) {
+  const Vec3 rolled = moved + cross(p.normal, turn_i * p.arm_i + turn_j * p.arm_j);
+  return rolled - p.normal * dot(p.normal, rolled);
+}
+
+/// The reference force turned into the tangent plane with its magnitude kept, |Q0| T Q0/|T Q0|.
+inline Vec3 turned_force(const Vec3& reference, const Vec3& normal) {
+  const Vec3 flat = reference - normal * dot(normal, reference);
+  const double size2 = norm2(flat);
+  return size2 > 0.0 ? flat * std::sqrt(norm2(reference) / size2) : Vec3{};
+}
+
+/// k' of the published rule: the stiffness that leaves |Qp - k' u_s| = limit. Never negative; 0 without a solution.
+inline double slip_stiffness(double along, double size2, double force2, double limit) {
+  const double room = (limit * limit - force2) * size2;
+  const double radicand = along * along + room;
+  if (radicand < 0.0) return 0.0;
+  const double root = std::sqrt(radicand);
+  // The same number without cancellation when the displacement opposes the force.
+  const double numerator = along < 0.0 ? room / (root - along) : along + root;
+  return std::max(0.0, numerator / size2);
+}
+
+/// Q on i, its derivative, and its part of Pi.
+struct TangentialForce {
+  Vec3 force{};
+  double work = 0.0;
+  double limit = 0.0;  ///< Qmax
+  bool slipping = false;
+  // Derivative: dQ = -stiffness (du_s - left (right.du_s)) + by_overlap dh.
+  double stiffness = 0.0;
+  Vec3 left{};
+  Vec3 right{};
+  Vec3 by_overlap{};
+};
+
+/// Published rule: limit of the reference state, stiffness lowered to k' in slip. dk' follows from |Q| = Qmax.
+inline TangentialForce tangential_by_reference(const FrictionConstants& c, const Vec3& pushed, const Vec3& slid) {
+  TangentialForce out;
+  out.limit = c.limit0;
+  out.stiffness = c.shear * c.contact_radius0;
+  out.force = pushed - slid * out.stiffness;
+  const double along = dot(pushed, slid);
+  const double size2 = norm2(slid);
+  if (norm2(out.force) > out.limit * out.limit && size2 > 0.0) {
+    out.slipping = true;
+    out.stiffness = slip_stiffness(along, size2, norm2(pushed), out.limit);
+    out.force = pushed - slid * out.stiffness;
+    const double leverage = dot(out.force, slid);
+    if (leverage != 0.0) {
+      out.left = slid;
+      out.right = out.force * (1.0 / leverage);
+    }
+  }
+  out.work = 0.5 * out.stiffness * size2 - along;
+  return out;
+}
+
+/// Return mapping to mu P of the state as it is [QS 2.4]. A contact made in the increment has slid only since it closed
+/// (the part h/(h - h0) of the displacement) and its stiffness has the current contact radius.
+inline TangentialForce tangential_by_current(const FrictionConstants& c, const NormalForce& normal, double overlap,
+                                             double root_radius, const Vec3& pushed, const Vec3& slid_in_all) {
+  TangentialForce out;
+  Vec3 slid = slid_in_all;
+  double scale = 1.0;
+  double growth = 0.0;  // d ln(stiffness * part)/dh
+  out.stiffness = c.shear * c.contact_radius0;
+  if (c.fresh) {
+    out.stiffness = c.shear * root_radius * std::sqrt(overlap);
+    scale = overlap / (overlap - c.overlap0);
+    slid *= scale;
+    growth = 0.5 / overlap + 1.0 / overlap - 1.0 / (overlap - c.overlap0);
+  }
+  out.limit = c.friction * normal.force;
+  const Vec3 trial = pushed - slid * out.stiffness;
+  const double size = norm(trial);
+  out.force = trial;
+  out.work = 0.5 * out.stiffness * norm2(slid) - dot(pushed, slid);
+  out.by_overlap = slid * (-out.stiffness * growth);
+  if (size > out.limit) {
+    out.slipping = true;
+    const Vec3 direction = trial * (1.0 / size);
+    const double shrink = out.limit / size;
+    out.work = (out.limit * (size - 0.5 * out.limit) - 0.5 * norm2(pushed)) / out.stiffness;
+    out.force = direction * out.limit;
+    out.by_overlap = (out.by_overlap - direction * dot(direction, out.by_overlap)) * shrink +
+                     direction * (c.friction * normal.stiffness);
+    out.stiffness *= shrink;
+    out.left = out.right = direction;
+  }
+  out.stiffness *= scale;
+  return out;
+}
+
+/// M.n on i, its stiffness and its part of Pi.
+struct TorsionMoment {
+  double moment = 0.0;
+  double stiffness = 0.0;
+  double work = 0.0;
+};
+
+/// Torsion is tangential friction of one component: the same two rules. `radius`: a0 or, of a fresh contact, a.
+inline TorsionMoment torsion_moment(const FrictionConstants& c, double radius, double limit, double turned) {
+  TorsionMoment out;
+  out.stiffness = c.twist * radius * radius * radius;
+  out.moment = c.torsion0 - out.stiffness * turned;
+  out.work = turned * (0.5 * out.stiffness * turned - c.torsion0);
+  if (std::abs(out.moment) > limit) {
+    out.moment = std::copysign(limit, out.moment);
+    // With k' of the published rule, k' Omega_t = Mp - M.
+    out.work = -0.5 * turned * (c.torsion0 + out.moment);
+    out.stiffness = 0.0;
+  }
+  return out;
+}
+
+}  // namespace softgrain::statics

@@ -1,0 +1,74 @@
+#include "common/statics/minimiser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace softgrain::statics {
+
+namespace {
+
+/// Share of the mean contact force under which a grain counts as a rattler in the residual.
+constexpr double kRattlerForce = 1e-3;
+
+struct WallPair {
+  std::size_t low, high;
+};
+
+std::vector<WallPair> opposite_walls(const std::vector<PackWall>& walls) {
+  std::vector<WallPair> out;
+  for (std::size_t a = 0; a < walls.size(); ++a)
+    for (std::size_t b = a + 1; b < walls.size(); ++b)
+      if (softgrain::dot(walls[a].normal, walls[b].normal) < -1.0 + 1e-9) out.push_back({a, b});
+  return out;
+}
+
+}  // namespace
+
+Scales scales_of(const GrainPack& pack, const LeastWorkOptions& options) {
+  double modulus = 0.0;
+  double radius = 0.0;
+  const auto n = static_cast<double>(pack.grains());
+  for (const double e : pack.youngs_modulus) modulus += e;
+  for (const double r : pack.radius) radius += r;
+  const double energy = n > 0.0 ? modulus / n * (radius / n) * (radius / n) : 0.0;
+  return {energy, options.force_floor * energy};
+}
+
+double residual_floor(const Scales& scales, const PackForces& forces) {
+  const double mean = forces.contacts > 0 ? forces.contact_force / static_cast<double>(forces.contacts) : 0.0;
+  return std::max(scales.floor_force, kRattlerForce * mean);
+}
+
+Unknowns affine_guess(const PackProblem& problem, double part) {
+  const GrainPack& pack = problem.pack();
+  const auto stride = static_cast<std::size_t>(problem.stride());
+  Unknowns out(problem.size(), 0.0);
+  for (const WallPair& pair : opposite_walls(pack.walls)) {
+    const Vec3 n = pack.walls[pair.low].normal;
+    const Vec3 base = pack.walls[pair.low].point;
+    const double width = softgrain::dot(pack.walls[pair.high].point - base, n);
+    const Vec3 low = problem.wall_moves()[pair.low] * part;
+    const Vec3 across = problem.wall_moves()[pair.high] * part - low;
+    const Vec3 shear = across - n * softgrain::dot(across, n);
+    for (std::size_t g = 0; g < pack.position.size(); ++g) {
+      const double s = softgrain::dot(pack.position[g] - base, n) / width;
+      const Vec3 move = n * (softgrain::dot(low, n) + s * softgrain::dot(across, n)) + shear * (s - 0.5);
+      for (int k = 0; k < 3; ++k) out[g * stride + static_cast<std::size_t>(k)] += move[k];
+    }
+  }
+  return out;
+}
+
+double step_within(const Unknowns& step, const GrainPack& pack, int stride, double limit) {
+  const auto width = static_cast<std::size_t>(stride);
+  double worst = 0.0;
+  for (std::size_t g = 0; g < pack.radius.size(); ++g) {
+    double move2 = 0.0;
+    for (std::size_t k = 0; k < width; ++k) move2 = std::max(move2, step[g * width + k] * step[g * width + k]);
+    worst = std::max(worst, std::sqrt(move2) / (limit * pack.radius[g]));
+  }
+  return worst > 1.0 ? 1.0 / worst : 1.0;
+}
+
+}  // namespace softgrain::statics

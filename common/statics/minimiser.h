@@ -1,0 +1,27 @@
+// The minimisers of an increment. Each starts from theta and leaves its answer there.
+#pragma once
+
+#include "common/statics/pack_problem.h"
+
+namespace softgrain::statics {
+
+/// Forces and lengths that a minimiser measures with.
+struct Scales {
+  double energy = 0.0;       ///< mean E times mean R^2 [N]
+  double floor_force = 0.0;  ///< of worst_residual [N]
+};
+Scales scales_of(const GrainPack& pack, const LeastWorkOptions& options);
+
+/// floor_force with the mean contact force of the state.
+double residual_floor(const Scales& scales, const PackForces& forces);
+
+/// Displacement of every grain when the pack deforms evenly with its walls: between two opposite walls the normal part
+/// of their moves is interpolated [QS 2.2, "2 x_l/L_l"], and so is the difference of their tangential parts.
+Unknowns affine_guess(const PackProblem& problem, double part);
+
+/// Largest part of `step` that moves no grain by more than `limit` of its radius (at most 1).
+double step_within(const Unknowns& step, const GrainPack& pack, int stride, double limit);
+
+LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options);
+
+}  // namespace softgrain::statics

@@ -1,0 +1,92 @@
+// The equilibrium problem of one increment: forces on all grains as a function of their displacements [QS 2.1-2.2].
+// Unknowns theta: per grain the translation u and, with friction, the rotation Omega R [m]; all since the reference.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/statics/links.h"
+
+namespace softgrain::statics {
+
+using Unknowns = std::vector<double>;
+
+/// Forces at a state. Layout as the unknowns: force, then moment/R, per grain.
+struct PackForces {
+  Unknowns force;                ///< net force and moment/R on every grain [N]; minus the gradient of Pi
+  std::vector<double> largest2;  ///< per grain, square of its largest contact force [N^2]
+  double work = 0.0;             ///< Pi less the elastic energy of the reference state's normal forces [J]
+  double contact_force = 0.0;    ///< sum over contacts of the normal force [N]
+  std::int64_t contacts = 0;
+};
+
+/// One contact linearised: df = -stiffness delta on i, delta = u_i - u_j + n x (Omega_i arm_i + Omega_j arm_j).
+struct LinkTangent {
+  Vec3 normal{};
+  Matrix3 stiffness{};  ///< [N/m]; not symmetric in slip
+  double arm_i = 0.0;   ///< over R_i
+  double arm_j = 0.0;   ///< over R_j; 0 for walls
+  double pull = 0.0;    ///< P/|r_ij|: the normal force turns with the pair [N/m]
+  double twist = 0.0;   ///< k_t [N m]
+  bool closed = false;
+};
+
+struct Cost {
+  std::int64_t loop_passes = 0;
+  std::int64_t contact_evaluations = 0;
+};
+
+class PackProblem {
+ public:
+  PackProblem(const GrainPack& pack, std::vector<Vec3> wall_moves, CoulombRule rule, bool torsion);
+
+  [[nodiscard]] int stride() const { return friction_ ? 6 : 3; }  ///< unknowns per grain
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(pack_.grains() * stride()); }
+  [[nodiscard]] const GrainPack& pack() const { return pack_; }
+  [[nodiscard]] const Links& links() const { return links_; }
+  [[nodiscard]] const Cost& cost() const { return cost_; }
+
+  /// Puts the walls at this part of their moves.
+  void set_walls(double part);
+  [[nodiscard]] const std::vector<Vec3>& wall_moves() const { return wall_moves_; }
+  [[nodiscard]] const std::vector<Vec3>& wall_points() const { return wall_points_; }
+
+  void evaluate(const Unknowns& theta, PackForces& out);
+  void linearise(const Unknowns& theta, std::vector<LinkTangent>& out);
+  /// Contacts at theta, as they are stored in a pack.
+  [[nodiscard]] std::vector<PackContact> contacts(const Unknowns& theta);
+  [[nodiscard]] std::vector<Vec3> positions(const Unknowns& theta) const;
+
+ private:
+  template <class Law>
+  void evaluate_as(const Unknowns& theta, PackForces& out) const;
+  template <class Law>
+  void linearise_as(const Unknowns& theta, std::vector<LinkTangent>& out) const;
+  template <class Law>
+  void contacts_as(const Unknowns& theta, std::vector<PackContact>& out) const;
+  template <class F>
+  void dispatch(const F& body) const;
+  void place(const Unknowns& theta);
+
+  const GrainPack& pack_;
+  std::vector<Vec3> wall_moves_;
+  std::vector<Vec3> wall_points_;
+  double wall_part_ = 0.0;
+  CoulombRule rule_;
+  bool torsion_;
+  bool friction_;
+  Links links_;
+  std::vector<Vec3> place_;  ///< positions of the state being evaluated
+  Cost cost_;
+};
+
+/// Sum over fixed chunks, so that the bits do not depend on the number of threads.
+double dot(const Unknowns& a, const Unknowns& b);
+/// y += s x
+void add_scaled(Unknowns& y, double s, const Unknowns& x);
+
+/// How well theta balances: the largest, over grains, of net force (or moment/R) over the grain's largest contact
+/// force. `floor_force` [N] replaces smaller contact forces.
+double worst_residual(const PackForces& forces, const GrainPack& pack, int stride, double floor_force);
+
+}  // namespace softgrain::statics
