@@ -16,7 +16,10 @@ enum class RandomPurpose : std::uint64_t {
   macro_radii = 4,
   macro_positions = 5,
   test = 6,
-  rotation = 7
+  rotation = 7,
+  grain_box_radii = 20,
+  grain_box_elasticity = 21,
+  grain_box_positions = 22
 };
 
 /// A sequence of independent numbers keyed by (seed, purpose, index).

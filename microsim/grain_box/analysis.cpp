@@ -1,0 +1,128 @@
+#include "microsim/grain_box/analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/core/solid_sphere.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNear = 0.1;
+constexpr double kJammed = 0.63;
+constexpr double kContacts = 6.0;
+constexpr double kBytesPerGrain = 4000.0;  // contacts, and the factor of the stiffness matrix, which is the most of it
+
+/// Mean and standard error; NaN with fewer than 3 values.
+std::pair<double, double> mean_error(const std::vector<double>& values) {
+  if (values.size() < 3) return {kNaN, kNaN};
+  const auto n = static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  const double mean = sum / n;
+  double square = 0.0;
+  for (const double v : values) square += (v - mean) * (v - mean);
+  return {mean, std::sqrt(square / (n - 1.0) / n)};
+}
+
+double mean_radius_cubed(const GrainBoxMaterial& m) {
+  const double a = m.radius_min;
+  const double b = m.radius_max;
+  return 0.25 * (a + b) * (a * a + b * b);
+}
+
+double medium_bulk(const GrainBoxSpec& spec, double pressure) {
+  const GrainBoxMaterial& m = spec.material;
+  return effective_medium(
+             {pressure, kJammed, kContacts, m.youngs_modulus / (2.0 * (1.0 + m.poisson_ratio)), m.poisson_ratio})
+      .bulk;
+}
+
+/// Largest axis strain of the loading. K = A sigma^(1/3), so eps_v = 3/2 (sigma_2^(2/3) - sigma_1^(2/3))/A.
+double loading_strain(const GrainBoxSpec& spec) {
+  double strain = spec.loading.end_strain;
+  if (std::isfinite(spec.loading.end_stress)) {
+    const double start = spec.generation.pressure;
+    const double end = std::max(start, spec.loading.end_stress);
+    const double a = medium_bulk(spec, end) / std::cbrt(end);
+    const double volume = 1.5 * (std::cbrt(end * end) - std::cbrt(start * start)) / a;
+    double rate = 0.0;
+    double fastest = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      if (spec.loading.control[static_cast<std::size_t>(k)] == AxisControl::stress) continue;
+      rate += spec.loading.strain_rate[k];
+      fastest = std::max(fastest, std::abs(spec.loading.strain_rate[k]));
+    }
+    if (rate > 0.0) strain = std::min(strain, volume * fastest / rate);
+  }
+  return strain;
+}
+
+}  // namespace
+
+ModuliAt moduli_at(const GrainBoxResult& result, double pressure) {
+  std::vector<double> bulk;
+  std::vector<double> shear;
+  for (const BoxPoint* p : result.points_of(BoxPhase::loading)) {
+    if (std::abs(p->pressure / pressure - 1.0) > kNear) continue;
+    if (std::isfinite(p->bulk)) bulk.push_back(p->bulk);
+    if (std::isfinite(p->shear_modulus)) shear.push_back(p->shear_modulus);
+  }
+  const auto [k, k_error] = mean_error(bulk);
+  const auto [g, g_error] = mean_error(shear);
+  return {pressure, k, k_error, g, g_error, bulk.size()};
+}
+
+double largest_of(const GrainBoxResult& result, BoxPhase phase, double BoxPoint::*value) {
+  double largest = 0.0;
+  for (const BoxPoint* p : result.points_of(phase))
+    if (p->*value > largest) largest = p->*value;
+  return largest;
+}
+
+StepEffort total_effort(const GrainBoxState& state) {
+  StepEffort sum;
+  for (const BoxPoint& p : state.points) {
+    sum.residual = std::max(sum.residual, p.effort.residual);
+    sum.iterations += p.effort.iterations;
+    sum.loop_passes += p.effort.loop_passes;
+    sum.contact_evaluations += p.effort.contact_evaluations;
+    sum.factorisations += p.effort.factorisations;
+    sum.linear_iterations += p.effort.linear_iterations;
+    sum.solutions += p.effort.solutions;
+    sum.retries += p.effort.retries;
+  }
+  return sum;
+}
+
+GrainBoxForecast forecast(const GrainBoxSpec& spec) {
+  GrainBoxForecast out;
+  const auto grains = static_cast<double>(spec.grains);
+  const double cubed = mean_radius_cubed(spec.material);
+  out.box_length = std::cbrt(grains * kSphereVolume * cubed / kJammed);
+  double left = loading_strain(spec);
+  for (std::size_t k = 0; k < spec.loading.stage_strains.size() && left > 0.0; ++k) {
+    const double part = std::min(left, spec.loading.stage_strains[k]);
+    out.increments += part / spec.loading.increments[k];
+    left -= part;
+  }
+  out.increments += left / spec.loading.increments.back();
+  const double stress = std::isfinite(spec.loading.end_stress)
+                            ? std::max(spec.loading.end_stress, spec.generation.pressure)
+                            : spec.generation.pressure;
+  // Mean normal force P = 4 pi R^2 sigma/(phi C); Hertz: P = 4/3 E* sqrt(R/2) h^(3/2).
+  const double r = std::cbrt(cubed);
+  const double force = 4.0 * std::numbers::pi * r * r * stress / (kJammed * kContacts);
+  const double nu = spec.material.poisson_ratio;
+  const double modulus = spec.material.youngs_modulus / (2.0 * (1.0 - nu * nu));
+  out.overlap_ratio = std::pow(force / (4.0 / 3.0 * modulus * std::sqrt(0.5 * r)), 2.0 / 3.0) / r;
+  out.contacts = 0.5 * kContacts * grains;
+  out.bytes = kBytesPerGrain * grains;
+  return out;
+}
+
+}  // namespace softgrain

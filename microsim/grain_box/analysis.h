@@ -1,0 +1,36 @@
+// What follows from a run, or from a scene before it runs.
+#pragma once
+
+#include "microsim/grain_box/record.h"
+
+namespace softgrain {
+
+/// Interval moduli near one stress of the loading phase: means of K and G over the intervals that end within 10 % of
+/// it, with standard errors from their scatter.
+struct ModuliAt {
+  double pressure = 0.0;  ///< asked for [Pa]
+  double bulk = 0.0;      ///< NaN with fewer than 3 intervals, as the others
+  double bulk_error = 0.0;
+  double shear = 0.0;
+  double shear_error = 0.0;
+  std::size_t points = 0;
+};
+[[nodiscard]] ModuliAt moduli_at(const GrainBoxResult& result, double pressure);
+
+/// Largest value of a quantity over the points of a phase, NaN left out; 0 without points.
+[[nodiscard]] double largest_of(const GrainBoxResult& result, BoxPhase phase, double BoxPoint::*value);
+
+/// Sums over all points.
+[[nodiscard]] StepEffort total_effort(const GrainBoxState& state);
+
+/// Estimates by the effective medium with a solid fraction of 0.63 and 6 contacts per grain, for `check`.
+struct GrainBoxForecast {
+  double box_length = 0.0;     ///< geometric mean side when jammed [m]
+  double increments = 0.0;     ///< of the loading
+  double overlap_ratio = 0.0;  ///< h/R of a mean contact at the largest stress
+  double contacts = 0.0;
+  double bytes = 0.0;
+};
+[[nodiscard]] GrainBoxForecast forecast(const GrainBoxSpec& spec);
+
+}  // namespace softgrain

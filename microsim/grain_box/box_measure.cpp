@@ -1,0 +1,130 @@
+#include "microsim/grain_box/box_measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/solid_sphere.h"
+#include "common/statics/least_work.h"
+
+namespace softgrain {
+
+Vec3 box_lengths(const GrainPack& pack) {
+  Vec3 lengths;
+  for (int k = 0; k < 3; ++k) {
+    const auto low = static_cast<std::size_t>(2 * k);
+    lengths[k] = pack.walls[low + 1].point[k] - pack.walls[low].point[k];
+  }
+  return lengths;
+}
+
+double solid_volume(const GrainPack& pack) {
+  double volume = 0.0;
+  for (const double r : pack.radius) volume += kSphereVolume * r * r * r;
+  return volume;
+}
+
+double solid_fraction(const GrainPack& pack) {
+  const Vec3 lengths = box_lengths(pack);
+  return solid_volume(pack) / (lengths[0] * lengths[1] * lengths[2]);
+}
+
+double BoxStress::deviator() const {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) sum += (normal[k] - mean()) * (normal[k] - mean());
+  return std::sqrt(1.5 * sum);
+}
+
+BoxStress box_stress(const GrainPack& pack) {
+  const Vec3 lengths = box_lengths(pack);
+  const std::vector<Vec3> forces = wall_forces(pack);
+  BoxStress out;
+  for (int k = 0; k < 3; ++k) {
+    const double area = lengths[(k + 1) % 3] * lengths[(k + 2) % 3];
+    const auto low = static_cast<std::size_t>(2 * k);
+    const double pushed_low = -forces[low][k] / area;
+    const double pushed_high = forces[low + 1][k] / area;
+    out.normal[k] = 0.5 * (pushed_low + pushed_high);
+    if (out.normal[k] > 0.0)
+      out.imbalance = std::max(out.imbalance, std::abs(pushed_high - pushed_low) / out.normal[k]);
+    for (const std::size_t wall : {low, low + 1})
+      for (const int across : {(k + 1) % 3, (k + 2) % 3})
+        out.shear = std::max(out.shear, std::abs(forces[wall][across]) / area);
+  }
+  return out;
+}
+
+std::vector<std::int32_t> contacts_per_grain(const GrainPack& pack) {
+  std::vector<std::int32_t> count(pack.position.size(), 0);
+  for (const PackContact& c : pack.contacts) {
+    if (!(c.normal_force > 0.0)) continue;
+    ++count[static_cast<std::size_t>(c.i)];
+    if (c.j < pack.grains()) ++count[static_cast<std::size_t>(c.j)];
+  }
+  return count;
+}
+
+namespace {
+
+/// Takes grains with fewer than `least` contacts out, and again those that this leaves with too few.
+std::vector<char> find_rattlers(const GrainPack& pack, std::vector<std::int32_t> count, std::int32_t least) {
+  std::vector<char> out(count.size(), 0);
+  for (bool changed = true; changed;) {
+    changed = false;
+    std::vector<char> now = out;
+    for (std::size_t n = 0; n < out.size(); ++n)
+      if (out[n] == 0 && count[n] < least) {
+        now[n] = 1;
+        changed = true;
+      }
+    for (const PackContact& c : pack.contacts) {
+      if (!(c.normal_force > 0.0) || c.j >= pack.grains()) continue;
+      const auto i = static_cast<std::size_t>(c.i);
+      const auto j = static_cast<std::size_t>(c.j);
+      if (now[i] != 0 && out[i] == 0 && now[j] == 0) --count[j];
+      if (now[j] != 0 && out[j] == 0 && now[i] == 0) --count[i];
+    }
+    out = std::move(now);
+  }
+  return out;
+}
+
+}  // namespace
+
+ContactCounts count_contacts(const GrainPack& pack) {
+  ContactCounts out;
+  const std::vector<std::int32_t> count = contacts_per_grain(pack);
+  const std::vector<char> rattler = find_rattlers(pack, count, pack.friction > 0.0 ? 2 : 4);
+  std::int64_t ends = 0;
+  std::int64_t held_ends = 0;
+  for (const PackContact& c : pack.contacts) {
+    if (!(c.normal_force > 0.0)) continue;
+    const bool wall = c.j >= pack.grains();
+    ++out.contacts;
+    out.sliding += c.sliding ? 1 : 0;
+    out.mean_force += c.normal_force;
+    ends += wall ? 1 : 2;
+    const bool held =
+        rattler[static_cast<std::size_t>(c.i)] == 0 && (wall || rattler[static_cast<std::size_t>(c.j)] == 0);
+    if (held) held_ends += wall ? 1 : 2;
+  }
+  const auto grains = static_cast<std::int64_t>(count.size());
+  out.rattlers = std::count(rattler.begin(), rattler.end(), 1);
+  out.fewest = count.empty() ? 0 : *std::min_element(count.begin(), count.end());
+  if (out.contacts > 0) out.mean_force /= static_cast<double>(out.contacts);
+  if (grains > 0) out.coordination = static_cast<double>(ends) / static_cast<double>(grains);
+  if (grains > out.rattlers)
+    out.coordination_without = static_cast<double>(held_ends) / static_cast<double>(grains - out.rattlers);
+  return out;
+}
+
+std::vector<Vec3> wall_moves(const Vec3& strain, const Vec3& reference) {
+  std::vector<Vec3> moves(kBoxWalls);
+  for (int k = 0; k < 3; ++k) {
+    const double half = 0.5 * strain[k] * reference[k];
+    moves[static_cast<std::size_t>(2 * k)][k] = half;
+    moves[static_cast<std::size_t>(2 * k + 1)][k] = -half;
+  }
+  return moves;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,46 @@
+// What a pack between six planes shows: lengths, stresses on its walls, contacts per grain.
+#pragma once
+
+#include <cstdint>
+
+#include "common/statics/grain_pack.h"
+
+namespace softgrain {
+
+/// Walls come in the order -x +x -y +y -z +z.
+inline constexpr int kBoxWalls = 6;
+
+[[nodiscard]] Vec3 box_lengths(const GrainPack& pack);
+[[nodiscard]] double solid_volume(const GrainPack& pack);  ///< of all grains, overlaps counted twice [m^3]
+[[nodiscard]] double solid_fraction(const GrainPack& pack);
+
+/// Stress by wall forces over wall areas (of the box as it is), compression positive [Pa].
+struct BoxStress {
+  Vec3 normal{};           ///< per axis, mean of both walls
+  double imbalance = 0.0;  ///< largest difference of opposite walls over their mean
+  double shear = 0.0;      ///< largest tangential component on any wall
+  [[nodiscard]] double mean() const { return (normal[0] + normal[1] + normal[2]) / 3.0; }
+  /// sqrt(3 J2): |axial - lateral| when two stresses are equal.
+  [[nodiscard]] double deviator() const;
+};
+[[nodiscard]] BoxStress box_stress(const GrainPack& pack);
+
+struct ContactCounts {
+  std::int64_t contacts = 0;          ///< that carry force, grains and walls
+  std::int64_t sliding = 0;           ///< at the Coulomb limit
+  double coordination = 0.0;          ///< contacts per grain (a wall contact counts for one grain)
+  double coordination_without = 0.0;  ///< the same, rattlers left out
+  std::int64_t rattlers = 0;
+  std::int64_t fewest = 0;  ///< contacts of any grain
+  double mean_force = 0.0;  ///< normal [N]
+};
+/// Rattlers have fewer than 4 contacts without friction, fewer than 2 with it; they are taken out until none is left.
+[[nodiscard]] ContactCounts count_contacts(const GrainPack& pack);
+
+/// Contacts of every grain.
+[[nodiscard]] std::vector<std::int32_t> contacts_per_grain(const GrainPack& pack);
+
+/// Moves of the six walls that strain the box by dL = strain * reference, opposite walls alike.
+[[nodiscard]] std::vector<Vec3> wall_moves(const Vec3& strain, const Vec3& reference);
+
+}  // namespace softgrain

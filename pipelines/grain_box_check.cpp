@@ -1,0 +1,55 @@
+#include "pipelines/grain_box_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "microsim/grain_box/analysis.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Seconds of one core per grain and increment of the fast method, measured on the packs of glass_beads.toml; the
+/// published method needs about ten times as long.
+constexpr double kSecondsPerGrain = 2e-4;
+constexpr double kPublishedFactor = 10.0;
+/// Equilibria of the generation: pressure, growth, compression with friction.
+constexpr double kGenerationIncrements = 120.0;
+
+double expected_seconds(const GrainBoxSpec& spec, double increments) {
+  const bool fast = spec.solver.method == LeastWorkMethod::fast;
+  return (increments + kGenerationIncrements) * static_cast<double>(spec.grains) * kSecondsPerGrain *
+         (fast ? 1.0 : kPublishedFactor);
+}
+
+}  // namespace
+
+void check_grain_box(const GrainBoxSetup& setup, nlohmann::json& facts, std::string& lines) {
+  double total = 0.0;
+  facts["packs"] = nlohmann::json::array();
+  for (const GrainBoxSpec& spec : setup.packs) {
+    const GrainBoxForecast f = forecast(spec);
+    const double seconds = expected_seconds(spec, f.increments);
+    total += seconds;
+    facts["packs"].push_back({{"name", spec.name},
+                              {"grains", spec.grains},
+                              {"solid_fraction", spec.solid_fraction},
+                              {"box_length", f.box_length},
+                              {"increments", std::ceil(f.increments)},
+                              {"overlap_ratio", f.overlap_ratio},
+                              {"contacts", f.contacts},
+                              {"bytes", f.bytes},
+                              {"core_seconds", seconds}});
+    lines += fmt::format(
+        "  {}: {} grains, solid fraction {:.2f} when loose, box of about {:.3g} m; {} loading from {:.3g} MPa, about "
+        "{:.0f} increments; overlap about {:.1f} % of the radius at the end; about {:.0f} contacts, {:.0f} MB, {:.0f} "
+        "s\n",
+        spec.name, spec.grains, spec.solid_fraction, f.box_length, spec.loading.test, spec.generation.pressure * 1e-6,
+        std::ceil(f.increments), 100.0 * f.overlap_ratio, f.contacts, f.bytes * 1e-6, seconds);
+  }
+  facts["core_seconds"] = total;
+  lines += fmt::format("  {} packs: about {:.0f} s of one core\n", setup.packs.size(), total);
+}
+
+}  // namespace softgrain
