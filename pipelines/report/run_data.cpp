@@ -50,7 +50,9 @@ RunData load_run(const std::string& directory) {
   if (exists("measurements.h5")) run.measurements = load_measurements(file("measurements.h5")), any = true;
   if (exists("law.toml")) run.card = load_card(file("law.toml")), any = true;
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;
-  if (!any) throw FileTrouble(directory + ": holds none of summary.json, measurements.h5, law.toml, macro.h5");
+  if (exists("grain_box.h5")) run.grain_boxes = load_grain_boxes(file("grain_box.h5")), any = true;
+  if (!any)
+    throw FileTrouble(directory + ": holds none of summary.json, measurements.h5, law.toml, macro.h5, grain_box.h5");
   return run;
 }
 

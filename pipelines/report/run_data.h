@@ -9,6 +9,7 @@
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
+#include "microsim/grain_box/record.h"
 #include "pipelines/compare/measured_stiffness.h"
 
 namespace softgrain::report {
@@ -27,6 +28,7 @@ struct RunData {
   std::optional<Measurements> measurements;
   std::optional<LawCard> card;
   std::vector<MacroCurve> macro;
+  std::vector<GrainBoxResult> grain_boxes;
 
   /// Law of a pair kind, if it was fitted and is usable for drawing.
   [[nodiscard]] const PairLaw* law(PairKind kind) const;
@@ -36,7 +38,7 @@ struct RunData {
   [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
 };
 
-/// Reads what exists among summary.json, measurements.h5, law.toml and macro.h5.
+/// Reads what exists among summary.json, measurements.h5, law.toml, macro.h5 and grain_box.h5.
 /// Throws FileTrouble when the directory is missing, holds none of them, or one of them is damaged.
 RunData load_run(const std::string& directory);
 

@@ -89,6 +89,14 @@ std::string heading_section(const RunData& run) {
   if (const auto* particles = find_value(run.summary, "particles"); particles != nullptr && particles->is_array()) {
     lines += paragraph(fmt::format("Scene of {} explicit particles.", particles->size()));
   }
+  for (const GrainBoxResult& r : run.grain_boxes) {
+    const auto points = r.points_of(BoxPhase::loading);
+    if (points.empty() || run.grain_boxes.size() > 3) continue;
+    lines += paragraph(fmt::format("Pack {}: {} grains, {} loading to a confining stress of {} MPa; {} states.",
+                                   r.spec.name, format_count(r.spec.grains), r.spec.loading.test,
+                                   format_number(points.back()->pressure * 1e-6, 4), r.state.points.size()));
+  }
+  if (run.grain_boxes.size() > 3) lines += paragraph(fmt::format("{} packs of grains.", run.grain_boxes.size()));
   return title_line(run) + "<div class=\"lead\">\n" + lines + "</div>\n";
 }
 

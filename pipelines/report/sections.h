@@ -17,6 +17,7 @@ std::string relaxations_section(const RunData& run);  ///< published against dam
 std::string macro_section(const RunData& run);        ///< stress and strain, law against resolved twin
 std::string radii_section(const RunData& run);        ///< size distribution of the packed grains
 std::string particles_section(const RunData& run);    ///< final states and contacts of a scene of explicit particles
+std::string grain_box_section(const RunData& run);    ///< packs between six planes: stresses, moduli, contacts
 std::string cost_section(const RunData& run);         ///< passes, contact evaluations, seconds, speed-ups
 std::string provenance_section(const RunData& run);   ///< version, seeds, command, scene
 
