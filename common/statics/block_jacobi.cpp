@@ -22,7 +22,14 @@ Vec3 normal_cross_axis(const Vec3& n, int k) {
   return cross(n, e);
 }
 
-/// Symmetric part of B^T A B, B = [1, arm [n x]], plus torsion; `arm` and `twist` are scaled with the radius.
+/// Answer of a symmetric contact on i to delta.
+Vec3 contact_answer(const LinkTangent& t, const Vec3& delta) {
+  const double along = softgrain::dot(t.normal, delta);
+  const Vec3 slid = delta - t.normal * along;
+  return t.normal * (t.normal_stiffness * along) + (slid - t.left * softgrain::dot(t.right, slid)) * t.tangential;
+}
+
+/// Adds B^T A B, B = [1, arm [n x]], plus torsion; `arm` and `twist` are scaled with the radius.
 template <int kWidth>
 void add_link(const LinkTangent& t, double arm, double twist, Block<kWidth>& out) {
   std::array<Vec3, kWidth> column;
@@ -32,14 +39,9 @@ void add_link(const LinkTangent& t, double arm, double twist, Block<kWidth>& out
     column[static_cast<std::size_t>(k)] = k < 3 ? e : normal_cross_axis(t.normal, k - 3) * arm;
   }
   for (int c = 0; c < kWidth; ++c) {
-    const Vec3& from = column[static_cast<std::size_t>(c)];
-    const Vec3 force{{softgrain::dot(t.stiffness[0], from), softgrain::dot(t.stiffness[1], from),
-                      softgrain::dot(t.stiffness[2], from)}};
-    for (int r = 0; r < kWidth; ++r) {
-      const double half = 0.5 * softgrain::dot(column[static_cast<std::size_t>(r)], force);
-      at<kWidth>(out, r, c) += half;
-      at<kWidth>(out, c, r) += half;
-    }
+    const Vec3 force = contact_answer(t, column[static_cast<std::size_t>(c)]);
+    for (int r = 0; r < kWidth; ++r)
+      at<kWidth>(out, r, c) += softgrain::dot(column[static_cast<std::size_t>(r)], force);
   }
   if constexpr (kWidth == 6)
     for (int r = 0; r < 3; ++r)
@@ -88,14 +90,16 @@ std::vector<Block<kWidth>> own_stiffness(const PackProblem& problem, const std::
 
 template <int kWidth>
 void build_factors(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double floor,
-                   std::vector<double>& factor) {
+                   std::vector<double>& largest, std::vector<double>& factor) {
   std::vector<Block<kWidth>> blocks = own_stiffness<kWidth>(problem, tangents);
   double mean = 0.0;
   for (Block<kWidth>& b : blocks) mean += largest_diagonal<kWidth>(b);
   mean = mean > 0.0 ? mean / static_cast<double>(blocks.size()) : 1.0;
   factor.clear();
+  largest.clear();
   for (Block<kWidth>& b : blocks) {
     const double most = largest_diagonal<kWidth>(b);
+    largest.push_back(most > 0.0 ? most : mean);
     const double added = most > 0.0 ? floor * most : mean;
     for (int k = 0; k < kWidth; ++k) at<kWidth>(b, k, k) += added;
     factorise<kWidth>(b, 0.5 * added);
@@ -128,9 +132,9 @@ void solve_blocks(const std::vector<double>& factor, const Unknowns& in, Unknown
 void BlockJacobi::build(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double floor) {
   width_ = problem.stride();
   if (width_ == 6) {
-    build_factors<6>(problem, tangents, floor, factor_);
+    build_factors<6>(problem, tangents, floor, largest_, factor_);
   } else {
-    build_factors<3>(problem, tangents, floor, factor_);
+    build_factors<3>(problem, tangents, floor, largest_, factor_);
   }
 }
 
@@ -141,6 +145,11 @@ void BlockJacobi::apply(const Unknowns& in, Unknowns& out) const {
   } else {
     solve_blocks<3>(factor_, in, out);
   }
+}
+
+void BlockJacobi::add_diagonal(const Unknowns& in, double share, Unknowns& out) const {
+  const auto width = static_cast<std::size_t>(width_);
+  for (std::size_t k = 0; k < in.size(); ++k) out[k] += share * largest_[k / width] * in[k];
 }
 
 }  // namespace softgrain::statics

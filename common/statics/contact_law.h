@@ -102,6 +102,7 @@ struct TangentialForce {
   bool slipping = false;
   // Derivative: dQ = -stiffness (du_s - left (right.du_s)) + by_overlap dh.
   double stiffness = 0.0;
+  double stick = 0.0;  ///< the stiffness without slip
   Vec3 left{};
   Vec3 right{};
   Vec3 by_overlap{};
@@ -111,7 +112,7 @@ struct TangentialForce {
 inline TangentialForce tangential_by_reference(const FrictionConstants& c, const Vec3& pushed, const Vec3& slid) {
   TangentialForce out;
   out.limit = c.limit0;
-  out.stiffness = c.shear * c.contact_radius0;
+  out.stiffness = out.stick = c.shear * c.contact_radius0;
   out.force = pushed - slid * out.stiffness;
   const double along = dot(pushed, slid);
   const double size2 = norm2(slid);
@@ -145,6 +146,7 @@ inline TangentialForce tangential_by_current(const FrictionConstants& c, const N
     growth = 0.5 / overlap + 1.0 / overlap - 1.0 / (overlap - c.overlap0);
   }
   out.limit = c.friction * normal.force;
+  out.stick = out.stiffness;
   const Vec3 trial = pushed - slid * out.stiffness;
   const double size = norm(trial);
   out.force = trial;
@@ -161,7 +163,17 @@ inline TangentialForce tangential_by_current(const FrictionConstants& c, const N
     out.stiffness *= shrink;
     out.left = out.right = direction;
   }
+  if (std::isinf(c.friction) && overlap < c.overlap0) {
+    // Without a limit Q would vanish at once where a contact opens: it falls with the contact radius.
+    const double share = std::sqrt(overlap / c.overlap0);
+    out.force *= share;
+    out.work *= share;
+    out.stiffness *= share;
+    out.stick = out.stiffness;
+    out.by_overlap = out.force * (0.5 / overlap);
+  }
   out.stiffness *= scale;
+  out.stick *= scale;
   return out;
 }
 

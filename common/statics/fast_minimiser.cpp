@@ -1,91 +1,163 @@
-// Nonlinear conjugate gradient with a block preconditioner.
+// The fast minimiser: steps of a symmetric linearised pack, solved by preconditioned conjugate gradient only as far as
+// they pay. A sliding contact enters with its secant stiffness Q/u_s, which never overshoots; without friction the step
+// is Newton's, negative stiffness of turning contacts included. Anderson mixing takes out the few directions (rattlers
+// that roll and slide) that would converge slowly. Floppy grains are held by a small spring that fades as steps
+// succeed.
 #include <algorithm>
 #include <cmath>
 
+#include "common/statics/anderson.h"
 #include "common/statics/block_jacobi.h"
+#include "common/statics/krylov.h"
 #include "common/statics/minimiser.h"
+#include "common/statics/stiffness.h"
 
 namespace softgrain::statics {
 
 namespace {
 
-constexpr double kFloor = 1e-2;    // of the block preconditioner
-constexpr double kMaxMove = 0.05;  // of the radius, per iteration
-constexpr int kRestart = 40;
-constexpr int kSearchPasses = 8;
+constexpr double kBlockFloor = 1e-2;             // of the preconditioner
+constexpr double kMaxMove = 0.05;                // of the radius, per step and grain
+constexpr int kSearchPasses = 8;                 // per step
+constexpr std::int64_t kLinearIterations = 400;  // per step
+constexpr std::size_t kMemory = 5;               // steps that are mixed
+constexpr double kMixBelow = 0.1;                // worst residual from which steps are mixed
+constexpr double kFirstSpring = 1e-4;            // holding spring, in the stiffness of the grain's own contacts
+constexpr double kLeastSpring = 1e-7;
+constexpr double kMostSpring = 1e-2;
+constexpr double kLinearReduction = 0.1;  // of the residual of a linear system, and its least value
+constexpr double kLeastReduction = 1e-3;
 
-/// One run of the conjugate gradient: the state, its forces, and the search direction.
-class Descent {
+class Stepper {
  public:
-  Descent(PackProblem& problem, Unknowns& theta) : problem_(problem), theta_(theta) {
+  Stepper(PackProblem& problem, Unknowns& theta) : problem_(problem), theta_(theta) {
     problem_.evaluate(theta_, forces_);
   }
   [[nodiscard]] const PackForces& forces() const { return forces_; }
+  [[nodiscard]] std::int64_t linear_iterations() const { return linear_iterations_; }
 
-  void precondition() {
-    problem_.linearise(theta_, tangents_);
-    inverse_.build(problem_, tangents_, kFloor);
-    direction_.clear();
-  }
-
-  /// Polak-Ribiere+ in the metric of the preconditioner.
-  void choose_direction() {
-    inverse_.apply(forces_.force, scaled_);
-    const double gain = dot(forces_.force, scaled_);
-    double beta = 0.0;
-    if (!direction_.empty()) beta = std::max(0.0, (gain - dot(previous_force_, scaled_)) / gain_);
-    gain_ = gain;
-    if (direction_.empty()) direction_.assign(scaled_.size(), 0.0);
-    for (std::size_t k = 0; k < scaled_.size(); ++k) direction_[k] = scaled_[k] + beta * direction_[k];
-    if (dot(forces_.force, direction_) <= 0.0) direction_ = scaled_;
-    previous_force_ = forces_.force;
-  }
-
-  /// Goes along the direction until its force has fallen well below the first (secant steps). False when it cannot.
-  bool search() {
-    const double first = dot(forces_.force, direction_);
-    if (!(first > 0.0)) return false;
-    const GrainPack& pack = problem_.pack();
-    const double most = step_within(direction_, pack, problem_.stride(), kMaxMove);
-    const Unknowns start = theta_;
-    double low = 0.0;
-    double low_force = first;
-    double high = 0.0;  // 0: not bracketed
-    double step = std::min(most, step_);
-    for (int k = 0; k < kSearchPasses; ++k) {
-      theta_ = start;
-      add_scaled(theta_, step, direction_);
-      problem_.evaluate(theta_, forces_);
-      const double along = dot(forces_.force, direction_);
-      if (!std::isfinite(along)) return false;
-      if (std::abs(along) <= 0.3 * first || (along > 0.0 && step >= most)) break;
-      if (along < 0.0) {
-        high = step;
-        step = low + (high - low) * std::clamp(low_force / (low_force - along), 0.05, 0.95);
-      } else {
-        const double slope = (low_force - along) / (step - low);
-        const double wanted = slope > 0.0 ? step + along / slope : 4.0 * step;
-        low = step;
-        low_force = along;
-        step = high > 0.0 ? std::clamp(wanted, low + 0.05 * (high - low), low + 0.95 * (high - low))
-                          : std::min({most, wanted, 4.0 * step});
-      }
+  /// One step; false when no direction leads to a better balance.
+  bool step(bool mix) {
+    linearise();
+    const bool indefinite = solve();
+    clip(direction_);
+    if (mix) {
+      Unknowns mixed = mixing_.mixed(theta_, direction_);
+      clip(mixed);
+      if (dot(forces_.force, mixed) > 0.0) direction_ = std::move(mixed);
+    } else {
+      mixing_.forget();
     }
-    step_ = std::max(step, 1e-3);
+    if (!(dot(forces_.force, direction_) > 0.0)) {
+      // The preconditioned force itself always leads down.
+      inverse_.apply(forces_.force, direction_);
+      clip(direction_);
+    }
+    double taken = 0.0;
+    if (!search(taken)) return false;
+    if (indefinite || taken < 0.5) {
+      spring_ = std::min(kMostSpring, 10.0 * spring_);
+    } else if (taken >= 1.0) {
+      spring_ = std::max(kLeastSpring, spring_ / 3.0);
+    }
     return true;
   }
 
  private:
+  void linearise() {
+    problem_.linearise(theta_, tangents_);
+    for (LinkTangent& t : tangents_) {
+      t.left = t.right = {};
+      t.by_overlap = {};
+      // Under the even deformation that starts an increment many contacts seem to slide that will not.
+      if (first_) t.tangential = t.stick;
+    }
+    first_ = false;
+    inverse_.build(problem_, tangents_, kBlockFloor);
+  }
+
+  /// True when the conjugate gradient met negative stiffness.
+  bool solve() {
+    // With friction the contacts hold what turns; their part of the prestress is not known as a symmetric matrix.
+    const Stiffness stiffness(problem_, tangents_, problem_.stride() == 3 ? 1.0 : 0.0);
+    const auto map = [&](const Unknowns& in, Unknowns& out) {
+      stiffness.apply(in, out);
+      inverse_.add_diagonal(in, spring_, out);
+    };
+    const auto inverse = [&](const Unknowns& in, Unknowns& out) { inverse_.apply(in, out); };
+    const KrylovResult k = conjugate_gradient(map, inverse, forces_.force, reduction(), kLinearIterations, direction_);
+    linear_iterations_ += k.iterations;
+    return k.indefinite;
+  }
+
+  /// Linear systems are solved better when the last step was a good one (Eisenstat and Walker's second choice).
+  double reduction() {
+    const double size2 = dot(forces_.force, forces_.force);
+    const double wanted = last2_ > 0.0 ? 0.9 * size2 / last2_ : kLinearReduction;
+    last2_ = size2;
+    return std::clamp(wanted, kLeastReduction, kLinearReduction);
+  }
+
+  /// Shortens the move of every grain that goes too far, and only that: a rattler must not hold up the pack.
+  void clip(Unknowns& d) const {
+    const auto width = static_cast<std::size_t>(problem_.stride());
+    const std::vector<double>& radius = problem_.pack().radius;
+    for (std::size_t g = 0; g < radius.size(); ++g) {
+      double most = 0.0;
+      for (std::size_t k = g * width; k < (g + 1) * width; ++k) most = std::max(most, std::abs(d[k]));
+      const double limit = kMaxMove * radius[g];
+      if (most > limit)
+        for (std::size_t k = g * width; k < (g + 1) * width; ++k) d[k] *= limit / most;
+    }
+  }
+
+  double force_along(const Unknowns& start, double part) {
+    theta_ = start;
+    add_scaled(theta_, part, direction_);
+    problem_.evaluate(theta_, forces_);
+    return dot(forces_.force, direction_);
+  }
+
+  /// Goes along the direction until its force has halved (at most the whole step), by bracketed secants.
+  bool search(double& taken) {
+    const double first = dot(forces_.force, direction_);
+    if (!(first > 0.0)) return false;
+    const Unknowns start = theta_;
+    double low = 0.0;
+    double low_force = first;
+    double high = 1.0;
+    double part = 1.0;
+    for (int k = 0; k < kSearchPasses; ++k) {
+      const double along = force_along(start, part);
+      if (!std::isfinite(along)) return false;
+      taken = part;
+      if (std::abs(along) <= 0.5 * first || (along > 0.0 && part >= 1.0)) break;
+      if (along < 0.0) {
+        high = part;
+        part = low + (high - low) * std::clamp(low_force / (low_force - along), 0.05, 0.95);
+      } else {
+        const double wanted = part + along * (part - low) / (low_force - along);
+        low = part;
+        low_force = along;
+        const double middle = 0.5 * (low + high);
+        part = wanted > low && wanted < high ? std::clamp(wanted, low + 0.05 * (high - low), low + 0.95 * (high - low))
+                                             : middle;
+      }
+    }
+    return true;
+  }
+
   PackProblem& problem_;
   Unknowns& theta_;
   PackForces forces_;
   std::vector<LinkTangent> tangents_;
   BlockJacobi inverse_;
-  Unknowns scaled_;
+  AndersonMixing mixing_{kMemory};
   Unknowns direction_;
-  Unknowns previous_force_;
-  double gain_ = 0.0;
-  double step_ = 1.0;
+  double spring_ = kFirstSpring;
+  double last2_ = 0.0;
+  bool first_ = true;
+  std::int64_t linear_iterations_ = 0;
 };
 
 }  // namespace
@@ -95,11 +167,11 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   const Scales scales = scales_of(problem.pack(), options);
   problem.set_walls(1.0);
   theta = affine_guess(problem, 1.0);
-  Descent descent(problem, theta);
+  Stepper stepper(problem, theta);
   result.stopped_by = "cap";
-  for (; result.iterations < options.max_iterations; ++result.iterations) {
-    result.worst_residual =
-        worst_residual(descent.forces(), problem.pack(), problem.stride(), residual_floor(scales, descent.forces()));
+  for (;; ++result.iterations) {
+    const PackForces& forces = stepper.forces();
+    result.worst_residual = worst_residual(forces, problem.pack(), problem.stride(), residual_floor(scales, forces));
     if (!std::isfinite(result.worst_residual)) {
       result.stopped_by = "not finite";
       break;
@@ -109,15 +181,15 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
       result.converged = true;
       break;
     }
-    if (result.iterations % kRestart == 0) descent.precondition();
-    descent.choose_direction();
-    if (!descent.search()) {
+    if (result.iterations >= options.max_iterations) break;
+    if (!stepper.step(result.worst_residual < kMixBelow)) {
       result.stopped_by = "no descent";
       break;
     }
   }
-  result.residual_energy = dot(descent.forces().force, descent.forces().force);
-  result.work = descent.forces().work;
+  result.linear_iterations = stepper.linear_iterations();
+  result.residual_energy = dot(stepper.forces().force, stepper.forces().force);
+  result.work = stepper.forces().work;
   return result;
 }
 

@@ -188,19 +188,6 @@ double start_sums(const GrainPack& pack, const Unknowns& theta, std::size_t stri
   return work;
 }
 
-/// A = P' nn + d(-Q)/d(delta); the overlap changes by -n.delta.
-Matrix3 stiffness_of(const ContactPlace& p, const ContactResponse& r) {
-  Matrix3 a;
-  const TangentialForce& t = r.tangential;
-  for (int k = 0; k < 3; ++k) {
-    const auto row = static_cast<std::size_t>(k);
-    a[row] = p.normal * ((r.normal.stiffness - t.stiffness) * p.normal[k] + t.by_overlap[k]) -
-             t.right * (t.stiffness * t.left[k]);
-    a[row][k] += t.stiffness;
-  }
-  return a;
-}
-
 }  // namespace
 
 PackProblem::PackProblem(const GrainPack& pack, std::vector<Vec3> wall_moves, CoulombRule rule, bool torsion)
@@ -273,12 +260,17 @@ void PackProblem::linearise_as(const Unknowns& theta, std::vector<LinkTangent>& 
     const ContactResponse r = response_of<Law>(view, c, place);
     t.closed = true;
     t.normal = place.normal;
-    t.stiffness = stiffness_of(place, r);
+    t.normal_stiffness = r.normal.stiffness;
     t.pull = r.normal.force * place.inverse_length;
     if constexpr (Law::friction) {
       t.arm_i = place.arm_i / pack_.radius[slot(links_.i[c])];
       if (links_.j[c] < view.grains) t.arm_j = place.arm_j / pack_.radius[slot(links_.j[c])];
       t.twist = r.torsion.stiffness;
+      t.tangential = r.tangential.stiffness;
+      t.stick = r.tangential.stick;
+      t.left = r.tangential.left;
+      t.right = r.tangential.right;
+      t.by_overlap = r.tangential.by_overlap;
     }
   }
 }

@@ -1,0 +1,134 @@
+#include "common/statics/stiffness.h"
+
+#include <omp.h>
+
+namespace softgrain::statics {
+
+namespace {
+
+/// Below this many links one thread is faster than two.
+constexpr std::int32_t kParallelLinks = 8000;
+
+Vec3 triple(const Unknowns& v, std::size_t at) { return {{v[at], v[at + 1], v[at + 2]}}; }
+
+void add(Unknowns& v, std::size_t at, const Vec3& a) {
+  for (int k = 0; k < 3; ++k) v[at + static_cast<std::size_t>(k)] += a[k];
+}
+
+/// What a link answers to a displacement of its grains: minus the change of the force on i, and of the moments.
+struct LinkAnswer {
+  Vec3 force{};
+  Vec3 roll{};   ///< n x force
+  Vec3 twist{};  ///< [N m / m]
+};
+
+template <int kStride>
+LinkAnswer answer_of(const LinkTangent& t, double prestress, const GrainPack& pack, const Unknowns& in, std::int32_t li,
+                     std::int32_t lj) {
+  constexpr auto kWidth = static_cast<std::size_t>(kStride);
+  const auto i = static_cast<std::size_t>(li);
+  const auto j = static_cast<std::size_t>(lj);
+  const bool wall = lj >= pack.grains();
+  LinkAnswer out;
+  Vec3 moved = triple(in, i * kWidth);
+  if (!wall) moved -= triple(in, j * kWidth);
+  Vec3 delta = moved;
+  if constexpr (kStride == 6) {
+    const Vec3 turn_i = triple(in, i * kWidth + 3);
+    const Vec3 turn_j = wall ? Vec3{} : triple(in, j * kWidth + 3);
+    delta += cross(t.normal, turn_i * t.arm_i + turn_j * t.arm_j);
+    if (t.twist != 0.0) {
+      const Vec3 relative = turn_i * (1.0 / pack.radius[i]) - (wall ? Vec3{} : turn_j * (1.0 / pack.radius[j]));
+      out.twist = t.normal * (t.twist * softgrain::dot(relative, t.normal));
+    }
+  }
+  const double along = softgrain::dot(t.normal, delta);
+  out.force = t.normal * (t.normal_stiffness * along);
+  if constexpr (kStride == 6) {
+    const Vec3 slid = delta - t.normal * along;
+    const Vec3 friction = (slid - t.left * softgrain::dot(t.right, slid)) * t.tangential + t.by_overlap * along;
+    out.force += friction;
+    out.roll = cross(t.normal, friction);
+  }
+  out.force -= (moved - t.normal * softgrain::dot(t.normal, moved)) * (t.pull * prestress);
+  return out;
+}
+
+template <int kStride>
+void add_to_grain(const LinkAnswer& a, const LinkTangent& t, bool first, double radius, Unknowns& out, std::size_t g) {
+  const std::size_t at = g * static_cast<std::size_t>(kStride);
+  add(out, at, first ? a.force : -a.force);
+  if constexpr (kStride == 6) {
+    add(out, at + 3, a.roll * -(first ? t.arm_i : t.arm_j));
+    if (t.twist != 0.0) add(out, at + 3, a.twist * ((first ? 1.0 : -1.0) / radius));
+  }
+}
+
+template <int kStride>
+void scatter(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress, const Unknowns& in,
+             Unknowns& out) {
+  const Links& links = problem.links();
+  const GrainPack& pack = problem.pack();
+  for (std::size_t c = 0; c < tangents.size(); ++c) {
+    const LinkTangent& t = tangents[c];
+    if (!t.closed) continue;
+    const LinkAnswer a = answer_of<kStride>(t, prestress, pack, in, links.i[c], links.j[c]);
+    const auto i = static_cast<std::size_t>(links.i[c]);
+    add_to_grain<kStride>(a, t, true, pack.radius[i], out, i);
+    if (links.j[c] >= pack.grains()) continue;
+    const auto j = static_cast<std::size_t>(links.j[c]);
+    add_to_grain<kStride>(a, t, false, pack.radius[j], out, j);
+  }
+}
+
+/// The same sums in the same order.
+template <int kStride>
+void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress, const Unknowns& in,
+            Unknowns& out) {
+  const Links& links = problem.links();
+  const GrainPack& pack = problem.pack();
+  const auto count = static_cast<std::int32_t>(tangents.size());
+  std::vector<LinkAnswer> answers(tangents.size());
+#pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (std::int32_t c = 0; c < count; ++c) {
+      const auto k = static_cast<std::size_t>(c);
+      if (tangents[k].closed) answers[k] = answer_of<kStride>(tangents[k], prestress, pack, in, links.i[k], links.j[k]);
+    }
+#pragma omp for schedule(static)
+    for (std::int32_t g = 0; g < pack.grains(); ++g) {
+      const auto u = static_cast<std::size_t>(g);
+      for (std::int32_t k = links.start[u]; k < links.start[u + 1]; ++k) {
+        const auto c = static_cast<std::size_t>(links.of_grain[static_cast<std::size_t>(k)]);
+        if (tangents[c].closed) add_to_grain<kStride>(answers[c], tangents[c], links.i[c] == g, pack.radius[u], out, u);
+      }
+    }
+  }
+}
+
+template <int kStride>
+void apply_as(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress,
+              const Unknowns& in, Unknowns& out) {
+  if (problem.links().size() >= kParallelLinks && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
+    gather<kStride>(problem, tangents, prestress, in, out);
+  } else {
+    scatter<kStride>(problem, tangents, prestress, in, out);
+  }
+}
+
+}  // namespace
+
+Stiffness::Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress)
+    : problem_(problem), tangents_(tangents), prestress_(prestress) {}
+
+void Stiffness::apply(const Unknowns& in, Unknowns& out) const {
+  out.assign(in.size(), 0.0);
+  if (problem_.stride() == 6) {
+    apply_as<6>(problem_, tangents_, prestress_, in, out);
+  } else {
+    apply_as<3>(problem_, tangents_, prestress_, in, out);
+  }
+}
+
+}  // namespace softgrain::statics
