@@ -27,8 +27,25 @@ struct DampedProtocolOptions {
   std::int64_t max_passes = 20000;  ///< per relaxation
 };
 
+/// Settling and rearranging under the least-work protocol happen in real time, measured in natural times Rs
+/// sqrt(rho/E).
+struct LeastWorkProtocolOptions {
+  double increment = 0.0025;           ///< of Delta between two equilibria
+  double tolerance_between = 0.1;      ///< at increments between recorded points
+  double tolerance = 1e-2;             ///< at a recorded point
+  std::int64_t increment_passes = 80;  ///< an increment without equilibrium after these is left to dynamics
+  double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
+  double step_factor = 4.0;            ///< its time step over that of the published protocol (masses raised to match)
+  double settle_time = 24.0;           ///< of dynamics before a point is recorded; 0: none
+  double settle_step_factor = 2.0;     ///< its time step over that of the published protocol
+  std::int64_t max_passes = 20000;     ///< of the last relaxation of a recorded point
+};
+
 /// Residuals count forces from this floor up: 1e-7 E Rs^2 [SP 1.4].
 double force_floor(const SoftParticleSpec& spec);
+
+/// The speed of approach of the published protocol at these Rs, rho and E [m/s].
+double published_speed(const SoftParticleSpec& spec);
 
 struct SettleResult {
   double residual = 0.0;
@@ -54,5 +71,9 @@ class Protocol {
 std::unique_ptr<Protocol> make_published_protocol(const PublishedOptions& options);
 /// Increments of overlap, each relaxed by mass-scaled dynamics with adaptive damping. Name "damped".
 std::unique_ptr<Protocol> make_damped_protocol(const DampedProtocolOptions& options);
+
+/// Increments by least work where the pack has an equilibrium nearby, slow mass-scaled dynamics where it rearranges,
+/// and a short dynamic settling of what is recorded. Name "least-work".
+std::unique_ptr<Protocol> make_least_work_protocol(const LeastWorkProtocolOptions& options);
 
 }  // namespace softgrain

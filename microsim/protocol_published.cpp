@@ -66,8 +66,7 @@ class PublishedProtocol : public Protocol {
   }
   [[nodiscard]] double speed(const SoftParticleSpec& spec) const {
     if (options_.approach_speed > 0.0) return options_.approach_speed;
-    return kPublishedSpeed *
-           ((spec.shell_radius / natural_time(spec)) / (kPublished.shell_radius / natural_time(kPublished)));
+    return published_speed(spec);
   }
   [[nodiscard]] double interval(const SoftParticleSpec& spec) const {
     if (options_.stop_interval > 0.0) return options_.stop_interval;
@@ -86,6 +85,11 @@ class PublishedProtocol : public Protocol {
 
 double force_floor(const SoftParticleSpec& spec) {
   return 1e-7 * spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
+}
+
+double published_speed(const SoftParticleSpec& spec) {
+  return kPublishedSpeed *
+         ((spec.shell_radius / natural_time(spec)) / (kPublished.shell_radius / natural_time(kPublished)));
 }
 
 std::unique_ptr<Protocol> make_published_protocol(const PublishedOptions& options) {

@@ -12,12 +12,17 @@ namespace softgrain {
 
 namespace {
 
+LawSet grain_laws(const SoftParticleSpec& spec, const Material& grain, bool damped) {
+  LawSet laws(1);
+  const double restitution = damped ? spec.restitution : 1.0;
+  laws.set(0, 0, hertz_law(HertzCoefficients::of(grain, grain, spec.friction, restitution), false));
+  return laws;
+}
+
 System3 empty_system(const SoftParticleSpec& spec, bool damped_contacts) {
   System3 s;
   s.materials = {{"grain", spec.density, spec.youngs_modulus, spec.poisson_ratio, false}};
-  s.laws = LawSet(1);
-  const double restitution = damped_contacts ? spec.restitution : 1.0;
-  s.laws.set(0, 0, hertz_law(HertzCoefficients::of(s.materials[0], s.materials[0], spec.friction, restitution), false));
+  s.laws = grain_laws(spec, s.materials[0], damped_contacts);
   return s;
 }
 
@@ -86,6 +91,11 @@ double natural_time(const SoftParticleSpec& spec) {
   return spec.shell_radius * std::sqrt(spec.density / spec.youngs_modulus);
 }
 
+void SoftExperiment::set_damping(bool damped) {
+  system.laws = grain_laws(spec, system.materials[0], damped);
+  rebuild_neighbours(system);
+}
+
 Vec3 SoftExperiment::force_on_second() const {
   Vec3 sum{};
   for (const ContactRecord<3>& c : contact_records(system)) {
@@ -96,12 +106,16 @@ Vec3 SoftExperiment::force_on_second() const {
   return sum;
 }
 
-void SoftExperiment::push(double distance) {
+std::vector<Vec3> SoftExperiment::second_moves(double distance) const {
   const auto& p = system.particles;
   std::vector<Vec3> moves(static_cast<std::size_t>(p.size()));
   for (Slot i = first_grains; i < p.size(); ++i)
     if (i != p.grains) moves[static_cast<std::size_t>(i)][0] = -distance;
-  displace(system, moves);
+  return moves;
+}
+
+void SoftExperiment::push(double distance) {
+  displace(system, second_moves(distance));
   normal_overlap += distance;
 }
 

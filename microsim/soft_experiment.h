@@ -1,6 +1,8 @@
 // The arrangement of a measurement: a soft particle against a plane, or against an equal soft particle [SP 1.4].
 #pragma once
 
+#include <vector>
+
 #include "common/data/measurements.h"
 #include "common/data/shell_packing.h"
 #include "common/system.h"
@@ -15,9 +17,16 @@ struct SoftExperiment {
   Slot first_grains = 0;        ///< grains [0, first_grains) belong to body 1
   double normal_overlap = 0.0;  ///< hn [m]
 
+  /// Gives all contacts Tsuji damping with the spec's restitution, or takes it away. The list of neighbours is made
+  /// anew.
+  void set_damping(bool damped);
+
   /// Net force on the second body from the first, of the state as it is; x is along the normal (compression positive)
   /// [N].
   [[nodiscard]] Vec3 force_on_second() const;
+
+  /// The displacement of every body when the second one moves rigidly by `distance` towards the first.
+  [[nodiscard]] std::vector<Vec3> second_moves(double distance) const;
 
   /// Moves the second body rigidly by `distance` towards the first (shell and grains, or plane) in one stroke;
   /// tangential springs follow. Contacts must be without dashpots.

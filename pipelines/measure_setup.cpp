@@ -42,6 +42,19 @@ void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
 }
 
+void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
+  o.increment = t.number("increment", Unit::none, Range{0.0, 0.1, true, false}, o.increment);
+  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.increment_passes = t.count("increment_passes", 0, 1000000, o.increment_passes);
+  if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
+  o.step_factor = t.number("step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
+  o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
+  o.settle_step_factor =
+      t.number("settle_step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.settle_step_factor);
+  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+}
+
 void read_published(const SceneTable& t, PublishedOptions& o) {
   if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
   if (t.has("stop_interval")) o.stop_interval = t.number("stop_interval", Unit::time, Range::positive());
@@ -79,6 +92,10 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
   return plan;
 }
 
+std::string read_relaxation(const SceneTable& t, const char* fallback) {
+  return t.choice("relaxation", {kRelaxations[0], kRelaxations[1], kRelaxations[2]}, fallback);
+}
+
 MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, std::int64_t packings,
                           const MeasurementPlan& common) {
   MeasureSeries series;
@@ -114,16 +131,16 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   const SceneTable measure = root.table("measure");
   read_damped(measure.table_or_empty("damped"), setup.damped);
   read_published(measure.table_or_empty("published"), setup.published);
+  read_least_work(measure.table_or_empty("least_work"), setup.least_work);
   MeasurementPlan common;
   common.rotation_step_deg =
       measure.number("rotation_step_deg", Unit::angle_degree, Range{0.0, 5.0, true, false}, common.rotation_step_deg);
   common.shell_turns = measure.flag("shell_turns", common.shell_turns);
   common.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  setup.series.push_back(
-      read_series(measure, measure.choice("relaxation", {"damped", "published"}, "damped"), count, common));
+  setup.series.push_back(read_series(measure, read_relaxation(measure, "damped"), count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
-    const std::string name = reference.choice("relaxation", {"damped", "published"}, "published");
+    const std::string name = read_relaxation(reference, "published");
     if (name == setup.series[0].relaxation)
       reference.reject("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, name, reference.count("count", 1, 100000, count), common));
@@ -134,6 +151,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
 std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name) {
   if (name == "published") return make_published_protocol(setup.published);
   if (name == "damped") return make_damped_protocol(setup.damped);
+  if (name == "least-work") return make_least_work_protocol(setup.least_work);
   throw BadInput("unknown relaxation '" + name + "'");
 }
 

@@ -1,6 +1,7 @@
 // Tables of a scene that describe the soft particle and how it is measured.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,12 @@
 
 namespace softgrain {
 
+/// The names a scene may give as `relaxation`.
+inline constexpr std::array kRelaxations{"least-work", "damped", "published"};
+
 /// One series of measurements: which relaxation, how many packings, which states of which pair kind.
 struct MeasureSeries {
-  std::string relaxation;  ///< "damped" or "published"
+  std::string relaxation;  ///< one of kRelaxations
   std::int64_t packings = 0;
   std::vector<PairKind> kinds;
   MeasurementPlan soft_solid;
@@ -27,6 +31,7 @@ struct MeasureSeries {
 struct MeasureSetup {
   SoftParticleSpec spec;
   PublishedOptions published;
+  LeastWorkProtocolOptions least_work;
   DampedProtocolOptions damped;
   std::vector<MeasureSeries>
       series;  ///< the first one feeds the fit; a second one is the reference it is compared with

@@ -158,7 +158,7 @@ json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine
 
 std::vector<std::string> measurement_remarks(const Measurements& data) {
   std::vector<std::string> out;
-  for (const char* relaxation : {"published", "damped"}) {
+  for (const char* relaxation : kRelaxations) {
     std::int64_t bad = 0;
     std::int64_t all = 0;
     for (const PackingRun& run : data.runs) {

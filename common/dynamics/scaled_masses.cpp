@@ -1,0 +1,58 @@
+#include "common/dynamics/scaled_masses.h"
+
+#include <algorithm>
+
+#include "common/dynamics/force_pass.h"
+#include "common/neighbours/verlet_list.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kLonelyShare = 0.3;
+
+/// Stiffness per radius that bodies without contacts count with [N/m^2].
+template <int D>
+double lonely_stiffness(const Particles<D>& p, const BodyStiffness& stiffness) {
+  double sum = 0.0;
+  double radii = 0.0;
+  for (std::size_t u = 0; u < stiffness.translation.size(); ++u) {
+    if (!(p.inverse_mass[u] > 0.0)) continue;
+    sum += stiffness.translation[u];
+    radii += p.sphere[u].r;
+  }
+  return radii > 0.0 ? kLonelyShare * sum / radii : 0.0;
+}
+
+}  // namespace
+
+template <int D>
+ScaledMasses<D>::ScaledMasses(System<D>& system, double dt, double fraction)
+    : system_(system),
+      inverse_mass_(system.particles.inverse_mass),
+      inverse_inertia_(system.particles.inverse_inertia) {
+  BodyStiffness stiffness;
+  force_pass(system, 0.0, stiffness);
+  auto& p = system.particles;
+  const double lonely = lonely_stiffness(p, stiffness);
+  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
+    if (!(inverse_mass_[u] > 0.0)) continue;
+    const double k = std::max(stiffness.translation[u], lonely * p.sphere[u].r);
+    const double factor = std::max(1.0, k * (dt / fraction) * (dt / fraction) * inverse_mass_[u]);
+    p.inverse_mass[u] /= factor;
+    p.inverse_inertia[u] /= factor;
+  }
+  rebuild_neighbours(system);
+}
+
+template <int D>
+ScaledMasses<D>::~ScaledMasses() {
+  system_.particles.inverse_mass = inverse_mass_;
+  system_.particles.inverse_inertia = inverse_inertia_;
+  system_.neighbours.reference.clear();  // the next pass rebuilds the list, with the constants of the true masses
+}
+
+template class ScaledMasses<2>;
+template class ScaledMasses<3>;
+
+}  // namespace softgrain

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/dynamics/damped_relaxation.h"
+#include "common/dynamics/residual.h"
+#include "common/dynamics/scaled_masses.h"
+#include "common/dynamics/time_step.h"
+#include "common/dynamics/verlet.h"
+#include "common/statics/least_work_step.h"
+#include "microsim/protocol.h"
+
+namespace softgrain {
+
+namespace {
+
+/// As for the published protocol: dt over sqrt(m/k) of the smallest grain at 5 % overlap, and over sqrt(m/K) of any.
+constexpr double kStepFraction = 0.2;
+constexpr double kCrowdedFraction = 0.5;
+/// After an increment without equilibrium the next ones go straight to dynamics: 1, 2, 4... up to these.
+constexpr int kLongestDetour = 8;
+
+/// A stretch of slow dynamics with real contact damping; the grains' own inertia, but for the quickest.
+void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
+  const double nominal = step_factor * kStepFraction * step_limit(e.system).natural_time;
+  const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
+  const double dt = duration / static_cast<double>(steps);
+  stop_motion(e.system.particles);
+  {
+    const ScaledMasses<3> raised(e.system, dt, kCrowdedFraction);
+    e.set_damping(true);
+    e.add_approach_speed(speed);
+    VelocityVerlet<3> integrator(dt);
+    integrator.initialise(e.system);
+    for (std::int64_t k = 0; k < steps; ++k) integrator.step(e.system);
+    e.add_approach_speed(-speed);
+  }
+  stop_motion(e.system.particles);
+  e.set_damping(false);
+}
+
+class LeastWorkProtocol : public Protocol {
+ public:
+  explicit LeastWorkProtocol(const LeastWorkProtocolOptions& options) : options_(options) {}
+
+  [[nodiscard]] std::string name() const override { return "least-work"; }
+  [[nodiscard]] bool damped_contacts() const override { return false; }
+
+  void approach(SoftExperiment& e, double overlap) const override {
+    const double distance = overlap - e.normal_overlap;
+    if (distance <= 0.0) return;
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(distance / (options_.increment * e.spec.shell_radius) - 1e-9)));
+    const double move = distance / steps;
+    std::vector<Vec3> last;  // the displacement that served last is the first guess for the next
+    int detour = 0;
+    int left = 0;
+    for (int k = 0; k < steps; ++k) {
+      if (left == 0 && step(e, move, last)) {
+        detour = 0;
+        continue;
+      }
+      if (left == 0) left = detour = std::clamp(2 * detour, 1, kLongestDetour);
+      --left;
+      last.clear();
+      const double v = speed(e.spec);
+      run_dynamics(e, v, move / v, options_.step_factor);
+    }
+    e.normal_overlap = overlap;
+  }
+
+  SettleResult settle(SoftExperiment& e, bool) const override {
+    if (options_.settle_time > 0.0)
+      run_dynamics(e, 0.0, options_.settle_time * natural_time(e.spec), options_.settle_step_factor);
+    DampedOptions options;
+    options.tolerance = options_.tolerance;
+    options.force_floor = force_floor(e.spec);
+    options.max_passes = options_.max_passes;
+    const RelaxationResult result = DampedRelaxation<3>(options).relax(e.system);
+    const Residual r = residual(e.system);
+    return {result.residual, r.max_overlap, result.end == RelaxationEnd::converged};
+  }
+
+ private:
+  [[nodiscard]] double speed(const SoftParticleSpec& spec) const {
+    return options_.approach_speed > 0.0 ? options_.approach_speed : published_speed(spec);
+  }
+
+  /// One increment by least work; false, and nothing changed, when there is no equilibrium nearby.
+  bool step(SoftExperiment& e, double move, std::vector<Vec3>& last) const {
+    LeastWorkStepOptions options;
+    options.tolerance = options_.tolerance_between;
+    options.force_floor = force_floor(e.spec);
+    options.max_passes = options_.increment_passes;
+    std::vector<Vec3> moves = last.empty() ? e.second_moves(move) : last;
+    if (LeastWorkStep(options).advance(e.system, moves).end != RelaxationEnd::converged) return false;
+    last = std::move(moves);
+    return true;
+  }
+
+  LeastWorkProtocolOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Protocol> make_least_work_protocol(const LeastWorkProtocolOptions& options) {
+  return std::make_unique<LeastWorkProtocol>(options);
+}
+
+}  // namespace softgrain
