@@ -38,6 +38,8 @@ std::unique_ptr<Protocol> published(const SoftParticleSpec& spec) {
 
 std::unique_ptr<Protocol> damped(const SoftParticleSpec&) { return make_damped_protocol({}); }
 
+std::unique_ptr<Protocol> least_work(const SoftParticleSpec&) { return make_least_work_protocol({}); }
+
 using MakeProtocol = std::unique_ptr<Protocol> (*)(const SoftParticleSpec&);
 
 PackingRun run(const SoftParticleSpec& spec, PairKind kind, MakeProtocol make, const MeasurementPlan& plan) {
@@ -87,6 +89,8 @@ const MeasurementPlan kSoft{{0.35, 0.50}, {0.50}, {0.05}, 0.01, false};
 
 TEST(MeasurementScaling, DampedSoftSolid) { expect_scale_free(PairKind::soft_solid, damped, kSolid); }
 TEST(MeasurementScaling, DampedSoftSoft) { expect_scale_free(PairKind::soft_soft, damped, kSoft); }
+TEST(MeasurementScaling, LeastWorkSoftSolid) { expect_scale_free(PairKind::soft_solid, least_work, kSolid); }
+TEST(MeasurementScaling, LeastWorkSoftSoft) { expect_scale_free(PairKind::soft_soft, least_work, kSoft); }
 TEST(MeasurementScaling, PublishedSoftSolid) { expect_scale_free(PairKind::soft_solid, published, kSolid); }
 TEST(MeasurementScaling, PublishedSoftSoft) { expect_scale_free(PairKind::soft_soft, published, kSoft); }
 
