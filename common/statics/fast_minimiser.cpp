@@ -34,6 +34,7 @@ class Stepper {
     problem_.evaluate(theta_, forces_);
   }
   [[nodiscard]] const PackForces& forces() const { return forces_; }
+  [[nodiscard]] std::int64_t factorisations() const { return factorisations_; }
   [[nodiscard]] std::int64_t linear_iterations() const { return linear_iterations_; }
 
   /// One step; false when no direction leads to a better balance.
@@ -74,6 +75,7 @@ class Stepper {
     }
     first_ = false;
     inverse_.build(problem_, tangents_, kBlockFloor);
+    ++factorisations_;
   }
 
   /// True when the conjugate gradient met negative stiffness.
@@ -158,6 +160,7 @@ class Stepper {
   double last2_ = 0.0;
   bool first_ = true;
   std::int64_t linear_iterations_ = 0;
+  std::int64_t factorisations_ = 0;
 };
 
 }  // namespace
@@ -187,6 +190,7 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
       break;
     }
   }
+  result.factorisations = stepper.factorisations();
   result.linear_iterations = stepper.linear_iterations();
   result.residual_energy = dot(stepper.forces().force, stepper.forces().force);
   result.work = stepper.forces().work;

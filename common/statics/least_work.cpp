@@ -31,13 +31,6 @@ void require_inside(const std::vector<Vec3>& positions, const std::vector<Vec3>&
         throw NotUsable("least work: grain " + std::to_string(g) + " is beyond wall " + std::to_string(w));
 }
 
-/// Pi of the normal forces of the reference state, (2/5) P h each.
-double reference_work(const GrainPack& pack) {
-  double sum = 0.0;
-  for (const PackContact& c : pack.contacts) sum += 0.4 * c.normal_force * c.overlap;
-  return sum;
-}
-
 /// Grains with fewer contacts than hold them: two with friction, four without.
 std::int64_t floppy_grains(const GrainPack& pack) {
   std::vector<int> contacts(pack.position.size(), 0);
@@ -49,6 +42,14 @@ std::int64_t floppy_grains(const GrainPack& pack) {
   std::int64_t count = 0;
   for (const int z : contacts) count += z < needed ? 1 : 0;
   return count;
+}
+
+void check(const LeastWorkOptions& o) {
+  if (o.refresh < 1 || o.sub_increment_interval < 1 || o.sub_increments < 1 || o.max_iterations < 0)
+    throw BadInput("least work: refresh, sub-increments and their interval are 1 or more, the cap 0 or more");
+  if (!(o.max_move > 0.0 && o.work_tolerance >= 0.0 && o.force_tolerance >= 0.0 && o.residual_tolerance > 0.0 &&
+        o.force_floor >= 0.0))
+    throw BadInput("least work: the largest move and the residual tolerance are above 0, other tolerances 0 or more");
 }
 
 /// Makes theta the reference state.
@@ -64,14 +65,17 @@ void commit(GrainPack& pack, PackProblem& problem, const Unknowns& theta) {
 }  // namespace
 
 LeastWorkResult advance(GrainPack& pack, const std::vector<Vec3>& wall_moves, const LeastWorkOptions& options) {
+  check(options);
   if (wall_moves.size() != pack.walls.size()) throw BadInput("least work: one move per wall");
   require_walls_apart(pack, wall_moves);
   PackProblem problem(pack, wall_moves, options.coulomb, options.torsion);
   Unknowns theta(problem.size(), 0.0);
-  LeastWorkResult result = statics::minimise_fast(problem, theta, options);
+  const bool published = options.method == LeastWorkMethod::published;
+  LeastWorkResult result = published ? statics::minimise_published(problem, theta, options)
+                                     : statics::minimise_fast(problem, theta, options);
   result.loop_passes = problem.cost().loop_passes;
   result.contact_evaluations = problem.cost().contact_evaluations;
-  result.work -= reference_work(pack);
+  result.work -= problem.reference_work();
   if (result.converged) commit(pack, problem, theta);
   result.floppy = floppy_grains(pack);
   return result;

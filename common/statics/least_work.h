@@ -45,7 +45,7 @@ struct LeastWorkResult {
   std::int64_t iterations = 0;
   std::int64_t loop_passes = 0;  ///< evaluations of all contacts
   std::int64_t contact_evaluations = 0;
-  std::int64_t factorisations = 0;
+  std::int64_t factorisations = 0;     ///< of the preconditioner: all grains' own stiffness
   std::int64_t linear_iterations = 0;  ///< of inner linear solves
   double worst_residual = 0.0;         ///< largest over grains: net force (or moment/R) over its largest contact force
   double residual_energy = 0.0;        ///< |grad|^2 [N^2]
@@ -62,11 +62,13 @@ LeastWorkResult advance(GrainPack& pack, const std::vector<Vec3>& wall_moves, co
 /// keeps the history of pairs that were in contact before.
 void refresh_contacts(GrainPack& pack);
 
-/// Response of the linearised pack (no contact slides) to strains of a box of six planes: stress[a][b] is the change of
-/// wall stress a per unit compressive strain b [Pa]. Walls in the order -x +x -y +y -z +z.
+/// Response of the linearised pack (no contact slides, forces do not turn with their contacts) to strains of a box of
+/// six planes: stress[a][b] is the change of wall stress a per unit compressive strain b [Pa]. Walls in the order -x +x
+/// -y +y -z +z.
 struct ElasticResponse {
   double stiffness[3][3] = {};
   std::int64_t factorisations = 0;
+  std::int64_t linear_iterations = 0;
   bool solved = false;
   [[nodiscard]] double bulk_modulus() const;   ///< sum of all entries / 9
   [[nodiscard]] double shear_modulus() const;  ///< from the three uniaxial probes: (mean C_aa - mean C_ab)/2

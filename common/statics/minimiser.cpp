@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace softgrain::statics {
 
@@ -60,15 +59,15 @@ Unknowns affine_guess(const PackProblem& problem, double part) {
   return out;
 }
 
-double step_within(const Unknowns& step, const GrainPack& pack, int stride, double limit) {
+double longest_step(const Unknowns& step, const GrainPack& pack, int stride, double limit) {
   const auto width = static_cast<std::size_t>(stride);
-  double worst = 0.0;
-  for (std::size_t g = 0; g < pack.radius.size(); ++g) {
-    double move2 = 0.0;
-    for (std::size_t k = 0; k < width; ++k) move2 = std::max(move2, step[g * width + k] * step[g * width + k]);
-    worst = std::max(worst, std::sqrt(move2) / (limit * pack.radius[g]));
-  }
-  return worst > 1.0 ? 1.0 / worst : 1.0;
+  double fastest = 0.0;
+  for (std::size_t g = 0; g < pack.radius.size(); ++g)
+    for (std::size_t k = g * width; k < (g + 1) * width; k += 3) {
+      const double move = std::sqrt(step[k] * step[k] + step[k + 1] * step[k + 1] + step[k + 2] * step[k + 2]);
+      fastest = std::max(fastest, move / (limit * pack.radius[g]));
+    }
+  return 1.0 / fastest;
 }
 
 }  // namespace softgrain::statics

@@ -19,9 +19,10 @@ double residual_floor(const Scales& scales, const PackForces& forces);
 /// of their moves is interpolated [QS 2.2, "2 x_l/L_l"], and so is the difference of their tangential parts.
 Unknowns affine_guess(const PackProblem& problem, double part);
 
-/// Largest part of `step` that moves no grain by more than `limit` of its radius (at most 1).
-double step_within(const Unknowns& step, const GrainPack& pack, int stride, double limit);
+/// The multiple of `step` that moves the fastest grain by `limit` of its radius; infinity when nothing moves.
+double longest_step(const Unknowns& step, const GrainPack& pack, int stride, double limit);
 
+LeastWorkResult minimise_published(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options);
 LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options);
 
 }  // namespace softgrain::statics

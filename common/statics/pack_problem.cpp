@@ -290,6 +290,12 @@ void PackProblem::contacts_as(const Unknowns& theta, std::vector<PackContact>& o
   }
 }
 
+double PackProblem::reference_work() const {
+  double sum = 0.0;
+  for (const PackContact& c : pack_.contacts) sum += 0.4 * c.normal_force * c.overlap;
+  return sum;
+}
+
 void PackProblem::evaluate(const Unknowns& theta, PackForces& out) {
   place(theta);
   ++cost_.loop_passes;

@@ -58,6 +58,9 @@ class PackProblem {
   [[nodiscard]] const std::vector<Vec3>& wall_moves() const { return wall_moves_; }
   [[nodiscard]] const std::vector<Vec3>& wall_points() const { return wall_points_; }
 
+  /// Pi of the reference state's normal forces, (2/5) P h each.
+  [[nodiscard]] double reference_work() const;
+
   void evaluate(const Unknowns& theta, PackForces& out);
   void linearise(const Unknowns& theta, std::vector<LinkTangent>& out);
   /// Contacts at theta, as they are stored in a pack.
