@@ -69,6 +69,7 @@ LeastWorkResult advance(GrainPack& pack, const std::vector<Vec3>& wall_moves, co
   if (wall_moves.size() != pack.walls.size()) throw BadInput("least work: one move per wall");
   require_walls_apart(pack, wall_moves);
   PackProblem problem(pack, wall_moves, options.coulomb, options.torsion);
+  require_inside(pack.position, problem.wall_points(), pack);
   Unknowns theta(problem.size(), 0.0);
   const bool published = options.method == LeastWorkMethod::published;
   LeastWorkResult result = published ? statics::minimise_published(problem, theta, options)
