@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/cell.h"
+
 namespace softgrain::statics {
 
 namespace {
@@ -15,37 +17,23 @@ double& at(Block<kWidth>& b, int r, int c) {
   return b[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
 }
 
-/// n x e_k
-Vec3 normal_cross_axis(const Vec3& n, int k) {
-  Vec3 e;
-  e[k] = 1.0;
-  return cross(n, e);
-}
-
-/// Answer of a symmetric contact on i to delta.
-Vec3 contact_answer(const LinkTangent& t, const Vec3& delta) {
-  const double along = softgrain::dot(t.normal, delta);
-  const Vec3 slid = delta - t.normal * along;
-  return t.normal * (t.normal_stiffness * along) + (slid - t.left * softgrain::dot(t.right, slid)) * t.tangential;
-}
-
-/// Adds B^T A B, B = [1, arm [n x]], plus torsion; `arm` and `twist` are scaled with the radius.
+/// Adds B^T A B, B = [1, arm [n x]], A = tangential 1 + (normal - tangential) nn, plus torsion. Only the lower
+/// triangle. `arm` and `twist` are scaled with the radius.
 template <int kWidth>
 void add_link(const LinkTangent& t, double arm, double twist, Block<kWidth>& out) {
-  std::array<Vec3, kWidth> column;
-  for (int k = 0; k < kWidth; ++k) {
-    Vec3 e;
-    if (k < 3) e[k] = 1.0;
-    column[static_cast<std::size_t>(k)] = k < 3 ? e : normal_cross_axis(t.normal, k - 3) * arm;
-  }
-  for (int c = 0; c < kWidth; ++c) {
-    const Vec3 force = contact_answer(t, column[static_cast<std::size_t>(c)]);
-    for (int r = 0; r < kWidth; ++r)
-      at<kWidth>(out, r, c) += softgrain::dot(column[static_cast<std::size_t>(r)], force);
-  }
-  if constexpr (kWidth == 6)
+  const Vec3& n = t.normal;
+  const double k = t.tangential;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c <= r; ++c) at<kWidth>(out, r, c) += (t.normal_stiffness - k) * n[r] * n[c] + (r == c ? k : 0.0);
+  if constexpr (kWidth == 6) {
+    const double roll = k * arm;
+    const Matrix<3> turned{{Vec3{{0.0, n[2], -n[1]}}, Vec3{{-n[2], 0.0, n[0]}}, Vec3{{n[1], -n[0], 0.0}}}};  // n x e_r
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) at<kWidth>(out, r + 3, c + 3) += twist * t.normal[r] * t.normal[c];
+      for (int c = 0; c < 3; ++c) at<kWidth>(out, r + 3, c) += roll * turned[r][c];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c <= r; ++c)
+        at<kWidth>(out, r + 3, c + 3) += (twist - roll * arm) * n[r] * n[c] + (r == c ? roll * arm : 0.0);
+  }
 }
 
 /// Lower Cholesky factor with inverted diagonal; a pivot below `least` is raised to it.

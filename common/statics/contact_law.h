@@ -1,5 +1,5 @@
 // One contact of the least-work solver [QS 2.1]: Hertz force, tangential force with stick and slip, torsion, and their
-// derivatives. Value structs and inline evaluations; no storage.
+// stiffness. Value structs and inline evaluations; no storage.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,6 @@
 #include "common/statics/least_work.h"
 
 namespace softgrain::statics {
-
-/// 3 x 3 matrix of a contact, rows.
-using Matrix3 = std::array<Vec3, 3>;
 
 /// What the normal force needs.
 struct NormalConstants {
@@ -94,21 +91,16 @@ inline double slip_stiffness(double along, double size2, double force2, double l
   return std::max(0.0, numerator / size2);
 }
 
-/// Q on i, its derivative, and its part of Pi.
+/// Q on i, its secant stiffness in the sense Q = Qp - stiffness u_s, and its part of Pi.
 struct TangentialForce {
   Vec3 force{};
   double work = 0.0;
-  double limit = 0.0;  ///< Qmax
-  bool slipping = false;
-  // Derivative: dQ = -stiffness (du_s - left (right.du_s)) + by_overlap dh.
-  double stiffness = 0.0;
-  double stick = 0.0;  ///< the stiffness without slip
-  Vec3 left{};
-  Vec3 right{};
-  Vec3 by_overlap{};
+  double limit = 0.0;      ///< Qmax
+  double stiffness = 0.0;  ///< in slip, lowered so that |Q| = Qmax
+  double stick = 0.0;      ///< the stiffness without slip
 };
 
-/// Published rule: limit of the reference state, stiffness lowered to k' in slip. dk' follows from |Q| = Qmax.
+/// Published rule: limit of the reference state, stiffness lowered to k' in slip.
 inline TangentialForce tangential_by_reference(const FrictionConstants& c, const Vec3& pushed, const Vec3& slid) {
   TangentialForce out;
   out.limit = c.limit0;
@@ -117,14 +109,8 @@ inline TangentialForce tangential_by_reference(const FrictionConstants& c, const
   const double along = dot(pushed, slid);
   const double size2 = norm2(slid);
   if (norm2(out.force) > out.limit * out.limit && size2 > 0.0) {
-    out.slipping = true;
     out.stiffness = slip_stiffness(along, size2, norm2(pushed), out.limit);
     out.force = pushed - slid * out.stiffness;
-    const double leverage = dot(out.force, slid);
-    if (leverage != 0.0) {
-      out.left = slid;
-      out.right = out.force * (1.0 / leverage);
-    }
   }
   out.work = 0.5 * out.stiffness * size2 - along;
   return out;
@@ -132,48 +118,29 @@ inline TangentialForce tangential_by_reference(const FrictionConstants& c, const
 
 /// Return mapping to mu P of the state as it is [QS 2.4]. A contact made in the increment has slid only since it closed
 /// (the part h/(h - h0) of the displacement) and its stiffness has the current contact radius.
-inline TangentialForce tangential_by_current(const FrictionConstants& c, const NormalForce& normal, double overlap,
+inline TangentialForce tangential_by_current(const FrictionConstants& c, double normal_force, double overlap,
                                              double root_radius, const Vec3& pushed, const Vec3& slid_in_all) {
   TangentialForce out;
-  Vec3 slid = slid_in_all;
-  double scale = 1.0;
-  double growth = 0.0;  // d ln(stiffness * part)/dh
-  out.stiffness = c.shear * c.contact_radius0;
-  if (c.fresh) {
-    out.stiffness = c.shear * root_radius * std::sqrt(overlap);
-    scale = overlap / (overlap - c.overlap0);
-    slid *= scale;
-    growth = 0.5 / overlap + 1.0 / overlap - 1.0 / (overlap - c.overlap0);
-  }
-  out.limit = c.friction * normal.force;
-  out.stick = out.stiffness;
-  const Vec3 trial = pushed - slid * out.stiffness;
-  const double size = norm(trial);
-  out.force = trial;
-  out.work = 0.5 * out.stiffness * norm2(slid) - dot(pushed, slid);
-  out.by_overlap = slid * (-out.stiffness * growth);
+  const double part = c.fresh ? overlap / (overlap - c.overlap0) : 1.0;
+  const double radius = c.fresh ? root_radius * std::sqrt(overlap) : c.contact_radius0;
+  const double stick = c.shear * radius;
+  const Vec3 slid = slid_in_all * part;
+  out.limit = c.friction * normal_force;
+  out.force = pushed - slid * stick;
+  out.work = 0.5 * stick * norm2(slid) - dot(pushed, slid);
+  const double size = norm(out.force);
+  double share = 1.0;
   if (size > out.limit) {
-    out.slipping = true;
-    const Vec3 direction = trial * (1.0 / size);
-    const double shrink = out.limit / size;
-    out.work = (out.limit * (size - 0.5 * out.limit) - 0.5 * norm2(pushed)) / out.stiffness;
-    out.force = direction * out.limit;
-    out.by_overlap = (out.by_overlap - direction * dot(direction, out.by_overlap)) * shrink +
-                     direction * (c.friction * normal.stiffness);
-    out.stiffness *= shrink;
-    out.left = out.right = direction;
-  }
-  if (std::isinf(c.friction) && overlap < c.overlap0) {
+    share = out.limit / size;
+    out.work = (out.limit * (size - 0.5 * out.limit) - 0.5 * norm2(pushed)) / stick;
+  } else if (std::isinf(c.friction) && overlap < c.overlap0) {
     // Without a limit Q would vanish at once where a contact opens: it falls with the contact radius.
-    const double share = std::sqrt(overlap / c.overlap0);
-    out.force *= share;
+    share = std::sqrt(overlap / c.overlap0);
     out.work *= share;
-    out.stiffness *= share;
-    out.stick = out.stiffness;
-    out.by_overlap = out.force * (0.5 / overlap);
   }
-  out.stiffness *= scale;
-  out.stick *= scale;
+  out.force *= share;
+  out.stick = stick * part;
+  out.stiffness = out.stick * share;
   return out;
 }
 

@@ -62,7 +62,8 @@ ContactResponse respond(const NormalConstants& constants, const FrictionConstant
     if constexpr (Law::rule == CoulombRule::reference) {
       out.tangential = tangential_by_reference(*friction, pushed, slid);
     } else {
-      out.tangential = tangential_by_current(*friction, out.normal, place.overlap, constants.root_radius, pushed, slid);
+      out.tangential =
+          tangential_by_current(*friction, out.normal.force, place.overlap, constants.root_radius, pushed, slid);
     }
     if constexpr (Law::torsion)
       out.torsion = torsion_response<Law>(*friction, out.normal, constants.root_radius, place, turn_i, turn_j);

@@ -36,10 +36,7 @@ Vec3 box_of(const GrainPack& pack) {
 std::vector<LinkTangent> stuck_contacts(PackProblem& problem) {
   std::vector<LinkTangent> tangents;
   problem.linearise(Unknowns(problem.size(), 0.0), tangents);
-  for (LinkTangent& t : tangents) {
-    t.tangential = t.stick;
-    t.left = t.right = t.by_overlap = {};
-  }
+  for (LinkTangent& t : tangents) t.tangential = t.stick;
   return tangents;
 }
 

@@ -67,12 +67,9 @@ class Stepper {
  private:
   void linearise() {
     problem_.linearise(theta_, tangents_);
-    for (LinkTangent& t : tangents_) {
-      t.left = t.right = {};
-      t.by_overlap = {};
-      // Under the even deformation that starts an increment many contacts seem to slide that will not.
-      if (first_) t.tangential = t.stick;
-    }
+    // Under the even deformation that starts an increment many contacts seem to slide that will not.
+    if (first_)
+      for (LinkTangent& t : tangents_) t.tangential = t.stick;
     first_ = false;
     inverse_.build(problem_, tangents_, kBlockFloor);
     ++factorisations_;

@@ -268,9 +268,6 @@ void PackProblem::linearise_as(const Unknowns& theta, std::vector<LinkTangent>& 
       t.twist = r.torsion.stiffness;
       t.tangential = r.tangential.stiffness;
       t.stick = r.tangential.stick;
-      t.left = r.tangential.left;
-      t.right = r.tangential.right;
-      t.by_overlap = r.tangential.by_overlap;
     }
   }
 }

@@ -21,20 +21,17 @@ struct PackForces {
 };
 
 /// One contact linearised. With delta = u_i - u_j + n x (Omega_i arm_i + Omega_j arm_j) and its tangential part delta_s
-/// the force on i falls by
-///   P' n (n.delta) + tangential (delta_s - left (right.delta_s)) + by_overlap (n.delta).
+/// the force on i falls by normal_stiffness n (n.delta) + tangential delta_s. A sliding contact has its secant
+/// stiffness.
 struct LinkTangent {
   Vec3 normal{};
-  double normal_stiffness = 0.0;  ///< P' [N/m]
+  double normal_stiffness = 0.0;  ///< dP/dh [N/m]
   double tangential = 0.0;        ///< [N/m]
-  double stick = 0.0;             ///< the same if the contact did not slip
-  Vec3 left{};                    ///< sliding direction; left.right = 1 in slip, both zero in stick
-  Vec3 right{};
-  Vec3 by_overlap{};   ///< dQ/dh [N/m]; makes the derivative unsymmetric
-  double arm_i = 0.0;  ///< over R_i
-  double arm_j = 0.0;  ///< over R_j; 0 for walls
-  double pull = 0.0;   ///< P/|r_ij|: the normal force turns with the pair [N/m]
-  double twist = 0.0;  ///< k_t [N m]
+  double stick = 0.0;             ///< the same if the contact did not slide
+  double arm_i = 0.0;             ///< over R_i
+  double arm_j = 0.0;             ///< over R_j; 0 for walls
+  double pull = 0.0;              ///< P/|r_ij|: the normal force turns with the pair [N/m]
+  double twist = 0.0;             ///< k_t [N m]
   bool closed = false;
 };
 

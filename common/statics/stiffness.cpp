@@ -45,8 +45,7 @@ LinkAnswer answer_of(const LinkTangent& t, double prestress, const GrainPack& pa
   const double along = softgrain::dot(t.normal, delta);
   out.force = t.normal * (t.normal_stiffness * along);
   if constexpr (kStride == 6) {
-    const Vec3 slid = delta - t.normal * along;
-    const Vec3 friction = (slid - t.left * softgrain::dot(t.right, slid)) * t.tangential + t.by_overlap * along;
+    const Vec3 friction = (delta - t.normal * along) * t.tangential;
     out.force += friction;
     out.roll = cross(t.normal, friction);
   }
