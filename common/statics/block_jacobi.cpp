@@ -137,7 +137,10 @@ void BlockJacobi::apply(const Unknowns& in, Unknowns& out) const {
 
 void BlockJacobi::add_diagonal(const Unknowns& in, double share, Unknowns& out) const {
   const auto width = static_cast<std::size_t>(width_);
-  for (std::size_t k = 0; k < in.size(); ++k) out[k] += share * largest_[k / width] * in[k];
+  for (std::size_t g = 0; g < largest_.size(); ++g) {
+    const double spring = share * largest_[g];
+    for (std::size_t k = g * width; k < (g + 1) * width; ++k) out[k] += spring * in[k];
+  }
 }
 
 }  // namespace softgrain::statics
