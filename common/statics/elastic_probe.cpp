@@ -64,8 +64,6 @@ void for_wall_contacts(const PackProblem& problem, const std::vector<LinkTangent
       body(tangents[c], static_cast<std::size_t>(links.i[c]), static_cast<std::size_t>(links.j[c] - n));
 }
 
-Vec3 part(const Unknowns& v, std::size_t at) { return {{v[at], v[at + 1], v[at + 2]}}; }
-
 /// Forces on the grains when the walls move and the grains stay.
 Unknowns push_of_walls(const PackProblem& problem, const std::vector<LinkTangent>& tangents,
                        const std::vector<Vec3>& moves) {
@@ -89,7 +87,7 @@ Vec3 stress_change(const PackProblem& problem, const std::vector<LinkTangent>& t
   const auto stride = static_cast<std::size_t>(problem.stride());
   for_wall_contacts(problem, tangents, [&](const LinkTangent& t, std::size_t g, std::size_t w) {
     // The arm to a wall is along its normal: rolling does not change the normal force.
-    const double closing = -dot(t.normal, part(x, g * stride) - moves[w]);
+    const double closing = -dot(t.normal, statics::triple(x, g * stride) - moves[w]);
     const int axis = static_cast<int>(w / 2);
     const double area = width[(axis + 1) % 3] * width[(axis + 2) % 3];
     stress[axis] += 0.5 * t.normal_stiffness * closing / area;

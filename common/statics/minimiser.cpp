@@ -39,6 +39,20 @@ double residual_floor(const Scales& scales, const PackForces& forces) {
   return std::max(scales.floor_force, kRattlerForce * mean);
 }
 
+double worst_residual(const PackForces& forces, const GrainPack& pack, int stride, double floor_force) {
+  const auto step = static_cast<std::size_t>(stride);
+  double worst = 0.0;
+  for (std::size_t g = 0; g < forces.largest2.size(); ++g) {
+    double net2 = 0.0;
+    for (std::size_t k = 0; k < step; k += 3) net2 = std::max(net2, norm2(triple(forces.force, g * step + k)));
+    const double load = pack.weight.empty() ? 0.0 : pack.weight[g];
+    const double scale = std::max({std::sqrt(forces.largest2[g]), load, floor_force});
+    const double ratio = net2 > 0.0 ? std::sqrt(net2) / scale : 0.0;
+    if (!(ratio <= worst)) worst = ratio;  // keeps what is not a number
+  }
+  return worst;
+}
+
 Unknowns affine_guess(const PackProblem& problem, double part) {
   const GrainPack& pack = problem.pack();
   const auto stride = static_cast<std::size_t>(problem.stride());

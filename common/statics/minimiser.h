@@ -12,6 +12,10 @@ struct Scales {
 };
 Scales scales_of(const GrainPack& pack, const LeastWorkOptions& options);
 
+/// How well theta balances: the largest, over grains, of net force (or moment/R) over the grain's largest contact
+/// force. `floor_force` [N] replaces smaller contact forces.
+double worst_residual(const PackForces& forces, const GrainPack& pack, int stride, double floor_force);
+
 /// floor_force with the mean contact force of the state.
 double residual_floor(const Scales& scales, const PackForces& forces);
 

@@ -3,7 +3,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "common/core/error.h"
 #include "common/statics/contact_response.h"
@@ -17,12 +16,6 @@ constexpr std::int32_t kParallelLinks = 16000;
 constexpr std::int32_t kChunk = 1024;
 
 std::size_t slot(std::int32_t k) { return static_cast<std::size_t>(k); }
-
-Vec3 triple(const Unknowns& v, std::size_t at) { return {{v[at], v[at + 1], v[at + 2]}}; }
-
-void add(Unknowns& v, std::size_t at, const Vec3& a) {
-  for (int k = 0; k < 3; ++k) v[at + static_cast<std::size_t>(k)] += a[k];
-}
 
 /// What a link does to its grains.
 struct LinkForce {
@@ -116,10 +109,11 @@ template <class Law>
 void add_to_grain(const View& v, const LinkForce& f, std::size_t c, std::int32_t g, PackForces& out) {
   const bool first = v.links.i[c] == g;
   const std::size_t at = slot(g) * static_cast<std::size_t>(Law::stride);
-  add(out.force, at, first ? f.force : -f.force);
+  add_triple(out.force, at, first ? f.force : -f.force);
   if constexpr (Law::friction) {
-    add(out.force, at + 3, f.roll * -(first ? f.arm_i : f.arm_j));
-    if constexpr (Law::torsion) add(out.force, at + 3, f.twist * ((first ? 1.0 : -1.0) / v.pack.radius[slot(g)]));
+    add_triple(out.force, at + 3, f.roll * -(first ? f.arm_i : f.arm_j));
+    if constexpr (Law::torsion)
+      add_triple(out.force, at + 3, f.twist * ((first ? 1.0 : -1.0) / v.pack.radius[slot(g)]));
   }
   out.largest2[slot(g)] = std::max(out.largest2[slot(g)], f.size2);
 }
@@ -182,7 +176,7 @@ double start_sums(const GrainPack& pack, const Unknowns& theta, std::size_t stri
   double work = 0.0;
   for (std::size_t g = 0; g < pack.weight.size(); ++g) {
     const Vec3 load = pack.gravity * pack.weight[g];
-    add(out.force, g * stride, load);
+    add_triple(out.force, g * stride, load);
     work -= softgrain::dot(load, triple(theta, g * stride));
   }
   return work;
@@ -312,40 +306,6 @@ std::vector<PackContact> PackProblem::contacts(const Unknowns& theta) {
   std::vector<PackContact> out;
   dispatch([&](auto law) { contacts_as<decltype(law)>(theta, out); });
   return out;
-}
-
-double dot(const Unknowns& a, const Unknowns& b) {
-  constexpr std::size_t kBlock = 4096;
-  double total = 0.0;
-  for (std::size_t begin = 0; begin < a.size(); begin += kBlock) {
-    // Four sums: the compiler may not reorder one.
-    double s[4] = {};
-    const std::size_t end = std::min(begin + kBlock, a.size());
-    std::size_t k = begin;
-    for (; k + 4 <= end; k += 4)
-      for (std::size_t l = 0; l < 4; ++l) s[l] += a[k + l] * b[k + l];
-    for (; k < end; ++k) s[0] += a[k] * b[k];
-    total += (s[0] + s[1]) + (s[2] + s[3]);
-  }
-  return total;
-}
-
-void add_scaled(Unknowns& y, double s, const Unknowns& x) {
-  for (std::size_t k = 0; k < y.size(); ++k) y[k] += s * x[k];
-}
-
-double worst_residual(const PackForces& forces, const GrainPack& pack, int stride, double floor_force) {
-  const auto step = static_cast<std::size_t>(stride);
-  double worst = 0.0;
-  for (std::size_t g = 0; g < forces.largest2.size(); ++g) {
-    double net2 = 0.0;
-    for (std::size_t k = 0; k < step; k += 3) net2 = std::max(net2, norm2(triple(forces.force, g * step + k)));
-    const double load = pack.weight.empty() ? 0.0 : pack.weight[g];
-    const double scale = std::max({std::sqrt(forces.largest2[g]), load, floor_force});
-    const double ratio = net2 > 0.0 ? std::sqrt(net2) / scale : 0.0;
-    if (!(ratio <= worst)) worst = ratio;  // keeps what is not a number
-  }
-  return worst;
 }
 
 }  // namespace softgrain::statics

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "common/statics/links.h"
+#include "common/statics/unknowns.h"
 
 namespace softgrain::statics {
-
-using Unknowns = std::vector<double>;
 
 /// Forces at a state. Layout as the unknowns: force, then moment/R, per grain.
 struct PackForces {
@@ -86,14 +85,5 @@ class PackProblem {
   std::vector<Vec3> place_;  ///< positions of the state being evaluated
   Cost cost_;
 };
-
-/// Sum over fixed chunks, so that the bits do not depend on the number of threads.
-double dot(const Unknowns& a, const Unknowns& b);
-/// y += s x
-void add_scaled(Unknowns& y, double s, const Unknowns& x);
-
-/// How well theta balances: the largest, over grains, of net force (or moment/R) over the grain's largest contact
-/// force. `floor_force` [N] replaces smaller contact forces.
-double worst_residual(const PackForces& forces, const GrainPack& pack, int stride, double floor_force);
 
 }  // namespace softgrain::statics

@@ -9,12 +9,6 @@ namespace {
 /// Below this many links one thread is faster than two.
 constexpr std::int32_t kParallelLinks = 8000;
 
-Vec3 triple(const Unknowns& v, std::size_t at) { return {{v[at], v[at + 1], v[at + 2]}}; }
-
-void add(Unknowns& v, std::size_t at, const Vec3& a) {
-  for (int k = 0; k < 3; ++k) v[at + static_cast<std::size_t>(k)] += a[k];
-}
-
 /// What a link answers to a displacement of its grains: minus the change of the force on i, and of the moments.
 struct LinkAnswer {
   Vec3 force{};
@@ -56,10 +50,10 @@ LinkAnswer answer_of(const LinkTangent& t, double prestress, const GrainPack& pa
 template <int kStride>
 void add_to_grain(const LinkAnswer& a, const LinkTangent& t, bool first, double radius, Unknowns& out, std::size_t g) {
   const std::size_t at = g * static_cast<std::size_t>(kStride);
-  add(out, at, first ? a.force : -a.force);
+  add_triple(out, at, first ? a.force : -a.force);
   if constexpr (kStride == 6) {
-    add(out, at + 3, a.roll * -(first ? t.arm_i : t.arm_j));
-    if (t.twist != 0.0) add(out, at + 3, a.twist * ((first ? 1.0 : -1.0) / radius));
+    add_triple(out, at + 3, a.roll * -(first ? t.arm_i : t.arm_j));
+    if (t.twist != 0.0) add_triple(out, at + 3, a.twist * ((first ? 1.0 : -1.0) / radius));
   }
 }
 
