@@ -11,8 +11,10 @@
 #include "common/data/measurements.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
+#include "microsim/grain_box/record.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/grain_box_check.h"
 #include "pipelines/pipeline_setup.h"
 #include "pipelines/run_context.h"
 
@@ -113,7 +115,7 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out)
 void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
   const Scene scene = Scene::load(path, options.overrides);
   const SceneTable root = scene.root();
-  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles"});
+  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
     const ParticlesScene particles = read_particles_scene(scene);
@@ -126,6 +128,8 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
     if (limit.body >= 0)
       out.add("step_limit", limit.natural_time,
               fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+  } else if (kind == "grain-box") {
+    check_grain_box(read_grain_box(scene), out.facts, out.lines);
   } else if (kind == "macro") {
     (void)root.text("title", "");
     (void)root.text("law", "");
@@ -162,6 +166,11 @@ void check_data(const std::string& path, Findings& out) {
     const Measurements data = load_measurements(path);
     out.add("kind", "measurements",
             fmt::format("measurements: {} packings, {} runs", data.packings.size(), data.runs.size()));
+    return;
+  }
+  if (root.has("packs")) {
+    const auto packs = load_grain_boxes(path);
+    out.add("kind", "grain boxes", fmt::format("grain boxes: {} packs", packs.size()));
     return;
   }
   if (root.has("curves")) {

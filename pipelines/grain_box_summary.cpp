@@ -101,22 +101,6 @@ json result_json(const GrainBoxResult& result, const std::vector<double>& stress
 
 }  // namespace
 
-std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results) {
-  double low = 0.0;
-  double high = 0.0;
-  for (const GrainBoxResult& r : results)
-    for (const BoxPoint* p : r.points_of(BoxPhase::loading)) {
-      low = low > 0.0 ? std::min(low, p->pressure) : p->pressure;
-      high = std::max(high, p->pressure);
-    }
-  std::vector<double> out;
-  if (!(low > 0.0)) return out;
-  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
-    for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0})
-      if (digit * decade >= low && digit * decade <= high) out.push_back(digit * decade);
-  return out;
-}
-
 nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results) {
   const std::vector<double> stresses = comparison_stresses(results);
   json out = json::array();

@@ -15,7 +15,4 @@ nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results);
 /// Sentences about what must not be overlooked: packs that broke off, increments that were tried again.
 std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& results);
 
-/// Stresses at which moduli of packs are set side by side [Pa].
-std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results);
-
 }  // namespace softgrain

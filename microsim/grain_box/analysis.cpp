@@ -77,11 +77,20 @@ ModuliAt moduli_at(const GrainBoxResult& result, double pressure) {
   return {pressure, k, k_error, g, g_error, bulk.size()};
 }
 
-double largest_of(const GrainBoxResult& result, BoxPhase phase, double BoxPoint::*value) {
-  double largest = 0.0;
-  for (const BoxPoint* p : result.points_of(phase))
-    if (p->*value > largest) largest = p->*value;
-  return largest;
+std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results) {
+  double low = 0.0;
+  double high = 0.0;
+  for (const GrainBoxResult& r : results)
+    for (const BoxPoint* p : r.points_of(BoxPhase::loading)) {
+      low = low > 0.0 ? std::min(low, p->pressure) : p->pressure;
+      high = std::max(high, p->pressure);
+    }
+  std::vector<double> out;
+  if (!(low > 0.0)) return out;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
+    for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0})
+      if (digit * decade >= low && digit * decade <= high) out.push_back(digit * decade);
+  return out;
 }
 
 StepEffort total_effort(const GrainBoxState& state) {
@@ -111,9 +120,9 @@ GrainBoxForecast forecast(const GrainBoxSpec& spec) {
     left -= part;
   }
   out.increments += left / spec.loading.increments.back();
-  const double stress = std::isfinite(spec.loading.end_stress)
-                            ? std::max(spec.loading.end_stress, spec.generation.pressure)
-                            : spec.generation.pressure;
+  double stress = spec.generation.pressure;
+  if (std::isfinite(spec.loading.end_stress)) stress = std::max(stress, spec.loading.end_stress);
+  for (const double held : spec.loading.stress.v) stress = std::max(stress, held);
   // Mean normal force P = 4 pi R^2 sigma/(phi C); Hertz: P = 4/3 E* sqrt(R/2) h^(3/2).
   const double r = std::cbrt(cubed);
   const double force = 4.0 * std::numbers::pi * r * r * stress / (kJammed * kContacts);

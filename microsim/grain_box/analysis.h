@@ -17,8 +17,8 @@ struct ModuliAt {
 };
 [[nodiscard]] ModuliAt moduli_at(const GrainBoxResult& result, double pressure);
 
-/// Largest value of a quantity over the points of a phase, NaN left out; 0 without points.
-[[nodiscard]] double largest_of(const GrainBoxResult& result, BoxPhase phase, double BoxPoint::*value);
+/// Round stresses within the loading of all packs, at which their moduli are set side by side [Pa].
+[[nodiscard]] std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results);
 
 /// Sums over all points.
 [[nodiscard]] StepEffort total_effort(const GrainBoxState& state);

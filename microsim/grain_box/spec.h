@@ -67,7 +67,7 @@ struct GrainBoxFit {
 
 /// Everything about one pack and its run.
 struct GrainBoxSpec {
-  std::string name = "pack";
+  std::string name = "pack";  ///< of the variant
   std::int64_t grains = 2740;
   Vec3 aspect{{1.0, 1.0, 1.0}};  ///< box lengths, relative
   double solid_fraction = 0.3;   ///< of the loose arrangement

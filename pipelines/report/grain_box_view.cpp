@@ -99,7 +99,7 @@ std::string pack_view(const GrainBoxResult& result) {
   const GrainPack& pack = result.state.pack;
   if (pack.walls.size() != static_cast<std::size_t>(kBoxWalls) || pack.radius.empty()) return "";
   const SliceView view(pack);
-  const std::string title = "Slice through pack " + result.spec.name;
+  const std::string title = "Slice: " + result.spec.name;
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" "
              "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" fill=\"#1a1a1a\">\n",

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "microsim/grain_box/analysis.h"
-#include "pipelines/grain_box_summary.h"
 #include "pipelines/report/grain_box_curves.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -76,7 +75,7 @@ std::string first_pack_figure(const GrainBoxResult& result, bool bulk) {
   const PowerFit& high = bulk ? fits.bulk_high : fits.shear_high;
   const std::string symbol = bulk ? "K" : "G";
   Plot plot({.id = "box-first-" + symbol,
-             .title = fmt::format("{} modulus of pack {}", bulk ? "Bulk" : "Shear", result.spec.name),
+             .title = fmt::format("{} modulus, {}", bulk ? "Bulk" : "Shear", result.spec.name),
              .x = {.label = "sigma_c [MPa]", .scale = Scale::logarithmic},
              .y = {.label = symbol + " [GPa]", .scale = Scale::logarithmic}});
   Series dots = over_pressure(

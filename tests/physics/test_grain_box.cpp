@@ -1,0 +1,130 @@
+// Small packs of glass beads: generation reaches what it is asked for, loading answers like a granular solid.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "microsim/grain_box/analysis.h"
+#include "microsim/grain_box/box_measure.h"
+#include "microsim/grain_box/grain_box_run.h"
+#include "microsim/grain_box/stepper.h"
+
+namespace {
+
+using namespace softgrain;
+
+GrainBoxSpec small_spec() {
+  GrainBoxSpec spec;
+  spec.grains = 250;
+  spec.generation.pressure = 10e6;
+  spec.generation.increment = 2e-4;
+  spec.loading.increments = {2e-4};
+  spec.loading.end_strain = 0.006;
+  spec.loading.probe_every = 10;
+  return spec;
+}
+
+GrainBoxResult run(const GrainBoxSpec& spec) {
+  GrainBoxResult result = run_grain_box(spec, 2, {}, {});
+  EXPECT_TRUE(result.usable) << result.reason;
+  return result;
+}
+
+/// One run for several tests: it takes seconds.
+const GrainBoxResult& uniaxial() {
+  static const GrainBoxResult result = run(small_spec());
+  return result;
+}
+
+TEST(GrainBox, CompactionReachesThePressureWithFourContactsEverywhere) {
+  const auto points = uniaxial().points_of(BoxPhase::compaction);
+  ASSERT_FALSE(points.empty());
+  const BoxPoint& end = *points.back();
+  EXPECT_NEAR(end.pressure / 10e6, 1.0, 1.1e-3);
+  EXPECT_GE(end.fewest_contacts, 4);
+  EXPECT_EQ(end.rattlers, 0);
+  EXPECT_GT(end.coordination, 5.0);
+  EXPECT_LT(end.coordination, 7.0);
+  // Isotropic within the scatter of a box seven grains wide.
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(end.stress[k] / end.pressure, 1.0, 0.2);
+  EXPECT_EQ(end.shear, 0.0);
+}
+
+TEST(GrainBox, EveryStateIsInEquilibriumAndItsWallsAgree) {
+  for (const BoxPoint& p : uniaxial().state.points) {
+    EXPECT_LE(p.effort.residual, small_spec().solver.residual_tolerance);
+    EXPECT_LT(p.imbalance, 0.3);  // friction on the lateral walls takes the rest
+    EXPECT_LT(p.shear, 0.1 * p.pressure);
+  }
+}
+
+TEST(GrainBox, FrictionPhaseEndsBySlidingThatHasSaturated) {
+  const auto points = uniaxial().points_of(BoxPhase::friction);
+  ASSERT_GE(points.size(), 20U);
+  EXPECT_GT(points.back()->sliding_share, 0.05);
+  EXPECT_LT(points.back()->sliding_share, 0.7);
+  // G falls first (contacts begin to slide), and grows in the end.
+  const auto smallest = std::min_element(points.begin(), points.end(), [](const BoxPoint* a, const BoxPoint* b) {
+    return a->shear_modulus < b->shear_modulus;
+  });
+  EXPECT_LT((*smallest)->shear_modulus, points.front()->shear_modulus);
+}
+
+TEST(GrainBox, ModuliArePositiveAndOfTheRightSize) {
+  for (const BoxPoint* p : uniaxial().points_of(BoxPhase::loading)) {
+    EXPECT_GT(p->bulk, 0.3e9);
+    EXPECT_LT(p->bulk, 5e9);
+    EXPECT_GT(p->shear_modulus, 0.0);
+    EXPECT_LT(p->shear_modulus, 5e9);
+    EXPECT_GT(p->stress[2], p->stress[0]);
+  }
+}
+
+TEST(GrainBox, ElasticProbeIsStifferThanAnIntervalInWhichContactsSlide) {
+  int probed = 0;
+  for (const BoxPoint* p : uniaxial().points_of(BoxPhase::loading)) {
+    if (!std::isfinite(p->shear_probe)) continue;
+    ++probed;
+    EXPECT_GT(p->shear_probe, p->shear_modulus);
+    EXPECT_GT(p->bulk_probe, 0.8 * p->bulk);
+    EXPECT_LT(p->bulk_probe, 2.0 * p->bulk);
+  }
+  EXPECT_GE(probed, 2);
+}
+
+TEST(GrainBox, IsotropicLoadingIsIsotropicWithinScatter) {
+  GrainBoxSpec spec = small_spec();
+  spec.friction = 0.0;
+  spec.walls.friction = 0.0;
+  spec.loading.test = "isotropic";
+  spec.loading.strain_rate = {{1.0, 1.0, 1.0}};
+  spec.loading.end_strain = 0.002;
+  const GrainBoxResult result = run(spec);
+  for (const BoxPoint* p : result.points_of(BoxPhase::loading)) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(p->stress[k] / p->pressure, 1.0, 0.2);
+    EXPECT_GT(p->bulk, 0.3e9);
+    EXPECT_TRUE(std::isnan(p->shear_modulus));
+    EXPECT_TRUE(std::isnan(p->sliding_share));
+    // Without friction nothing is lost: the elastic probe is the modulus, but for contacts that open or close.
+    if (std::isfinite(p->bulk_probe)) {
+      EXPECT_NEAR(p->bulk_probe / p->bulk, 1.0, 0.1);
+    }
+  }
+}
+
+TEST(GrainBox, TheServoHoldsTheLateralStress) {
+  GrainBoxSpec spec = small_spec();
+  spec.loading.test = "triaxial";
+  spec.loading.control = {AxisControl::stress, AxisControl::stress, AxisControl::strain};
+  const Vec3 stress = uniaxial().points_of(BoxPhase::friction).back()->stress;
+  spec.loading.stress = {{0.9 * stress[0], 0.9 * stress[0], 0.0}};
+  spec.loading.end_strain = 0.003;
+  const GrainBoxResult result = run(spec);
+  const auto points = result.points_of(BoxPhase::loading);
+  ASSERT_GE(points.size(), 10U);
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(points.back()->stress[k] / spec.loading.stress[k], 1.0, 2.0 * spec.loading.stress_tolerance);
+  EXPECT_LT(points.back()->strain[0], points.front()->strain[0]);  // the pack widens
+}
+
+}  // namespace
