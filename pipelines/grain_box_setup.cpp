@@ -67,11 +67,16 @@ void read_generation(const SceneTable& t, GrainBoxGeneration& g) {
   g.axis = read_axis(t, g.axis);
 }
 
+void read_coulomb(const SceneTable& t, LeastWorkOptions& o) {
+  const std::string fallback = o.coulomb == CoulombRule::current ? "current" : "reference";
+  o.coulomb = t.choice("coulomb", {"current", "reference"}, fallback) == "current" ? CoulombRule::current
+                                                                                   : CoulombRule::reference;
+}
+
 void read_solver(const SceneTable& t, LeastWorkOptions& o) {
   const bool published = t.choice("method", {"fast", "published"}, "fast") == "published";
   o.method = published ? LeastWorkMethod::published : LeastWorkMethod::fast;
-  o.coulomb = t.choice("coulomb", {"current", "reference"}, "current") == "reference" ? CoulombRule::reference
-                                                                                      : CoulombRule::current;
+  read_coulomb(t, o);
   o.torsion = t.flag("torsion", o.torsion);
   o.max_iterations = t.count("max_iterations", 1, 100000000, o.max_iterations);
   if (!published) {
@@ -185,10 +190,11 @@ void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
     t.reject("end_stress", fmt::format("must be above the generation pressure of {:.4g} Pa", spec.generation.pressure));
   const GrainBoxForecast f = forecast(spec);
   if (f.overlap_ratio > 0.5)
-    t.reject("end_stress",
-             fmt::format("grains would overlap by about {:.2f} of their radius at the largest stress: beyond what contacts "
-                         "of small strain describe (0.5)",
-                         f.overlap_ratio));
+    t.reject(
+        "end_stress",
+        fmt::format("grains would overlap by about {:.2f} of their radius at the largest stress: beyond what contacts "
+                    "of small strain describe (0.5)",
+                    f.overlap_ratio));
   const double largest =
       std::max(*std::max_element(l.increments.begin(), l.increments.end()), spec.generation.increment);
   const double most = spec.material.radius_min / f.box_length;
@@ -208,6 +214,7 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
   spec.friction = read_friction(t, "mu", spec.friction);
   if (walls_follow) spec.walls.friction = spec.friction;
   spec.generation.pressure = t.number("pressure", Unit::pressure, Range::positive(), spec.generation.pressure);
+  read_coulomb(t, spec.solver);
   read_increments(t, spec.loading);
   read_end(t, spec.loading);
   require_sense(t, spec);

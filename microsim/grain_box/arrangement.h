@@ -14,15 +14,15 @@ namespace softgrain {
 GrainPack make_loose_pack(const GrainBoxSpec& spec, std::uint64_t seed);
 
 struct CompactedPack {
-  GrainPack pack;            ///< just jammed, contacts refreshed
+  GrainPack pack;            ///< pressed a little, contacts refreshed
   Vec3 stress_free_lengths;  ///< of the last box without stress [m]: strain is measured from here
   std::int64_t steps = 0;
   std::int64_t loop_passes = 0;
 };
 
 /// Shrinks the box isotropically, relaxing without friction (dynamic relaxation: a loose pack is floppy), in steps that
-/// are halved whenever stress appears, until the wall stress exceeds kFirstStress E at a step of kLastStep. Throws
-/// NotUsable when the pack does not jam, Interrupted.
+/// are halved whenever stress appears, until the wall stress exceeds kFirstStress E at a step of kLastStep; then on to
+/// a fifth of the pressure of the generation. Throws NotUsable when the pack does not jam, Interrupted.
 CompactedPack compact_until_stress(const GrainBoxSpec& spec, GrainPack loose);
 
 inline constexpr double kFirstStress = 1e-6;  ///< mean wall stress over mean E that counts as stress

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/core/solid_sphere.h"
 #include "common/statics/least_work.h"
@@ -115,6 +116,21 @@ ContactCounts count_contacts(const GrainPack& pack) {
   if (grains > out.rattlers)
     out.coordination_without = static_cast<double>(held_ends) / static_cast<double>(grains - out.rattlers);
   return out;
+}
+
+double share_at_current_limit(const GrainPack& pack) {
+  if (!(pack.friction > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  std::int64_t contacts = 0;
+  std::int64_t at_limit = 0;
+  for (const PackContact& c : pack.contacts) {
+    if (!(c.normal_force > 0.0)) continue;
+    const double friction =
+        c.j < pack.grains() ? pack.friction : pack.walls[static_cast<std::size_t>(c.j - pack.grains())].friction;
+    ++contacts;
+    at_limit += friction > 0.0 && norm(c.tangential_force) >= (1.0 - 1e-6) * friction * c.normal_force ? 1 : 0;
+  }
+  return contacts > 0 ? static_cast<double>(at_limit) / static_cast<double>(contacts)
+                      : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<Vec3> wall_moves(const Vec3& strain, const Vec3& reference) {

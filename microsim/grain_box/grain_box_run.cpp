@@ -22,8 +22,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int32_t kEnoughContacts = 4;
 /// Isotropic strain per step on the way to the pressure of (a), and the growth of sigma^(2/3) per step.
-constexpr double kPressureStep = 1e-3;
-constexpr double kPressureGrowth = 2.5;
+constexpr double kPressureStep = 2e-3;
+constexpr double kPressureGrowth = 8.0;
 constexpr std::int64_t kPressureSteps = 300;
 /// Growth of sigma_c with strain, for the estimate of progress: strain ~ sigma^(2/3).
 constexpr double kStrainPower = 2.0 / 3.0;

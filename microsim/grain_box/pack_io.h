@@ -1,4 +1,4 @@
-// A grain pack to and from an HDF5 group, bit for bit.
+// A grain pack between plain walls (no symmetry planes, no gravity) to and from an HDF5 group, bit for bit.
 #pragma once
 
 #include "common/io/hdf5_file.h"

@@ -172,6 +172,15 @@ TEST(GrainBoxMeasure, CountsContactsAndRattlers) {
   EXPECT_EQ(count_contacts(slippery).rattlers, 5);  // none has four
 }
 
+TEST(GrainBoxMeasure, SharesAtTheLimitGoByTheForceAsItIs) {
+  GrainPack pack = small_pack();  // |Q| = 0.1 P everywhere, mu = 0.3
+  EXPECT_EQ(share_at_current_limit(pack), 0.0);
+  pack.contacts[0].tangential_force = {{0.0, 0.3 * pack.contacts[0].normal_force, 0.0}};
+  EXPECT_DOUBLE_EQ(share_at_current_limit(pack), 1.0 / 6.0);
+  pack.friction = 0.0;
+  EXPECT_TRUE(std::isnan(share_at_current_limit(pack)));
+}
+
 TEST(GrainBoxMeasure, WallMovesStrainTheBoxFromBothSides) {
   const auto moves = wall_moves({{0.01, 0.0, -0.02}}, {{1.0, 2.0, 4.0}});
   ASSERT_EQ(moves.size(), 6U);
