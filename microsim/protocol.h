@@ -35,10 +35,11 @@ struct LeastWorkProtocolOptions {
   double tolerance = 1e-2;             ///< at a recorded point
   std::int64_t increment_passes = 80;  ///< an increment without equilibrium after these is left to dynamics
   double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
-  double step_factor = 4.0;            ///< its time step over that of the published protocol (masses raised to match)
-  double settle_time = 24.0;           ///< of dynamics before a point is recorded; 0: none
-  double settle_step_factor = 2.0;     ///< its time step over that of the published protocol
-  std::int64_t max_passes = 20000;     ///< of the last relaxation of a recorded point
+  double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match)
+  double settle_time = 120.0;  ///< of dynamics before a point is recorded; 0: none
+  double settle_time_rotated = 24.0;  ///< the same after a rotation
+  double step_factor_rotated = 2.0;
+  std::int64_t max_passes = 20000;  ///< of the last relaxation of a recorded point
 };
 
 /// Residuals count forces from this floor up: 1e-7 E Rs^2 [SP 1.4].

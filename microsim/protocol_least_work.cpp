@@ -16,15 +16,17 @@ namespace {
 /// As for the published protocol: dt over sqrt(m/k) of the smallest grain at 5 % overlap, and over sqrt(m/K) of any.
 constexpr double kStepFraction = 0.2;
 constexpr double kCrowdedFraction = 0.5;
-/// After an increment without equilibrium the next ones go straight to dynamics: 1, 2, 4... up to these.
+/// After an increment without equilibrium the next ones go straight to dynamics, in one stretch: 1, 2, 4... up to
+/// these.
 constexpr int kLongestDetour = 8;
 
-/// A stretch of slow dynamics with real contact damping; the grains' own inertia, but for the quickest.
+/// A stretch of slow dynamics with real contact damping; the grains' own inertia, but for the quickest. Motion goes on
+/// from what it was and is left as it is: a pack that rearranges carries its momentum on, and stopping it every now and
+/// then raises the force near the threshold by a third.
 void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
   const double nominal = step_factor * kStepFraction * step_limit(e.system).natural_time;
   const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
   const double dt = duration / static_cast<double>(steps);
-  stop_motion(e.system.particles);
   {
     const ScaledMasses<3> raised(e.system, dt, kCrowdedFraction);
     e.set_damping(true);
@@ -34,7 +36,6 @@ void run_dynamics(SoftExperiment& e, double speed, double duration, double step_
     for (std::int64_t k = 0; k < steps; ++k) integrator.step(e.system);
     e.add_approach_speed(-speed);
   }
-  stop_motion(e.system.particles);
   e.set_damping(false);
 }
 
@@ -51,26 +52,27 @@ class LeastWorkProtocol : public Protocol {
     const int steps =
         std::max(1, static_cast<int>(std::ceil(distance / (options_.increment * e.spec.shell_radius) - 1e-9)));
     const double move = distance / steps;
+    const double v = speed(e.spec);
     std::vector<Vec3> last;  // the displacement that served last is the first guess for the next
     int detour = 0;
-    int left = 0;
-    for (int k = 0; k < steps; ++k) {
-      if (left == 0 && step(e, move, last)) {
+    for (int k = 0; k < steps;) {
+      if (step(e, move, last)) {
         detour = 0;
+        ++k;
         continue;
       }
-      if (left == 0) left = detour = std::clamp(2 * detour, 1, kLongestDetour);
-      --left;
+      detour = std::min(std::clamp(2 * detour, 1, kLongestDetour), steps - k);
       last.clear();
-      const double v = speed(e.spec);
-      run_dynamics(e, v, move / v, options_.step_factor);
+      run_dynamics(e, v, detour * move / v, options_.step_factor);
+      k += detour;
     }
     e.normal_overlap = overlap;
   }
 
-  SettleResult settle(SoftExperiment& e, bool) const override {
-    if (options_.settle_time > 0.0)
-      run_dynamics(e, 0.0, options_.settle_time * natural_time(e.spec), options_.settle_step_factor);
+  SettleResult settle(SoftExperiment& e, bool rotated) const override {
+    const double time = rotated ? options_.settle_time_rotated : options_.settle_time;
+    const double factor = rotated ? options_.step_factor_rotated : options_.step_factor;
+    if (time > 0.0) run_dynamics(e, 0.0, time * natural_time(e.spec), factor);
     DampedOptions options;
     options.tolerance = options_.tolerance;
     options.force_floor = force_floor(e.spec);

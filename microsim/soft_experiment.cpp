@@ -93,7 +93,7 @@ double natural_time(const SoftParticleSpec& spec) {
 
 void SoftExperiment::set_damping(bool damped) {
   system.laws = grain_laws(spec, system.materials[0], damped);
-  rebuild_neighbours(system);
+  system.neighbours.reference.clear();  // the next pass rebuilds the list, with the constants of this law
 }
 
 Vec3 SoftExperiment::force_on_second() const {

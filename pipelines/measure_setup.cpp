@@ -50,8 +50,9 @@ void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
   if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
   o.step_factor = t.number("step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
   o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
-  o.settle_step_factor =
-      t.number("settle_step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.settle_step_factor);
+  o.settle_time_rotated = t.number("settle_time_rotated", Unit::none, Range::not_negative(), o.settle_time_rotated);
+  o.step_factor_rotated =
+      t.number("step_factor_rotated", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor_rotated);
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "common/dynamics/force_pass.h"
-#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
 
@@ -42,14 +41,14 @@ ScaledMasses<D>::ScaledMasses(System<D>& system, double dt, double fraction)
     p.inverse_mass[u] /= factor;
     p.inverse_inertia[u] /= factor;
   }
-  rebuild_neighbours(system);
+  system.neighbours.reference.clear();  // the next pass rebuilds the list, with the constants of these masses
 }
 
 template <int D>
 ScaledMasses<D>::~ScaledMasses() {
   system_.particles.inverse_mass = inverse_mass_;
   system_.particles.inverse_inertia = inverse_inertia_;
-  system_.neighbours.reference.clear();  // the next pass rebuilds the list, with the constants of the true masses
+  system_.neighbours.reference.clear();
 }
 
 template class ScaledMasses<2>;

@@ -30,6 +30,8 @@ void LeastWorkStep::start(const System3& s, const Moves& moves) {
   old_product_ = 0.0;
   for (Moves* v : {&shift_, &turn_, &direction_, &spin_, &old_force_, &old_torque_}) v->assign(n, {});
   if (!moves.empty()) shift_ = moves;
+  velocity_ = s.particles.velocity;
+  rate_ = s.particles.spin;
   origin_.resize(n);
   for (std::size_t u = 0; u < n; ++u) origin_[u] = s.particles.sphere[u].x;
 }
@@ -154,6 +156,13 @@ void LeastWorkStep::search(System3& s, bool stiffness) {
 void LeastWorkStep::put_back(System3& s) const {
   auto& p = s.particles;
   for (std::size_t u = 0; u < origin_.size(); ++u) p.sphere[u].x = origin_[u];
+  p.velocity = velocity_;
+  p.spin = rate_;
+}
+
+void LeastWorkStep::stop(System3& s) {
+  std::fill(s.particles.velocity.begin(), s.particles.velocity.end(), Vec3{});
+  std::fill(s.particles.spin.begin(), s.particles.spin.end(), Vec3{});
 }
 
 RelaxationResult LeastWorkStep::minimise(System3& s) {
@@ -186,12 +195,11 @@ RelaxationResult LeastWorkStep::advance(System3& s, Moves& moves) {
   result.passes = passes_;
   if (result.end == RelaxationEnd::converged) {
     s.contacts.commit();
+    stop(s);
     moves = shift_;
   } else {
     put_back(s);
   }
-  std::fill(s.particles.velocity.begin(), s.particles.velocity.end(), Vec3{});
-  std::fill(s.particles.spin.begin(), s.particles.spin.end(), Vec3{});
   return result;
 }
 

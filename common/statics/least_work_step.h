@@ -30,7 +30,8 @@ class LeastWorkStep {
 
   /// `moves`: displacement of every body [m], exact for those without mass, a first guess for the others; empty: none.
   /// Converged: the new state is committed, velocities are zero, `moves` holds the displacements found. Otherwise the
-  /// system is put back to the reference state (forces are those of the last try) and `moves` is left as it was.
+  /// system is put back to the reference state, motion included (forces are those of the last try), and `moves` is left
+  /// as it was.
   RelaxationResult advance(System3& system, std::vector<Vec3>& moves);
 
  private:
@@ -47,6 +48,7 @@ class LeastWorkStep {
   void move_by(const System3& system, double step);
   void search(System3& system, bool stiffness);
   void put_back(System3& system) const;
+  static void stop(System3& system);
 
   LeastWorkStepOptions options_;
   std::int64_t passes_ = 0;
@@ -54,6 +56,7 @@ class LeastWorkStep {
   std::vector<double> inverse_translation_;  ///< preconditioner per body, 0 for bodies without mass
   std::vector<double> inverse_rotation_;
   Moves origin_;                  ///< positions of the reference state
+  Moves velocity_, rate_;         ///< its velocities and spins
   Moves shift_, turn_;            ///< since the reference state
   Moves direction_, spin_;        ///< of the search
   Moves old_force_, old_torque_;  ///< at the last iterate

@@ -16,8 +16,9 @@ std::vector<double> values_of(const std::map<std::int64_t, double>& by_packing, 
   return result;
 }
 
-/// Rows over the overlaps of both sides; packings in common, paired.
-std::vector<RatioRow> paired_rows(const ValuesByDelta& candidate, const ValuesByDelta& reference) {
+/// Rows over the overlaps of both sides; packings in common, paired, values divided by the unit of each side.
+std::vector<RatioRow> paired_rows(const ValuesByDelta& candidate, const ValuesByDelta& reference,
+                                  double candidate_unit = 1.0, double reference_unit = 1.0) {
   std::vector<RatioRow> rows;
   for (const auto& [key, reference_values] : reference) {
     const auto found = candidate.find(key);
@@ -27,12 +28,24 @@ std::vector<RatioRow> paired_rows(const ValuesByDelta& candidate, const ValuesBy
     for (const auto& [packing, value] : reference_values) {
       const auto partner = found->second.find(packing);
       if (partner == found->second.end()) continue;
-      a.push_back(partner->second);
-      b.push_back(value);
+      a.push_back(partner->second / candidate_unit);
+      b.push_back(value / reference_unit);
     }
     if (!a.empty()) rows.push_back({key_delta(key), mean_error(a), mean_error(b), paired_ratio(a, b)});
   }
   return rows;
+}
+
+/// Whether packing k of one file is packing k of the other: the same grains, for all that both have (at least one).
+bool same_packings(const Measurements& a, const Measurements& b) {
+  const std::size_t n = std::min(a.packings.size(), b.packings.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    const PackingInfo& p = a.packings[k];
+    const PackingInfo& q = b.packings[k];
+    if (p.grains != q.grains || p.solid_fraction != q.solid_fraction || p.contacts_per_grain != q.contacts_per_grain)
+      return false;
+  }
+  return n > 0;
 }
 
 /// Rows over the overlaps of both sides; packings independent, values divided by the unit of each side.
@@ -85,6 +98,15 @@ PointCost tangential_cost(const std::vector<const PackingRun*>& runs) {
   return per_point(total, points);
 }
 
+template <class Comparison>
+void add_costs(Comparison& result, const std::vector<const PackingRun*>& candidate,
+               const std::vector<const PackingRun*>& reference) {
+  result.reference_normal_cost = normal_cost(reference);
+  result.candidate_normal_cost = normal_cost(candidate);
+  result.reference_tangential_cost = tangential_cost(reference);
+  result.candidate_tangential_cost = tangential_cost(candidate);
+}
+
 const PairLaw& require_law(const LawCard& card, PairKind kind, const char* side) {
   const PairLaw* law = card.find(kind);
   if (law == nullptr) throw BadInput(fmt::format("compare: the {} law card has no {} law", side, to_string(kind)));
@@ -120,10 +142,7 @@ RelaxationComparison compare_relaxations(const Measurements& data, const std::st
       paired_rows(initial_stiffness(a, angles, shell_radius), initial_stiffness(b, angles, shell_radius));
   result.stiffness_secant =
       paired_rows(secant_stiffness(a, angles, shell_radius), secant_stiffness(b, angles, shell_radius));
-  result.reference_normal_cost = normal_cost(b);
-  result.candidate_normal_cost = normal_cost(a);
-  result.reference_tangential_cost = tangential_cost(b);
-  result.candidate_tangential_cost = tangential_cost(a);
+  add_costs(result, a, b);
   return result;
 }
 
@@ -137,13 +156,21 @@ MeasurementComparison compare_measurements(const Measurements& candidate, const 
   const double force_b = force_unit(reference.spec);
   const double stiffness_a = force_a / candidate.spec.shell_radius;
   const double stiffness_b = force_b / reference.spec.shell_radius;
-  MeasurementComparison result{kind, candidate_relaxation, reference_relaxation, {}, {}, {}};
-  result.normal = independent_rows(normal_forces(a), force_a, normal_forces(b), force_b);
+  MeasurementComparison result;
+  result.kind = kind;
+  result.candidate_relaxation = candidate_relaxation;
+  result.reference_relaxation = reference_relaxation;
+  result.paired = same_packings(candidate, reference);
+  const auto rows = [&](const ValuesByDelta& x, double x_unit, const ValuesByDelta& y, double y_unit) {
+    return result.paired ? paired_rows(x, y, x_unit, y_unit) : independent_rows(x, x_unit, y, y_unit);
+  };
+  result.normal = rows(normal_forces(a), force_a, normal_forces(b), force_b);
   if (result.normal.empty()) throw BadInput("compare: the two measurements have no overlap Delta in common");
-  result.stiffness_initial = independent_rows(initial_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
-                                              initial_stiffness(b, angles, reference.spec.shell_radius), stiffness_b);
-  result.stiffness_secant = independent_rows(secant_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
-                                             secant_stiffness(b, angles, reference.spec.shell_radius), stiffness_b);
+  result.stiffness_initial = rows(initial_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
+                                  initial_stiffness(b, angles, reference.spec.shell_radius), stiffness_b);
+  result.stiffness_secant = rows(secant_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
+                                 secant_stiffness(b, angles, reference.spec.shell_radius), stiffness_b);
+  add_costs(result, a, b);
   return result;
 }
 

@@ -50,15 +50,21 @@ RelaxationComparison compare_relaxations(const Measurements& data, const std::st
                                          const std::string& candidate, PairKind kind,
                                          const StiffnessAngles& angles = {});
 
-/// Two files, one pair kind and relaxation each. The packings count as independent. Forces are compared as Fn/(E Rs^2)
-/// and stiffnesses as kt/(E Rs), so that runs with other E and Rs can be set side by side.
+/// Two files, one pair kind and relaxation each. Runs of the same packings are compared packing by packing, others
+/// count as independent. Forces are compared as Fn/(E Rs^2) and stiffnesses as kt/(E Rs), so that runs with other E and
+/// Rs can be set side by side.
 struct MeasurementComparison {
   PairKind kind = PairKind::soft_solid;
   std::string candidate_relaxation;
   std::string reference_relaxation;
+  bool paired = false;  ///< the packings are the same
   std::vector<RatioRow> normal;
   std::vector<RatioRow> stiffness_initial;
   std::vector<RatioRow> stiffness_secant;
+  PointCost reference_normal_cost;
+  PointCost candidate_normal_cost;
+  PointCost reference_tangential_cost;
+  PointCost candidate_tangential_cost;
 };
 
 /// Throws BadInput when a side has no such runs or no overlap is in both.

@@ -65,6 +65,14 @@ json to_json(const PointCost& c) {
           {"seconds_per_point", number(c.seconds)}};
 }
 
+template <class Comparison>
+json cost_json(const Comparison& c) {
+  return {{"candidate_normal", to_json(c.candidate_normal_cost)},
+          {"reference_normal", to_json(c.reference_normal_cost)},
+          {"candidate_tangential", to_json(c.candidate_tangential_cost)},
+          {"reference_tangential", to_json(c.reference_tangential_cost)}};
+}
+
 json to_json(const RelaxationComparison& c) {
   return {{"pair", to_string(c.kind)},
           {"candidate", c.candidate},
@@ -72,17 +80,15 @@ json to_json(const RelaxationComparison& c) {
           {"normal_force", to_json(c.normal)},
           {"stiffness_initial", to_json(c.stiffness_initial)},
           {"stiffness_secant", to_json(c.stiffness_secant)},
-          {"cost",
-           {{"candidate_normal", to_json(c.candidate_normal_cost)},
-            {"reference_normal", to_json(c.reference_normal_cost)},
-            {"candidate_tangential", to_json(c.candidate_tangential_cost)},
-            {"reference_tangential", to_json(c.reference_tangential_cost)}}}};
+          {"cost", cost_json(c)}};
 }
 
 json to_json(const MeasurementComparison& c) {
   return {{"pair", to_string(c.kind)},
           {"candidate_relaxation", c.candidate_relaxation},
           {"reference_relaxation", c.reference_relaxation},
+          {"paired", c.paired},
+          {"cost", cost_json(c)},
           {"normal_force", to_json(c.normal)},
           {"stiffness_initial", to_json(c.stiffness_initial)},
           {"stiffness_secant", to_json(c.stiffness_secant)}};
@@ -146,22 +152,25 @@ std::string ratio_text(const Ratios& c) {
          text_of("kt secant", c.stiffness_secant);
 }
 
-std::string text_of(const RelaxationComparison& c) {
-  std::string out =
-      fmt::format("relaxations, {}: {} against {} (N, N/m)\n", to_string(c.kind), c.candidate, c.reference) +
-      ratio_text(c);
+template <class Comparison>
+std::string cost_text(const Comparison& c) {
   const double speedup = c.reference_normal_cost.seconds / c.candidate_normal_cost.seconds;
-  return out +
-         fmt::format(
-             "  cost of a normal point: {:.3g} against {:.3g} loop passes, {:.3g} against {:.3g} s (speed-up {:.3g})\n",
-             c.candidate_normal_cost.loop_passes, c.reference_normal_cost.loop_passes, c.candidate_normal_cost.seconds,
-             c.reference_normal_cost.seconds, speedup);
+  return fmt::format(
+      "  cost of a normal point: {:.3g} against {:.3g} loop passes, {:.3g} against {:.3g} s (speed-up {:.3g})\n",
+      c.candidate_normal_cost.loop_passes, c.reference_normal_cost.loop_passes, c.candidate_normal_cost.seconds,
+      c.reference_normal_cost.seconds, speedup);
+}
+
+std::string text_of(const RelaxationComparison& c) {
+  return fmt::format("relaxations, {}: {} against {} (N, N/m)\n", to_string(c.kind), c.candidate, c.reference) +
+         ratio_text(c) + cost_text(c);
 }
 
 std::string text_of(const MeasurementComparison& c) {
-  return fmt::format("measurements, {}: {} against {} (Fn/(E Rs^2), kt/(E Rs))\n", to_string(c.kind),
-                     c.candidate_relaxation, c.reference_relaxation) +
-         ratio_text(c);
+  return fmt::format("measurements, {}: {} against {} (Fn/(E Rs^2), kt/(E Rs); {})\n", to_string(c.kind),
+                     c.candidate_relaxation, c.reference_relaxation,
+                     c.paired ? "the same packings, paired" : "different packings") +
+         ratio_text(c) + cost_text(c);
 }
 
 std::string text_of(const LawPartComparison& part) {

@@ -189,11 +189,26 @@ TEST(CompareMeasurements, DimensionlessSoThatStiffnessOfTheGrainsDropsOut) {
     for (NormalPoint& p : run.normal) p.force *= 256.0;
     for (TangentialPoint& p : run.tangential) p.force_parallel *= 256.0;
   }
+  candidate.packings[0].grains += 1;
   const auto c = compare_measurements(candidate, "damped", reference, "damped", PairKind::soft_solid);
+  EXPECT_FALSE(c.paired);
   EXPECT_NEAR(c.normal.back().ratio.ratio, 1.0, 1e-12);
   EXPECT_GT(c.normal.back().ratio.error, 0.0);
   EXPECT_NEAR(c.stiffness_initial.back().ratio.ratio, 1.0, 1e-12);
   EXPECT_THROW(compare_measurements(candidate, "none", reference, "damped", PairKind::soft_solid), BadInput);
+}
+
+TEST(CompareMeasurements, TheSamePackingsArePaired) {
+  const auto reference = synthetic::measurements();
+  auto candidate = reference;
+  for (PackingRun& run : candidate.runs)
+    for (NormalPoint& p : run.normal) p.force *= 1.25;
+  const auto c = compare_measurements(candidate, "damped", reference, "damped", PairKind::soft_solid);
+  EXPECT_TRUE(c.paired);
+  EXPECT_NEAR(c.normal.back().ratio.ratio, 1.25, 1e-12);
+  EXPECT_NEAR(c.normal.back().ratio.error, 0.0, 1e-12);  // the scatter of the packings is the same on both sides
+  EXPECT_GT(c.normal.back().candidate.error, 0.0);
+  EXPECT_GT(c.candidate_normal_cost.points, 0);
 }
 
 TEST(CompareWithin, FindsEnginesAndRelaxationsOfOneRun) {
