@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -100,6 +101,8 @@ Vec3 stress_change(const PackProblem& problem, const std::vector<LinkTangent>& t
 ElasticResponse elastic_probe(const GrainPack& pack, const LeastWorkOptions& options) {
   ElasticResponse out;
   const Vec3 width = box_of(pack);
+  if (std::any_of(pack.walls.begin(), pack.walls.end(), [](const PackWall& w) { return w.symmetry; }))
+    throw BadInput("elastic probe: not between symmetry planes");
   PackProblem problem(pack, std::vector<Vec3>(6), options.coulomb, options.torsion);
   const std::vector<LinkTangent> tangents = stuck_contacts(problem);
   statics::BlockJacobi inverse;

@@ -51,7 +51,7 @@ class Stepper {
     }
     if (!(dot(forces_.force, direction_) > 0.0)) {
       // The preconditioned force itself always leads down.
-      inverse_.apply(forces_.force, direction_);
+      precondition(forces_.force, direction_);
       clip(direction_);
     }
     double taken = 0.0;
@@ -75,6 +75,11 @@ class Stepper {
     ++factorisations_;
   }
 
+  void precondition(const Unknowns& in, Unknowns& out) const {
+    inverse_.apply(in, out);
+    problem_.symmetry().project(out, problem_.stride());
+  }
+
   /// True when the conjugate gradient met negative stiffness.
   bool solve() {
     // With friction the contacts hold what turns; their part of the prestress is not known as a symmetric matrix.
@@ -82,8 +87,9 @@ class Stepper {
     const auto map = [&](const Unknowns& in, Unknowns& out) {
       stiffness.apply(in, out);
       inverse_.add_diagonal(in, spring_, out);
+      problem_.symmetry().project(out, problem_.stride());
     };
-    const auto inverse = [&](const Unknowns& in, Unknowns& out) { inverse_.apply(in, out); };
+    const auto inverse = [&](const Unknowns& in, Unknowns& out) { precondition(in, out); };
     const KrylovResult k = conjugate_gradient(map, inverse, forces_.force, reduction(), kLinearIterations, direction_);
     linear_iterations_ += k.iterations;
     return k.indefinite;

@@ -15,7 +15,11 @@ struct PackWall {
   Vec3 normal{};                ///< unit, into the pack
   double youngs_modulus = 0.0;  ///< [Pa]; infinity: rigid
   double poisson_ratio = 0.0;
-  double friction = 0.0;  ///< 0: a mirror plane
+  double friction = 0.0;
+  /// Holds every grain whose centre lies on it (within 1e-9 of its radius): such a grain follows the plane along its
+  /// normal, turns only about it, and has no contact with it; contacts between two such grains count in full. Other
+  /// grains meet a plane without friction.
+  bool symmetry = false;
 };
 
 /// What a contact carries in the reference state. Force and moment are those on grain i.

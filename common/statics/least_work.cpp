@@ -1,5 +1,6 @@
 #include "common/statics/least_work.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -27,8 +28,23 @@ void require_walls_apart(const GrainPack& pack, const std::vector<Vec3>& moves) 
 void require_inside(const std::vector<Vec3>& positions, const std::vector<Vec3>& wall_points, const GrainPack& pack) {
   for (std::size_t g = 0; g < positions.size(); ++g)
     for (std::size_t w = 0; w < wall_points.size(); ++w)
-      if (dot(positions[g] - wall_points[w], pack.walls[w].normal) <= 0.0)
+      if (dot(positions[g] - wall_points[w], pack.walls[w].normal) <= 0.0 && !statics::centred_on(pack, g, w))
         throw NotUsable("least work: grain " + std::to_string(g) + " is beyond wall " + std::to_string(w));
+}
+
+/// What symmetry planes take from the grains that they hold: the normal part of all other forces on them.
+void add_held_grains(const GrainPack& pack, std::vector<Vec3>& walls) {
+  if (std::none_of(pack.walls.begin(), pack.walls.end(), [](const PackWall& w) { return w.symmetry; })) return;
+  std::vector<Vec3> net(pack.position.size());
+  for (std::size_t g = 0; g < pack.weight.size(); ++g) net[g] = pack.gravity * pack.weight[g];
+  for (const PackContact& c : pack.contacts) {
+    const Vec3 force = c.normal * c.normal_force + c.tangential_force;
+    net[static_cast<std::size_t>(c.i)] += force;
+    if (c.j < pack.grains()) net[static_cast<std::size_t>(c.j)] -= force;
+  }
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    for (std::size_t g = 0; g < net.size(); ++g)
+      if (statics::centred_on(pack, g, w)) walls[w] += pack.walls[w].normal * dot(pack.walls[w].normal, net[g]);
 }
 
 /// Grains with fewer contacts than hold them: two with friction, four without.
@@ -92,6 +108,7 @@ std::vector<Vec3> wall_forces(const GrainPack& pack) {
   for (const PackContact& c : pack.contacts)
     if (c.j >= pack.grains())
       out[static_cast<std::size_t>(c.j - pack.grains())] -= c.normal * c.normal_force + c.tangential_force;
+  add_held_grains(pack, out);
   return out;
 }
 

@@ -75,7 +75,8 @@ struct ElasticResponse {
 };
 ElasticResponse elastic_probe(const GrainPack& pack, const LeastWorkOptions& options);
 
-/// Force of the pack on each wall [N] (normal part along -normal positive; all three components).
+/// Force of the pack on each wall [N] (normal part along -normal positive; all three components). On a symmetry plane
+/// with what it takes to hold its grains.
 std::vector<Vec3> wall_forces(const GrainPack& pack);
 
 }  // namespace softgrain

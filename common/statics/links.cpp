@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/neighbours/hierarchical_grid.h"
+#include "common/statics/symmetry_planes.h"
 
 namespace softgrain::statics {
 
@@ -71,7 +72,7 @@ std::vector<Pair> pairs_in_reach(const GrainPack& pack, const std::vector<Vec3>&
   for (const CandidatePair& c : candidate_pairs(p, open_cell<3>(), skin)) out.push_back({c.i, c.j});
   for (std::size_t w = 0; w < walls.size(); ++w)
     for (std::size_t g = 0; g < x.size(); ++g)
-      if (dot(x[g] - walls[w], pack.walls[w].normal) < pack.radius[g] + skin[g])
+      if (dot(x[g] - walls[w], pack.walls[w].normal) < pack.radius[g] + skin[g] && !centred_on(pack, g, w))
         out.push_back({static_cast<std::int32_t>(g), n + static_cast<std::int32_t>(w)});
   std::sort(out.begin(), out.end(), [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
   return out;
@@ -110,6 +111,8 @@ void check(const GrainPack& pack) {
     require(pack.radius[g] > 0.0 && std::isfinite(pack.radius[g]) &&
                 in_range(pack.youngs_modulus[g], pack.poisson_ratio[g]),
             "pack: radii and moduli are above 0, Poisson ratios in (-1, 0.5]");
+  for (const PackWall& w : pack.walls)
+    require(!w.symmetry || w.friction == 0.0, "pack: a symmetry plane has no friction");
   for (const PackWall& w : pack.walls)
     require(w.friction >= 0.0 && in_range(w.youngs_modulus, w.poisson_ratio) && std::abs(norm2(w.normal) - 1.0) < 1e-9,
             "pack: walls need unit normals, moduli above 0, Poisson ratios in (-1, 0.5], friction 0 or more");

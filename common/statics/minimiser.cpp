@@ -70,6 +70,7 @@ Unknowns affine_guess(const PackProblem& problem, double part) {
       for (int k = 0; k < 3; ++k) out[g * stride + static_cast<std::size_t>(k)] += move[k];
     }
   }
+  problem.symmetry().carry(out, problem.stride(), problem.wall_moves(), part);
   return out;
 }
 

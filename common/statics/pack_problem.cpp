@@ -185,7 +185,12 @@ double start_sums(const GrainPack& pack, const Unknowns& theta, std::size_t stri
 }  // namespace
 
 PackProblem::PackProblem(const GrainPack& pack, std::vector<Vec3> wall_moves, CoulombRule rule, bool torsion)
-    : pack_(pack), wall_moves_(std::move(wall_moves)), rule_(rule), torsion_(torsion), friction_(has_friction(pack)) {
+    : pack_(pack),
+      wall_moves_(std::move(wall_moves)),
+      rule_(rule),
+      torsion_(torsion),
+      friction_(has_friction(pack)),
+      symmetry_(pack) {
   if (wall_moves_.size() != pack.walls.size()) throw BadInput("pack: one move per wall");
   set_walls(0.0);
   links_ = find_links(pack_, pack_.position, wall_points_);
@@ -292,6 +297,7 @@ void PackProblem::evaluate(const Unknowns& theta, PackForces& out) {
   ++cost_.loop_passes;
   cost_.contact_evaluations += links_.size();
   dispatch([&](auto law) { evaluate_as<decltype(law)>(theta, out); });
+  symmetry_.project(out.force, stride());
 }
 
 void PackProblem::linearise(const Unknowns& theta, std::vector<LinkTangent>& out) {

@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "common/statics/links.h"
+#include "common/statics/symmetry_planes.h"
 #include "common/statics/unknowns.h"
 
 namespace softgrain::statics {
 
 /// Forces at a state. Layout as the unknowns: force, then moment/R, per grain.
 struct PackForces {
-  Unknowns force;                ///< net force and moment/R on every grain [N]; minus the gradient of Pi
+  Unknowns force;                ///< net force and moment/R on every grain [N]; minus the gradient of Pi, less what
+                                 ///< symmetry planes bear
   std::vector<double> largest2;  ///< per grain, square of its largest contact force [N^2]
   double work = 0.0;             ///< Pi less the elastic energy of the reference state's normal forces [J]
   double contact_force = 0.0;    ///< sum over contacts of the normal force [N]
@@ -47,6 +49,7 @@ class PackProblem {
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(pack_.grains() * stride()); }
   [[nodiscard]] const GrainPack& pack() const { return pack_; }
   [[nodiscard]] const Links& links() const { return links_; }
+  [[nodiscard]] const SymmetryPlanes& symmetry() const { return symmetry_; }
   [[nodiscard]] const Cost& cost() const { return cost_; }
 
   /// Puts the walls at this part of their moves.
@@ -81,6 +84,7 @@ class PackProblem {
   CoulombRule rule_;
   bool torsion_;
   bool friction_;
+  SymmetryPlanes symmetry_;
   Links links_;
   std::vector<Vec3> place_;  ///< positions of the state being evaluated
   Cost cost_;

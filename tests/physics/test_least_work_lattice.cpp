@@ -1,5 +1,5 @@
-// Self-similar deformation of a simple cubic lattice between mirror planes against the closed form [QS 2.2]. (Mirror
-// planes of bcc and fcc lattices pass through centres of grains; planes that touch grains are no mirrors of those.)
+// Self-similar deformation of a simple cubic lattice between planes that touch its grains, against the closed form
+// [QS 2.2]. Lattices with mirror planes through centres: test_least_work_symmetry.cpp.
 #include <gtest/gtest.h>
 
 #include <iostream>
