@@ -93,6 +93,27 @@ std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& resul
   return out;
 }
 
+double pressure_of_smallest_shear(const GrainBoxResult& result) {
+  constexpr std::size_t window = 10;
+  std::vector<const BoxPoint*> points = result.points_of(BoxPhase::friction);
+  const std::vector<const BoxPoint*> loading = result.points_of(BoxPhase::loading);
+  points.insert(points.end(), loading.begin(), loading.end());
+  double smallest = std::numeric_limits<double>::infinity();
+  double pressure = kNaN;
+  for (std::size_t k = 0; k + window <= points.size(); ++k) {
+    double shear = 0.0;
+    double stress = 0.0;
+    for (std::size_t n = k; n < k + window; ++n) {
+      shear += points[n]->shear_modulus;
+      stress += points[n]->pressure;
+    }
+    if (!(shear < smallest)) continue;
+    smallest = shear;
+    pressure = stress / static_cast<double>(window);
+  }
+  return pressure;
+}
+
 StepEffort total_effort(const GrainBoxState& state) {
   StepEffort sum;
   for (const BoxPoint& p : state.points) {

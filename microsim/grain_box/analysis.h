@@ -20,6 +20,11 @@ struct ModuliAt {
 /// Round stresses within the loading of all packs, at which their moduli are set side by side [Pa].
 [[nodiscard]] std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results);
 
+/// sigma_c at which G, averaged over 10 intervals, is smallest with friction on (generation and loading): before,
+/// contacts begin to slide one after the other; after, the pack stiffens with stress. NaN with fewer than 10 intervals
+/// [Pa].
+[[nodiscard]] double pressure_of_smallest_shear(const GrainBoxResult& result);
+
 /// Sums over all points.
 [[nodiscard]] StepEffort total_effort(const GrainBoxState& state);
 

@@ -134,8 +134,9 @@ std::string share_text(double share) { return std::isfinite(share) ? format_numb
 
 std::string packs_table(const Packs& packs) {
   HtmlTable table({"pack", "grains", "mu", "sigma_c (mu = 0) [MPa]", "solid fraction", "contacts per grain",
-                   "sigma_c at start of loading [MPa]", "sliding there", "sigma_c at end [MPa]", "sliding at end",
-                   "with |Q| = mu P as it is then", "contacts at end", "shear/sigma_c, largest [%]", "status"});
+                   "sigma_c at start of loading [MPa]", "sliding there", "sigma_c of smallest G [MPa]",
+                   "sigma_c at end [MPa]", "sliding at end", "with |Q| = mu P as it is then", "contacts at end",
+                   "shear/sigma_c, largest [%]", "status"});
   for (const GrainBoxResult& r : packs) {
     const auto compacted = r.points_of(BoxPhase::compaction);
     const auto friction = r.points_of(BoxPhase::friction);
@@ -150,9 +151,9 @@ std::string packs_table(const Packs& packs) {
                std::isfinite(r.spec.friction) ? format_number(r.spec.friction, 3) : "infinite",
                format_number(a.pressure * kMega, 4), format_number(a.solid_fraction, 4),
                format_number(a.coordination, 4), format_number(b.pressure * kMega, 4), share_text(b.sliding_share),
-               format_number(c.pressure * kMega, 4), share_text(c.sliding_share),
-               share_text(share_at_current_limit(r.state.pack)), format_number(c.coordination, 4),
-               format_number(100.0 * shear, 2), r.usable ? "good" : "broke off"});
+               format_number(pressure_of_smallest_shear(r) * kMega, 3), format_number(c.pressure * kMega, 4),
+               share_text(c.sliding_share), share_text(share_at_current_limit(r.state.pack)),
+               format_number(c.coordination, 4), format_number(100.0 * shear, 2), r.usable ? "good" : "broke off"});
   }
   return table.html();
 }

@@ -307,6 +307,16 @@ increment = 2e-4
 grains = 500
 )";
 
+TEST(GrainBoxAnalysis, FindsWhereTheShearModulusIsSmallest) {
+  GrainBoxResult r = small_result();
+  EXPECT_TRUE(std::isnan(pressure_of_smallest_shear(GrainBoxResult{})));
+  for (std::size_t k = 0; k < r.state.points.size(); ++k) {
+    const double off = static_cast<double>(k) - 15.5;
+    r.state.points[k].shear_modulus = 1e9 + 1e6 * off * off;
+  }
+  EXPECT_NEAR(pressure_of_smallest_shear(r), 16.5e6, 1.1e6);
+}
+
 TEST(GrainBoxScene, VariantsChangeTheirKeysOnly) {
   const GrainBoxSetup setup = read_grain_box(Scene::parse(kScene, "scene.toml"));
   ASSERT_EQ(setup.packs.size(), 2U);
