@@ -20,7 +20,7 @@ struct GrainBoxMaterial {
   double youngs_modulus_scatter = 0.1;  ///< standard deviation over mean
   double poisson_ratio = 0.2;
   double poisson_ratio_scatter = 0.1;  ///< standard deviation over mean
-  double density = 2420.0;             ///< [kg/m^3]; for the mass in the summary, statics need none
+  double density = 2420.0;             ///< [kg/m^3]; for the relaxation of the loose arrangement; statics need none
 };
 
 struct GrainBoxWalls {
