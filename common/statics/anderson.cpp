@@ -14,16 +14,22 @@ Unknowns difference(const Unknowns& a, const Unknowns& b) {
 
 }  // namespace
 
-Unknowns AndersonMixing::mixed(const Unknowns& x, const Unknowns& d) {
+Unknowns AndersonMixing::mixed(const Unknowns& x, const Unknowns& d, const Unknowns& weight) {
+  const auto weighted = [&](const Unknowns& a) {
+    Unknowns out = a;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] *= weight[k];
+    return out;
+  };
   // Modified Gram-Schmidt on the changes of d, newest first; a change that adds nothing new is left out.
   Unknowns step = d;
-  Unknowns rest = d;
+  Unknowns rest = weighted(d);
   std::vector<Unknowns> basis, moves;
   for (std::size_t k = states_.size(); k-- > 0;) {
     const bool newest = k + 1 == states_.size();
-    Unknowns change = difference(newest ? d : steps_[k + 1], steps_[k]);
+    const Unknowns plain = difference(newest ? d : steps_[k + 1], steps_[k]);
     Unknowns move = difference(newest ? x : states_[k + 1], states_[k]);
-    add_scaled(move, 1.0, change);
+    add_scaled(move, 1.0, plain);
+    Unknowns change = weighted(plain);
     const double before = dot(change, change);
     for (std::size_t b = 0; b < basis.size(); ++b) {
       const double share = dot(basis[b], change);

@@ -15,8 +15,8 @@ class AndersonMixing {
     steps_.clear();
   }
 
-  /// The step to take from x instead of d: the combination of the remembered steps with the least |d|.
-  Unknowns mixed(const Unknowns& x, const Unknowns& d);
+  /// The step to take from x instead of d: the combination of the remembered steps with the least |weight d|.
+  Unknowns mixed(const Unknowns& x, const Unknowns& d, const Unknowns& weight);
 
  private:
   std::size_t memory_;

@@ -36,6 +36,12 @@ void add_link(const LinkTangent& t, double arm, double twist, Block<kWidth>& out
   }
 }
 
+/// The same for grain i (`first`) or j of a link.
+template <int kWidth>
+void add_to_block(const LinkTangent& t, bool first, double radius, Block<kWidth>& out) {
+  add_link<kWidth>(t, first ? t.arm_i : -t.arm_j, t.twist / (radius * radius), out);
+}
+
 /// Lower Cholesky factor with inverted diagonal; a pivot below `least` is raised to it.
 template <int kWidth>
 void factorise(Block<kWidth>& b, double least) {
@@ -65,25 +71,46 @@ std::vector<Block<kWidth>> own_stiffness(const PackProblem& problem, const std::
   const GrainPack& pack = problem.pack();
   std::vector<Block<kWidth>> blocks(pack.position.size(), Block<kWidth>{});
   for (std::size_t c = 0; c < tangents.size(); ++c) {
-    const LinkTangent& t = tangents[c];
-    if (!t.closed) continue;
+    if (!tangents[c].closed) continue;
     const auto i = static_cast<std::size_t>(links.i[c]);
-    add_link<kWidth>(t, t.arm_i, t.twist / (pack.radius[i] * pack.radius[i]), blocks[i]);
+    add_to_block<kWidth>(tangents[c], true, pack.radius[i], blocks[i]);
     if (links.j[c] >= pack.grains()) continue;
     const auto j = static_cast<std::size_t>(links.j[c]);
-    add_link<kWidth>(t, -t.arm_j, t.twist / (pack.radius[j] * pack.radius[j]), blocks[j]);
+    add_to_block<kWidth>(tangents[c], false, pack.radius[j], blocks[j]);
   }
   return blocks;
 }
 
+/// Inverse of a block from its factor, row by row: applied more often than it is made, and without the chain of
+/// dependent sums of a solution by the factor.
 template <int kWidth>
-void build_factors(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double floor,
-                   std::vector<double>& largest, std::vector<double>& factor) {
+void append_inverse(Block<kWidth>& l, std::vector<double>& out) {
+  // Columns of L^-1 in place; then L^-T L^-1.
+  Block<kWidth> inverse{};
+  for (int c = 0; c < kWidth; ++c) {
+    at<kWidth>(inverse, c, c) = at<kWidth>(l, c, c);
+    for (int r = c + 1; r < kWidth; ++r) {
+      double s = 0.0;
+      for (int k = c; k < r; ++k) s -= at<kWidth>(l, r, k) * at<kWidth>(inverse, k, c);
+      at<kWidth>(inverse, r, c) = s * at<kWidth>(l, r, r);
+    }
+  }
+  for (int r = 0; r < kWidth; ++r)
+    for (int c = 0; c < kWidth; ++c) {
+      double s = 0.0;
+      for (int k = std::max(r, c); k < kWidth; ++k) s += at<kWidth>(inverse, k, r) * at<kWidth>(inverse, k, c);
+      out.push_back(s);
+    }
+}
+
+template <int kWidth>
+void build_inverses(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double floor,
+                    std::vector<double>& largest, std::vector<double>& inverse) {
   std::vector<Block<kWidth>> blocks = own_stiffness<kWidth>(problem, tangents);
   double mean = 0.0;
   for (Block<kWidth>& b : blocks) mean += largest_diagonal<kWidth>(b);
   mean = mean > 0.0 ? mean / static_cast<double>(blocks.size()) : 1.0;
-  factor.clear();
+  inverse.clear();
   largest.clear();
   for (Block<kWidth>& b : blocks) {
     const double most = largest_diagonal<kWidth>(b);
@@ -91,48 +118,73 @@ void build_factors(const PackProblem& problem, const std::vector<LinkTangent>& t
     const double added = most > 0.0 ? floor * most : mean;
     for (int k = 0; k < kWidth; ++k) at<kWidth>(b, k, k) += added;
     factorise<kWidth>(b, 0.5 * added);
-    for (const auto& row : b) factor.insert(factor.end(), row.begin(), row.end());
+    append_inverse<kWidth>(b, inverse);
   }
 }
 
 template <int kWidth>
-void solve_blocks(const std::vector<double>& factor, const Unknowns& in, Unknowns& out) {
+void apply_inverses(const std::vector<double>& inverse, const Unknowns& in, Unknowns& out) {
   constexpr auto kSize = static_cast<std::size_t>(kWidth);
   for (std::size_t g = 0; g * kSize < in.size(); ++g) {
-    const double* l = &factor[g * kSize * kSize];
-    double y[kSize];
-    for (std::size_t r = 0; r < kSize; ++r) {
-      double s = in[g * kSize + r];
-      for (std::size_t k = 0; k < r; ++k) s -= l[r * kSize + k] * y[k];
-      y[r] = s * l[r * kSize + r];
-    }
-    for (std::size_t r = kSize; r-- > 0;) {
-      double s = y[r];
-      for (std::size_t k = r + 1; k < kSize; ++k) s -= l[k * kSize + r] * y[k];
-      y[r] = s * l[r * kSize + r];
-      out[g * kSize + r] = y[r];
-    }
+    const double* m = &inverse[g * kSize * kSize];
+    // Symmetric: rows serve as columns, so that all sums grow together.
+    double sums[kSize] = {};
+    for (std::size_t k = 0; k < kSize; ++k)
+      for (std::size_t r = 0; r < kSize; ++r) sums[r] += m[k * kSize + r] * in[g * kSize + k];
+    for (std::size_t r = 0; r < kSize; ++r) out[g * kSize + r] = sums[r];
   }
+}
+
+template <int kWidth>
+void solve_grain(const PackProblem& problem, std::size_t g, const GrainForces& grain, double floor, Unknowns& step) {
+  Block<kWidth> block{};
+  for (std::size_t k = 0; k < grain.links.size(); ++k) {
+    const bool first = problem.links().i[grain.links[k]] == static_cast<std::int32_t>(g);
+    add_to_block<kWidth>(grain.tangents[k], first, problem.pack().radius[g], block);
+  }
+  const double added = floor * largest_diagonal<kWidth>(block);
+  step.assign(kWidth, 0.0);
+  if (!(added > 0.0)) return;
+  for (int k = 0; k < kWidth; ++k) at<kWidth>(block, k, k) += added;
+  factorise<kWidth>(block, 0.5 * added);
+  std::vector<double> inverse;
+  append_inverse<kWidth>(block, inverse);
+  apply_inverses<kWidth>(inverse, grain.force, step);
 }
 
 }  // namespace
 
+void own_step(const PackProblem& problem, std::size_t g, const GrainForces& grain, double floor, Unknowns& step) {
+  if (problem.stride() == 6) {
+    solve_grain<6>(problem, g, grain, floor, step);
+  } else {
+    solve_grain<3>(problem, g, grain, floor, step);
+  }
+}
+
 void BlockJacobi::build(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double floor) {
   width_ = problem.stride();
   if (width_ == 6) {
-    build_factors<6>(problem, tangents, floor, largest_, factor_);
+    build_inverses<6>(problem, tangents, floor, largest_, inverse_);
   } else {
-    build_factors<3>(problem, tangents, floor, largest_, factor_);
+    build_inverses<3>(problem, tangents, floor, largest_, inverse_);
   }
 }
 
 void BlockJacobi::apply(const Unknowns& in, Unknowns& out) const {
   out.resize(in.size());
   if (width_ == 6) {
-    solve_blocks<6>(factor_, in, out);
+    apply_inverses<6>(inverse_, in, out);
   } else {
-    solve_blocks<3>(factor_, in, out);
+    apply_inverses<3>(inverse_, in, out);
   }
+}
+
+Unknowns BlockJacobi::stiffness() const {
+  const auto width = static_cast<std::size_t>(width_);
+  Unknowns out(largest_.size() * width);
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = largest_[k / width];
+  return out;
 }
 
 void BlockJacobi::add_diagonal(const Unknowns& in, double share, Unknowns& out) const {

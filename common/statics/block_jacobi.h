@@ -5,7 +5,7 @@
 
 namespace softgrain::statics {
 
-/// Symmetric positive blocks, one Cholesky factor per grain. Rows of a grain without stiffness get the mean of the
+/// Symmetric positive blocks, one inverse per grain. Rows of a grain without stiffness get the mean of the
 /// pack.
 class BlockJacobi {
  public:
@@ -15,13 +15,18 @@ class BlockJacobi {
   /// out = inverse * in
   void apply(const Unknowns& in, Unknowns& out) const;
 
+  /// Per unknown, the largest diagonal entry of its grain's own stiffness [N/m].
+  [[nodiscard]] Unknowns stiffness() const;
   /// out += share * (largest diagonal entry of the grain's own stiffness) * in
   void add_diagonal(const Unknowns& in, double share, Unknowns& out) const;
 
  private:
   int width_ = 6;
   std::vector<double> largest_;  ///< per grain, largest diagonal entry
-  std::vector<double> factor_;   ///< per grain, width x width, lower triangle, diagonal inverted
+  std::vector<double> inverse_;  ///< per grain, width x width
 };
+
+/// The step of grain g alone that its own stiffness calls for; zero without contacts. `floor` as in build().
+void own_step(const PackProblem& problem, std::size_t g, const GrainForces& grain, double floor, Unknowns& step);
 
 }  // namespace softgrain::statics

@@ -10,6 +10,7 @@
 #include "common/statics/block_jacobi.h"
 #include "common/statics/krylov.h"
 #include "common/statics/minimiser.h"
+#include "common/statics/rattlers.h"
 #include "common/statics/stiffness.h"
 
 namespace softgrain::statics {
@@ -37,13 +38,17 @@ class Stepper {
   [[nodiscard]] std::int64_t factorisations() const { return factorisations_; }
   [[nodiscard]] std::int64_t linear_iterations() const { return linear_iterations_; }
 
+  void relax_rattlers(double least_force, double tolerance) {
+    if (statics::relax_rattlers(problem_, forces_, least_force, tolerance, theta_)) problem_.evaluate(theta_, forces_);
+  }
+
   /// One step; false when no direction leads to a better balance.
   bool step(bool mix) {
     linearise();
     const bool indefinite = solve();
     clip(direction_);
     if (mix) {
-      Unknowns mixed = mixing_.mixed(theta_, direction_);
+      Unknowns mixed = mixing_.mixed(theta_, direction_, inverse_.stiffness());
       clip(mixed);
       if (dot(forces_.force, mixed) > 0.0) direction_ = std::move(mixed);
     } else {
@@ -177,6 +182,8 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   result.stopped_by = "cap";
   for (;; ++result.iterations) {
     const PackForces& forces = stepper.forces();
+    if (result.iterations > 0 && result.worst_residual < kMixBelow)
+      stepper.relax_rattlers(residual_floor(scales, forces), options.residual_tolerance);
     result.worst_residual = worst_residual(forces, problem.pack(), problem.stride(), residual_floor(scales, forces));
     if (!std::isfinite(result.worst_residual)) {
       result.stopped_by = "not finite";

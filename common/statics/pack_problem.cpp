@@ -81,11 +81,8 @@ ContactResponse response_of(const View& v, std::size_t c, const ContactPlace& pl
 }
 
 template <class Law>
-LinkForce force_of(const View& v, std::size_t c) {
+LinkForce force_from(const View& v, std::size_t c, const ContactPlace& place, const ContactResponse& r) {
   LinkForce out;
-  ContactPlace place;
-  if (!place_of(v, c, place)) return out;
-  const ContactResponse r = response_of<Law>(v, c, place);
   out.force = place.normal * r.normal.force;
   out.normal = r.normal.force;
   out.work = r.normal.work;
@@ -104,17 +101,44 @@ LinkForce force_of(const View& v, std::size_t c) {
   return out;
 }
 
-/// Adds a link to grain g, which is its i or its j.
+template <class Law>
+LinkForce force_of(const View& v, std::size_t c) {
+  ContactPlace place;
+  if (!place_of(v, c, place)) return {};
+  return force_from<Law>(v, c, place, response_of<Law>(v, c, place));
+}
+
+template <class Law>
+LinkTangent tangent_from(const View& v, std::size_t c, const ContactPlace& place, const ContactResponse& r) {
+  LinkTangent t;
+  t.closed = true;
+  t.normal = place.normal;
+  t.normal_stiffness = r.normal.stiffness;
+  t.pull = r.normal.force * place.inverse_length;
+  if constexpr (Law::friction) {
+    t.arm_i = place.arm_i / v.pack.radius[slot(v.links.i[c])];
+    if (v.links.j[c] < v.grains) t.arm_j = place.arm_j / v.pack.radius[slot(v.links.j[c])];
+    t.twist = r.torsion.stiffness;
+    t.tangential = r.tangential.stiffness;
+    t.stick = r.tangential.stick;
+  }
+  return t;
+}
+
+/// Adds what a link does to grain g, which is its i or its j.
+template <class Law>
+void add_push(const View& v, const LinkForce& f, std::size_t c, std::int32_t g, Unknowns& out, std::size_t at) {
+  const bool first = v.links.i[c] == g;
+  add_triple(out, at, first ? f.force : -f.force);
+  if constexpr (Law::friction) {
+    add_triple(out, at + 3, f.roll * -(first ? f.arm_i : f.arm_j));
+    if constexpr (Law::torsion) add_triple(out, at + 3, f.twist * ((first ? 1.0 : -1.0) / v.pack.radius[slot(g)]));
+  }
+}
+
 template <class Law>
 void add_to_grain(const View& v, const LinkForce& f, std::size_t c, std::int32_t g, PackForces& out) {
-  const bool first = v.links.i[c] == g;
-  const std::size_t at = slot(g) * static_cast<std::size_t>(Law::stride);
-  add_triple(out.force, at, first ? f.force : -f.force);
-  if constexpr (Law::friction) {
-    add_triple(out.force, at + 3, f.roll * -(first ? f.arm_i : f.arm_j));
-    if constexpr (Law::torsion)
-      add_triple(out.force, at + 3, f.twist * ((first ? 1.0 : -1.0) / v.pack.radius[slot(g)]));
-  }
+  add_push<Law>(v, f, c, g, out.force, slot(g) * static_cast<std::size_t>(Law::stride));
   out.largest2[slot(g)] = std::max(out.largest2[slot(g)], f.size2);
 }
 
@@ -252,22 +276,26 @@ void PackProblem::linearise_as(const Unknowns& theta, std::vector<LinkTangent>& 
   const View view{pack_, links_, place_, wall_points_, wall_moves_, wall_part_, theta, pack_.grains()};
   out.resize(static_cast<std::size_t>(links_.size()));
   for (std::size_t c = 0; c < out.size(); ++c) {
-    LinkTangent& t = out[c];
-    t = {};
+    ContactPlace place;
+    out[c] =
+        place_of(view, c, place) ? tangent_from<Law>(view, c, place, response_of<Law>(view, c, place)) : LinkTangent{};
+  }
+}
+
+template <class Law>
+void PackProblem::evaluate_grain_as(const Unknowns& theta, std::size_t g, GrainForces& out) const {
+  const View view{pack_, links_, place_, wall_points_, wall_moves_, wall_part_, theta, pack_.grains()};
+  const auto grain = static_cast<std::int32_t>(g);
+  for (std::int32_t k = links_.start[g]; k < links_.start[g + 1]; ++k) {
+    const std::size_t c = slot(links_.of_grain[slot(k)]);
     ContactPlace place;
     if (!place_of(view, c, place)) continue;
     const ContactResponse r = response_of<Law>(view, c, place);
-    t.closed = true;
-    t.normal = place.normal;
-    t.normal_stiffness = r.normal.stiffness;
-    t.pull = r.normal.force * place.inverse_length;
-    if constexpr (Law::friction) {
-      t.arm_i = place.arm_i / pack_.radius[slot(links_.i[c])];
-      if (links_.j[c] < view.grains) t.arm_j = place.arm_j / pack_.radius[slot(links_.j[c])];
-      t.twist = r.torsion.stiffness;
-      t.tangential = r.tangential.stiffness;
-      t.stick = r.tangential.stick;
-    }
+    const LinkForce f = force_from<Law>(view, c, place, r);
+    add_push<Law>(view, f, c, grain, out.force, 0);
+    out.largest2 = std::max(out.largest2, f.size2);
+    out.links.push_back(c);
+    out.tangents.push_back(tangent_from<Law>(view, c, place, r));
   }
 }
 
@@ -305,6 +333,18 @@ void PackProblem::linearise(const Unknowns& theta, std::vector<LinkTangent>& out
   ++cost_.loop_passes;
   cost_.contact_evaluations += links_.size();
   dispatch([&](auto law) { linearise_as<decltype(law)>(theta, out); });
+}
+
+void PackProblem::evaluate_grain(const Unknowns& theta, std::size_t g, GrainForces& out) {
+  const auto width = static_cast<std::size_t>(stride());
+  place_[g] = pack_.position[g] + triple(theta, g * width);
+  out.force.assign(width, 0.0);
+  out.largest2 = 0.0;
+  out.links.clear();
+  out.tangents.clear();
+  if (!pack_.weight.empty()) add_triple(out.force, 0, pack_.gravity * pack_.weight[g]);
+  cost_.contact_evaluations += links_.start[g + 1] - links_.start[g];
+  dispatch([&](auto law) { evaluate_grain_as<decltype(law)>(theta, g, out); });
 }
 
 std::vector<PackContact> PackProblem::contacts(const Unknowns& theta) {

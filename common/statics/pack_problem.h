@@ -36,6 +36,14 @@ struct LinkTangent {
   bool closed = false;
 };
 
+/// Forces on one grain, and its closed contacts linearised.
+struct GrainForces {
+  Unknowns force;         ///< as in PackForces, of this grain
+  double largest2 = 0.0;  ///< square of its largest contact force [N^2]
+  std::vector<std::size_t> links;
+  std::vector<LinkTangent> tangents;  ///< of `links`
+};
+
 struct Cost {
   std::int64_t loop_passes = 0;
   std::int64_t contact_evaluations = 0;
@@ -62,6 +70,9 @@ class PackProblem {
 
   void evaluate(const Unknowns& theta, PackForces& out);
   void linearise(const Unknowns& theta, std::vector<LinkTangent>& out);
+  /// Grain g alone has moved since the last evaluate(). Pairs that were out of reach then are not seen, and symmetry
+  /// planes are not heeded.
+  void evaluate_grain(const Unknowns& theta, std::size_t g, GrainForces& out);
   /// Contacts at theta, as they are stored in a pack.
   [[nodiscard]] std::vector<PackContact> contacts(const Unknowns& theta);
   [[nodiscard]] std::vector<Vec3> positions(const Unknowns& theta) const;
@@ -71,6 +82,8 @@ class PackProblem {
   void evaluate_as(const Unknowns& theta, PackForces& out) const;
   template <class Law>
   void linearise_as(const Unknowns& theta, std::vector<LinkTangent>& out) const;
+  template <class Law>
+  void evaluate_grain_as(const Unknowns& theta, std::size_t g, GrainForces& out) const;
   template <class Law>
   void contacts_as(const Unknowns& theta, std::vector<PackContact>& out) const;
   template <class F>

@@ -104,6 +104,14 @@ double gradient_error(const GrainPack& pack, double size) {
   statics::Unknowns theta(problem.size()), direction(problem.size());
   for (double& v : theta) v = size * 1e-3 * (random.uniform() - 0.5);
   for (double& v : direction) v = random.uniform() - 0.5;
+  // A rattler's contact that opens takes its tangential force with it: Pi jumps. Such grains stay where they are.
+  for (const PackContact& c : pack.contacts)
+    for (const std::int32_t g : {c.i, c.j})
+      if (c.overlap < 1e-6 && g < pack.grains())
+        for (std::size_t k = 0; k < 6; ++k) {
+          theta[6 * static_cast<std::size_t>(g) + k] = 0.0;
+          direction[6 * static_cast<std::size_t>(g) + k] = 0.0;
+        }
   statics::PackForces forces;
   problem.evaluate(theta, forces);
   const double expected = -statics::dot(forces.force, direction);
