@@ -138,7 +138,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
       measure.number("rotation_step_deg", Unit::angle_degree, Range{0.0, 5.0, true, false}, common.rotation_step_deg);
   common.shell_turns = measure.flag("shell_turns", common.shell_turns);
   common.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  setup.series.push_back(read_series(measure, read_relaxation(measure, "damped"), count, common));
+  setup.series.push_back(read_series(measure, read_relaxation(measure, "least-work"), count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
     const std::string name = read_relaxation(reference, "published");

@@ -107,6 +107,14 @@ TEST_F(PipelineBadInput, Measurements) {
   expect("relaxation = \"damped\"", "relaxation = \"dampd\"", {"scene.toml:15: relaxation", "damped"});
   expect("increment = 0.02", "increment = 0", {"scene.toml:17: increment = 0", "above 0"});
   expect("increment = 0.02", "tolerance = -1", {"scene.toml:17: tolerance = -1", "above 0"});
+  const auto least_work = [&](const std::string& line, const std::vector<std::string>& words) {
+    expect("[measure.damped]", "[measure.least_work]\n" + line + "\n[measure.damped]", words);
+  };
+  least_work("settle_time = -1", {"scene.toml:17: settle_time = -1", "at least 0"});
+  least_work("increment = 0.5", {"scene.toml:17: increment = 0.5", "0.1"});
+  least_work("approach_speed = 0", {"scene.toml:17: approach_speed = 0", "above 0"});
+  least_work("step_factor = 30", {"scene.toml:17: step_factor = 30", "20"});
+  least_work("setle_time = 3", {"scene.toml:17", "unknown key 'setle_time'", "'settle_time'"});
   expect("[calibrate]", "[reference]\nrelaxation = \"damped\"\n[reference.soft_solid]\ndeltas = [0.2]\n[calibrate]",
          {"scene.toml:25: relaxation = \"damped\"", "must differ"});
 }

@@ -178,6 +178,23 @@ TEST_F(PipelineResume, ThreadsDoNotMatter) {
   expect_same_end(out);
 }
 
+/// The least-work relaxation keeps nothing between recorded points that is not in the checkpoint.
+TEST_F(PipelineResume, LeastWorkGoesOnWithTheSameBits) {
+  const auto begin = [&](const std::string& out, bool resume) {
+    std::vector<std::string> arguments{"run",       scene(), "--out", directory_.file(out),
+                                       "--threads", "1",     "--set", "measure.relaxation=least-work",
+                                       "--quiet"};
+    if (resume) arguments.emplace_back("--resume");
+    return start_program(arguments);
+  };
+  ASSERT_TRUE(ended_with(wait_for(begin("undisturbed", false)), kNotUsable));
+  const std::string work = directory_.file("stopped") + "/work";
+  const auto begun = [&] { return fs::exists(work) && !fs::is_empty(work); };
+  ASSERT_TRUE(ended_with(signal_when(begin("stopped", false), begun, SIGINT), 130));
+  ASSERT_TRUE(ended_with(wait_for(begin("stopped", true)), kNotUsable));
+  expect_same_measurements(directory_.file("undisturbed"), directory_.file("stopped"));
+}
+
 TEST_F(PipelineResume, AnotherSeedIsAnotherResult) {
   const std::string out = directory_.file("other");
   (void)run_the_program("run '" + scene() + "' --out '" + out + "' --quiet --threads 1 --seed 2");

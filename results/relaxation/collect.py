@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Table and picture of this folder from the runs of study.sh: python3 results/relaxation/collect.py WORK_DIRECTORY"""
+import json
+import math
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).parent
+# name of the run: what it is, colour
+SETTINGS = {
+    "least-work": ("least-work, defaults", "#0072b2"),
+    "half-increment": ("least-work, increment 0.00125", "#56b4e9"),
+    "double-increment": ("least-work, increment 0.005", "#56b4e9"),
+    "fourfold-speed": ("least-work, rearrangements at 0.008 m/s", "#cc79a7"),
+    "short-settling": ("least-work, settling x 1/4", "#009e73"),
+    "long-settling": ("least-work, settling x 4", "#009e73"),
+    "no-settling": ("least-work, no settling", "#e69f00"),
+    "dynamics-only": ("slow mass-scaled dynamics only", "#8a8a8a"),
+    "statics-only": ("least work only, no dynamics", "#d55e00"),
+    "damped": ("damped, increment 0.005", "#000000"),
+    "damped-fine": ("damped, increment 0.00125", "#000000"),
+}
+QUANTITIES = {"normal_force": "Fn", "stiffness_initial": "kt, initial slope", "stiffness_secant": "kt, secant at 1°"}
+
+
+def load(work):
+    runs = {}
+    for name in SETTINGS:
+        file = work / f"{name}.json"
+        if file.exists():
+            runs[name] = {m["pair"]: m for m in json.loads(file.read_text())["measurements"]}
+    return runs
+
+
+def bias(row):
+    return 100.0 * (row["ratio"] - 1.0), 100.0 * row["ratio_standard_error"]
+
+
+def cell(row):
+    if row["ratio"] is None or row["ratio_standard_error"] is None:
+        return "-"
+    value, error = bias(row)
+    return f"{value:+.1f} ± {error:.1f}"
+
+
+def passes(m):
+    """Loop passes per recorded point: along the overlaps, after a rotation, and in a plan of 12 overlaps with 12 angles each."""
+    normal, rotated = (m["cost"][f"candidate_{k}"]["loop_passes_per_point"] for k in ("normal", "tangential"))
+    return normal, rotated
+
+
+def table(runs, pair):
+    first = next(iter(runs.values()))[pair]
+    head = ["relaxation"]
+    for key, word in QUANTITIES.items():
+        head += [f"{word} {r['delta']:.2f}" for r in first[key]]
+    head += ["passes/point", "rotated"]
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    for name, by_pair in runs.items():
+        m = by_pair[pair]
+        cells = [SETTINGS[name][0]] + [cell(r) for key in QUANTITIES for r in m[key]]
+        cells += [f"{c:.0f}" for c in passes(m)]
+        lines.append("| " + " | ".join(cells) + " |")
+    m = first
+    reference = [m["cost"][f"reference_{k}"]["loop_passes_per_point"] for k in ("normal", "tangential")]
+    counts = [f"{r['reference']['mean']:.3g}" for key in QUANTITIES for r in m[key]]
+    lines.append("| *published: mean, dimensionless* | " + " | ".join(counts + [f"{c:.0f}" for c in reference]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+class Panel:
+    """One picture: bias in per cent over loop passes per point, logarithmic."""
+
+    def __init__(self, x, y, title, limit):
+        self.x, self.y, self.limit = x, y, limit
+        self.w, self.h = 330.0, 250.0
+        self.low, self.high = 2.0, 5.0
+        self.parts = [f'<text x="{x + self.w / 2}" y="{y - 8}" text-anchor="middle" font-weight="bold">{title}</text>',
+                      f'<rect x="{x}" y="{y}" width="{self.w}" height="{self.h}" fill="none" stroke="#000"/>']
+        for p in range(int(self.low), int(self.high) + 1):
+            at = self.at_x(10.0**p)
+            self.line(at, y + self.h, at, y + self.h + 4)
+            self.text(at, y + self.h + 17, f"10<tspan dy='-5' font-size='9'>{p}</tspan>")
+        for k in range(-2, 3):
+            value = k * limit / 2
+            self.line(x - 4, self.at_y(value), x, self.at_y(value))
+            self.text(x - 7, self.at_y(value) + 4, f"{value:+g}" if value else "0", "end")
+        self.line(x, self.at_y(0), x + self.w, self.at_y(0), "#888")
+
+    def at_x(self, passes_per_point):
+        return self.x + self.w * (math.log10(passes_per_point) - self.low) / (self.high - self.low)
+
+    def at_y(self, percent):
+        return self.y + self.h * (0.5 - 0.5 * max(-1.0, min(1.0, percent / self.limit)))
+
+    def line(self, x1, y1, x2, y2, colour="#000", width=1.0):
+        self.parts.append(f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}" stroke-width="{width}"/>')
+
+    def text(self, x, y, words, anchor="middle"):
+        self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>')
+
+    def band(self, percent, words):
+        top, bottom = self.at_y(percent), self.at_y(-percent)
+        self.parts.append(f'<rect x="{self.x}" y="{top:.1f}" width="{self.w}" height="{bottom - top:.1f}" fill="#009e73" opacity="0.15"/>')
+        self.text(self.x + self.w - 4, top - 3, words, "end")
+
+    def point(self, cost, value, error, name, shape, label):
+        words, colour = SETTINGS[name]
+        x, y = self.at_x(cost), self.at_y(value)
+        title = f"<title>{words}, {label}: {value:+.1f} ± {error:.1f} %</title>"
+        self.line(x, self.at_y(value - error), x, self.at_y(value + error), colour)
+        if abs(value) > self.limit:  # off the picture: an arrow at the edge
+            y += 6 if value > 0 else -6
+        mark = {"circle": f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.5"', "square": f'<rect x="{x - 4:.1f}" y="{y - 4:.1f}" width="8" height="8"',
+                "triangle": f'<path d="M{x:.1f} {y - 5.5:.1f}l5 9h-10z"'}[shape]
+        tag = mark[1:].split()[0]
+        fill = colour if name in ("least-work", "damped", "statics-only", "dynamics-only") else "#fff"
+        self.parts.append(f'{mark} fill="{fill}" stroke="{colour}" stroke-width="1.6">{title}</{tag}>')
+
+
+def rows_near(m, key, deltas):
+    return [r for r in m[key] if any(abs(r["delta"] - d) < 1e-6 for d in deltas) and r["ratio"] is not None]
+
+
+def picture(runs):
+    panels = [
+        (Panel(60, 40, "Fn of a soft particle on a plane", 20), "soft-solid", 0, 2, "good: 2 %",
+         [("normal_force", 0.10, "triangle"), ("normal_force", 0.15, "square"), ("normal_force", 0.25, "circle")]),
+        (Panel(460, 40, "Fn of two soft particles", 60), "soft-soft", 0, 10, "good: 10 %",
+         [("normal_force", 0.25, "triangle"), ("normal_force", 0.30, "square"), ("normal_force", 0.40, "circle")]),
+        (Panel(60, 370, "kt on a plane, Delta = 0.20", 40), "soft-solid", 1, 5, "good: 5 %",
+         [("stiffness_initial", 0.20, "circle"), ("stiffness_secant", 0.20, "square")]),
+        (Panel(460, 370, "kt of two, Delta = 0.35", 150), "soft-soft", 1, 5, "",
+         [("stiffness_initial", 0.35, "circle"), ("stiffness_secant", 0.35, "square")]),
+    ]
+    marks = ["triangle 0.10, square 0.15, circle 0.25", "triangle 0.25, square 0.30, circle 0.40",
+             "circle: initial slope, square: secant at 1°", "circle: initial slope, square: secant at 1°"]
+    for (panel, pair, cost, good, words, points), mark in zip(panels, marks):
+        if words:
+            panel.band(good, words)
+        panel.text(panel.x + 6, panel.y + panel.h - 8, mark, "start")
+        panel.text(panel.x + panel.w / 2, panel.y + panel.h + 34, "loop passes per recorded point")
+        reference = next(iter(runs.values()))[pair]["cost"][("reference_normal", "reference_tangential")[cost]]["loop_passes_per_point"]
+        panel.line(panel.at_x(reference), panel.y, panel.at_x(reference), panel.y + panel.h, "#000", 2)
+        panel.text(panel.at_x(reference) - 5, panel.y + 14, "published", "end")
+        for name, by_pair in runs.items():
+            for key, delta, shape in points:
+                for r in rows_near(by_pair[pair], key, [delta]):
+                    panel.point(passes(by_pair[pair])[cost], *bias(r), name, shape, f"Delta = {delta:.2f}")
+    out = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 820 760" font-family="sans-serif" font-size="12">',
+           '<rect width="820" height="760" fill="#fff"/>',
+           '<text x="16" y="350" transform="rotate(-90 16 350)" text-anchor="middle">bias of the mean against the published protocol [%]</text>']
+    for panel, *_ in panels:
+        out += panel.parts
+    for k, name in enumerate(runs):
+        x, y = 60 + 260 * (k % 3), 680 + 18 * (k // 3)
+        words, colour = SETTINGS[name]
+        fill = colour if name in ("least-work", "damped", "statics-only", "dynamics-only") else "#fff"
+        out.append(f'<circle cx="{x}" cy="{y - 4}" r="4.5" fill="{fill}" stroke="{colour}" stroke-width="1.6"/><text x="{x + 9}" y="{y}">{words}</text>')
+    return "\n".join(out + ["</svg>"]) + "\n"
+
+
+def main():
+    runs = load(pathlib.Path(sys.argv[1]))
+    (HERE / "error_against_cost.svg").write_text(picture(runs))
+    text = (HERE / "text.md").read_text()
+    tables = "".join(f"\n### {pair}\n\n{table(runs, pair)}" for pair in ("soft-solid", "soft-soft"))
+    (HERE / "README.md").write_text(text.replace("{{TABLES}}", tables.strip() + "\n"))
+
+
+if __name__ == "__main__":
+    main()

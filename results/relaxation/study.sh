@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Error against cost of every relaxation, on 24 packings that no setting was chosen on: writes README.md and the pictures of
+# this folder. Usage: results/relaxation/study.sh [WORK_DIRECTORY]; about an hour on two cores, most of it the reference.
+# Finished runs in WORK_DIRECTORY are kept.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=${1:-$root/results/relaxation_study}
+mkdir -p "$work"
+
+run() { # name, then key=value ...
+  local name=$1 options=() setting
+  shift
+  for setting in "$@"; do options+=(--set "$setting"); done
+  [ -f "$work/$name/summary.json" ] ||
+    "$root/softgrain" microsim "$root/pipelines/relaxation_study.toml" --out "$work/$name" --resume --quiet \
+      "${options[@]}" >/dev/null || [ $? -eq 3 ]
+  [ "$name" = published ] ||
+    "$root/softgrain" compare "$work/$name/measurements.h5" "$work/published/measurements.h5" \
+      --out "$work/$name-compared" --json --quiet >"$work/$name.json"
+}
+
+run published measure.relaxation=published
+run least-work
+run half-increment measure.least_work.increment=0.00125
+run double-increment measure.least_work.increment=0.005
+run fourfold-speed measure.least_work.approach_speed=0.008
+run short-settling measure.least_work.settle_time=30 measure.least_work.settle_time_rotated=6
+run long-settling measure.least_work.settle_time=480 measure.least_work.settle_time_rotated=96
+run no-settling measure.least_work.settle_time=0 measure.least_work.settle_time_rotated=0
+run dynamics-only measure.least_work.increment_passes=0
+run statics-only measure.least_work.increment_passes=4000 measure.least_work.settle_time=0 measure.least_work.settle_time_rotated=0
+run damped measure.relaxation=damped
+run damped-fine measure.relaxation=damped measure.damped.increment=0.00125
+python3 "$root/results/relaxation/collect.py" "$work"
