@@ -38,8 +38,9 @@ void add_link(const LinkTangent& t, double arm, double twist, Block<kWidth>& out
 
 /// The same for grain i (`first`) or j of a link.
 template <int kWidth>
-void add_to_block(const LinkTangent& t, bool first, double radius, Block<kWidth>& out) {
-  add_link<kWidth>(t, first ? t.arm_i : -t.arm_j, t.twist / (radius * radius), out);
+void add_to_block(const LinkTangent& t, bool first, Block<kWidth>& out) {
+  const double curvature = first ? t.curvature_i : t.curvature_j;
+  add_link<kWidth>(t, first ? t.arm_i : -t.arm_j, t.twist * curvature * curvature, out);
 }
 
 /// Lower Cholesky factor with inverted diagonal; a pivot below `least` is raised to it.
@@ -73,10 +74,10 @@ std::vector<Block<kWidth>> own_stiffness(const PackProblem& problem, const std::
   for (std::size_t c = 0; c < tangents.size(); ++c) {
     if (!tangents[c].closed) continue;
     const auto i = static_cast<std::size_t>(links.i[c]);
-    add_to_block<kWidth>(tangents[c], true, pack.radius[i], blocks[i]);
+    add_to_block<kWidth>(tangents[c], true, blocks[i]);
     if (links.j[c] >= pack.grains()) continue;
     const auto j = static_cast<std::size_t>(links.j[c]);
-    add_to_block<kWidth>(tangents[c], false, pack.radius[j], blocks[j]);
+    add_to_block<kWidth>(tangents[c], false, blocks[j]);
   }
   return blocks;
 }
@@ -140,7 +141,7 @@ void solve_grain(const PackProblem& problem, std::size_t g, const GrainForces& g
   Block<kWidth> block{};
   for (std::size_t k = 0; k < grain.links.size(); ++k) {
     const bool first = problem.links().i[grain.links[k]] == static_cast<std::int32_t>(g);
-    add_to_block<kWidth>(grain.tangents[k], first, problem.pack().radius[g], block);
+    add_to_block<kWidth>(grain.tangents[k], first, block);
   }
   const double added = floor * largest_diagonal<kWidth>(block);
   step.assign(kWidth, 0.0);

@@ -108,7 +108,7 @@ ElasticResponse elastic_probe(const GrainPack& pack, const LeastWorkOptions& opt
   statics::BlockJacobi inverse;
   inverse.build(problem, tangents, 1e-2);
   out.factorisations = 1;
-  const statics::Stiffness stiffness(problem, tangents, 0.0);
+  const statics::Stiffness stiffness(problem, tangents);
   out.solved = true;
   for (int b = 0; b < 3; ++b) {
     const std::vector<Vec3> moves = unit_strain(width, b);

@@ -1,8 +1,7 @@
 // The fast minimiser: steps of a symmetric linearised pack, solved by preconditioned conjugate gradient only as far as
-// they pay. A sliding contact enters with its secant stiffness Q/u_s, which never overshoots; without friction the step
-// is Newton's, negative stiffness of turning contacts included. Anderson mixing takes out the few directions (rattlers
-// that roll and slide) that would converge slowly. Floppy grains are held by a small spring that fades as steps
-// succeed.
+// they pay. A sliding contact enters with its secant stiffness Q/u_s, which never overshoots. Anderson mixing takes out
+// the few directions (rattlers that roll and slide) that would converge slowly. Floppy grains are held by a small
+// spring that fades as steps succeed.
 #include <algorithm>
 #include <cmath>
 
@@ -73,9 +72,8 @@ class Stepper {
   void linearise() {
     problem_.linearise(theta_, tangents_);
     // Under the even deformation that starts an increment many contacts seem to slide that will not.
-    if (first_)
+    if (factorisations_ == 0)
       for (LinkTangent& t : tangents_) t.tangential = t.stick;
-    first_ = false;
     inverse_.build(problem_, tangents_, kBlockFloor);
     ++factorisations_;
   }
@@ -87,8 +85,7 @@ class Stepper {
 
   /// True when the conjugate gradient met negative stiffness.
   bool solve() {
-    // With friction the contacts hold what turns; their part of the prestress is not known as a symmetric matrix.
-    const Stiffness stiffness(problem_, tangents_, problem_.stride() == 3 ? 1.0 : 0.0);
+    const Stiffness stiffness(problem_, tangents_);
     const auto map = [&](const Unknowns& in, Unknowns& out) {
       stiffness.apply(in, out);
       inverse_.add_diagonal(in, spring_, out);
@@ -166,7 +163,6 @@ class Stepper {
   Unknowns direction_;
   double spring_ = kFirstSpring;
   double last2_ = 0.0;
-  bool first_ = true;
   std::int64_t linear_iterations_ = 0;
   std::int64_t factorisations_ = 0;
 };

@@ -114,10 +114,11 @@ LinkTangent tangent_from(const View& v, std::size_t c, const ContactPlace& place
   t.closed = true;
   t.normal = place.normal;
   t.normal_stiffness = r.normal.stiffness;
-  t.pull = r.normal.force * place.inverse_length;
   if constexpr (Law::friction) {
-    t.arm_i = place.arm_i / v.pack.radius[slot(v.links.i[c])];
-    if (v.links.j[c] < v.grains) t.arm_j = place.arm_j / v.pack.radius[slot(v.links.j[c])];
+    t.curvature_i = 1.0 / v.pack.radius[slot(v.links.i[c])];
+    if (v.links.j[c] < v.grains) t.curvature_j = 1.0 / v.pack.radius[slot(v.links.j[c])];
+    t.arm_i = place.arm_i * t.curvature_i;
+    t.arm_j = place.arm_j * t.curvature_j;
     t.twist = r.torsion.stiffness;
     t.tangential = r.tangential.stiffness;
     t.stick = r.tangential.stick;

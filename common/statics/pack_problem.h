@@ -31,7 +31,8 @@ struct LinkTangent {
   double stick = 0.0;             ///< the same if the contact did not slide
   double arm_i = 0.0;             ///< over R_i
   double arm_j = 0.0;             ///< over R_j; 0 for walls
-  double pull = 0.0;              ///< P/|r_ij|: the normal force turns with the pair [N/m]
+  double curvature_i = 0.0;       ///< 1/R_i
+  double curvature_j = 0.0;       ///< 1/R_j; 0 for walls
   double twist = 0.0;             ///< k_t [N m]
   bool closed = false;
 };

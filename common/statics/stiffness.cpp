@@ -17,7 +17,7 @@ struct LinkAnswer {
 };
 
 template <int kStride>
-LinkAnswer answer_of(const LinkTangent& t, double prestress, const GrainPack& pack, const Unknowns& in, std::int32_t li,
+LinkAnswer answer_of(const LinkTangent& t, const GrainPack& pack, const Unknowns& in, std::int32_t li,
                      std::int32_t lj) {
   constexpr auto kWidth = static_cast<std::size_t>(kStride);
   const auto i = static_cast<std::size_t>(li);
@@ -32,7 +32,7 @@ LinkAnswer answer_of(const LinkTangent& t, double prestress, const GrainPack& pa
     const Vec3 turn_j = wall ? Vec3{} : triple(in, j * kWidth + 3);
     delta += cross(t.normal, turn_i * t.arm_i + turn_j * t.arm_j);
     if (t.twist != 0.0) {
-      const Vec3 relative = turn_i * (1.0 / pack.radius[i]) - (wall ? Vec3{} : turn_j * (1.0 / pack.radius[j]));
+      const Vec3 relative = turn_i * t.curvature_i - turn_j * t.curvature_j;
       out.twist = t.normal * (t.twist * softgrain::dot(relative, t.normal));
     }
   }
@@ -43,41 +43,38 @@ LinkAnswer answer_of(const LinkTangent& t, double prestress, const GrainPack& pa
     out.force += friction;
     out.roll = cross(t.normal, friction);
   }
-  out.force -= (moved - t.normal * softgrain::dot(t.normal, moved)) * (t.pull * prestress);
   return out;
 }
 
 template <int kStride>
-void add_to_grain(const LinkAnswer& a, const LinkTangent& t, bool first, double radius, Unknowns& out, std::size_t g) {
+void add_to_grain(const LinkAnswer& a, const LinkTangent& t, bool first, Unknowns& out, std::size_t g) {
   const std::size_t at = g * static_cast<std::size_t>(kStride);
   add_triple(out, at, first ? a.force : -a.force);
   if constexpr (kStride == 6) {
     add_triple(out, at + 3, a.roll * -(first ? t.arm_i : t.arm_j));
-    if (t.twist != 0.0) add_triple(out, at + 3, a.twist * ((first ? 1.0 : -1.0) / radius));
+    if (t.twist != 0.0) add_triple(out, at + 3, a.twist * (first ? t.curvature_i : -t.curvature_j));
   }
 }
 
 template <int kStride>
-void scatter(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress, const Unknowns& in,
-             Unknowns& out) {
+void scatter(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   const Links& links = problem.links();
   const GrainPack& pack = problem.pack();
   for (std::size_t c = 0; c < tangents.size(); ++c) {
     const LinkTangent& t = tangents[c];
     if (!t.closed) continue;
-    const LinkAnswer a = answer_of<kStride>(t, prestress, pack, in, links.i[c], links.j[c]);
+    const LinkAnswer a = answer_of<kStride>(t, pack, in, links.i[c], links.j[c]);
     const auto i = static_cast<std::size_t>(links.i[c]);
-    add_to_grain<kStride>(a, t, true, pack.radius[i], out, i);
+    add_to_grain<kStride>(a, t, true, out, i);
     if (links.j[c] >= pack.grains()) continue;
     const auto j = static_cast<std::size_t>(links.j[c]);
-    add_to_grain<kStride>(a, t, false, pack.radius[j], out, j);
+    add_to_grain<kStride>(a, t, false, out, j);
   }
 }
 
 /// The same sums in the same order.
 template <int kStride>
-void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress, const Unknowns& in,
-            Unknowns& out) {
+void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   const Links& links = problem.links();
   const GrainPack& pack = problem.pack();
   const auto count = static_cast<std::int32_t>(tangents.size());
@@ -87,40 +84,39 @@ void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents
 #pragma omp for schedule(static)
     for (std::int32_t c = 0; c < count; ++c) {
       const auto k = static_cast<std::size_t>(c);
-      if (tangents[k].closed) answers[k] = answer_of<kStride>(tangents[k], prestress, pack, in, links.i[k], links.j[k]);
+      if (tangents[k].closed) answers[k] = answer_of<kStride>(tangents[k], pack, in, links.i[k], links.j[k]);
     }
 #pragma omp for schedule(static)
     for (std::int32_t g = 0; g < pack.grains(); ++g) {
       const auto u = static_cast<std::size_t>(g);
       for (std::int32_t k = links.start[u]; k < links.start[u + 1]; ++k) {
         const auto c = static_cast<std::size_t>(links.of_grain[static_cast<std::size_t>(k)]);
-        if (tangents[c].closed) add_to_grain<kStride>(answers[c], tangents[c], links.i[c] == g, pack.radius[u], out, u);
+        if (tangents[c].closed) add_to_grain<kStride>(answers[c], tangents[c], links.i[c] == g, out, u);
       }
     }
   }
 }
 
 template <int kStride>
-void apply_as(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress,
-              const Unknowns& in, Unknowns& out) {
+void apply_as(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   if (problem.links().size() >= kParallelLinks && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
-    gather<kStride>(problem, tangents, prestress, in, out);
+    gather<kStride>(problem, tangents, in, out);
   } else {
-    scatter<kStride>(problem, tangents, prestress, in, out);
+    scatter<kStride>(problem, tangents, in, out);
   }
 }
 
 }  // namespace
 
-Stiffness::Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress)
-    : problem_(problem), tangents_(tangents), prestress_(prestress) {}
+Stiffness::Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents)
+    : problem_(problem), tangents_(tangents) {}
 
 void Stiffness::apply(const Unknowns& in, Unknowns& out) const {
   out.assign(in.size(), 0.0);
   if (problem_.stride() == 6) {
-    apply_as<6>(problem_, tangents_, prestress_, in, out);
+    apply_as<6>(problem_, tangents_, in, out);
   } else {
-    apply_as<3>(problem_, tangents_, prestress_, in, out);
+    apply_as<3>(problem_, tangents_, in, out);
   }
 }
 

@@ -5,17 +5,17 @@
 
 namespace softgrain::statics {
 
-/// out = K in, K = -d(force)/d(theta) of the linearised contacts. `prestress`: the share of the negative stiffness of
-/// normal forces that turn with their pair, -P/|r_ij| T (1: the exact derivative of the normal forces).
+/// out = K in, K = -d(force)/d(theta) of the linearised contacts. The negative stiffness of normal forces that turn
+/// with their pair, -P/|r_ij| T, is left out: K then never is negative, and what is left out is smaller than the rest
+/// by the order of the overlap over the radius.
 class Stiffness {
  public:
-  Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double prestress);
+  Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents);
   void apply(const Unknowns& in, Unknowns& out) const;
 
  private:
   const PackProblem& problem_;
   const std::vector<LinkTangent>& tangents_;
-  double prestress_;
 };
 
 }  // namespace softgrain::statics
