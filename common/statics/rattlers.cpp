@@ -9,6 +9,7 @@ namespace softgrain::statics {
 
 namespace {
 
+constexpr double kLight = 10.0;     // times `least_force`: what counts as a rattler
 constexpr double kOutlier = 3.0;    // of the root mean square force: grains that hold up all others
 constexpr double kReduction = 0.1;  // of the force on an outlier: its neighbours change too
 constexpr int kSteps = 40;          // per grain and call
@@ -71,7 +72,6 @@ bool relax_rattlers(PackProblem& problem, const PackForces& forces, double least
   if (!problem.symmetry().empty()) return false;
   const auto stride = static_cast<std::size_t>(problem.stride());
   const std::vector<double>& weight = problem.pack().weight;
-  const double enough = tolerance * least_force;
   bool any = false;
   const double rms = std::sqrt(dot(forces.force, forces.force) / static_cast<double>(forces.largest2.size()));
   Unknowns own(stride);
@@ -80,8 +80,10 @@ bool relax_rattlers(PackProblem& problem, const PackForces& forces, double least
     const double scale = std::max({least_force, std::sqrt(forces.largest2[g]), weight.empty() ? 0.0 : weight[g]});
     const double size = size_of(own);
     if (!(size > tolerance * scale)) continue;
-    if (scale > least_force && size < kOutlier * rms) continue;
-    Rattler(problem, theta, g).relax(scale > least_force ? std::max(0.1 * enough, kReduction * size) : 0.1 * enough);
+    const bool light = scale <= kLight * least_force;
+    if (!light && size < kOutlier * rms) continue;
+    const double enough = 0.1 * tolerance * scale;
+    Rattler(problem, theta, g).relax(light ? enough : std::max(enough, kReduction * size));
     any = true;
   }
   return any;
