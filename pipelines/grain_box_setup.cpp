@@ -17,7 +17,7 @@ const Range kPoisson = Range::closed(-0.9, 0.499);
 const Range kScatter{0.0, 0.3, false, false};
 const Range kIncrement{0.0, 0.1, true, false};
 
-/// A coefficient of friction, or "infinite": contacts that never slide.
+/// A coefficient of friction, or "infinite".
 double read_friction(const SceneTable& t, const std::string& key, double fallback) {
   if (!t.is_text(key)) return t.number(key, Unit::none, Range::closed(0.0, 1000.0), fallback);
   (void)t.choice(key, {"infinite"});
@@ -213,6 +213,7 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
   spec.grains = t.count("grains", 8, 10000000, spec.grains);
   spec.friction = read_friction(t, "mu", spec.friction);
   if (walls_follow) spec.walls.friction = spec.friction;
+  spec.walls.friction = read_friction(t, "wall_mu", spec.walls.friction);
   spec.generation.pressure = t.number("pressure", Unit::pressure, Range::positive(), spec.generation.pressure);
   read_coulomb(t, spec.solver);
   read_increments(t, spec.loading);

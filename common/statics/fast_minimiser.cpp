@@ -169,6 +169,17 @@ class Stepper {
 
 }  // namespace
 
+namespace {
+
+/// With strong friction (mu = 5) relaxing grains alone and mixing the steps of all can undo each other for ever, so the
+/// first pauses every now and then.
+bool rattlers_turn(std::int64_t iteration) {
+  constexpr std::int64_t kTurn = 200;
+  return iteration > 0 && (iteration / kTurn) % 2 == 0;
+}
+
+}  // namespace
+
 LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options) {
   LeastWorkResult result;
   const Scales scales = scales_of(problem.pack(), options);
@@ -178,7 +189,7 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   result.stopped_by = "cap";
   for (;; ++result.iterations) {
     const PackForces& forces = stepper.forces();
-    if (result.iterations > 0 && result.worst_residual < kMixBelow)
+    if (rattlers_turn(result.iterations) && result.worst_residual < kMixBelow)
       stepper.relax_rattlers(residual_floor(scales, forces), options.residual_tolerance);
     result.worst_residual = worst_residual(forces, problem.pack(), problem.stride(), residual_floor(scales, forces));
     if (!std::isfinite(result.worst_residual)) {

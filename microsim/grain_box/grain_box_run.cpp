@@ -255,10 +255,12 @@ void GrainBoxRun::compact() {
   }
 }
 
+double finite_friction(double friction) { return std::isinf(friction) ? kStickingFriction : friction; }
+
 /// Phase (b), and the friction that stays on.
 void GrainBoxRun::add_friction() {
-  state_.pack.friction = spec_.friction;
-  for (PackWall& wall : state_.pack.walls) wall.friction = spec_.walls.friction;
+  state_.pack.friction = finite_friction(spec_.friction);
+  for (PackWall& wall : state_.pack.walls) wall.friction = finite_friction(spec_.walls.friction);
   if (!(spec_.friction > 0.0)) return;
   BoxMove move;
   move.strain[spec_.generation.axis] = spec_.generation.increment;

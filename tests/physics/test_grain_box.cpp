@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "microsim/grain_box/analysis.h"
 #include "microsim/grain_box/box_measure.h"
@@ -90,6 +91,22 @@ TEST(GrainBox, ElasticProbeIsStifferThanAnIntervalInWhichContactsSlide) {
     EXPECT_LT(p->bulk_probe, 2.0 * p->bulk);
   }
   EXPECT_GE(probed, 2);
+}
+
+/// Friction without limit once left increments without equilibrium, and a minimiser that went round in circles.
+TEST(GrainBox, EndlessFrictionComesToRest) {
+  GrainBoxSpec spec = small_spec();
+  spec.grains = 400;
+  spec.generation.increment = 1e-4;
+  spec.loading.increments = {1e-4};
+  spec.loading.end_strain = std::numeric_limits<double>::infinity();
+  spec.loading.end_stress = 20e6;
+  spec.friction = std::numeric_limits<double>::infinity();
+  spec.walls.friction = 0.0;
+  const GrainBoxResult result = run_grain_box(spec, 1, {}, {});
+  ASSERT_TRUE(result.usable) << result.reason;
+  EXPECT_GE(result.state.points.back().pressure, 20e6);
+  EXPECT_LT(result.state.points.back().sliding_share, 0.05);
 }
 
 TEST(GrainBox, IsotropicLoadingIsIsotropicWithinScatter) {

@@ -305,6 +305,9 @@ mu = "infinite"
 pressure = "20 MPa"
 increment = 2e-4
 grains = 500
+[[variant]]
+name = "c"
+wall_mu = 0.1
 )";
 
 TEST(GrainBoxAnalysis, FindsWhereTheShearModulusIsSmallest) {
@@ -319,7 +322,9 @@ TEST(GrainBoxAnalysis, FindsWhereTheShearModulusIsSmallest) {
 
 TEST(GrainBoxScene, VariantsChangeTheirKeysOnly) {
   const GrainBoxSetup setup = read_grain_box(Scene::parse(kScene, "scene.toml"));
-  ASSERT_EQ(setup.packs.size(), 2U);
+  ASSERT_EQ(setup.packs.size(), 3U);
+  EXPECT_EQ(setup.packs[2].friction, 0.4);
+  EXPECT_EQ(setup.packs[2].walls.friction, 0.1);
   const GrainBoxSpec& a = setup.packs[0];
   const GrainBoxSpec& b = setup.packs[1];
   EXPECT_EQ(a.friction, 0.4);
