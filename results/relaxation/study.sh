@@ -4,6 +4,7 @@
 # Finished runs in WORK_DIRECTORY are kept.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+program=${SOFTGRAIN:-$root/softgrain} # another build of the program may be given
 work=${1:-$root/results/relaxation_study}
 mkdir -p "$work"
 
@@ -12,10 +13,10 @@ run() { # name, then key=value ...
   shift
   for setting in "$@"; do options+=(--set "$setting"); done
   [ -f "$work/$name/summary.json" ] ||
-    "$root/softgrain" microsim "$root/pipelines/relaxation_study.toml" --out "$work/$name" --resume --quiet \
+    "$program" microsim "$root/pipelines/relaxation_study.toml" --out "$work/$name" --resume --quiet \
       "${options[@]}" >/dev/null || [ $? -eq 3 ]
   [ "$name" = published ] ||
-    "$root/softgrain" compare "$work/$name/measurements.h5" "$work/published/measurements.h5" \
+    "$program" compare "$work/$name/measurements.h5" "$work/published/measurements.h5" \
       --out "$work/$name-compared" --json --quiet >"$work/$name.json"
 }
 
