@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tables of grain-box runs: collect.py RUN_DIR... > tables.md. Standard library only.
 
-Reads summary.json of every run directory and sets their packs side by side.
+Reads summary.json of every run directory and sets their packs side by side. RUN_DIR=NAME renames the pack of a run of one.
 """
 import json
 import os
@@ -11,10 +11,13 @@ STRESSES = [10e6, 15e6, 20e6, 30e6, 40e6, 60e6, 80e6, 100e6]
 
 
 def packs_of(directories):
-    for directory in directories:
+    for argument in directories:
+        directory, _, name = argument.partition("=")
         with open(os.path.join(directory, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
         for pack in summary["packs"]:
+            if name:
+                pack["name"] = name
             yield pack, summary
 
 
