@@ -4,8 +4,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/dynamics/residual.h"
-
 namespace softgrain {
 
 namespace {
@@ -30,24 +28,21 @@ class CostMeter {
   Clock::time_point start_;
 };
 
-NormalPoint normal_point(MeasurementState& state, double delta, const Protocol& protocol) {
+SettleResult normal_state(MeasurementState& state, double delta, const Protocol& protocol) {
   const CostMeter meter(state.experiment.system, state.run.normal_cost);
   protocol.approach(state.experiment, delta * state.experiment.spec.shell_radius);
-  const SettleResult rest = protocol.settle(state.experiment, false);
-  return {delta, state.experiment.force_on_second()[0], rest.residual, rest.max_overlap, rest.converged};
+  return protocol.settle(state.experiment, false);
 }
 
-TangentialPoint as_tangential(const SoftExperiment& e, double delta, double angle, double residual, bool converged) {
-  const Vec3 force = e.force_on_second();
-  return {delta, angle, force[1], force[2], residual, converged};
+TangentialPoint as_tangential(const SettleResult& rest, double delta, double angle) {
+  return {delta, angle, rest.force[1], rest.force[2], rest.residual, rest.converged};
 }
 
 TangentialPoint rotated_point(SoftExperiment& e, double delta, double from, double angle, const MeasurementPlan& plan,
                               const Protocol& protocol, Cost& cost) {
   const CostMeter meter(e.system, cost);
   e.rotate_first(angle - from, plan.rotation_step_deg, plan.shell_turns);
-  const SettleResult rest = protocol.settle(e, true);
-  return as_tangential(e, delta, angle, rest.residual, rest.converged);
+  return as_tangential(protocol.settle(e, true), delta, angle);
 }
 
 /// Angles in the order they are visited: as given, or outwards sign by sign for a cumulative sweep.
@@ -84,12 +79,12 @@ void measure(MeasurementState& state, const MeasurementPlan& plan, const Protoco
              const MeasurementObserver& observer) {
   for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
     const double delta = plan.deltas[k];
-    const NormalPoint normal = normal_point(state, delta, protocol);
+    const SettleResult rest = normal_state(state, delta, protocol);
     if (is_among(plan.tangential_deltas, delta)) {
-      state.run.tangential.push_back(as_tangential(state.experiment, delta, 0.0, normal.residual, normal.converged));
+      state.run.tangential.push_back(as_tangential(rest, delta, 0.0));
       rotate_through(state, delta, plan, protocol);
     }
-    state.run.normal.push_back(normal);
+    state.run.normal.push_back({delta, rest.force[0], rest.residual, rest.max_overlap, rest.converged});
     observer(state, static_cast<double>(k + 1) / static_cast<double>(plan.deltas.size()));
   }
 }

@@ -36,8 +36,9 @@ struct LeastWorkProtocolOptions {
   std::int64_t increment_passes = 80;  ///< an increment without equilibrium after these is left to dynamics
   double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
   double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match)
-  double settle_time = 120.0;  ///< of dynamics before a point is recorded; 0: none
-  double settle_time_rotated = 24.0;  ///< the same after a rotation
+  double settle_time = 120.0;  ///< of dynamics before a normal force is recorded; 0: none
+  double path_settle_time = 16.0;     ///< the part of it after which rotations and further increments start
+  double settle_time_rotated = 24.0;  ///< of dynamics after a rotation
   double step_factor_rotated = 2.0;
   std::int64_t max_passes = 20000;  ///< of the last relaxation of a recorded point
 };
@@ -49,6 +50,7 @@ double force_floor(const SoftParticleSpec& spec);
 double published_speed(const SoftParticleSpec& spec);
 
 struct SettleResult {
+  Vec3 force{};  ///< on the second body, x along the normal [N]
   double residual = 0.0;
   double max_overlap = 0.0;
   bool converged = false;
@@ -63,7 +65,8 @@ class Protocol {
   [[nodiscard]] virtual bool damped_contacts() const = 0;
   /// Moves the second body until the overlap is `overlap` [m], at the protocol's own pace.
   virtual void approach(SoftExperiment& experiment, double overlap) const = 0;
-  /// Relaxes a state that is to be recorded; `rotated` says that it follows a rotation.
+  /// Relaxes a state that is to be recorded; `rotated` says that it follows a rotation. What is recorded may be a copy
+  /// that rested longer than the state from which the experiment goes on.
   virtual SettleResult settle(SoftExperiment& experiment, bool rotated) const = 0;
 };
 

@@ -30,7 +30,7 @@ class DampedProtocol : public Protocol {
   SettleResult settle(SoftExperiment& e, bool rotated) const override {
     const RelaxationResult result = relax(e, rotated ? options_.tolerance_rotated : options_.tolerance);
     const Residual r = residual(e.system);
-    return {result.residual, r.max_overlap, result.end == RelaxationEnd::converged};
+    return {e.force_on_second(), result.residual, r.max_overlap, result.end == RelaxationEnd::converged};
   }
 
  private:

@@ -45,7 +45,7 @@ class PublishedProtocol : public Protocol {
     run(e, steps, dt);
     const Residual r = residual(e.system);
     const double relative = r.relative(force_floor(e.spec));
-    return {relative, r.max_overlap, relative <= options_.tolerance};
+    return {e.force_on_second(), relative, r.max_overlap, relative <= options_.tolerance};
   }
 
  private:

@@ -50,6 +50,7 @@ void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
   if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
   o.step_factor = t.number("step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
   o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
+  o.path_settle_time = t.number("path_settle_time", Unit::none, Range::not_negative(), o.path_settle_time);
   o.settle_time_rotated = t.number("settle_time_rotated", Unit::none, Range::not_negative(), o.settle_time_rotated);
   o.step_factor_rotated =
       t.number("step_factor_rotated", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor_rotated);
