@@ -37,7 +37,7 @@ struct LeastWorkProtocolOptions {
   double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
   double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match)
   double settle_time = 120.0;  ///< of dynamics before a normal force is recorded; 0: none
-  double path_settle_time = 16.0;     ///< the part of it after which rotations and further increments start
+  double path_settle_time = 120.0;    ///< the part of it after which rotations and further increments start
   double settle_time_rotated = 24.0;  ///< of dynamics after a rotation
   double step_factor_rotated = 2.0;
   std::int64_t max_passes = 20000;  ///< of the last relaxation of a recorded point

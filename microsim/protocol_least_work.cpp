@@ -72,9 +72,7 @@ class LeastWorkProtocol : public Protocol {
   }
 
   /// Increments of least work leave half of all contacts at the Coulomb limit, slow dynamics next to none though close
-  /// to it; a short stretch of dynamics brings the one to the other, and kt follows. A long one goes on loosening the
-  /// springs (kt 20 % too stiff), while the normal force needs it. So the path takes the short one, the record the long
-  /// one.
+  /// to it; settling loosens springs, and kt follows the springs. So the path may be given less of it than the record.
   SettleResult settle(SoftExperiment& e, bool rotated) const override {
     if (rotated) {
       rest(e, options_.settle_time_rotated, options_.step_factor_rotated);

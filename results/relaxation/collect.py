@@ -8,18 +8,15 @@ import sys
 HERE = pathlib.Path(__file__).parent
 # name of the run: what it is, colour
 SETTINGS = {
-    "least-work": ("least-work, defaults", "#0072b2"),
-    "half-increment": ("least-work, increment 0.00125", "#56b4e9"),
-    "double-increment": ("least-work, increment 0.005", "#56b4e9"),
-    "fourfold-speed": ("least-work, rearrangements at 0.008 m/s", "#cc79a7"),
-    "short-settling": ("least-work, settling x 1/4", "#009e73"),
-    "long-settling": ("least-work, settling x 4", "#009e73"),
-    "no-settling": ("least-work, no settling", "#e69f00"),
-    "dynamics-only": ("slow mass-scaled dynamics only", "#8a8a8a"),
-    "statics-only": ("least work only, no dynamics", "#d55e00"),
+    "dynamics-finer": ("scenes' choice: dynamics only, step x 2", "#0072b2"),
+    "dynamics-only": ("dynamics only, step x 4", "#56b4e9"),
+    "least-work": ("least-work, key defaults", "#d55e00"),
+    "half-increment": ("least-work, increment halved", "#e69f00"),
+    "short-path-settling": ("least-work, path settles 16", "#009e73"),
+    "no-settling": ("least-work, no settling", "#cc79a7"),
     "damped": ("damped, increment 0.005", "#000000"),
-    "damped-fine": ("damped, increment 0.00125", "#000000"),
 }
+FILLED = ("dynamics-finer", "least-work", "damped")
 QUANTITIES = {"normal_force": "Fn", "stiffness_initial": "kt, initial slope", "stiffness_secant": "kt, secant at 1°"}
 
 
@@ -114,7 +111,7 @@ class Panel:
         mark = {"circle": f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.5"', "square": f'<rect x="{x - 4:.1f}" y="{y - 4:.1f}" width="8" height="8"',
                 "triangle": f'<path d="M{x:.1f} {y - 5.5:.1f}l5 9h-10z"'}[shape]
         tag = mark[1:].split()[0]
-        fill = colour if name in ("least-work", "damped", "statics-only", "dynamics-only") else "#fff"
+        fill = colour if name in FILLED else "#fff"
         self.parts.append(f'{mark} fill="{fill}" stroke="{colour}" stroke-width="1.6">{title}</{tag}>')
 
 
@@ -155,7 +152,7 @@ def picture(runs):
     for k, name in enumerate(runs):
         x, y = 60 + 260 * (k % 3), 680 + 18 * (k // 3)
         words, colour = SETTINGS[name]
-        fill = colour if name in ("least-work", "damped", "statics-only", "dynamics-only") else "#fff"
+        fill = colour if name in FILLED else "#fff"
         out.append(f'<circle cx="{x}" cy="{y - 4}" r="4.5" fill="{fill}" stroke="{colour}" stroke-width="1.6"/><text x="{x + 9}" y="{y}">{words}</text>')
     return "\n".join(out + ["</svg>"]) + "\n"
 

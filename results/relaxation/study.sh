@@ -23,13 +23,9 @@ run() { # name, then key=value ...
 run published measure.relaxation=published
 run least-work
 run half-increment measure.least_work.increment=0.00125
-run double-increment measure.least_work.increment=0.005
-run fourfold-speed measure.least_work.approach_speed=0.008
-run short-settling measure.least_work.settle_time=30 measure.least_work.settle_time_rotated=6
-run long-settling measure.least_work.settle_time=480 measure.least_work.settle_time_rotated=96
+run short-path-settling measure.least_work.path_settle_time=16
 run no-settling measure.least_work.settle_time=0 measure.least_work.settle_time_rotated=0
 run dynamics-only measure.least_work.increment_passes=0
-run statics-only measure.least_work.increment_passes=4000 measure.least_work.settle_time=0 measure.least_work.settle_time_rotated=0
+run dynamics-finer measure.least_work.increment_passes=0 measure.least_work.step_factor=2
 run damped measure.relaxation=damped
-run damped-fine measure.relaxation=damped measure.damped.increment=0.00125
 python3 "$root/results/relaxation/collect.py" "$work"
