@@ -14,9 +14,8 @@ namespace softgrain {
 
 namespace {
 
-/// As for the published protocol: dt over sqrt(m/k) of the smallest grain at 5 % overlap, and over sqrt(m/K) of any.
-constexpr double kStepFraction = 0.2;
-constexpr double kCrowdedFraction = 0.5;
+/// Steps are counted in those of the published protocol.
+constexpr PublishedOptions kPublished{};
 /// After an increment without equilibrium the next ones go straight to dynamics, in one stretch: 1, 2, 4... up to
 /// these.
 constexpr int kLongestDetour = 8;
@@ -25,11 +24,11 @@ constexpr int kLongestDetour = 8;
 /// from what it was and is left as it is: a pack that rearranges carries its momentum on, and stopping it every now and
 /// then raises the force near the threshold by a third.
 void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
-  const double nominal = step_factor * kStepFraction * step_limit(e.system).natural_time;
+  const double nominal = step_factor * kPublished.step_fraction * step_limit(e.system).natural_time;
   const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
   const double dt = duration / static_cast<double>(steps);
   {
-    const ScaledMasses<3> raised(e.system, dt, kCrowdedFraction);
+    const ScaledMasses<3> raised(e.system, dt, kPublished.crowded_fraction);
     e.set_damping(true);
     e.add_approach_speed(speed);
     VelocityVerlet<3> integrator(dt);

@@ -165,7 +165,7 @@ TEST_F(PipelineResume, AnInterruptedRunSaysSoAndGoesOn) {
 /// Stopped inside the macro part: what was measured is not measured again.
 TEST_F(PipelineResume, InterruptedInTheMacroPartItGoesOnThere) {
   const std::string out = directory_.file("stopped");
-  const auto begun = [&] { return fs::exists(out + "/work/macro-shelled-0.h5"); };
+  const auto begun = [&] { return fs::exists(fs::path(out) / "work" / "macro-shelled-0.h5"); };
   const int status = signal_when(start(out, false), begun, SIGINT);
   if (!ended_with(status, 130)) GTEST_SKIP() << "the run ended before the signal came";
   ASSERT_TRUE(ended_with(wait_for(start(out, true)), kNotUsable));
