@@ -71,6 +71,7 @@ json contact_state_json(const ContactTotals& totals) {
 json part_json(const LoopPart& part) {
   return {{"steps", part.steps},
           {"seconds", part.seconds},
+          {"cpu_seconds", part.cpu_seconds},
           {"contact_evaluations", part.contact_evaluations},
           {"rebuilds", part.rebuilds}};
 }

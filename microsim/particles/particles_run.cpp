@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <sstream>
 
 #include "common/core/error.h"
@@ -136,7 +137,8 @@ void ParticlesRun::observe() {
 
 LoopPart ParticlesRun::advance_to(std::int64_t step) {
   const auto from = Clock::now();
-  LoopPart part{-system_.step, 0.0, -system_.cost.contact_evaluations, -system_.neighbours.rebuilds};
+  const std::clock_t cpu_from = std::clock();
+  LoopPart part{-system_.step, 0.0, 0.0, -system_.cost.contact_evaluations, -system_.neighbours.rebuilds};
   while (system_.step < step) {
     integrator_.step(system_);
     observe();
@@ -144,6 +146,7 @@ LoopPart ParticlesRun::advance_to(std::int64_t step) {
   }
   part.steps += system_.step;
   part.seconds = std::chrono::duration<double>(Clock::now() - from).count();
+  part.cpu_seconds = static_cast<double>(std::clock() - cpu_from) / CLOCKS_PER_SEC;
   part.contact_evaluations += system_.cost.contact_evaluations;
   part.rebuilds += system_.neighbours.rebuilds;
   return part;

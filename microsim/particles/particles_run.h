@@ -26,7 +26,8 @@ inline constexpr Slot kMostWatched = 1000;
 /// What a stretch of steps cost. Those of this process alone: nothing is carried over from a checkpoint.
 struct LoopPart {
   std::int64_t steps = 0;
-  double seconds = 0.0;  ///< wall time of the stepping loop, without reading, first forces and writing
+  double seconds = 0.0;      ///< wall time of the stepping loop, without reading, first forces and writing
+  double cpu_seconds = 0.0;  ///< processor time of all threads in it: what it would take on an idle machine
   std::int64_t contact_evaluations = 0;
   std::int64_t rebuilds = 0;  ///< of the neighbour list
 };

@@ -73,6 +73,7 @@ class Softgrain:
         summary = json.loads(output)
         cost, state = summary["cost"], summary["contact_state"]
         return {"grains": summary["particle_count"], "seconds": cost["measured"]["seconds"],
+                "cpu_seconds": cost["measured"]["cpu_seconds"],
                 "contacts": state["contacts"], "pressure": state["pressure"],
                 "coordination_number": state["coordination_number"], "peak_memory": memory,
                 "rebuilds": cost["measured"]["rebuilds"], "listed_pairs": cost["listed_pairs"],
@@ -115,14 +116,14 @@ class Lammps:
         loop = re.findall(r"Loop time of (\S+) on \d+ procs for \d+ steps with (\d+) atoms", output)
         pair = re.findall(r"^Pair\s+\|\s*\S+\s*\|\s*(\S+)", output, re.M)
         rows = re.findall(r"^\s*\d+\s+(\S+)\s+(\S+)\s*$", output, re.M)
+        use = re.findall(r"^(\S+)% CPU use", output, re.M)
         rebuilds = re.findall(r"Neighbor list builds = (\d+)", output)
-        if not loop or not pair or not rows:
+        if not (loop and pair and rows and use):
             raise Failed("no timing in the output of LAMMPS:\n" + output[-2000:])
         seconds, grains = float(loop[-1][0]), int(loop[-1][1])
         pressure, coordination = map(float, rows[-1])
-        return {"grains": grains, "seconds": seconds, "force_seconds": float(pair[-1]), "pressure": pressure,
-                "coordination_number": coordination, "contacts": round(coordination * grains / 2),
-                "rebuilds": int(rebuilds[-1]) if rebuilds else None}
+        return {"grains": grains, "seconds": seconds, "cpu_seconds": 0.01 * float(use[-1]) * seconds,
+                "force_share": float(pair[-1]) / seconds, "pressure": pressure, "coordination_number": coordination, "contacts": round(coordination * grains / 2), "rebuilds": int(rebuilds[-1]) if rebuilds else None}
 
 
 class Yade:
