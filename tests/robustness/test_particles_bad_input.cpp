@@ -80,6 +80,18 @@ TEST_F(ParticlesBadInput, TheGoodSceneIsGood) {
   EXPECT_EQ(outcome.status, 0) << outcome.output;
 }
 
+TEST_F(ParticlesBadInput, CheckSaysWhatFollowsFromTheGoodOne) {
+  write_text_atomic(directory_.file("scene.toml"), kGood);
+  const auto outcome = run_the_program("check '" + directory_.file("scene.toml") + "' --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const auto facts = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(facts["bodies"], 3);
+  EXPECT_EQ(facts["contacts"], 0);
+  EXPECT_GT(facts["bytes"], 2 * 100.0);
+  EXPECT_GT(facts["seconds"], 0.0);
+  EXPECT_LT(facts["time_step"].get<double>(), 0.051 * facts["step_limit"].get<double>());
+}
+
 TEST_F(ParticlesBadInput, Particles) {
   expect("radius = 0.01", "radius = 0.0", {"scene.toml:21: radius", "above 0"});
   expect("radius = 0.01", "radius = -0.01", {"scene.toml:21: radius", "above 0"});
