@@ -98,6 +98,7 @@ struct TangentialForce {
   double limit = 0.0;      ///< Qmax
   double stiffness = 0.0;  ///< in slip, lowered so that |Q| = Qmax
   double stick = 0.0;      ///< the stiffness without slip
+  bool follows = false;    ///< |Q| is mu P of the state as it is
 };
 
 /// Share of the published limit that the reference force may take up. In slip Q lies where the ray from Qp against u_s
@@ -157,6 +158,7 @@ inline TangentialForce tangential_by_current(const FrictionConstants& c, double 
   double share = 1.0;
   if (size > out.limit) {
     share = out.limit / size;
+    out.follows = true;
     out.work = (out.limit * (size - 0.5 * out.limit) - 0.5 * norm2(pushed)) / stick;
   } else if (std::isinf(c.friction) && overlap < c.overlap0) {
     // Without a limit Q would vanish at once where a contact opens: it falls with the contact radius.
