@@ -16,8 +16,8 @@ struct CandidatePair {
   std::int32_t image = 0;
 };
 
-/// Every pair of grains i < j (slots [0, grains)) with |x_i - x_j| < r_i + r_j + skin_i + skin_j, each once, in no
-/// stated order but the same order on every machine. Size classes halve the radius; a grain looks into its own class
+/// Every pair of grains i < j (slots [0, grains)) with |x_i - x_j| < r_i + r_j + skin_i + skin_j, each once,
+/// sorted by i, then j. Size classes halve the radius; a grain looks into its own class
 /// and all coarser ones. Periodic cells must be at least twice as wide as the largest reach (throws BadInput).
 template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,

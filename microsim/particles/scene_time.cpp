@@ -27,7 +27,8 @@ std::string shown(double value) {
 }
 
 /// Diagonal of the box that holds all values: no two differ by more.
-double spread(const std::vector<Vec3>& values) {
+template <class V>
+double spread(const std::vector<V>& values) {
   if (values.empty()) return 0.0;
   Vec3 low = values.front();
   Vec3 high = low;
