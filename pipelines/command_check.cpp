@@ -15,6 +15,7 @@
 #include "microsim/particles/particles_scene.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/grain_box_check.h"
+#include "pipelines/particles_check.h"
 #include "pipelines/pipeline_setup.h"
 #include "pipelines/run_context.h"
 
@@ -121,16 +122,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
-    const ParticlesScene particles = read_particles_scene(scene);
-    const StepLimit limit = step_limit(particles.system);
-    out.add("bodies", particles.system.particles.size(),
-            fmt::format("{} grains, {} walls", particles.system.particles.grains, particles.wall_name.size()));
-    out.add("time_step", particles.time.step,
-            fmt::format("step {:.4g} s to {:.4g} s: {:.0f} steps", particles.time.step, particles.time.end,
-                        particles.time.end / particles.time.step));
-    if (limit.body >= 0)
-      out.add("step_limit", limit.natural_time,
-              fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+    check_particles(read_particles_scene(scene), out.facts, out.lines);
   } else if (kind == "grain-box") {
     check_grain_box(read_grain_box(scene), out.facts, out.lines);
   } else if (kind == "macro") {

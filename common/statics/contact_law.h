@@ -98,13 +98,32 @@ struct TangentialForce {
   double limit = 0.0;      ///< Qmax
   double stiffness = 0.0;  ///< in slip, lowered so that |Q| = Qmax
   double stick = 0.0;      ///< the stiffness without slip
+  bool follows = false;    ///< |Q| is mu P of the state as it is
 };
 
-/// Published rule: limit of the reference state, stiffness lowered to k' in slip.
-inline TangentialForce tangential_by_reference(const FrictionConstants& c, const Vec3& pushed, const Vec3& slid) {
+/// Share of the published limit that the reference force may take up. In slip Q lies where the ray from Qp against u_s
+/// leaves the circle |Q| = Qmax. When Qp is on the circle itself, a ray that just misses the inside leaves at once, Q =
+/// Qp, and one that just enters it does not slip at all, Q = Qp - k* u_s: next to a jump when the contact moves
+/// sideways. From inside the circle Q changes by no more than about k*/sqrt(2 (1 - kReferenceShare)) per displacement.
+inline constexpr double kReferenceShare = 1.0 - 1e-3;
+/// A contact about to open lets go of Q from mu P = (mu P0)/kOpening on, so that Q does not jump where it opens.
+inline constexpr double kOpening = 100.0;
+
+/// mu P0, less for a contact that has lost nearly all of its normal force.
+inline double limit_by_reference(const FrictionConstants& c, double normal_force) {
+  return std::min(c.limit0, kOpening * c.friction * normal_force);
+}
+
+/// Published rule: limit of the reference state, stiffness lowered to k' in slip; with the two deviations above,
+/// without which there need be no equilibrium.
+inline TangentialForce tangential_by_reference(const FrictionConstants& c, double normal_force, const Vec3& turned,
+                                               const Vec3& slid) {
   TangentialForce out;
   out.limit = c.limit0;
   out.stiffness = out.stick = c.shear * c.contact_radius0;
+  const double held = kReferenceShare * c.limit0;
+  const double carried2 = norm2(turned);
+  const Vec3 pushed = carried2 > held * held ? turned * (held / std::sqrt(carried2)) : turned;
   out.force = pushed - slid * out.stiffness;
   const double along = dot(pushed, slid);
   const double size2 = norm2(slid);
@@ -113,6 +132,13 @@ inline TangentialForce tangential_by_reference(const FrictionConstants& c, const
     out.force = pushed - slid * out.stiffness;
   }
   out.work = 0.5 * out.stiffness * size2 - along;
+  const double most = limit_by_reference(c, normal_force);
+  if (most < c.limit0 && norm2(out.force) > most * most) {
+    const double share = most / norm(out.force);
+    out.force *= share;
+    out.stiffness *= share;
+    out.work *= share;
+  }
   return out;
 }
 
@@ -132,6 +158,7 @@ inline TangentialForce tangential_by_current(const FrictionConstants& c, double 
   double share = 1.0;
   if (size > out.limit) {
     share = out.limit / size;
+    out.follows = true;
     out.work = (out.limit * (size - 0.5 * out.limit) - 0.5 * norm2(pushed)) / stick;
   } else if (std::isinf(c.friction) && overlap < c.overlap0) {
     // Without a limit Q would vanish at once where a contact opens: it falls with the contact radius.

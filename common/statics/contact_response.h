@@ -37,7 +37,8 @@ TorsionMoment torsion_response(const FrictionConstants& c, const NormalForce& no
   constexpr double kShare = 3.0 * std::numbers::pi / 16.0;
   const double turned = dot(turn_i - turn_j, place.normal);
   if constexpr (Law::rule == CoulombRule::reference) {
-    return torsion_moment(c, c.contact_radius0, kShare * c.contact_radius0 * c.limit0, turned);
+    const double limit = kShare * c.contact_radius0 * limit_by_reference(c, normal.force);
+    return torsion_moment(c, c.contact_radius0, limit, turned);
   } else {
     if (c.friction == 0.0) return {};
     const double radius = root_radius * std::sqrt(place.overlap);
@@ -60,7 +61,7 @@ ContactResponse respond(const NormalConstants& constants, const FrictionConstant
     const Vec3 slid = sliding_displacement(place, moved, turn_i, turn_j);
     const Vec3 pushed = turned_force(friction->tangential0, place.normal);
     if constexpr (Law::rule == CoulombRule::reference) {
-      out.tangential = tangential_by_reference(*friction, pushed, slid);
+      out.tangential = tangential_by_reference(*friction, out.normal.force, pushed, slid);
     } else {
       out.tangential =
           tangential_by_current(*friction, out.normal.force, place.overlap, constants.root_radius, pushed, slid);

@@ -1,4 +1,4 @@
-// Preconditioned conjugate gradient on operators given as functions.
+// Preconditioned iterative solutions of linear systems; operators are given as functions.
 #pragma once
 
 #include <cstdint>
@@ -19,5 +19,10 @@ struct KrylovResult {
 /// Preconditioned conjugate gradient for symmetric maps; x starts at zero.
 KrylovResult conjugate_gradient(const LinearMap& map, const LinearMap& inverse, const Unknowns& rhs, double reduction,
                                 std::int64_t most, Unknowns& x);
+
+/// Stabilised biconjugate gradient (van der Vorst 1992, preconditioned from the right) for any map; x starts at zero.
+/// `iterations` counts applications of the map, two per step.
+KrylovResult biconjugate_gradient(const LinearMap& map, const LinearMap& inverse, const Unknowns& rhs, double reduction,
+                                  std::int64_t most, Unknowns& x);
 
 }  // namespace softgrain::statics

@@ -122,6 +122,10 @@ LinkTangent tangent_from(const View& v, std::size_t c, const ContactPlace& place
     t.twist = r.torsion.stiffness;
     t.tangential = r.tangential.stiffness;
     t.stick = r.tangential.stick;
+    if (r.tangential.follows && r.tangential.limit > 0.0) {
+      t.slip = r.tangential.force * (1.0 / r.tangential.limit);
+      t.drag = v.links.friction[c].friction * r.normal.stiffness;
+    }
   }
   return t;
 }

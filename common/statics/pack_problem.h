@@ -23,12 +23,15 @@ struct PackForces {
 
 /// One contact linearised. With delta = u_i - u_j + n x (Omega_i arm_i + Omega_j arm_j) and its tangential part delta_s
 /// the force on i falls by normal_stiffness n (n.delta) + tangential delta_s. A sliding contact has its secant
-/// stiffness.
+/// stiffness, which is symmetric. What its force on i really falls by, when |Q| follows mu P, has in addition
+/// slip (drag n.delta - tangential slip.delta): Q grows with P and does not grow along itself.
 struct LinkTangent {
   Vec3 normal{};
   double normal_stiffness = 0.0;  ///< dP/dh [N/m]
   double tangential = 0.0;        ///< [N/m]
   double stick = 0.0;             ///< the same if the contact did not slide
+  Vec3 slip{};                    ///< Q/|Q| where |Q| follows mu P, else 0
+  double drag = 0.0;              ///< mu dP/dh there, else 0 [N/m]
   double arm_i = 0.0;             ///< over R_i
   double arm_j = 0.0;             ///< over R_j; 0 for walls
   double curvature_i = 0.0;       ///< 1/R_i

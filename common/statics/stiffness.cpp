@@ -16,7 +16,7 @@ struct LinkAnswer {
   Vec3 twist{};  ///< [N m / m]
 };
 
-template <int kStride>
+template <int kStride, Sliding kSliding>
 LinkAnswer answer_of(const LinkTangent& t, const GrainPack& pack, const Unknowns& in, std::int32_t li,
                      std::int32_t lj) {
   constexpr auto kWidth = static_cast<std::size_t>(kStride);
@@ -39,7 +39,10 @@ LinkAnswer answer_of(const LinkTangent& t, const GrainPack& pack, const Unknowns
   const double along = softgrain::dot(t.normal, delta);
   out.force = t.normal * (t.normal_stiffness * along);
   if constexpr (kStride == 6) {
-    const Vec3 friction = (delta - t.normal * along) * t.tangential;
+    Vec3 friction = (delta - t.normal * along) * t.tangential;
+    if constexpr (kSliding == Sliding::exact) {
+      if (t.drag != 0.0) friction += t.slip * (t.drag * along - t.tangential * softgrain::dot(t.slip, delta));
+    }
     out.force += friction;
     out.roll = cross(t.normal, friction);
   }
@@ -56,14 +59,14 @@ void add_to_grain(const LinkAnswer& a, const LinkTangent& t, bool first, Unknown
   }
 }
 
-template <int kStride>
+template <int kStride, Sliding kSliding>
 void scatter(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   const Links& links = problem.links();
   const GrainPack& pack = problem.pack();
   for (std::size_t c = 0; c < tangents.size(); ++c) {
     const LinkTangent& t = tangents[c];
     if (!t.closed) continue;
-    const LinkAnswer a = answer_of<kStride>(t, pack, in, links.i[c], links.j[c]);
+    const LinkAnswer a = answer_of<kStride, kSliding>(t, pack, in, links.i[c], links.j[c]);
     const auto i = static_cast<std::size_t>(links.i[c]);
     add_to_grain<kStride>(a, t, true, out, i);
     if (links.j[c] >= pack.grains()) continue;
@@ -73,7 +76,7 @@ void scatter(const PackProblem& problem, const std::vector<LinkTangent>& tangent
 }
 
 /// The same sums in the same order.
-template <int kStride>
+template <int kStride, Sliding kSliding>
 void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   const Links& links = problem.links();
   const GrainPack& pack = problem.pack();
@@ -84,7 +87,7 @@ void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents
 #pragma omp for schedule(static)
     for (std::int32_t c = 0; c < count; ++c) {
       const auto k = static_cast<std::size_t>(c);
-      if (tangents[k].closed) answers[k] = answer_of<kStride>(tangents[k], pack, in, links.i[k], links.j[k]);
+      if (tangents[k].closed) answers[k] = answer_of<kStride, kSliding>(tangents[k], pack, in, links.i[k], links.j[k]);
     }
 #pragma omp for schedule(static)
     for (std::int32_t g = 0; g < pack.grains(); ++g) {
@@ -97,26 +100,28 @@ void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents
   }
 }
 
-template <int kStride>
+template <int kStride, Sliding kSliding>
 void apply_as(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
   if (problem.links().size() >= kParallelLinks && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
-    gather<kStride>(problem, tangents, in, out);
+    gather<kStride, kSliding>(problem, tangents, in, out);
   } else {
-    scatter<kStride>(problem, tangents, in, out);
+    scatter<kStride, kSliding>(problem, tangents, in, out);
   }
 }
 
 }  // namespace
 
-Stiffness::Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents)
-    : problem_(problem), tangents_(tangents) {}
+Stiffness::Stiffness(const PackProblem& problem, const std::vector<LinkTangent>& tangents, Sliding sliding)
+    : problem_(problem), tangents_(tangents), sliding_(sliding) {}
 
 void Stiffness::apply(const Unknowns& in, Unknowns& out) const {
   out.assign(in.size(), 0.0);
-  if (problem_.stride() == 6) {
-    apply_as<6>(problem_, tangents_, in, out);
+  if (problem_.stride() == 3) {
+    apply_as<3, Sliding::secant>(problem_, tangents_, in, out);
+  } else if (sliding_ == Sliding::exact) {
+    apply_as<6, Sliding::exact>(problem_, tangents_, in, out);
   } else {
-    apply_as<3>(problem_, tangents_, in, out);
+    apply_as<6, Sliding::secant>(problem_, tangents_, in, out);
   }
 }
 

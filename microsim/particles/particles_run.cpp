@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <sstream>
 
 #include "common/core/error.h"
@@ -9,6 +10,7 @@
 #include "common/io/interrupt.h"
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
+#include "microsim/particles/scene_memory.h"
 
 namespace softgrain {
 
@@ -34,12 +36,16 @@ class ParticlesRun {
   void begin();
   bool restore();
   void advance();
+  LoopPart advance_to(std::int64_t step);
   void observe();
   void require_sound() const;
   void save_if_due();
   void save();
   void count_time();
-  [[nodiscard]] bool watched() const { return system_.particles.grains <= kMostWatched; }
+  void record() {
+    if (scene_.record) record_frame(trajectory_, system_);
+  }
+  [[nodiscard]] bool watched() const { return scene_.record && system_.particles.grains <= kMostWatched; }
   [[nodiscard]] bool frame_due() const { return scene_.output_stride > 0 && system_.step % scene_.output_stride == 0; }
   ParticlesResult result(bool usable, const std::string& reason);
 
@@ -49,6 +55,8 @@ class ParticlesRun {
   VelocityVerlet<3> integrator_;
   Trajectory trajectory_;
   ContactMonitor monitor_;
+  LoopPart warm_up_;
+  LoopPart measured_;
   CheckpointClock due_;
   Clock::time_point started_;
 };
@@ -80,7 +88,7 @@ void ParticlesRun::begin() {
   if (restore()) return;
   integrator_.initialise(system_);
   if (watched()) monitor_.observe(system_);
-  record_frame(trajectory_, system_);
+  record();
 }
 
 /// No number is lost and nothing moves its own radius in a step: it would pass through others unseen.
@@ -124,22 +132,45 @@ void ParticlesRun::observe() {
     require_sound();
     if (control_.progress) control_.progress(system_.step);
   }
-  if (frame_due() && system_.step < scene_.time.steps) record_frame(trajectory_, system_);
+  if (frame_due() && system_.step < scene_.time.steps) record();
 }
 
-void ParticlesRun::advance() {
-  while (system_.step < scene_.time.steps) {
+LoopPart ParticlesRun::advance_to(std::int64_t step) {
+  const auto from = Clock::now();
+  const std::clock_t cpu_from = std::clock();
+  LoopPart part{-system_.step, 0.0, 0.0, -system_.cost.contact_evaluations, -system_.neighbours.rebuilds};
+  while (system_.step < step) {
     integrator_.step(system_);
     observe();
     save_if_due();
   }
+  part.steps += system_.step;
+  part.seconds = std::chrono::duration<double>(Clock::now() - from).count();
+  part.cpu_seconds = static_cast<double>(std::clock() - cpu_from) / CLOCKS_PER_SEC;
+  part.contact_evaluations += system_.cost.contact_evaluations;
+  part.rebuilds += system_.neighbours.rebuilds;
+  return part;
+}
+
+void ParticlesRun::advance() {
+  warm_up_ = advance_to(scene_.time.warm_up_steps);
+  measured_ = advance_to(scene_.time.steps);
   require_sound();
 }
 
 ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
+  const double peak = peak_memory();  // before the copies that are made for output
   count_time();
-  record_frame(trajectory_, system_);
-  return {std::move(system_), std::move(trajectory_), watched(), monitor_.histories(), usable, reason};
+  record();
+  return {std::move(system_),
+          std::move(trajectory_),
+          watched(),
+          monitor_.histories(),
+          usable,
+          reason,
+          warm_up_,
+          measured_,
+          peak};
 }
 
 ParticlesResult ParticlesRun::run() {

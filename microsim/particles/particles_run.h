@@ -23,13 +23,25 @@ struct ParticlesControl {
 /// Systems up to this size have their contacts watched.
 inline constexpr Slot kMostWatched = 1000;
 
+/// What a stretch of steps cost. Those of this process alone: nothing is carried over from a checkpoint.
+struct LoopPart {
+  std::int64_t steps = 0;
+  double seconds = 0.0;      ///< wall time of the stepping loop, without reading, first forces and writing
+  double cpu_seconds = 0.0;  ///< processor time of all threads in it: what it would take on an idle machine
+  std::int64_t contact_evaluations = 0;
+  std::int64_t rebuilds = 0;  ///< of the neighbour list
+};
+
 struct ParticlesResult {
   System3 system;  ///< final state
   Trajectory trajectory;
   bool watched = false;                  ///< contacts were watched
   std::vector<ContactHistory> contacts;  ///< of every pair that touched
   bool usable = false;
-  std::string reason;  ///< why not: lost or diverged particle, with step and time
+  std::string reason;        ///< why not: lost or diverged particle, with step and time
+  LoopPart warm_up;          ///< the first SceneTime::warm_up_steps
+  LoopPart measured;         ///< the others; of a run that was lost: empty
+  double peak_memory = 0.0;  ///< of the process at the end of the loop [bytes]; 0 when unknown
 };
 
 /// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or

@@ -6,6 +6,8 @@
 
 #include "common/core/error.h"
 #include "microsim/particles/scene_bodies.h"
+#include "microsim/particles/scene_cell.h"
+#include "microsim/particles/scene_memory.h"
 
 namespace softgrain {
 
@@ -14,21 +16,6 @@ namespace {
 constexpr double kMostFrameBytes = 8.0 * 1024 * 1024 * 1024;
 
 std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
-
-void read_cell(const SceneTable& root, Cell<3>& cell) {
-  if (!root.has("cell")) return;
-  const SceneTable t = root.table("cell");
-  const Vec3 size = t.vector3("size", Unit::length);
-  const std::vector<bool> periodic = t.flags("periodic");
-  if (periodic.size() != 3) t.reject("periodic", "must have three flags");
-  for (int k = 0; k < 3; ++k)
-    if (!(size[k] > 0.0)) t.reject("size", "every component must be above 0");
-  cell = box_cell<3>(size, {periodic[0], periodic[1], periodic[2]});
-  const double rate = t.number("shear_rate", Unit::frequency, Range::any(), 0.0);
-  if (rate != 0.0 && !(periodic[0] && periodic[1]))
-    t.reject("shear_rate", "needs a cell that is periodic along x and y");
-  cell.velocity_gradient[0][1] = rate;
-}
 
 /// Walls have no periodic images.
 void require_walls_fit_cell(const SceneTable& root, const Cell<3>& cell) {
@@ -87,7 +74,9 @@ void require_walls_solid(const Scene& scene, const System3& s, const std::vector
 }
 
 void read_output(const SceneTable& t, ParticlesScene& out) {
+  out.record = t.flag("record", true);
   if (!t.has("every")) return;
+  if (!out.record) t.reject("every", "cannot be combined with record = false, which records nothing");
   const double every = t.number("every", Unit::time, Range::positive());
   const double steps = std::round(every / out.time.step);
   if (steps >= static_cast<double>(out.time.steps)) return;
@@ -118,13 +107,14 @@ ParticlesScene read_particles_scene(const Scene& scene) {
   SceneLaws laws = read_contacts(scene, s.materials);
   s.laws = std::move(laws.laws);
   SceneBodies bodies = read_bodies(scene, s.materials);
+  s.cell = read_cell(root, bodies);
   s.particles = std::move(bodies.particles);
   out.wall_name = std::move(bodies.wall_name);
-  read_cell(root, s.cell);
   require_walls_fit_cell(root, s.cell);
   require_contacts(scene, s);
   require_walls_solid(scene, s, laws.description);
   out.time = read_time(root.table("time"), s, laws.description);
+  require_wide_cell(root, s.particles, s.cell, out.time.end);
   read_output(root.table_or_empty("output"), out);
   read_checkpoint(root.table_or_empty("checkpoint"), out);
   root.finish();

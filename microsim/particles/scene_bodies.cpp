@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_walls.h"
 #include "microsim/particles/xyzr_file.h"
 
@@ -65,7 +66,11 @@ void add_file(Builder& b, const SceneTable& t) {
   const std::int32_t material = material_index(b.materials, t, "material");
   const double density = density_of(b, t, material);
   b.out.many_file = b.scene.resolve(t.text("file"));
-  const XyzrFile file = read_xyzr(b.out.many_file);
+  const XyzrFile file = read_xyzr(b.out.many_file, [&](std::int64_t n) {
+    const std::string problem = memory_problem(n, available_memory());
+    if (!problem.empty()) throw BadInput(b.out.many_file + ":1: N = " + std::to_string(n) + ": " + problem);
+  });
+  b.out.many_box = file.box;
   for (std::size_t k = 0; k < file.radius.size(); ++k) {
     b.grains.push_back(solid_sphere(file.position[k], file.radius[k], density, material));
     b.wall_of.push_back(wall_around(b, file.position[k]));

@@ -18,13 +18,14 @@ struct SceneBodies {
       wall_name;  ///< slot order (from `particles.grains` on); given, or "wall-1", "wall-2"... in scene order
   std::vector<std::string> where;  ///< "file:line" of particles that have a table of their own
   std::string many_file;           ///< path of the file with the others
+  Vec3 many_box{};                 ///< first line of that file [m]
 
   /// "file:line" of a particle, for messages.
   [[nodiscard]] std::string where_of(Slot particle) const;
 };
 
 /// [[particle]], [particles] and [[wall]]. Throws BadInput: no particle, coincident centres, a particle without
-/// density, one that does not fit into its sphere.
+/// density, one that does not fit into its sphere, more than there is memory for.
 SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materials);
 
 }  // namespace softgrain

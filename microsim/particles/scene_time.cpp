@@ -27,8 +27,8 @@ std::string shown(double value) {
 }
 
 /// Diagonal of the box that holds all values: no two differ by more.
-template <class V>
-double spread(const std::vector<V>& values) {
+template <class Vector>
+double spread(const std::vector<Vector>& values) {
   if (values.empty()) return 0.0;
   Vec3 low = values.front();
   Vec3 high = low;
@@ -44,7 +44,8 @@ double largest_relative_speed(const System3& s, double end) {
   std::vector<Vec3> places;
   for (const auto& sphere : s.particles.sphere) places.push_back(sphere.x);
   const double g = norm(s.gravity);
-  return spread(s.particles.velocity) + std::min(g * end, std::sqrt(2.0 * g * spread(places)));
+  const double fall = g > 0.0 ? std::min(g * end, std::sqrt(2.0 * g * spread(places))) : 0.0;
+  return spread(s.particles.velocity) + fall;
 }
 
 /// Impact of two equal spheres of radius r and mass 1/inverse_mass under one law.
@@ -84,6 +85,10 @@ std::int64_t steps_to(const SceneTable& t, double end, double step) {
 void choose_step(const SceneTable& t, double fraction, SceneTime& out) {
   const double wanted = std::min({fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.end});
   if (!std::isfinite(wanted)) t.reject("step", "\"auto\" needs a contact law that the particles take part in");
+  if (out.steps > 0) {
+    out.step = wanted;
+    return;
+  }
   out.steps = steps_to(t, out.end, wanted);
   out.step = out.end / static_cast<double>(out.steps);
 }
@@ -94,7 +99,18 @@ void take_step(const SceneTable& t, SceneTime& out) {
   if (out.step > limit)
     t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(kLargestStepFraction) + " sqrt(m/k), " +
                          out.limited_by);
-  out.steps = steps_to(t, out.end, out.step);
+  if (out.steps == 0) out.steps = steps_to(t, out.end, out.step);
+}
+
+/// Either `end` or `steps`; what is not given is left at infinity and 0.
+void read_extent(const SceneTable& t, SceneTime& out) {
+  if (!t.has("steps")) {
+    out.end = t.number("end", Unit::time, Range::positive());
+    return;
+  }
+  if (t.has("end")) t.reject("steps", "give either end or steps, not both");
+  out.steps = t.count("steps", 1, static_cast<std::int64_t>(kMostSteps));
+  out.end = kForever;
 }
 
 }  // namespace
@@ -117,7 +133,7 @@ double shortest_impact(const System3& s, double end) {
 
 SceneTime read_time(const SceneTable& t, const System3& system, const std::vector<std::string>& law_description) {
   SceneTime out;
-  out.end = t.number("end", Unit::time, Range::positive());
+  read_extent(t, out);
   const double fraction =
       t.number("step_fraction", Unit::none, Range{0.0, kLargestStepFraction, true, false}, kDefaultFraction);
   const StepLimit limit = step_limit(system);
@@ -129,6 +145,8 @@ SceneTime read_time(const SceneTable& t, const System3& system, const std::vecto
     choose_step(t, fraction, out);
   else
     take_step(t, out);
+  if (!std::isfinite(out.end)) out.end = static_cast<double>(out.steps) * out.step;
+  out.warm_up_steps = t.count("warm_up_steps", 0, out.steps - 1, 0);
   return out;
 }
 

@@ -13,21 +13,22 @@ namespace softgrain {
 struct SceneTime {
   double step = 0.0;  ///< [s]
   std::int64_t steps = 0;
-  double end = 0.0;           ///< asked for; steps * step is not less [s]
-  double natural_time = 0.0;  ///< smallest sqrt(m/k) [s]
-  double contact_time = 0.0;  ///< shortest duration of an impact at the speeds of the scene; infinite at rest [s]
-  std::string limited_by;     ///< sentence: which body and law set the natural time
+  std::int64_t warm_up_steps = 0;  ///< the first steps, left out of the measured cost
+  double end = 0.0;                ///< asked for, or steps * step; steps * step is not less [s]
+  double natural_time = 0.0;       ///< smallest sqrt(m/k) [s]
+  double contact_time = 0.0;       ///< shortest duration of an impact at the speeds of the scene; infinite at rest [s]
+  std::string limited_by;          ///< sentence: which body and law set the natural time
 };
 
-/// Table [time]: `step` "auto" or seconds, `end`, `step_fraction` of the natural time (0.05). Automatic steps are also
-/// at most 1/200 of the shortest impact and divide `end`. Throws BadInput for steps above kLargestStepFraction of the
-/// natural time. `law_description`: per law, for messages.
+/// Table [time]: `step` "auto" or seconds, `end` or the number of `steps`, `step_fraction` of the natural time (0.05),
+/// `warm_up_steps` (0). Automatic steps are also at most 1/200 of the shortest impact and divide `end`. Throws BadInput
+/// for steps above kLargestStepFraction of the natural time. `law_description`: per law, for messages.
 SceneTime read_time(const SceneTable& time, const System3& system, const std::vector<std::string>& law_description);
 
 /// Duration of the shortest impact between a particle and an equal one at the largest relative speed in sight (present
 /// velocities, free fall through the scene). Hertz [closed form]: h = (5 m12 v^2/(4 K))^(2/5), F = K h^(3/2),
 /// T = 2 h/v int_0^1 dx/sqrt(1 - x^(5/2)) = (4/5) B(2/5, 1/2) h/v; linear spring: T = pi sqrt(m12/k). Infinite at rest.
-/// [s]
+/// `end` may be infinite. [s]
 double shortest_impact(const System3& system, double end);
 
 }  // namespace softgrain

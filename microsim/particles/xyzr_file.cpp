@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -14,77 +15,100 @@ namespace softgrain {
 
 namespace {
 
-/// The whole file; zlib passes plain files through.
-std::string read_unpacked(const std::string& path) {
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (!file) throw FileTrouble(path + ": no such file, or it cannot be read");
-  std::string text;
-  std::array<char, 65536> buffer{};
-  for (;;) {
-    const int got = gzread(file.get(), buffer.data(), buffer.size());
-    if (got > 0) text.append(buffer.data(), static_cast<std::size_t>(got));
-    if (got == static_cast<int>(buffer.size())) continue;
-    int status = Z_OK;
-    const char* why = gzerror(file.get(), &status);
-    if (got < 0 || status != Z_OK) throw FileTrouble(path + ": damaged or cut short (" + std::string(why) + ")");
-    return text;
-  }
-}
+/// Longer lines hold no four numbers.
+constexpr std::size_t kLongestLine = 4096;
 
-[[noreturn]] void wrong(const std::string& path, std::int64_t line, const std::string& problem) {
-  throw BadInput(path + ":" + std::to_string(line) + ": " + problem);
-}
+/// Lines of a file one by one, so that files of any size need little memory; zlib passes plain files through.
+class LineReader {
+ public:
+  explicit LineReader(const std::string& path) : path_(path), file_(gzopen(path.c_str(), "rb"), gzclose) {
+    if (!file_) throw FileTrouble(path + ": no such file, or it cannot be read");
+    gzbuffer(file_.get(), 1U << 17U);
+  }
+
+  /// The next line without its end, good until the next call; false at the end of the file.
+  bool next(std::string_view& line) {
+    if (gzgets(file_.get(), buffer_.data(), static_cast<int>(buffer_.size())) == nullptr) {
+      require_sound();
+      return false;
+    }
+    ++number_;
+    line = buffer_.data();
+    if (line.ends_with('\n'))
+      line.remove_suffix(1);
+    else
+      require_sound();  // the last line, or the place where a damaged file breaks off
+    if (line.size() + 2 >= kLongestLine)
+      wrong("the line is longer than " + std::to_string(kLongestLine) + " characters");
+    return true;
+  }
+
+  [[noreturn]] void wrong(const std::string& problem) const {
+    throw BadInput(path_ + ":" + std::to_string(std::max<std::int64_t>(number_, 1)) + ": " + problem);
+  }
+
+ private:
+  void require_sound() {
+    int status = Z_OK;
+    const std::string why = gzerror(file_.get(), &status);
+    if (status != Z_OK && status != Z_STREAM_END) throw FileTrouble(path_ + ": damaged or cut short (" + why + ")");
+  }
+
+  std::string path_;
+  std::unique_ptr<gzFile_s, int (*)(gzFile)> file_;
+  std::array<char, kLongestLine> buffer_{};
+  std::int64_t number_ = 0;
+};
 
 /// Four numbers separated by blanks or tabs, all finite, and nothing else.
-std::array<double, 4> four_numbers(std::string_view line, const std::string& path, std::int64_t number,
-                                   const char* what) {
+std::array<double, 4> four_numbers(std::string_view line, const LineReader& reader, const char* what) {
   constexpr std::string_view kBlank = " \t\r";
   std::array<double, 4> out{};
   for (double& value : out) {
     line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
     if (error != std::errc{} || !std::isfinite(value))
-      wrong(path, number, "must be four finite numbers, " + std::string(what));
+      reader.wrong("must be four finite numbers, " + std::string(what));
     line.remove_prefix(static_cast<std::size_t>(end - line.data()));
   }
   if (line.find_first_not_of(kBlank) != std::string_view::npos)
-    wrong(path, number, "must be four numbers, " + std::string(what));
+    reader.wrong("must be four numbers, " + std::string(what));
   return out;
 }
 
-/// Cuts the first line off `rest`.
-std::string_view next_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find('\n'), rest.size());
-  const std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return line;
+std::int64_t count_of(double n, const LineReader& reader) {
+  if (!(n >= 1.0) || n > 1e8 || n != std::floor(n)) reader.wrong("N must be a whole number from 1 to 1e8");
+  return static_cast<std::int64_t>(n);
 }
 
-std::size_t count_of(double n, const std::string& path) {
-  if (!(n >= 1.0) || n > 1e8 || n != std::floor(n)) wrong(path, 1, "N must be a whole number from 1 to 1e8");
-  return static_cast<std::size_t>(n);
+void require_end(LineReader& reader, std::int64_t n) {
+  std::string_view line;
+  while (reader.next(line))
+    if (line.find_first_not_of(" \t\r") != std::string_view::npos)
+      reader.wrong("more lines than the " + std::to_string(n) + " spheres of the first line");
 }
 
 }  // namespace
 
-XyzrFile read_xyzr(const std::string& path) {
-  const std::string text = read_unpacked(path);
-  std::string_view rest = text;
-  const auto head = four_numbers(next_line(rest), path, 1, "N Lx Ly Lz");
+XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_t)>& admit) {
+  LineReader reader(path);
+  std::string_view line;
+  if (!reader.next(line)) reader.wrong("must be four finite numbers, N Lx Ly Lz");
+  const auto head = four_numbers(line, reader, "N Lx Ly Lz");
   XyzrFile file;
   file.box = {{head[1], head[2], head[3]}};
-  const std::size_t n = count_of(head[0], path);
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::int64_t line = xyzr_line(k);
-    if (rest.empty())
-      wrong(path, line, "the file ends after " + std::to_string(k) + " of " + std::to_string(n) + " spheres");
-    const auto v = four_numbers(next_line(rest), path, line, "x y z r");
-    if (!(v[3] > 0.0)) wrong(path, line, "r = " + std::to_string(v[3]) + ": must be above 0");
+  const std::int64_t n = count_of(head[0], reader);
+  if (admit) admit(n);
+  for (std::int64_t k = 0; k < n; ++k) {
+    if (!reader.next(line))
+      throw BadInput(path + ":" + std::to_string(xyzr_line(static_cast<std::size_t>(k))) + ": the file ends after " +
+                     std::to_string(k) + " of " + std::to_string(n) + " spheres");
+    const auto v = four_numbers(line, reader, "x y z r");
+    if (!(v[3] > 0.0)) reader.wrong("r = " + std::to_string(v[3]) + ": must be above 0");
     file.position.push_back({{v[0], v[1], v[2]}});
     file.radius.push_back(v[3]);
   }
-  if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos)
-    wrong(path, xyzr_line(n), "more lines than the " + std::to_string(n) + " spheres of the first line");
+  require_end(reader, n);
   return file;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace softgrain {
 
 struct XyzrFile {
-  Vec3 box{};                  ///< Lx Ly Lz [m], as written; not used as a cell
+  Vec3 box{};                  ///< Lx Ly Lz [m], as written
   std::vector<Vec3> position;  ///< [m]
   std::vector<double> radius;  ///< [m], > 0
 };
@@ -18,7 +19,8 @@ struct XyzrFile {
 /// Line of a sphere in its file.
 inline std::int64_t xyzr_line(std::size_t sphere) { return static_cast<std::int64_t>(sphere) + 2; }
 
-/// Throws BadInput ("file:line: ...") for wrong content, FileTrouble for missing, unreadable or damaged files.
-XyzrFile read_xyzr(const std::string& path);
+/// Throws BadInput ("file:line: ...") for wrong content, FileTrouble for missing, unreadable or damaged files. `admit`
+/// hears the number of spheres before they are read and throws when that is too many; may be empty.
+XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_t)>& admit = {});
 
 }  // namespace softgrain

@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
-"""Tables and pictures of this folder from two run directories.
+"""Tables and pictures of this folder from three runs and a comparison. The second run repeats the first with the damped relaxation,
+the third is both relaxations of old on 24 packings, and the comparison is that of results/relaxation/study.sh.
 
   softgrain run pipelines/published.toml --out results/published_run
+  softgrain run pipelines/published.toml --set measure.relaxation=damped --out results/published_damped
   softgrain microsim pipelines/relaxation_check.toml --out results/relaxation_check
-  python3 results/published/collect.py results/published_run results/relaxation_check
+  results/relaxation/study.sh results/relaxation_study
+  python3 results/published/collect.py results/published_run results/published_damped results/relaxation_check \\
+    results/relaxation_study/dynamics-finer.json
 """
 import json
 import pathlib
@@ -16,7 +20,7 @@ FIGURES = {
     "fn-two-equal-soft-particles": "normal_law_soft_soft",
     "kt-initial-slope-up-to-0-05-soft-solid": "tangential_stiffness",
     "kt-secant-at-1-soft-solid": "tangential_secant",
-    "ratio-damped-published-soft-solid": "relaxations_ratio",
+    "ratio-least-work-published-soft-solid": "relaxations_ratio",
     "axial-stress-oedometric": "macro_against_twin",
     "size-distribution-of-the-packed-grains": "size_distribution",
 }
@@ -51,65 +55,98 @@ def law_rows(laws):
     return rows
 
 
-def force_rows(relaxation_rows):
+def against_law(value, error, target):
+    return f"{pm(value, error)} ({100 * (value / target - 1):+.0f} %)"
+
+
+def ratio(r):
+    return pm(r["ratio"], r["ratio_error"]) if r["ratio"] is not None and r["ratio_error"] is not None else "-"
+
+
+def study_rows(study, pair, scale):
+    """Rows of `softgrain compare` [over E Rs^2] in the form of a run's own: fast and slow mean with error, ratio."""
     rows = []
-    for r in relaxation_rows:
-        if r["delta"] < 0.099:
-            continue
-        target = published(r["delta"])
-        rows.append([f"{r['delta']:.2f}", f"{target:.3f}",
-                     f"{pm(r['reference'], r['reference_error'])} ({100 * (r['reference'] / target - 1):+.0f} %)",
-                     f"{pm(r['candidate'], r['candidate_error'])} ({100 * (r['candidate'] / target - 1):+.0f} %)",
-                     pm(r["ratio"], r["ratio_error"]), str(r["packings"])])
+    for r in next(m for m in study["measurements"] if m["pair"] == pair)["normal_force"]:
+        rows.append({"delta": r["delta"], "packings": r["reference"]["n"], "ratio": r["ratio"], "ratio_error": r["ratio_standard_error"],
+                     "reference": scale * r["reference"]["mean"], "reference_error": scale * r["reference"]["standard_error"],
+                     "candidate": scale * r["candidate"]["mean"], "candidate_error": scale * r["candidate"]["standard_error"]})
     return rows
 
 
-def ratio_rows(rows):
-    return [[f"{r['delta']:.3f}", pm(r["reference"], r["reference_error"]), pm(r["candidate"], r["candidate_error"]),
-             pm(r["ratio"], r["ratio_error"]) if r["ratio"] is not None and r["ratio_error"] is not None else "-", str(r["packings"])]
-            for r in rows if r["reference"]]
+def force_rows(checked, studied, law=None):
+    """Published protocol and damped on the packings of the check; published protocol and least-work on those of the study."""
+    rows = []
+    for old, new in zip(checked, studied):
+        assert abs(old["delta"] - new["delta"]) < 1e-9
+        target = law(old["delta"]) if law else None
+        cells = [f"{old['delta']:.2f}"] + ([f"{target:.3f}"] if law else [])
+        for r in (new, old):
+            for key in ("reference", "candidate"):
+                value, error = r[key], r[key + "_error"]
+                cells.append(against_law(value, error, target) if law else pm(value, error))
+            cells.append(ratio(r))
+        rows.append(cells)
+    return rows
 
 
-def cost_rows(relaxations):
+def ratio_rows(rows, damped):
+    by_delta = {round(r["delta"], 6): r for r in damped}
+    out = []
+    for r in rows:
+        d = by_delta.get(round(r["delta"], 6))
+        if not r["reference"] or not d:
+            continue
+        out.append([f"{r['delta']:.3f}", pm(r["reference"], r["reference_error"]), pm(r["candidate"], r["candidate_error"]), ratio(r),
+                    pm(d["candidate"], d["candidate_error"]), ratio(d), str(r["packings"])])
+    return out
+
+
+def cost_rows(relaxations, damped):
     rows = []
     for kind in ("soft-solid", "soft-soft"):
         if kind not in relaxations:
             continue
-        for which, name in (("reference", relaxations["reference"]), ("candidate", relaxations["candidate"])):
+        for source, which in ((relaxations, "reference"), (relaxations, "candidate"), (damped, "candidate")):
             for part, word in (("cost", "normal"), ("tangential_cost", "rotated")):
-                c = relaxations[kind][f"{which}_{part}"]
+                c = source[kind][f"{which}_{part}"]
                 if not c["points"]:
                     continue
-                rows.append([kind, word, name, str(c["points"]), f"{c['loop_passes_per_point']:.0f}",
+                rows.append([kind, word, source[which], str(c["points"]), f"{c['loop_passes_per_point']:.0f}",
                              f"{c['contact_evaluations_per_point']:.3g}", f"{c['seconds_per_point']:.3f}"])
     return rows
 
 
 def main():
-    run_dir, check_dir = (pathlib.Path(p) for p in sys.argv[1:3])
-    run = json.loads((run_dir / "summary.json").read_text())
-    check = json.loads((check_dir / "summary.json").read_text())
+    run_dir, damped_dir, check_dir, study_file = (pathlib.Path(p) for p in sys.argv[1:5])
+    run, old, check = (json.loads((d / "summary.json").read_text()) for d in (run_dir, damped_dir, check_dir))
+    study = json.loads(study_file.read_text())
     p, c = run["packings"], run["comparison"]
+    scale = 5e5 * 0.016**2  # E Rs^2 [N]
+    made = {name: r["provenance"]["commit"] for name, r in (("damped", old), ("check", check))}
     text = "# The published experiment\n\n"
-    text += (f"Made by `collect.py` from `softgrain run pipelines/published.toml` (version {run['provenance']['version']}, commit "
-             f"{run['provenance']['commit']}, {run['seconds']:.0f} s on {run['provenance']['threads']} threads, status {run['status']}) and "
-             f"`softgrain microsim pipelines/relaxation_check.toml` (commit {check['provenance']['commit']}).\n\n")
+    text += (f"Made by `collect.py` from `softgrain run pipelines/published.toml` (least-work; version {run['provenance']['version']}, commit "
+             f"{run['provenance']['commit']}, status {run['status']}), the same with `--set measure.relaxation=damped` (commit {made['damped']}), "
+             f"`softgrain microsim pipelines/relaxation_check.toml` (commit {made['check']}) and the [study of the relaxations](../relaxation/README.md).\n\n")
+    text += (HERE / "notes.md").read_text() + "\n"
     text += (f"{p['count']} packings: {p['grains']:.0f} grains, solid fraction {p['solid_fraction']:.4f} ± {p['solid_fraction_deviation']:.4f} "
              f"(deviation), {p['contacts_per_grain']:.2f} contacts per grain, re-fitted exponent {p['exponent']:.2f} ± {p['exponent_deviation']:.2f}.\n\n")
-    text += "![normal law](normal_law.svg)\n\n## Laws (damped relaxation, 95 % intervals by bootstrap over packings)\n\n"
-    text += table(["pair", "quantity", "a", "b", "c", "delta", "unit", "status"], law_rows(run["laws"]))
+    text += "![normal law](normal_law.svg)\n\n"
+    law_head = ["pair", "quantity", "a", "b", "c", "delta", "unit", "status"]
+    text += "## Laws (least-work, 95 % intervals by bootstrap over packings)\n\n" + table(law_head, law_rows(run["laws"]))
     text += "\nPublished, soft-solid normal: a = 73.669 N, b = 2.799, c = -0.035 N, delta = 0.065. a, b and delta are nearly degenerate: compare F.\n"
-    text += "\n## F(Delta), soft-solid, against the published law: 24 packings, both relaxations [N]\n\n"
-    text += table(["Delta", "published law", "published protocol", "damped", "damped / protocol", "packings"],
-                  force_rows(check["relaxations"]["soft-solid"]["normal"]))
-    text += "\n## F(Delta), soft-soft, 24 packings [N]\n\n"
-    text += table(["Delta", "published protocol", "damped", "damped / protocol", "packings"], ratio_rows(check["relaxations"]["soft-soft"]["normal"]))
+    text += "\n### The same packings by the damped relaxation\n\n" + table(law_head, law_rows(old["laws"]))
+    sides = ["published protocol (B)", "least-work (B)", "ratio", "published protocol (A)", "damped (A)", "ratio"]
+    text += "\n## F(Delta), soft-solid, against the published law [N]\n\nA: 24 packings (seed 1); B: 24 others (seed 2001) that no setting was chosen on.\n\n"
+    text += table(["Delta", "published law"] + sides, force_rows(check["relaxations"]["soft-solid"]["normal"], study_rows(study, "soft-solid", scale), published))
+    text += "\n## F(Delta), soft-soft [N]\n\n"
+    text += table(["Delta"] + sides, force_rows(check["relaxations"]["soft-soft"]["normal"], study_rows(study, "soft-soft", scale)))
     for kind in ("soft-solid", "soft-soft"):
-        for key, name in (("kt_initial", "initial slope"), ("kt_secant", "secant at 1 degree")):
-            text += f"\n## kt, {name}, {kind}, {p['count']} packings [N/m]\n\n"
-            text += table(["Delta", "published protocol", "damped", "damped / protocol", "packings"], ratio_rows(run["relaxations"][kind][key]))
+        for key, name in (("normal", "Fn [N]"), ("kt_initial", "kt, initial slope [N/m]"), ("kt_secant", "kt, secant at 1 degree [N/m]")):
+            text += f"\n## {name}, {kind}, {p['count']} packings\n\n"
+            text += table(["Delta", "published protocol", "least-work", "ratio", "damped", "ratio", "packings"],
+                          ratio_rows(run["relaxations"][kind][key], old["relaxations"][kind][key]))
     text += "\n## Cost per recorded point\n\n"
-    text += table(["pair", "state", "relaxation", "points", "loop passes", "contact evaluations", "seconds"], cost_rows(run["relaxations"]))
+    text += table(["pair", "state", "relaxation", "points", "loop passes", "contact evaluations", "seconds"], cost_rows(run["relaxations"], old["relaxations"]))
     text += "\nSeconds are of one thread on a machine that had other work; loop passes and contact evaluations do not depend on that.\n"
     text += "\n![ratio of the relaxations](relaxations_ratio.svg)\n\n## Macro against its shelled twin\n\n"
     text += (f"{run['macro']['samples']} samples of {run['macro']['bodies']} bodies, {100 * run['macro']['soft_volume_share']:.0f} % soft by volume, "

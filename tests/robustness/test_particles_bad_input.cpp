@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/io/text_file.h"
+#include "microsim/particles/scene_memory.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -48,23 +49,26 @@ end = 1e-3
 class ParticlesBadInput : public ::testing::Test {
  protected:
   /// Replaces the first `from` in the good scene, runs it, expects status 2 and all `words` in the message.
-  void expect(const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+  void expect(const std::string& from, const std::string& to, const std::vector<std::string>& words,
+              const std::string& command = "microsim") {
     std::string text = kGood;
     const auto at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
-    expect_text(text.replace(at, from.size(), to), words);
+    expect_text(text.replace(at, from.size(), to), words, command);
   }
-  void expect_text(const std::string& text, const std::vector<std::string>& words) {
+  void expect_text(const std::string& text, const std::vector<std::string>& words,
+                   const std::string& command = "microsim") {
     write_text_atomic(directory_.file("scene.toml"), text);
-    const ProgramOutcome outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" +
-                                                   directory_.file("out") + "'");
+    const ProgramOutcome outcome = run_the_program(command + " '" + directory_.file("scene.toml") +
+                                                   "' --quiet --out '" + directory_.file("out") + "'");
     EXPECT_EQ(outcome.status, 2) << outcome.output << "\n" << text;
     for (const std::string& word : words)
       EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
   }
-  void expect_file(const std::string& content, const std::vector<std::string>& words) {
+  void expect_file(const std::string& content, const std::vector<std::string>& words,
+                   const std::string& command = "microsim") {
     write_text_atomic(directory_.file("many.xyzr"), content);
-    expect("[time]", "[particles]\nfile = \"many.xyzr\"\nmaterial = \"glass\"\n[time]", words);
+    expect("[time]", "[particles]\nfile = \"many.xyzr\"\nmaterial = \"glass\"\n[time]", words, command);
   }
   TemporaryDirectory directory_;
 };
@@ -74,6 +78,18 @@ TEST_F(ParticlesBadInput, TheGoodSceneIsGood) {
   const auto outcome = run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" +
                                        directory_.file("out") + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(ParticlesBadInput, CheckSaysWhatFollowsFromTheGoodOne) {
+  write_text_atomic(directory_.file("scene.toml"), kGood);
+  const auto outcome = run_the_program("check '" + directory_.file("scene.toml") + "' --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const auto facts = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(facts["bodies"], 3);
+  EXPECT_EQ(facts["contacts"], 0);
+  EXPECT_GT(facts["bytes"], 2 * 100.0);
+  EXPECT_GT(facts["seconds"], 0.0);
+  EXPECT_LT(facts["time_step"].get<double>(), 0.051 * facts["step_limit"].get<double>());
 }
 
 TEST_F(ParticlesBadInput, Particles) {
@@ -156,9 +172,43 @@ TEST_F(ParticlesBadInput, CellTimeAndOutput) {
   expect("end = 1e-3", "end = 1e-3\nstep = \"fast\"", {"scene.toml:34: step"});
   expect("end = 1e-3", "end = 1e30", {"scene.toml:33: end", "steps"});
   expect("end = 1e-3", "end = 1e-3\nstep_fraction = 0.7", {"scene.toml:34: step_fraction", "0.6"});
+  expect("end = 1e-3", "end = 1e-3\nsteps = 10", {"scene.toml:34: steps", "not both"});
+  expect("end = 1e-3", "steps = 0", {"scene.toml:33: steps", "1"});
+  expect("end = 1e-3", "steps = 2000000000000", {"scene.toml:33: steps", "1000000000000"});
+  expect("end = 1e-3", "steps = 1.5", {"scene.toml:33: steps"});
+  expect("end = 1e-3", "steps = 10\nwarm_up_steps = 10", {"scene.toml:34: warm_up_steps", "9"});
+  expect("end = 1e-3", "steps = 10\nwarm_up_steps = -1", {"scene.toml:34: warm_up_steps", "0"});
+  expect("end = 1e-3", "steps = 10\nstep = 1e-2", {"scene.toml:34: step", "limit", "hertz-tsuji of glass and rigid"});
+  expect("end = 1e-3", "end = 1e-3\n[output]\nrecord = false\nevery = 1e-4", {"scene.toml:36: every", "record"});
+  expect("end = 1e-3", "end = 1e-3\n[output]\nrecord = 0", {"scene.toml:35: record"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nevery = 0.0", {"scene.toml:35: every"});
   expect("end = 1e-3", "end = 1e-3\n[output]\nevry = 1e-4", {"scene.toml:35: unknown key 'evry'", "'every'"});
   expect("end = 1e-3", "end = 1e-3\n[checkpoint]\nevery_steps = -1", {"scene.toml:35: every_steps"});
+}
+
+TEST_F(ParticlesBadInput, CellsFromFilesAndNarrowCells) {
+  const std::string periodic = "periodic = [true, true, false]\n[time]";
+  expect("[time]", "[cell]\nsize = \"file\"\n" + periodic, {"scene.toml:33: size", "[particles] file"});
+  expect("[time]", "[cell]\nsize = \"fill\"\n" + periodic, {"scene.toml:33: size", "nearest is \"file\""});
+  expect("[time]", "[cell]\nsize = [1.0, 0.039, 1.0]\n" + periodic, {"scene.toml:33: size", "axis y", "0.04"});
+  // Wide enough at rest, too narrow once it leans by half an edge.
+  expect("[time]\nend = 1e-3",
+         "[cell]\nsize = [0.042, 0.042, 1.0]\nshear_rate = 1e4\nperiodic = [true, true, false]\n[time]\nend = 1e-3",
+         {"scene.toml:33: size", "axis x", "sheared"});
+  const std::string cell = "[cell]\nsize = \"file\"\n" + periodic;
+  write_text_atomic(directory_.file("many.xyzr"), "1 0 1 1\n0 0 1 0.01\n");
+  expect("[time]", "[particles]\nfile = \"many.xyzr\"\nmaterial = \"glass\"\n" + cell, {"many.xyzr:1", "above 0"});
+}
+
+TEST_F(ParticlesBadInput, ScenesTooLargeForTheMemory) {
+  EXPECT_EQ(memory_problem(1000, 0.0), "") << "unknown memory refuses nothing";
+  EXPECT_EQ(memory_problem(1000, 1e9), "");
+  const std::string problem = memory_problem(1000000, 1e9);
+  for (const char* word : {"GB", "bytes per grain", "per listed pair", "allowed: up to"})
+    EXPECT_NE(problem.find(word), std::string::npos) << word << " not in: " << problem;
+  if (memory_problem(100000000, available_memory()).empty()) GTEST_SKIP() << "there is memory for 1e8 grains here";
+  for (const char* command : {"microsim", "check"})
+    expect_file("100000000 1 1 1\n0 0 1 0.01\n", {"many.xyzr:1: N = 100000000", "GB", "bytes per grain"}, command);
 }
 
 TEST_F(ParticlesBadInput, FilesOfManySpheres) {
@@ -168,6 +218,12 @@ TEST_F(ParticlesBadInput, FilesOfManySpheres) {
   expect_file("1 1 1 1\n0 0 1 -0.01\n", {"many.xyzr:2", "above 0"});
   expect_file("1 1 1 1\n0 nan 1 0.01\n", {"many.xyzr:2", "finite"});
   expect_file("1 1 1 1\n0 1 0.01\n", {"many.xyzr:2", "four"});
+  expect_file("1 1 1 1\n0 0 1 0.01 7\n", {"many.xyzr:2", "four"});
+  expect_file("1.5 1 1 1\n0 0 1 0.01\n", {"many.xyzr:1", "whole number from 1 to 1e8"});
+  expect_file("0 1 1 1\n", {"many.xyzr:1", "whole number from 1 to 1e8"});
+  expect_file("1 1 1\n0 0 1 0.01\n", {"many.xyzr:1", "N Lx Ly Lz"});
+  expect_file("1 1 1 1\n0 0 1 1e400\n", {"many.xyzr:2", "finite"});
+  expect_file("1 1 1 1\n0 0 1 0.01" + std::string(5000, ' ') + "\n", {"many.xyzr:2", "longer"});
   expect_file("1 1 1 1\n0 0 0.1 0.01\n", {"many.xyzr:2", "same centre", "scene.toml:26"});
   expect("[time]", "[particles]\nfile = \"nothing.xyzr\"\n[time]", {"material"});
 }

@@ -1,0 +1,19 @@
+// The table [cell].
+#pragma once
+
+#include "common/core/cell.h"
+#include "common/io/scene.h"
+#include "microsim/particles/scene_bodies.h"
+
+namespace softgrain {
+
+/// Table [cell]: `size` (or "file": the box of [particles] file), `periodic`, `shear_rate` (the top moves along x, the
+/// velocity gradient d vx/dy; images move with it, as between Lees-Edwards boundaries). Without the table: open
+/// everywhere. Throws BadInput.
+Cell<3> read_cell(const SceneTable& root, const SceneBodies& bodies);
+
+/// A grain may meet each neighbour under one image alone: throws BadInput when a periodic axis becomes narrower than
+/// two diameters of the largest grain, at the largest tilt that the shear reaches until `end` [s].
+void require_wide_cell(const SceneTable& root, const Particles<3>& particles, const Cell<3>& cell, double end);
+
+}  // namespace softgrain

@@ -1,0 +1,137 @@
+#include "pipelines/particles_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/dynamics/verlet.h"
+#include "microsim/particles/contact_totals.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr Slot kMostListed = 1000;
+
+json particles_json(const System3& s) {
+  json out = json::array();
+  for (Slot i = 0; i < std::min(s.particles.grains, kMostListed); ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    out.push_back({{"id", i},
+                   {"position", s.particles.sphere[u].x.v},
+                   {"velocity", s.particles.velocity[u].v},
+                   {"spin", s.particles.spin[u].v}});
+  }
+  return out;
+}
+
+json walls_json(const ParticlesScene& scene, const System3& s) {
+  json out = json::array();
+  for (std::size_t w = 0; w < scene.wall_name.size(); ++w) {
+    const std::size_t u = static_cast<std::size_t>(s.particles.grains) + w;
+    out.push_back({{"name", scene.wall_name[w]},
+                   {"position", s.particles.sphere[u].x.v},
+                   {"velocity", s.particles.velocity[u].v}});
+  }
+  return out;
+}
+
+/// Ids of particles, names of walls.
+json body_json(const ParticlesScene& scene, const System3& s, Slot slot) {
+  if (slot < s.particles.grains) return slot;
+  return scene.wall_name[static_cast<std::size_t>(slot - s.particles.grains)];
+}
+
+json contacts_json(const ParticlesScene& scene, const ParticlesResult& result) {
+  json out = json::array();
+  for (const ContactHistory& c : result.contacts)
+    out.push_back({{"pair", {body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)}},
+                   {"count", c.count},
+                   {"duration", c.duration},
+                   {"max_force", c.max_force},
+                   {"max_overlap", c.max_overlap}});
+  return out;
+}
+
+/// Times that do not exist are null.
+json time_json(double seconds) { return std::isfinite(seconds) ? json(seconds) : json(nullptr); }
+
+/// The state of all contacts at the end; see ContactTotals.
+json contact_state_json(const ContactTotals& totals) {
+  json out = {{"contacts", totals.contacts}, {"coordination_number", totals.coordination_number}};
+  if (!totals.has_stress) return out;
+  out["pressure"] = totals.pressure;
+  out["stress"] = {totals.stress[0].v, totals.stress[1].v, totals.stress[2].v};
+  return out;
+}
+
+json part_json(const LoopPart& part) {
+  return {{"steps", part.steps},
+          {"seconds", part.seconds},
+          {"cpu_seconds", part.cpu_seconds},
+          {"contact_evaluations", part.contact_evaluations},
+          {"rebuilds", part.rebuilds}};
+}
+
+/// Speed counts the contacts at the end, as other programs can be asked for them too.
+json measured_json(const LoopPart& part, const System3& s, const ContactTotals& totals) {
+  json out = part_json(part);
+  const auto steps = static_cast<double>(part.steps);
+  if (!(part.seconds > 0.0) || part.steps == 0) return out;
+  out["particle_steps_per_second"] = steps * static_cast<double>(s.particles.grains) / part.seconds;
+  if (totals.contacts > 0) out["ns_per_contact"] = 1e9 * part.seconds / (steps * static_cast<double>(totals.contacts));
+  return out;
+}
+
+json cost_json(const ParticlesScene& scene, const ParticlesResult& result, const ContactTotals& totals,
+               double memory_before) {
+  const System3& s = result.system;
+  json out = {{"loop_passes", s.cost.loop_passes},
+              {"contact_evaluations", s.cost.contact_evaluations},
+              {"rebuilds", s.neighbours.rebuilds},
+              {"listed_pairs", s.contacts.size()},
+              {"seconds", s.cost.seconds},
+              {"peak_memory", result.peak_memory},
+              {"memory_before_scene", memory_before},
+              {"measured", measured_json(result.measured, s, totals)}};
+  if (scene.time.warm_up_steps > 0) out["warm_up"] = part_json(result.warm_up);
+  return out;
+}
+
+}  // namespace
+
+json particles_summary(const ParticlesScene& scene, const ParticlesResult& result, double memory_before) {
+  const System3& s = result.system;
+  json out = {{"status", result.usable ? "good" : "not usable"},
+              {"kind", "particles"},
+              {"title", scene.title},
+              {"particle_count", s.particles.grains},
+              {"time", s.time},
+              {"steps", s.step},
+              {"step", scene.time.step},
+              {"natural_time", time_json(scene.time.natural_time)},
+              {"shortest_impact", time_json(scene.time.contact_time)},
+              {"step_limited_by", scene.time.limited_by},
+              {"kinetic_energy", kinetic_energy(s.particles)},
+              {"frames", result.trajectory.time.size()},
+              {"particles", particles_json(s)},
+              {"walls", walls_json(scene, s)}};
+  const ContactTotals totals = contact_totals(s);
+  out["contact_state"] = contact_state_json(totals);
+  out["cost"] = cost_json(scene, result, totals, memory_before);
+  if (result.watched) out["contacts"] = contacts_json(scene, result);
+  if (!result.usable) out["reason"] = result.reason;
+  return out;
+}
+
+std::string particles_text(const ParticlesResult& result) {
+  const System3& s = result.system;
+  const std::string end = result.usable ? "" : "NOT USABLE: " + result.reason + "\n";
+  return end + fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J",
+                           s.particles.grains, s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,18 @@
+// The summary of a run of explicit particles, for programs and for people.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "microsim/particles/particles_run.h"
+
+namespace softgrain {
+
+/// Everything but provenance and files: state, contacts, cost. `memory_before`: peak of the process before the scene
+/// was read [bytes].
+nlohmann::json particles_summary(const ParticlesScene& scene, const ParticlesResult& result, double memory_before);
+
+/// A line or two.
+std::string particles_text(const ParticlesResult& result);
+
+}  // namespace softgrain

@@ -1,0 +1,137 @@
+// The published limit of friction (P of the reference state): the law is continuous enough for an equilibrium to exist,
+// packs with many sliding contacts run through, and both minimisers find the same answer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+#include <utility>
+
+#include "common/statics/contact_law.h"
+#include "tests/support/grain_packs.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+constexpr double kMu = 0.3;
+
+/// Stiffness 1 and limit 1; the reference force is at the limit, along x.
+statics::FrictionConstants unit_contact() {
+  statics::FrictionConstants c;
+  c.shear = 1.0;
+  c.contact_radius0 = 1.0;
+  c.friction = kMu;
+  c.limit0 = 1.0;
+  c.tangential0 = {{1.0, 0.0, 0.0}};
+  return c;
+}
+
+TEST(LeastWorkReferenceRule, TheForceTurnsSmoothlyWithTheDirectionOfSlip) {
+  const statics::FrictionConstants c = unit_contact();
+  // "About" k*/sqrt(2 (1 - kReferenceShare)): 1/2 more.
+  const double steepest = 1.5 / std::sqrt(2.0 * (1.0 - statics::kReferenceShare));
+  constexpr int kTurns = 20000;
+  for (const double slip : {1e-4, 1e-2, 0.05, 0.3, 3.0, 100.0}) {
+    Vec3 before;
+    double worst = 0.0;
+    for (int k = 0; k <= kTurns; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / kTurns;
+      const Vec3 slid = Vec3{{std::cos(angle), std::sin(angle), 0.0}} * slip;
+      const Vec3 force = statics::tangential_by_reference(c, 1.0 / kMu, c.tangential0, slid).force;
+      EXPECT_LE(norm(force), 1.0 + 1e-12);
+      if (k > 0) worst = std::max(worst, norm(force - before));
+      before = force;
+    }
+    EXPECT_LT(worst, steepest * slip * 2.0 * std::numbers::pi / kTurns) << "slip " << slip;
+  }
+}
+
+TEST(LeastWorkReferenceRule, TheForceFadesWhereAContactOpensAndOnlyThere) {
+  const statics::FrictionConstants c = unit_contact();
+  const Vec3 slid{{-1.0, 0.5, 0.0}};
+  const double p0 = c.limit0 / kMu;
+  const double full = norm(statics::tangential_by_reference(c, p0, c.tangential0, slid).force);
+  EXPECT_NEAR(full, c.limit0, 1e-12);
+  for (const double part : {0.0, 1e-6, 0.3, 0.99, 1.0, 1.01, 10.0}) {
+    const double p = part * p0 / statics::kOpening;
+    const statics::TangentialForce t = statics::tangential_by_reference(c, p, c.tangential0, slid);
+    EXPECT_NEAR(norm(t.force), full * std::min(1.0, part), 1e-12) << "P/P0 " << p / p0;
+    EXPECT_LE(statics::limit_by_reference(c, p), c.limit0);
+  }
+}
+
+TEST(LeastWorkReferenceRule, APackWithSlidingAndOpeningContactsRunsThrough) {
+  GrainPack pack = random_pack(7, kMu);
+  LeastWorkOptions options;
+  options.coulomb = CoulombRule::reference;
+  options.max_iterations = 1000;  // with the rule as published the 11th increment used up any number
+  for (int k = 0; k < 40; ++k) {
+    const LeastWorkResult r = advance(pack, squeeze(pack, {{0.0, 0.0, 3e-4}}), options);
+    ASSERT_TRUE(r.converged) << "increment " << k << ": " << r.stopped_by << " " << r.worst_residual;
+  }
+}
+
+Vec3 force_of(const PackContact& c) { return c.normal * c.normal_force + c.tangential_force; }
+
+/// Largest difference between the forces of contacts that two states share, and the largest force of a contact that
+/// only one of them has.
+double largest_difference(const std::vector<PackContact>& a, const std::vector<PackContact>& b) {
+  double worst = 0.0;
+  std::size_t k = 0;
+  std::size_t m = 0;
+  const auto key = [](const PackContact& c) { return std::pair{c.i, c.j}; };
+  while (k < a.size() || m < b.size()) {
+    if (m == b.size() || (k < a.size() && key(a[k]) < key(b[m]))) {
+      worst = std::max(worst, norm(force_of(a[k++])));
+    } else if (k == a.size() || key(b[m]) < key(a[k])) {
+      worst = std::max(worst, norm(force_of(b[m++])));
+    } else {
+      worst = std::max(worst, norm(force_of(a[k++]) - force_of(b[m++])));
+    }
+  }
+  return worst;
+}
+
+TEST(LeastWorkReferenceRule, PublishedAndFastAgreeWhileContactsSlide) {
+  GrainPack fast = random_pack(7, kMu);
+  LeastWorkOptions options;
+  options.coulomb = CoulombRule::reference;
+  for (int k = 0; k < 10; ++k) ASSERT_TRUE(advance(fast, squeeze(fast, {{0.0, 0.0, 1e-4}}), options).converged);
+  GrainPack published = fast;
+  options.residual_tolerance = 1e-9;
+  options.work_tolerance = 0.0;
+  options.force_tolerance = 1e-24;
+  options.max_iterations = 100000;
+  LeastWorkOptions slow = options;
+  slow.method = LeastWorkMethod::published;
+  slow.sub_increments = 1;
+  // By reciprocity a force on a wall changes by sum_g v_g . f_g when the grains are out of balance by f, where v is how
+  // they move (and turn) when the wall is displaced by 1, so at most by sum |f_g| <= sqrt(2 grains) |f| if no grain
+  // moves further than the wall; the same holds for the two sides of a contact. Errors of the increments add.
+  double bound = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const std::vector<Vec3> moves = squeeze(fast, {{0.0, 0.0, 1e-4}});
+    const LeastWorkResult a = advance(fast, moves, options);
+    const LeastWorkResult b = advance(published, moves, slow);
+    ASSERT_TRUE(a.converged) << a.stopped_by;
+    ASSERT_TRUE(b.converged) << b.stopped_by << " " << b.worst_residual;
+    bound += std::sqrt(2.0 * fast.grains()) * (std::sqrt(a.residual_energy) + std::sqrt(b.residual_energy));
+    const double contacts = largest_difference(fast.contacts, published.contacts);
+    double walls = 0.0;
+    for (std::size_t w = 0; w < 6; ++w) walls = std::max(walls, norm(wall_forces(fast)[w] - wall_forces(published)[w]));
+    const double scale = norm(wall_forces(fast)[5]);
+    const auto sliding =
+        std::count_if(fast.contacts.begin(), fast.contacts.end(), [](const PackContact& c) { return c.sliding; });
+    std::cout << "sliding " << sliding << " of " << fast.contacts.size() << ", over the force on a wall: walls "
+              << walls / scale << ", contacts " << contacts / scale << ", bound " << bound / scale << "\n";
+    EXPECT_GT(sliding, 150);
+    EXPECT_LT(bound, 1e-6 * scale);
+    EXPECT_LT(walls, bound);
+    EXPECT_LT(contacts, bound);
+  }
+}
+
+}  // namespace
