@@ -17,6 +17,7 @@ SETTINGS = {
     "damped": ("damped, increment 0.005", "#000000"),
 }
 FILLED = ("dynamics-finer", "least-work", "damped")
+SHELL_STIFFNESS = 5e5 * 0.016  # E Rs [N/m], by which the comparison divides kt
 QUANTITIES = {"normal_force": "Fn", "stiffness_initial": "kt, initial slope", "stiffness_secant": "kt, secant at 1°"}
 
 
@@ -62,6 +63,40 @@ def table(runs, pair):
     reference = [m["cost"][f"reference_{k}"]["loop_passes_per_point"] for k in ("normal", "tangential")]
     counts = [f"{r['reference']['mean']:.3g}" for key in QUANTITIES for r in m[key]]
     lines.append("| *published: mean, dimensionless* | " + " | ".join(counts + [f"{c:.0f}" for c in reference]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def stiffness_parts(work, runs):
+    """kt on a plane: by quantity and overlap, (packings, reference mean, ratio, error of the ratio) of every part."""
+    parts = {}
+
+    def add(quantity, delta, part):
+        parts.setdefault((quantity, round(delta, 6)), []).append(part)
+
+    for quantity in ("initial", "secant"):
+        for r in runs["dynamics-finer"]["soft-solid"][f"stiffness_{quantity}"]:
+            add(quantity, r["delta"], (r["reference"]["n"], SHELL_STIFFNESS * r["reference"]["mean"], r["ratio"], r["ratio_standard_error"]))
+        for file in sorted(work.glob("stiffness-*/summary.json")):
+            for r in json.loads(file.read_text())["relaxations"]["soft-solid"][f"kt_{quantity}"]:
+                add(quantity, r["delta"], (r["packings"], r["reference"], r["ratio"], r["ratio_error"]))
+    return parts
+
+
+def stiffness_table(work, runs):
+    """Every part, and the ratio of the means over all their packings (parts weigh with packings times mean). A part in which a packing
+    rearranged during the rotation shows an error above 100 %: it has no slope and does not count."""
+    lines = ["| quantity | Delta | parts: packings, bias in % | packings | all [%] |", "|---|---|---|---|---|"]
+    for (quantity, delta), parts in sorted(stiffness_parts(work, runs).items()):
+        each = "; ".join(f"{n}: {100 * (r - 1):+.1f} ± {100 * e:.1f}" if e < 1.0 else f"{n}: jump" for n, _, r, e in parts)
+        parts = [p for p in parts if p[3] < 1.0]
+        if not parts:
+            lines.append(f"| {QUANTITIES['stiffness_' + quantity]} | {delta:.2f} | {each} | 0 | - |")
+            continue
+        weights = [n * mean for n, mean, _, _ in parts]
+        ratio = sum(w * r for w, (_, _, r, _) in zip(weights, parts)) / sum(weights)
+        error = math.sqrt(sum((w * e) ** 2 for w, (_, _, _, e) in zip(weights, parts))) / sum(weights)
+        lines.append(f"| {QUANTITIES['stiffness_' + quantity]} | {delta:.2f} | {each} | {sum(p[0] for p in parts)} | "
+                     f"{100 * (ratio - 1):+.1f} ± {100 * error:.1f} |")
     return "\n".join(lines) + "\n"
 
 
@@ -158,11 +193,13 @@ def picture(runs):
 
 
 def main():
-    runs = load(pathlib.Path(sys.argv[1]))
+    work = pathlib.Path(sys.argv[1])
+    runs = load(work)
     (HERE / "error_against_cost.svg").write_text(picture(runs))
     text = (HERE / "text.md").read_text()
     tables = "".join(f"\n### {pair}\n\n{table(runs, pair)}" for pair in ("soft-solid", "soft-soft"))
-    (HERE / "README.md").write_text(text.replace("{{TABLES}}", tables.strip() + "\n"))
+    text = text.replace("{{TABLES}}", tables.strip() + "\n").replace("{{STIFFNESS}}", stiffness_table(work, runs))
+    (HERE / "README.md").write_text(text)
 
 
 if __name__ == "__main__":

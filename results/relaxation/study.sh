@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Error against cost of every relaxation, on 24 packings that no setting was chosen on: writes README.md and the pictures of
-# this folder. Usage: results/relaxation/study.sh [WORK_DIRECTORY]; about an hour on two cores, most of it the reference.
+# this folder. Usage: results/relaxation/study.sh [WORK_DIRECTORY]; an hour and a quarter on two cores, most of it the reference.
 # Finished runs in WORK_DIRECTORY are kept.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -28,4 +28,10 @@ run no-settling measure.least_work.settle_time=0 measure.least_work.settle_time_
 run dynamics-only measure.least_work.increment_passes=0
 run dynamics-finer measure.least_work.increment_passes=0 measure.least_work.step_factor=2
 run damped measure.relaxation=damped
+# Tangential stiffness on a plane alone, on more packings, in parts that can be left out.
+for seed in 3001 3002 3003; do
+  [ -f "$work/stiffness-$seed/summary.json" ] ||
+    "$program" microsim "$root/results/relaxation/stiffness_study.toml" --seed $seed --out "$work/stiffness-$seed" --resume --quiet \
+      >/dev/null || [ $? -eq 3 ]
+done
 python3 "$root/results/relaxation/collect.py" "$work"
