@@ -84,6 +84,7 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
   const auto keep = [&](std::size_t c, const Vec<D>& spring, double memory) {
     if (history == History::none) return;
     const bool next = history == History::next;
+    if (!next) list.touched[c] = 1;
     if constexpr (Law::has_tangential) (next ? list.spring_next : list.spring)[c] = spring;
     if constexpr (Law::has_memory) (next ? list.memory_next : list.memory)[c] = memory;
   };

@@ -65,8 +65,8 @@ double VelocityVerlet<D>::drift(System<D>& s, std::size_t u, const SkinUse<D>& u
   p.sphere[u].x += vec_of<D>(middle) * dt_;
   store(p.velocity[u], middle + kick);
   store(p.spin[u], middle_spin + turn);
-  store(middle_velocity_[u], middle);
-  store(middle_spin_[u], middle_spin);
+  store(kick_[u], kick);
+  store(turn_[u], turn);
   store(p.force[u], Quad{});
   store(p.torque[u], Quad{});
   return use.rate2(s, u, vec_of<D>(middle));
@@ -76,15 +76,15 @@ template <int D>
 void VelocityVerlet<D>::correct(System<D>& s, std::size_t u) const {
   auto& p = s.particles;
   const double half = 0.5 * dt_;
-  store(p.velocity[u], quad_of(middle_velocity_[u]) + quad_of(p.force[u]) * (half * p.inverse_mass[u]));
-  store(p.spin[u], quad_of(middle_spin_[u]) + quad_of(p.torque[u]) * (half * p.inverse_inertia[u]));
+  store(p.velocity[u], quad_of(p.velocity[u]) + (quad_of(p.force[u]) * (half * p.inverse_mass[u]) - quad_of(kick_[u])));
+  store(p.spin[u], quad_of(p.spin[u]) + (quad_of(p.torque[u]) * (half * p.inverse_inertia[u]) - quad_of(turn_[u])));
 }
 
 template <int D>
 void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
   const std::size_t bodies = s.particles.force.size();
-  middle_velocity_.resize(bodies);
-  middle_spin_.resize(bodies);
+  kick_.resize(bodies);
+  turn_.resize(bodies);
   const SkinUse<D> use(s);
   double fastest2 = 0.0;
 #pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelBodies)

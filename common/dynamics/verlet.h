@@ -35,10 +35,10 @@ class VelocityVerlet {
   void correct(System<D>& system, std::size_t u) const;
 
   double dt_;
-  std::uint64_t build_ = 0;                 ///< list that used_ belongs to; 0: unknown
-  double used_ = 0.0;                       ///< bound for the share of its margin that any body has used up
-  std::vector<Stored<D>> middle_velocity_;  ///< half a step on
-  std::vector<StoredRot<D>> middle_spin_;
+  std::uint64_t build_ = 0;         ///< list that used_ belongs to; 0: unknown
+  double used_ = 0.0;               ///< bound for the share of its margin that any body has used up
+  std::vector<Stored<D>> kick_;     ///< that the old forces gave the predicted velocities
+  std::vector<StoredRot<D>> turn_;  ///< likewise the spins
 };
 
 /// Adds gravity to the forces of the last pass, for bodies moved by forces. A plane moved by forces feels no gravity:

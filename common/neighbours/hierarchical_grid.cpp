@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "common/core/error.h"
@@ -182,12 +183,12 @@ std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<doubl
 }
 
 template <int D>
-void require_wide_cell(const Cell<D>& cell, const Frame<D>& frame, double largest_reach) {
-  for (int k = 0; k < D; ++k)
-    if (cell.periodic[static_cast<std::size_t>(k)] && frame.width[k] < 4.0 * largest_reach)
-      throw BadInput("cell: the periodic axis " + std::to_string(k) + " is " + std::to_string(frame.width[k]) +
-                     " m wide, narrower than two diameters of its largest grain with skin (" +
-                     std::to_string(4.0 * largest_reach) + " m)");
+void require_wide_cell(const Cell<D>& cell, double largest_reach) {
+  const double period = shortest_period(cell);
+  if (period < 4.0 * largest_reach)
+    throw BadInput("cell: images of a body are " + std::to_string(period) +
+                   " m apart, less than two diameters of the largest grain with skin (" +
+                   std::to_string(4.0 * largest_reach) + " m)");
 }
 
 /// The cells along one axis that a sphere reaches; beyond a periodic boundary they count on (-1, cells, ...).
@@ -318,6 +319,18 @@ constexpr Slot kParallelGrains = 4000;
 }  // namespace
 
 template <int D>
+double shortest_period(const Cell<D>& cell) {
+  double shortest2 = std::numeric_limits<double>::infinity();
+  for (int image = 0; image < image_count<D>(); ++image) {
+    bool periodic = image != home_image<D>();
+    int rest = image;
+    for (std::size_t k = 0; k < D; ++k, rest /= 3) periodic = periodic && (rest % 3 == 1 || cell.periodic[k]);
+    if (periodic) shortest2 = std::min(shortest2, norm2(cell.image_shift(image)));
+  }
+  return std::sqrt(shortest2);
+}
+
+template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
                                            const std::vector<double>& skin) {
   std::vector<CandidatePair> out;
@@ -325,7 +338,7 @@ std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const 
   const Frame<D> frame = make_frame(particles, cell);
   std::vector<std::int32_t> level_of;
   const auto levels = make_levels(particles, skin, frame, level_of);
-  require_wide_cell(cell, frame, levels.front().reach);
+  require_wide_cell(cell, levels.front().reach);
   const Search<D> search(particles, cell, skin, frame);
   const Slot pieces = (particles.grains + kPiece - 1) / kPiece;
   std::vector<std::vector<CandidatePair>> found(static_cast<std::size_t>(pieces));
@@ -369,6 +382,8 @@ std::vector<CandidatePair> candidate_pairs_brute_force(const Particles<D>& p, co
   return out;
 }
 
+template double shortest_period<2>(const Cell<2>&);
+template double shortest_period<3>(const Cell<3>&);
 template std::vector<CandidatePair> candidate_pairs<2>(const Particles<2>&, const Cell<2>&, const std::vector<double>&);
 template std::vector<CandidatePair> candidate_pairs<3>(const Particles<3>&, const Cell<3>&, const std::vector<double>&);
 template std::vector<CandidatePair> candidate_pairs_brute_force<2>(const Particles<2>&, const Cell<2>&,

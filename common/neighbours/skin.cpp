@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/neighbours/hierarchical_grid.h"
+
 namespace softgrain {
 
 namespace {
@@ -172,6 +174,16 @@ void note_skin(System<D>& s) {
 }
 
 template <int D>
+void fit_skin_to_cell(System<D>& s) {
+  const double room = 0.249 * shortest_period(s.cell);
+  for (Slot i = 0; i < s.particles.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    const double r = s.particles.sphere[u].r;
+    if (room > r) s.neighbours.skin[u] = std::min(s.neighbours.skin[u], room - r);
+  }
+}
+
+template <int D>
 void adapt_skin(System<D>& s) {
   NeighbourState<D>& n = s.neighbours;
   const auto& p = s.particles;
@@ -212,6 +224,8 @@ template double skin_used<2>(const System<2>&);
 template double skin_used<3>(const System<3>&);
 template void note_skin<2>(System<2>&);
 template void note_skin<3>(System<3>&);
+template void fit_skin_to_cell<2>(System<2>&);
+template void fit_skin_to_cell<3>(System<3>&);
 template void adapt_skin<2>(System<2>&);
 template void adapt_skin<3>(System<3>&);
 template class SkinUse<2>;

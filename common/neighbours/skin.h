@@ -23,6 +23,10 @@ std::vector<double> default_skin(const Particles<D>& particles);
 template <int D>
 double skin_used(const System<D>& system);
 
+/// Narrows margins so that no pair can meet in two images of a periodic cell, where radii leave room for that.
+template <int D>
+void fit_skin_to_cell(System<D>& system);
+
 /// Numbers that follow from margins and radii; needed after either was set.
 template <int D>
 void note_skin(System<D>& system);

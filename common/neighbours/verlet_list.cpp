@@ -271,6 +271,7 @@ void rebuild_neighbours(System<D>& s) {
   if (n.skin.size() != static_cast<std::size_t>(s.particles.size())) n.skin = default_skin(s.particles);
   adapt_skin(s);
   wrap(s);
+  fit_skin_to_cell(s);
   const OldHistory<D> old = take_history(s.contacts);
   append_sections(s.contacts, Geometry::sphere_sphere, grain_pairs(s), s.laws.size());
   append_sections(s.contacts, Geometry::sphere_shell, shell_pairs(s), s.laws.size());
