@@ -20,6 +20,10 @@ struct NeighbourState {
   std::vector<double> skin;       ///< per body [m]: a pair's margin is the sum of both, each may move its own share
   Matrix<D> reference_edges{};    ///< of the cell, likewise
   std::int64_t rebuilds = 0;
+  std::int64_t passes_at_build = 0;  ///< loop passes when the list was made
+  // Follow from the margins (note_skin), not part of a saved state.
+  std::vector<double> inverse_skin2;  ///< [1/m^2]
+  double slimmest = 0.0;              ///< largest ratio of radius to margin
 };
 
 template <int D>

@@ -2,6 +2,7 @@
 // and law.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +10,13 @@
 #include "common/core/particles.h"
 
 namespace softgrain {
+
+/// What a pass does with the history of contacts.
+enum class History {
+  next,     ///< new history goes to spring_next; the committed one stays (states that may be thrown away)
+  advance,  ///< the committed history is overwritten: the state is accepted before it is known
+  none      ///< forces only
+};
 
 enum class Geometry : std::int32_t { sphere_sphere, sphere_shell, sphere_plane };
 
@@ -20,17 +28,27 @@ struct ContactSection {
   std::int32_t law = 0;
 };
 
+/// Which pairs of a section a loop looks at: [begin, end), or the places in the list that `order` holds there.
+struct PairRange {
+  std::int32_t begin = 0;
+  std::int32_t end = 0;
+  const std::int32_t* order = nullptr;
+
+  [[nodiscard]] std::int32_t at(std::int32_t k) const { return order == nullptr ? k : order[k]; }
+};
+
 template <int D>
 struct ContactList {
   std::vector<Slot> i;                   ///< a grain, always
   std::vector<Slot> j;                   ///< grain (j > i), shell or plane
   std::vector<std::int32_t> image;       ///< periodic image of j, see Cell
   std::vector<PairConstants> constants;  ///< of the law
-  std::vector<Vec<D>> spring;            ///< committed history
-  std::vector<Vec<D>> spring_next;       ///< history of the state tried last
+  std::vector<Stored<D>> spring;         ///< committed history
+  std::vector<Stored<D>> spring_next;    ///< history of the state tried last; there after the first pass that tries
   std::vector<double> memory;  ///< committed history of laws with a memory; empty when no law of the scene has one
   std::vector<double> memory_next;
-  std::vector<double> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
+  std::vector<std::uint8_t> touched;  ///< 0: the committed history is known to be empty
+  std::vector<double> particle_sum;   ///< scratch of laws with a particle pass, per body; empty when no law has one
   std::vector<ContactSection> sections;
   bool has_spring = false;  ///< some law of the scene has a tangential spring
   bool has_memory = false;
@@ -38,10 +56,17 @@ struct ContactList {
 
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(i.size()); }
 
+  /// Room for the history of a state that is tried.
+  void make_next() {
+    spring_next.resize(spring.size());
+    memory_next.resize(memory.size());
+  }
+
   /// The state tried last becomes the state that is.
   void commit() {
     if (has_spring) spring.swap(spring_next);
     if (has_memory) memory.swap(memory_next);
+    std::fill(touched.begin(), touched.end(), std::uint8_t{1});
   }
 };
 

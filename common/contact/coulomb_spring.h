@@ -1,7 +1,7 @@
 // Tangential spring with Coulomb limit, shared by every law with friction.
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 
 #include "common/contact/contact_state.h"
 
@@ -14,21 +14,20 @@ template <int D>
 inline void coulomb_spring(const ContactState<D>& s, double stiffness, double damping, double limit,
                            ContactResponse<D>& out) {
   Vec<D> spring = carried_spring(s.spring, s.normal) + s.sliding * s.dt;
-  const double length = norm(spring);
+  Vec<D> force = spring * -stiffness;
+  const double size2 = norm2(force);
   out.tangential_stiffness = stiffness;
-  if (stiffness * length > limit) {
-    spring *= limit / (stiffness * length);
+  if (size2 > limit * limit) {  // squares: no root while nothing slides
+    const double share = limit / std::sqrt(size2);
+    spring *= share;
+    force *= share;
     out.sliding = true;
-    out.tangential_force = spring * -stiffness;
-  } else {
-    Vec<D> force = spring * -stiffness;
-    if (damping > 0.0) {
-      force -= s.sliding * damping;
-      const double size = norm(force);
-      if (size > limit) force *= limit / size;
-    }
-    out.tangential_force = force;
+  } else if (damping > 0.0) {
+    force -= s.sliding * damping;
+    const double damped2 = norm2(force);
+    if (damped2 > limit * limit) force *= limit / std::sqrt(damped2);
   }
+  out.tangential_force = force;
   out.spring = spring;
 }
 

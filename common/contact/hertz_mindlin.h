@@ -50,6 +50,7 @@ inline HertzCoefficients HertzCoefficients::of(const Material& m1, const Materia
 template <Tangential kTangential, bool kDamped>
 struct HertzMindlin {
   static constexpr bool has_tangential = kTangential != Tangential::none;
+  static constexpr bool is_damped = kDamped;
   static constexpr bool has_memory = kTangential == Tangential::rescaled;
   static constexpr bool needs_velocity = has_tangential || kDamped;
   static constexpr bool needs_particle_pass = false;

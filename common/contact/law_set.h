@@ -25,7 +25,7 @@ AnyLaw hertz_law(const HertzCoefficients& coefficients, bool rescaled);
 class LawSet {
  public:
   static constexpr std::int32_t kNoContact = -1;  ///< the pair passes through itself
-  static constexpr std::size_t kMostLaws = 64;    ///< the sort key of the contact list has room for so many
+  static constexpr std::size_t kMostLaws = 64;    ///< a scene with more has lost its way
 
   explicit LawSet(std::int32_t materials = 0)
       : materials_(materials),

@@ -19,10 +19,10 @@ struct alignas(32) Sphere {
 template <int D>
 struct Particles {
   std::vector<Sphere<D>> sphere;
-  std::vector<Vec<D>> velocity;         ///< [m/s]
-  std::vector<Rot<D>> spin;             ///< [rad/s]
-  std::vector<Vec<D>> force;            ///< of the last pass, on the body [N]
-  std::vector<Rot<D>> torque;           ///< [N m]
+  std::vector<Stored<D>> velocity;      ///< [m/s]
+  std::vector<StoredRot<D>> spin;       ///< [rad/s]
+  std::vector<Stored<D>> force;         ///< of the last pass, on the body [N]
+  std::vector<StoredRot<D>> torque;     ///< [N m]
   std::vector<double> inverse_mass;     ///< [1/kg]; 0: not moved by forces
   std::vector<double> inverse_inertia;  ///< [1/(kg m^2)]; 0: not turned by torques
   std::vector<std::int32_t> material;   ///< index into the materials of the scene

@@ -8,12 +8,13 @@
 
 namespace softgrain {
 
-template <int D>
+/// T is double, or several of them side by side (the lanes of a vectorised loop).
+template <int D, class T = double>
 struct Vec {
-  std::array<double, D> v{};
+  std::array<T, D> v{};
 
-  constexpr double& operator[](int k) { return v[static_cast<std::size_t>(k)]; }
-  constexpr double operator[](int k) const { return v[static_cast<std::size_t>(k)]; }
+  constexpr T& operator[](int k) { return v[static_cast<std::size_t>(k)]; }
+  constexpr T operator[](int k) const { return v[static_cast<std::size_t>(k)]; }
 
   constexpr Vec& operator+=(const Vec& o) {
     for (int k = 0; k < D; ++k) (*this)[k] += o[k];
@@ -23,30 +24,30 @@ struct Vec {
     for (int k = 0; k < D; ++k) (*this)[k] -= o[k];
     return *this;
   }
-  constexpr Vec& operator*=(double s) {
+  constexpr Vec& operator*=(T s) {
     for (int k = 0; k < D; ++k) (*this)[k] *= s;
     return *this;
   }
   friend constexpr Vec operator+(Vec a, const Vec& b) { return a += b; }
   friend constexpr Vec operator-(Vec a, const Vec& b) { return a -= b; }
-  friend constexpr Vec operator-(Vec a) { return a *= -1.0; }
-  friend constexpr Vec operator*(Vec a, double s) { return a *= s; }
-  friend constexpr Vec operator*(double s, Vec a) { return a *= s; }
+  friend constexpr Vec operator-(Vec a) { return a *= T(-1.0); }
+  friend constexpr Vec operator*(Vec a, T s) { return a *= s; }
+  friend constexpr Vec operator*(T s, Vec a) { return a *= s; }
   friend constexpr bool operator==(const Vec&, const Vec&) = default;
 };
 
 using Vec2 = Vec<2>;
 using Vec3 = Vec<3>;
 
-template <int D>
-constexpr double dot(const Vec<D>& a, const Vec<D>& b) {
-  double s = a[0] * b[0];
+template <int D, class T>
+constexpr T dot(const Vec<D, T>& a, const Vec<D, T>& b) {
+  T s = a[0] * b[0];
   for (int k = 1; k < D; ++k) s += a[k] * b[k];
   return s;
 }
 
-template <int D>
-constexpr double norm2(const Vec<D>& a) {
+template <int D, class T>
+constexpr T norm2(const Vec<D, T>& a) {
   return dot(a, a);
 }
 
@@ -54,6 +55,13 @@ template <int D>
 double norm(const Vec<D>& a) {
   return std::sqrt(norm2(a));
 }
+
+/// A vector as it lies in the big arrays: three numbers take an aligned 32-byte record, one load of the contact loop.
+template <int D>
+struct alignas(D == 3 ? 32 : 8 * D) Stored : Vec<D> {
+  constexpr Stored() = default;
+  constexpr Stored(const Vec<D>& a) : Vec<D>(a) {}  // NOLINT(google-explicit-constructor): the same thing elsewhere
+};
 
 /// Angular quantity: spin, torque. A vector in 3D, one number in 2D.
 template <int D>
@@ -68,15 +76,24 @@ struct RotationOf<2> {
 };
 template <int D>
 using Rot = typename RotationOf<D>::type;
+template <int D>
+using StoredRot = Stored<D == 3 ? 3 : 1>;
 
 /// arm x force: the moment.
-constexpr Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
+template <class T>
+constexpr Vec<3, T> cross(const Vec<3, T>& a, const Vec<3, T>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
-constexpr Vec<1> cross(const Vec<2>& a, const Vec<2>& b) { return {{a[0] * b[1] - a[1] * b[0]}}; }
+template <class T>
+constexpr Vec<1, T> cross(const Vec<2, T>& a, const Vec<2, T>& b) {
+  return {{a[0] * b[1] - a[1] * b[0]}};
+}
 
 /// spin x arm: the velocity of a point of a turning body.
-constexpr Vec<2> cross(const Vec<1>& w, const Vec<2>& a) { return {{-w[0] * a[1], w[0] * a[0]}}; }
+template <class T>
+constexpr Vec<2, T> cross(const Vec<1, T>& w, const Vec<2, T>& a) {
+  return {{-w[0] * a[1], w[0] * a[0]}};
+}
 
 /// Rotates `a` by `angle` [rad] about the unit vector `axis` (Rodrigues).
 inline Vec3 rotate(const Vec3& a, const Vec3& axis, double angle) {

@@ -114,7 +114,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
   step_ = kFirstStep;
   mixing_ = kFirstMixing;
   downhill_ = 0;
-  force_pass(s, 0.0, stiffness_);
+  force_pass(s, 0.0, stiffness_, History::none);
   add_gravity(s);
   for (;;) {
     if (result.passes % kMassInterval == 0) {
@@ -133,11 +133,10 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
     steer(s);
     move(s);
     if ((result.passes + 1) % kMassInterval == 0)
-      force_pass(s, step_, stiffness_);
+      force_pass(s, step_, stiffness_, History::advance);
     else
-      force_pass(s, step_);
+      force_pass(s, step_, History::advance);
     add_gravity(s);
-    s.contacts.commit();
     ++result.passes;
   }
   stop_motion(s.particles);

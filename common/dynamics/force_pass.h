@@ -9,10 +9,15 @@
 namespace softgrain {
 
 /// One loop pass: updates the neighbour list when needed, evaluates every contact over a time `dt` since the last
-/// commit and sums forces and torques per body (gravity not included). History is left uncommitted in contacts.*_next.
+/// commit and sums forces and torques per body (gravity not included). By default history is left uncommitted in
+/// contacts.*_next.
 /// Sums run in list order for every body, whatever the number of threads: the result is bitwise the same.
 template <int D>
-void force_pass(System<D>& system, double dt);
+void force_pass(System<D>& system, double dt, History history = History::next);
+
+/// The sums alone: the list is known to be valid and the forces of all bodies are zero.
+template <int D>
+void add_contact_forces(System<D>& system, double dt, History history);
 
 /// Sums of contact stiffness per body, for mass scaling and step control, and the mean contact force of the same pass.
 struct BodyStiffness {
@@ -26,7 +31,7 @@ struct BodyStiffness {
 
 /// A pass that also returns the stiffness sums.
 template <int D>
-void force_pass(System<D>& system, double dt, BodyStiffness& stiffness);
+void force_pass(System<D>& system, double dt, BodyStiffness& stiffness, History history = History::next);
 
 /// One contact as it is, for measurement and output.
 template <int D>

@@ -79,10 +79,17 @@ inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j,
 }
 
 template <int D, Geometry kGeometry, bool kPeriodic, class Law, class Sink>
-void run_section(System<D>& s, const Law& law, double dt, std::int32_t begin, std::int32_t end, Sink& sink) {
+void run_section(System<D>& s, const Law& law, double dt, const PairRange& range, History history, Sink& sink) {
   ContactList<D>& list = s.contacts;
-  for (std::int32_t k = begin; k < end; ++k) {
-    const auto c = static_cast<std::size_t>(k);
+  const auto keep = [&](std::size_t c, const Vec<D>& spring, double memory) {
+    if (history == History::none) return;
+    const bool next = history == History::next;
+    if (!next) list.touched[c] = 1;
+    if constexpr (Law::has_tangential) (next ? list.spring_next : list.spring)[c] = spring;
+    if constexpr (Law::has_memory) (next ? list.memory_next : list.memory)[c] = memory;
+  };
+  for (std::int32_t k = range.begin; k < range.end; ++k) {
+    const auto c = static_cast<std::size_t>(range.at(k));
     const auto i = static_cast<std::size_t>(list.i[c]);
     const auto j = static_cast<std::size_t>(list.j[c]);
     Vec<D> shift{};
@@ -93,8 +100,7 @@ void run_section(System<D>& s, const Law& law, double dt, std::int32_t begin, st
     }
     ContactGeometry<D> g;
     if (!meet<D, kGeometry>(s.particles, i, j, shift, g)) {
-      if constexpr (Law::has_tangential) list.spring_next[c] = {};
-      if constexpr (Law::has_memory) list.memory_next[c] = 0.0;
+      keep(c, {}, 0.0);
       sink.apart(c);
       continue;
     }
@@ -111,8 +117,7 @@ void run_section(System<D>& s, const Law& law, double dt, std::int32_t begin, st
       state.sum_j = list.particle_sum[j];
     }
     const ContactResponse<D> response = law.evaluate(state);
-    if constexpr (Law::has_tangential) list.spring_next[c] = response.spring;
-    if constexpr (Law::has_memory) list.memory_next[c] = response.memory;
+    keep(c, response.spring, response.memory);
     sink.template touch<Law::has_tangential>(c, i, j, g, response);
   }
 }
@@ -172,12 +177,12 @@ void with_types(const System<D>& s, const ContactSection& section, Work&& work) 
 
 }  // namespace detail
 
-/// Runs the part [begin, end) of one section through `sink`.
+/// Runs some pairs of one section through `sink`.
 template <int D, class Sink>
-void pair_loop(System<D>& s, const ContactSection& section, double dt, std::int32_t begin, std::int32_t end,
-               Sink& sink) {
+void pair_loop(System<D>& s, const ContactSection& section, double dt, const PairRange& range, Sink& sink,
+               History history) {
   detail::with_types(s, section, [&](const auto& law, auto geometry, auto periodic) {
-    detail::run_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, law, dt, begin, end, sink);
+    detail::run_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, law, dt, range, history, sink);
   });
 }
 
@@ -192,12 +197,13 @@ void particle_pass(System<D>& s) {
     });
 }
 
-/// Runs all contacts through `sink`, in list order. The committed history is not touched; spring_next holds the new
-/// one.
+/// Runs all contacts through `sink`, in list order. Asked for the next history, it leaves the committed one alone.
 template <int D, class Sink>
-void pair_loop(System<D>& s, double dt, Sink& sink) {
+void pair_loop(System<D>& s, double dt, Sink& sink, History history = History::next) {
+  if (history == History::next) s.contacts.make_next();
   particle_pass(s);
-  for (const ContactSection& section : s.contacts.sections) pair_loop(s, section, dt, section.begin, section.end, sink);
+  for (const ContactSection& section : s.contacts.sections)
+    pair_loop(s, section, dt, {section.begin, section.end}, sink, history);
 }
 
 }  // namespace softgrain

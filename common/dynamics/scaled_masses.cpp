@@ -31,7 +31,7 @@ ScaledMasses<D>::ScaledMasses(System<D>& system, double dt, double fraction)
       inverse_mass_(system.particles.inverse_mass),
       inverse_inertia_(system.particles.inverse_inertia) {
   BodyStiffness stiffness;
-  force_pass(system, 0.0, stiffness);
+  force_pass(system, 0.0, stiffness, History::none);
   auto& p = system.particles;
   const double lonely = lonely_stiffness(p, stiffness);
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {

@@ -1,10 +1,28 @@
 #include "common/dynamics/verlet.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
+#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
 
 namespace {
+
+/// Below this many bodies one thread is faster than two.
+constexpr std::size_t kParallelBodies = 4000;
+
+/// Share of the margins up to which a sum of bounds is trusted; the rest covers rounding.
+constexpr double kTrusted = 0.999;
+
+template <int D>
+Vec<D> vec_of(Quad q) {
+  Vec<D> out;
+  for (int k = 0; k < D; ++k) out[k] = q[k];
+  return out;
+}
 
 template <int D>
 void load_planes(Particles<D>& p) {
@@ -29,45 +47,79 @@ void add_gravity(System<D>& s) {
 
 template <int D>
 void VelocityVerlet<D>::initialise(System<D>& system) {
-  force_pass(system, 0.0);
+  force_pass(system, 0.0, History::none);
   add_gravity(system);
+  build_ = 0;
+}
+
+/// Position and predicted velocity one step on; forces are set to zero for the pass. Returns the largest share of its
+/// margin in the neighbour list that a body can have used up in this step.
+template <int D>
+double VelocityVerlet<D>::drift(System<D>& s, std::size_t u, const SkinUse<D>& use) {
+  auto& p = s.particles;
+  const double half = 0.5 * dt_;
+  const Quad kick = quad_of(p.force[u]) * (half * p.inverse_mass[u]);
+  const Quad middle = quad_of(p.velocity[u]) + kick;
+  const Quad turn = quad_of(p.torque[u]) * (half * p.inverse_inertia[u]);
+  const Quad middle_spin = quad_of(p.spin[u]) + turn;
+  p.sphere[u].x += vec_of<D>(middle) * dt_;
+  store(p.velocity[u], middle + kick);
+  store(p.spin[u], middle_spin + turn);
+  store(kick_[u], kick);
+  store(turn_[u], turn);
+  store(p.force[u], Quad{});
+  store(p.torque[u], Quad{});
+  return use.rate2(s, u, vec_of<D>(middle));
 }
 
 template <int D>
-void VelocityVerlet<D>::drift(System<D>& s) {
+void VelocityVerlet<D>::correct(System<D>& s, std::size_t u) const {
   auto& p = s.particles;
-  old_force_ = p.force;
-  old_torque_ = p.torque;
   const double half = 0.5 * dt_;
-  for (std::size_t u = 0; u < p.force.size(); ++u) {
-    const Vec<D> kick = p.force[u] * (half * p.inverse_mass[u]);
-    const Vec<D> middle = p.velocity[u] + kick;
-    p.sphere[u].x += middle * dt_;
-    p.velocity[u] = middle + kick;
-    p.spin[u] += p.torque[u] * (dt_ * p.inverse_inertia[u]);
+  store(p.velocity[u], quad_of(p.velocity[u]) + (quad_of(p.force[u]) * (half * p.inverse_mass[u]) - quad_of(kick_[u])));
+  store(p.spin[u], quad_of(p.spin[u]) + (quad_of(p.torque[u]) * (half * p.inverse_inertia[u]) - quad_of(turn_[u])));
+}
+
+template <int D>
+void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
+  const std::size_t bodies = s.particles.force.size();
+  kick_.resize(bodies);
+  turn_.resize(bodies);
+  const SkinUse<D> use(s);
+  double fastest2 = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelBodies)
+  for (std::size_t u = 0; u < bodies; ++u) {
+    if (correct_first) correct(s, u);
+    fastest2 = std::max(fastest2, drift(s, u, use));
   }
   if (s.cell.any_periodic()) s.cell.advance(dt_);
+  used_ += dt_ * (std::sqrt(fastest2) + use.strain_rate());
 }
 
 template <int D>
-void VelocityVerlet<D>::correct(System<D>& s) const {
-  auto& p = s.particles;
-  const double half = 0.5 * dt_;
-  for (std::size_t u = 0; u < p.force.size(); ++u) {
-    p.velocity[u] += (p.force[u] - old_force_[u]) * (half * p.inverse_mass[u]);
-    p.spin[u] += (p.torque[u] - old_torque_[u]) * (half * p.inverse_inertia[u]);
+void VelocityVerlet<D>::sum_forces(System<D>& s) {
+  // The exact test runs only when the sum of the bounds says that it may fail.
+  if (build_ != s.contacts.build || !(used_ < kTrusted)) {
+    update_neighbours(s);
+    build_ = s.contacts.build;
+    used_ = skin_used(s);
   }
+  add_contact_forces(s, dt_, History::advance);
+  add_gravity(s);
 }
 
 template <int D>
-void VelocityVerlet<D>::step(System<D>& system) {
-  drift(system);
-  force_pass(system, dt_);
-  add_gravity(system);
-  correct(system);
-  system.contacts.commit();
-  system.time += dt_;
-  ++system.step;
+void VelocityVerlet<D>::advance(System<D>& s, std::int64_t steps) {
+  for (std::int64_t k = 0; k < steps; ++k) {
+    move(s, k > 0);
+    sum_forces(s);
+    s.time += dt_;
+    ++s.step;
+  }
+  if (steps <= 0) return;
+  const std::size_t bodies = s.particles.force.size();
+#pragma omp parallel for schedule(static) if (bodies >= kParallelBodies)
+  for (std::size_t u = 0; u < bodies; ++u) correct(s, u);
 }
 
 template <int D>

@@ -1,8 +1,10 @@
 // Velocity Verlet for bodies with contacts that depend on velocity.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "common/neighbours/verlet_list.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -21,15 +23,22 @@ class VelocityVerlet {
   /// change of positions from outside.
   void initialise(System<D>& system);
 
-  void step(System<D>& system);
+  void step(System<D>& system) { advance(system, 1); }
+
+  /// The same as so many single steps, bit for bit, with one pass over the bodies less per step.
+  void advance(System<D>& system, std::int64_t steps);
 
  private:
-  void drift(System<D>& system);
-  void correct(System<D>& system) const;
+  void move(System<D>& system, bool correct_first);
+  void sum_forces(System<D>& system);
+  double drift(System<D>& system, std::size_t u, const SkinUse<D>& use);
+  void correct(System<D>& system, std::size_t u) const;
 
   double dt_;
-  std::vector<Vec<D>> old_force_;
-  std::vector<Rot<D>> old_torque_;
+  std::uint64_t build_ = 0;         ///< list that used_ belongs to; 0: unknown
+  double used_ = 0.0;               ///< bound for the share of its margin that any body has used up
+  std::vector<Stored<D>> kick_;     ///< that the old forces gave the predicted velocities
+  std::vector<StoredRot<D>> turn_;  ///< likewise the spins
 };
 
 /// Adds gravity to the forces of the last pass, for bodies moved by forces. A plane moved by forces feels no gravity:

@@ -1,7 +1,10 @@
 #include "common/neighbours/hierarchical_grid.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "common/core/error.h"
@@ -9,6 +12,14 @@
 namespace softgrain {
 
 namespace {
+
+/// A grain in its cell, with all that the search asks of it.
+template <int D>
+struct Entry {
+  Vec<D> x{};
+  double reach = 0.0;  ///< r + skin
+  Slot slot = 0;
+};
 
 /// One size class: grains sorted by cell (counting sort).
 template <int D>
@@ -18,7 +29,7 @@ struct Level {
   Index cells{};                    ///< per axis
   std::vector<Slot> members;        ///< ascending
   std::vector<std::int32_t> start;  ///< per cell, into sorted
-  std::vector<Slot> sorted;
+  std::vector<Entry<D>> sorted;
 };
 
 /// Maps positions to cell coordinates: fractional on periodic axes, bounding box on open ones.
@@ -118,7 +129,7 @@ typename Level<D>::Index cell_of(const Level<D>& level, const Vec<D>& unit) {
 }
 
 template <int D>
-void sort_members(Level<D>& level, const Frame<D>& frame, const Particles<D>& p) {
+void sort_members(Level<D>& level, const Frame<D>& frame, const Particles<D>& p, const std::vector<double>& skin) {
   std::int64_t total = 1;
   for (const auto n : level.cells) total *= n;
   std::vector<std::int32_t> where(level.members.size());
@@ -131,8 +142,12 @@ void sort_members(Level<D>& level, const Frame<D>& frame, const Particles<D>& p)
   for (std::size_t c = 1; c < level.start.size(); ++c) level.start[c] += level.start[c - 1];
   std::vector<std::int32_t> next(level.start.begin(), level.start.end() - 1);
   level.sorted.resize(level.members.size());
-  for (std::size_t m = 0; m < level.members.size(); ++m)
-    level.sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(where[m])]++)] = level.members[m];
+  for (std::size_t m = 0; m < level.members.size(); ++m) {
+    const Slot slot = level.members[m];
+    const auto u = static_cast<std::size_t>(slot);
+    level.sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(where[m])]++)] = {
+        p.sphere[u].x, p.sphere[u].r + skin[u], slot};
+  }
 }
 
 /// Classes by halving of r + skin, largest first; empty ones are left out.
@@ -160,7 +175,7 @@ std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<doubl
     renumbered[l] = static_cast<std::int32_t>(levels.size());
     levels.push_back(std::move(all[l]));
     choose_cells(levels.back(), frame, 2.0 * levels.back().reach);
-    sort_members(levels.back(), frame, p);
+    sort_members(levels.back(), frame, p, skin);
   }
   level_of.resize(raw.size());
   for (std::size_t u = 0; u < raw.size(); ++u) level_of[u] = renumbered[static_cast<std::size_t>(raw[u])];
@@ -168,63 +183,152 @@ std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<doubl
 }
 
 template <int D>
-void require_wide_cell(const Cell<D>& cell, const Frame<D>& frame, double largest_reach) {
-  for (int k = 0; k < D; ++k)
-    if (cell.periodic[static_cast<std::size_t>(k)] && frame.width[k] < 4.0 * largest_reach)
-      throw BadInput("cell: the periodic axis " + std::to_string(k) + " is " + std::to_string(frame.width[k]) +
-                     " m wide, narrower than two diameters of its largest grain with skin (" +
-                     std::to_string(4.0 * largest_reach) + " m)");
+void require_wide_cell(const Cell<D>& cell, double largest_reach) {
+  const double period = shortest_period(cell);
+  if (period < 4.0 * largest_reach)
+    throw BadInput("cell: images of a body are " + std::to_string(period) +
+                   " m apart, less than two diameters of the largest grain with skin (" +
+                   std::to_string(4.0 * largest_reach) + " m)");
 }
 
-/// Calls visit(cell index, image) for the cells of `level` around `centre`.
-template <int D, class Visit>
-void around(const Level<D>& level, const Cell<D>& cell, const typename Level<D>::Index& centre, Visit&& visit) {
-  for (int code = 0; code < image_count<D>(); ++code) {
-    typename Level<D>::Index c = centre;
-    int rest = code;
-    int image = 0;
-    int weight = 1;
-    bool inside = true;
-    for (int k = 0; k < D; ++k, rest /= 3, weight *= 3) {
-      const auto u = static_cast<std::size_t>(k);
-      c[u] += rest % 3 - 1;
-      int wrap = 0;
-      if (c[u] < 0) wrap = -1;
-      if (c[u] >= level.cells[u]) wrap = 1;
-      if (wrap != 0 && !cell.periodic[u]) inside = false;
-      c[u] -= wrap * level.cells[u];
-      image += (wrap + 1) * weight;
-    }
-    if (inside) visit(cell_index(level, c), image);
-  }
-}
+/// The cells along one axis that a sphere reaches; beyond a periodic boundary they count on (-1, cells, ...).
+struct Range {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+};
 
-/// An open axis with one cell is searched once: the cells beside it do not exist. A periodic axis with one or two cells
-/// is visited under every image, which is right: each image is a different neighbour.
+/// A row of cells along the first axis that lies in one image, ends included.
+struct Run {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+  int wrap = 0;
+};
+
+/// Number of whole periods below `cell`.
+int wrap_of(std::int64_t cell, std::int64_t cells) { return cell < 0 ? -1 : (cell >= cells ? 1 : 0); }
+
 template <int D>
-void search(const Particles<D>& p, const Cell<D>& cell, const std::vector<double>& skin, const Frame<D>& frame,
-            const Level<D>& level, bool same_level, Slot i, std::vector<CandidatePair>& out) {
-  const Sphere<D>& a = p.sphere[static_cast<std::size_t>(i)];
-  const double reach_i = a.r + skin[static_cast<std::size_t>(i)];
-  around(level, cell, cell_of(level, frame.unit(a.x)), [&](std::int64_t index, int image) {
-    const auto c = static_cast<std::size_t>(index);
-    const Vec<D> shifted = a.x - cell.image_shift(image);
-    for (std::int32_t m = level.start[c]; m < level.start[c + 1]; ++m) {
-      const Slot j = level.sorted[static_cast<std::size_t>(m)];
-      if (same_level && j <= i) continue;
-      const Sphere<D>& b = p.sphere[static_cast<std::size_t>(j)];
-      const double reach = reach_i + b.r + skin[static_cast<std::size_t>(j)];
-      if (norm2(shifted - b.x) >= reach * reach) continue;
-      // The image belongs to the body with the larger slot.
-      if (i < j)
-        out.push_back({i, j, image});
-      else
-        out.push_back({j, i, image_count<D>() - 1 - image});
+class Search {
+ public:
+  Search(const Particles<D>& p, const Cell<D>& cell, const std::vector<double>& skin, const Frame<D>& frame)
+      : p_(p), cell_(cell), skin_(skin), frame_(frame) {
+    for (int image = 0; image < image_count<D>(); ++image)
+      shift_[static_cast<std::size_t>(image)] = cell.image_shift(image);
+  }
+
+  /// Appends the partners of grain i in one class; of its own class only those with a larger slot.
+  void run(const Level<D>& level, bool same_level, Slot i, std::vector<CandidatePair>& out) const {
+    const auto u = static_cast<std::size_t>(i);
+    const Sphere<D>& a = p_.sphere[u];
+    const double reach = a.r + skin_[u];
+    const Vec<D> unit = frame_.unit(a.x);
+    std::array<Range, static_cast<std::size_t>(D)> ranges;
+    for (int k = 0; k < D; ++k) ranges[static_cast<std::size_t>(k)] = range(level, unit[k], reach + level.reach, k);
+    rows<D - 1>(level, ranges, 0, 0, [&](std::int64_t row, int image) {
+      along_row(level, ranges[0], [&](const Run& r) {
+        const int at = image + (r.wrap + 1);
+        scan(level, row, r, same_level, i, a.x - shift_[static_cast<std::size_t>(at)], reach, at, out);
+      });
+    });
+  }
+
+ private:
+  [[nodiscard]] Range range(const Level<D>& level, double unit, double reach, int axis) const {
+    const auto k = static_cast<std::size_t>(axis);
+    const auto n = static_cast<double>(level.cells[k]);
+    const double half = reach / frame_.width[axis] * (1.0 + 1e-12);  // rounding must not cut off a partner
+    Range r{static_cast<std::int64_t>(std::floor((unit - half) * n)),
+            static_cast<std::int64_t>(std::floor((unit + half) * n))};
+    if (!cell_.periodic[k]) {
+      r.low = std::clamp(r.low, std::int64_t{0}, level.cells[k] - 1);
+      r.high = std::clamp(r.high, std::int64_t{0}, level.cells[k] - 1);
     }
-  });
+    return r;
+  }
+
+  /// All rows along the first axis: visit(index of their first cell, image without the first axis).
+  template <int kAxis, class Visit>
+  void rows(const Level<D>& level, const std::array<Range, static_cast<std::size_t>(D)>& ranges, std::int64_t index,
+            int image, Visit&& visit) const {
+    if constexpr (kAxis == 0) {
+      visit(index * level.cells[0], image);
+    } else {
+      int weight = 1;
+      for (int k = 0; k < kAxis; ++k) weight *= 3;
+      const std::int64_t n = level.cells[kAxis];
+      for (std::int64_t c = ranges[kAxis].low; c <= ranges[kAxis].high; ++c) {
+        const int wrap = wrap_of(c, n);
+        rows<kAxis - 1>(level, ranges, index * n + c - wrap * n, image + (wrap + 1) * weight, visit);
+      }
+    }
+  }
+
+  template <class Visit>
+  static void along_row(const Level<D>& level, const Range& range, Visit&& visit) {
+    const std::int64_t n = level.cells[0];
+    for (std::int64_t c = range.low; c <= range.high;) {
+      const int wrap = wrap_of(c, n);
+      const std::int64_t last = std::min(range.high, (wrap + 1) * n - 1);
+      visit(Run{c - wrap * n, last - wrap * n, wrap});
+      c = last + 1;
+    }
+  }
+
+  void scan(const Level<D>& level, std::int64_t row, const Run& run, bool same_level, Slot i, const Vec<D>& x,
+            double reach_i, int image, std::vector<CandidatePair>& out) const {
+    const auto begin = static_cast<std::size_t>(level.start[static_cast<std::size_t>(row + run.low)]);
+    const auto end = static_cast<std::size_t>(level.start[static_cast<std::size_t>(row + run.high) + 1]);
+    for (std::size_t m = begin; m < end; ++m) {
+      const Entry<D>& b = level.sorted[m];
+      const double reach = reach_i + b.reach;
+      if (norm2(x - b.x) >= reach * reach) continue;
+      if (same_level && b.slot <= i) continue;
+      // The image belongs to the body with the larger slot.
+      if (i < b.slot)
+        out.push_back({i, b.slot, image});
+      else
+        out.push_back({b.slot, i, image_count<D>() - 1 - image});
+    }
+  }
+
+  const Particles<D>& p_;
+  const Cell<D>& cell_;
+  const std::vector<double>& skin_;
+  const Frame<D>& frame_;
+  std::array<Vec<D>, static_cast<std::size_t>(image_count<D>())> shift_;
+};
+
+bool before(const CandidatePair& a, const CandidatePair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; }
+
+/// Counting sort by i, then every run by j.
+void sort_pairs(std::vector<CandidatePair>& pairs, std::size_t grains) {
+  std::vector<std::int32_t> start(grains + 1, 0);
+  for (const CandidatePair& c : pairs) ++start[static_cast<std::size_t>(c.i) + 1];
+  for (std::size_t g = 1; g <= grains; ++g) start[g] += start[g - 1];
+  std::vector<CandidatePair> sorted(pairs.size());
+  std::vector<std::int32_t> next(start.begin(), start.end() - 1);
+  for (const CandidatePair& c : pairs) sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(c.i)]++)] = c;
+  for (std::size_t g = 0; g < grains; ++g) std::sort(sorted.begin() + start[g], sorted.begin() + start[g + 1], before);
+  pairs.swap(sorted);
 }
+
+/// Grains per piece of work; pieces are joined in order, so the result does not depend on the threads.
+constexpr Slot kPiece = 1024;
+constexpr Slot kParallelGrains = 4000;
 
 }  // namespace
+
+template <int D>
+double shortest_period(const Cell<D>& cell) {
+  double shortest2 = std::numeric_limits<double>::infinity();
+  for (int image = 0; image < image_count<D>(); ++image) {
+    bool periodic = image != home_image<D>();
+    int rest = image;
+    for (std::size_t k = 0; k < D; ++k, rest /= 3) periodic = periodic && (rest % 3 == 1 || cell.periodic[k]);
+    if (periodic) shortest2 = std::min(shortest2, norm2(cell.image_shift(image)));
+  }
+  return std::sqrt(shortest2);
+}
 
 template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
@@ -234,12 +338,23 @@ std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const 
   const Frame<D> frame = make_frame(particles, cell);
   std::vector<std::int32_t> level_of;
   const auto levels = make_levels(particles, skin, frame, level_of);
-  require_wide_cell(cell, frame, levels.front().reach);
-  for (Slot i = 0; i < particles.grains; ++i) {
-    const std::int32_t own = level_of[static_cast<std::size_t>(i)];
-    for (std::int32_t l = 0; l <= own; ++l)
-      search(particles, cell, skin, frame, levels[static_cast<std::size_t>(l)], l == own, i, out);
+  require_wide_cell(cell, levels.front().reach);
+  const Search<D> search(particles, cell, skin, frame);
+  const Slot pieces = (particles.grains + kPiece - 1) / kPiece;
+  std::vector<std::vector<CandidatePair>> found(static_cast<std::size_t>(pieces));
+#pragma omp parallel for schedule(dynamic) if (particles.grains >= kParallelGrains && omp_in_parallel() == 0)
+  for (Slot piece = 0; piece < pieces; ++piece) {
+    auto& to = found[static_cast<std::size_t>(piece)];
+    for (Slot i = piece * kPiece; i < std::min((piece + 1) * kPiece, particles.grains); ++i) {
+      const std::int32_t own = level_of[static_cast<std::size_t>(i)];
+      for (std::int32_t l = 0; l <= own; ++l) search.run(levels[static_cast<std::size_t>(l)], l == own, i, to);
+    }
   }
+  std::size_t total = 0;
+  for (const auto& part : found) total += part.size();
+  out.reserve(total);
+  for (const auto& part : found) out.insert(out.end(), part.begin(), part.end());
+  sort_pairs(out, static_cast<std::size_t>(particles.grains));
   return out;
 }
 
@@ -267,6 +382,8 @@ std::vector<CandidatePair> candidate_pairs_brute_force(const Particles<D>& p, co
   return out;
 }
 
+template double shortest_period<2>(const Cell<2>&);
+template double shortest_period<3>(const Cell<3>&);
 template std::vector<CandidatePair> candidate_pairs<2>(const Particles<2>&, const Cell<2>&, const std::vector<double>&);
 template std::vector<CandidatePair> candidate_pairs<3>(const Particles<3>&, const Cell<3>&, const std::vector<double>&);
 template std::vector<CandidatePair> candidate_pairs_brute_force<2>(const Particles<2>&, const Cell<2>&,

@@ -4,32 +4,24 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/neighbours/hierarchical_grid.h"
+#include "common/neighbours/skin.h"
 
 namespace softgrain {
 
 namespace {
 
-/// A pair on its way into the list. The key sorts by geometry, law, i, j.
-struct ListedPair {
-  std::uint64_t key = 0;
+/// Pairs of one geometry on their way into the list, sorted by i, then j.
+struct FoundPair {
   Slot i = 0;
   Slot j = 0;
   std::int32_t image = 0;
+  std::int32_t law = 0;
 };
-
-constexpr std::uint64_t kSlotBits = 28;
-
-std::uint64_t body_key(Slot i, Slot j) {
-  return (static_cast<std::uint64_t>(i) << kSlotBits) | static_cast<std::uint64_t>(j);
-}
-
-ListedPair listed(Geometry geometry, std::int32_t law, Slot i, Slot j, std::int32_t image) {
-  const std::uint64_t head = (static_cast<std::uint64_t>(geometry) << 6) | static_cast<std::uint64_t>(law);
-  return {(head << (2 * kSlotBits)) | body_key(i, j), i, j, image};
-}
 
 template <int D>
 PairBodies bodies_of(const Particles<D>& p, Geometry geometry, Slot i, Slot j) {
@@ -46,26 +38,38 @@ double onset_of(const System<D>& s, std::int32_t law, const PairBodies& bodies) 
   return std::visit([&](const auto& l) { return l.onset(bodies); }, s.laws.law(law));
 }
 
+/// Whether pairs under a law may overlap without touching, so that they enter the list late.
+bool has_onset(const AnyLaw& any) {
+  return std::visit([]<class Law>(const Law&) { return std::is_same_v<Law, SoftContact>; }, any);
+}
+
 template <int D>
-void list_grain_pairs(const System<D>& s, std::vector<ListedPair>& out) {
+std::vector<FoundPair> grain_pairs(const System<D>& s) {
   const auto& p = s.particles;
-  for (const CandidatePair& c : candidate_pairs(p, s.cell, s.neighbours.skin)) {
+  std::vector<bool> late;
+  for (std::int32_t l = 0; l < s.laws.size(); ++l) late.push_back(has_onset(s.laws.law(l)));
+  const auto candidates = candidate_pairs(p, s.cell, s.neighbours.skin);
+  std::vector<FoundPair> out;
+  out.reserve(candidates.size());
+  for (const CandidatePair& c : candidates) {
     const auto a = static_cast<std::size_t>(c.i);
     const auto b = static_cast<std::size_t>(c.j);
     const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
     if (law == LawSet::kNoContact) continue;
-    const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_sphere, c.i, c.j));
-    if (onset > 0.0) {
+    if (late[static_cast<std::size_t>(law)]) {
+      const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_sphere, c.i, c.j));
       const double reach = p.sphere[a].r + p.sphere[b].r - onset + s.neighbours.skin[a] + s.neighbours.skin[b];
       if (norm2(p.sphere[a].x - p.sphere[b].x - s.cell.image_shift(c.image)) >= reach * reach) continue;
     }
-    out.push_back(listed(Geometry::sphere_sphere, law, c.i, c.j, c.image));
+    out.push_back({c.i, c.j, c.image, law});
   }
+  return out;
 }
 
 template <int D>
-void list_shells(const System<D>& s, std::vector<ListedPair>& out) {
+std::vector<FoundPair> shell_pairs(const System<D>& s) {
   const auto& p = s.particles;
+  std::vector<FoundPair> out;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto a = static_cast<std::size_t>(i);
     const Slot shell = p.shell[a];
@@ -74,60 +78,96 @@ void list_shells(const System<D>& s, std::vector<ListedPair>& out) {
     const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
     if (law == LawSet::kNoContact) continue;
     const double gap = p.sphere[b].r - p.sphere[a].r - norm(p.sphere[a].x - p.sphere[b].x);
-    if (gap < s.neighbours.skin[a] + s.neighbours.skin[b])
-      out.push_back(listed(Geometry::sphere_shell, law, i, shell, home_image<D>()));
+    if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back({i, shell, home_image<D>(), law});
   }
-}
-
-template <int D>
-void list_planes(const System<D>& s, std::vector<ListedPair>& out) {
-  const auto& p = s.particles;
-  for (Slot plane = p.first_plane(); plane < p.size(); ++plane) {
-    const auto b = static_cast<std::size_t>(plane);
-    const Vec<D>& n = p.normal_of(plane);
-    for (Slot i = 0; i < p.grains; ++i) {
-      const auto a = static_cast<std::size_t>(i);
-      const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
-      if (law == LawSet::kNoContact) continue;
-      const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_plane, i, plane));
-      const double gap = dot(p.sphere[a].x - p.sphere[b].x, n) - p.sphere[a].r + onset;
-      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b])
-        out.push_back(listed(Geometry::sphere_plane, law, i, plane, home_image<D>()));
-    }
-  }
-}
-
-/// History that must survive: sorted by bodies alone, as image and section may change.
-template <int D>
-struct SavedHistory {
-  std::uint64_t key = 0;
-  Vec<D> spring{};
-  double memory = 0.0;
-};
-
-template <int D>
-std::vector<SavedHistory<D>> save_history(const ContactList<D>& list) {
-  std::vector<SavedHistory<D>> out;
-  for (std::int32_t c = 0; c < list.size(); ++c) {
-    const auto u = static_cast<std::size_t>(c);
-    SavedHistory<D> h{body_key(list.i[u], list.j[u]), list.has_spring ? list.spring[u] : Vec<D>{},
-                      list.has_memory ? list.memory[u] : 0.0};
-    if (h.memory != 0.0 || h.spring != Vec<D>{}) out.push_back(h);
-  }
-  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
   return out;
 }
 
 template <int D>
-void restore_history(ContactList<D>& list, const std::vector<SavedHistory<D>>& saved) {
-  for (std::size_t c = 0; c < list.i.size(); ++c) {
-    const std::uint64_t key = body_key(list.i[c], list.j[c]);
-    const auto found =
-        std::lower_bound(saved.begin(), saved.end(), key, [](const auto& h, std::uint64_t k) { return h.key < k; });
-    if (found == saved.end() || found->key != key) continue;
-    if (list.has_spring) list.spring[c] = found->spring;
-    if (list.has_memory) list.memory[c] = found->memory;
+std::vector<FoundPair> plane_pairs(const System<D>& s) {
+  const auto& p = s.particles;
+  std::vector<FoundPair> out;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto a = static_cast<std::size_t>(i);
+    for (Slot plane = p.first_plane(); plane < p.size(); ++plane) {
+      const auto b = static_cast<std::size_t>(plane);
+      const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
+      if (law == LawSet::kNoContact) continue;
+      const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_plane, i, plane));
+      const double gap = dot(p.sphere[a].x - p.sphere[b].x, p.normal_of(plane)) - p.sphere[a].r + onset;
+      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back({i, plane, home_image<D>(), law});
+    }
   }
+  return out;
+}
+
+/// One section per law, in the order of the laws.
+template <int D>
+void append_sections(ContactList<D>& list, Geometry geometry, const std::vector<FoundPair>& pairs, std::int32_t laws) {
+  std::vector<std::int32_t> count(static_cast<std::size_t>(laws), 0);
+  for (const FoundPair& pair : pairs) ++count[static_cast<std::size_t>(pair.law)];
+  std::vector<std::size_t> next(count.size());
+  auto end = static_cast<std::int32_t>(list.i.size());
+  for (std::int32_t l = 0; l < laws; ++l) {
+    const std::int32_t many = count[static_cast<std::size_t>(l)];
+    next[static_cast<std::size_t>(l)] = static_cast<std::size_t>(end);
+    if (many > 0) list.sections.push_back({end, end + many, geometry, l});
+    end += many;
+  }
+  list.i.resize(static_cast<std::size_t>(end));
+  list.j.resize(static_cast<std::size_t>(end));
+  list.image.resize(static_cast<std::size_t>(end));
+  for (const FoundPair& pair : pairs) {
+    const std::size_t c = next[static_cast<std::size_t>(pair.law)]++;
+    list.i[c] = pair.i;
+    list.j[c] = pair.j;
+    list.image[c] = pair.image;
+  }
+}
+
+/// What must survive a rebuild.
+template <int D>
+struct OldHistory {
+  std::vector<Slot> i;
+  std::vector<Slot> j;
+  std::vector<ContactSection> sections;
+  std::vector<Stored<D>> spring;
+  std::vector<double> memory;
+};
+
+template <int D>
+OldHistory<D> take_history(ContactList<D>& list) {
+  OldHistory<D> old{std::move(list.i), std::move(list.j), std::move(list.sections), std::move(list.spring),
+                    std::move(list.memory)};
+  list.i.clear();
+  list.j.clear();
+  list.image.clear();
+  list.sections.clear();
+  return old;
+}
+
+/// Both lists are sorted by bodies within a section: one walk along both finds the pairs that stayed.
+template <int D>
+void merge_history(const OldHistory<D>& old, const ContactSection& from, ContactList<D>& list,
+                   const ContactSection& to) {
+  auto a = static_cast<std::size_t>(from.begin);
+  for (auto c = static_cast<std::size_t>(to.begin); c < static_cast<std::size_t>(to.end); ++c) {
+    const auto before = [&](std::size_t k) {
+      return old.i[k] != list.i[c] ? old.i[k] < list.i[c] : old.j[k] < list.j[c];
+    };
+    while (a < static_cast<std::size_t>(from.end) && before(a)) ++a;
+    if (a == static_cast<std::size_t>(from.end)) return;
+    if (old.i[a] != list.i[c] || old.j[a] != list.j[c]) continue;
+    if (!old.spring.empty() && list.has_spring) list.spring[c] = old.spring[a];
+    if (!old.memory.empty() && list.has_memory) list.memory[c] = old.memory[a];
+  }
+}
+
+template <int D>
+void restore_history(ContactList<D>& list, const OldHistory<D>& old) {
+  for (const ContactSection& to : list.sections)
+    for (const ContactSection& from : old.sections)
+      if (from.geometry == to.geometry && from.law == to.law) merge_history(old, from, list, to);
 }
 
 template <int D>
@@ -145,30 +185,11 @@ void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) 
   const std::size_t springs = list.has_spring ? list.i.size() : 0;
   const std::size_t memories = list.has_memory ? list.i.size() : 0;
   list.spring.assign(springs, Vec<D>{});
-  list.spring_next.assign(springs, Vec<D>{});
+  list.spring_next.clear();
   list.memory.assign(memories, 0.0);
-  list.memory_next.assign(memories, 0.0);
+  list.memory_next.clear();
+  list.touched.assign(list.i.size(), 1);
   list.particle_sum.assign(sums ? bodies : 0, 0.0);
-}
-
-template <int D>
-void fill_list(System<D>& s, const std::vector<ListedPair>& pairs) {
-  ContactList<D>& list = s.contacts;
-  list.i.clear();
-  list.j.clear();
-  list.image.clear();
-  list.sections.clear();
-  for (const ListedPair& pair : pairs) {
-    const auto head = static_cast<std::int32_t>(pair.key >> (2 * kSlotBits));
-    const auto geometry = static_cast<Geometry>(head >> 6);
-    const std::int32_t law = head & 63;
-    if (list.sections.empty() || list.sections.back().geometry != geometry || list.sections.back().law != law)
-      list.sections.push_back({list.size(), list.size(), geometry, law});
-    list.i.push_back(pair.i);
-    list.j.push_back(pair.j);
-    list.image.push_back(pair.image);
-    list.sections.back().end = list.size();
-  }
 }
 
 template <int D>
@@ -232,54 +253,13 @@ void wrap(System<D>& s) {
   }
 }
 
-/// How far an image of a neighbour has moved because the cell deformed.
-template <int D>
-double image_drift(const System<D>& s) {
-  if (!s.cell.any_periodic() || s.cell.velocity_gradient == Matrix<D>{}) return 0.0;
-  double sum = 0.0;
-  for (int r = 0; r < D; ++r)
-    for (int c = 0; c < D; ++c) sum += std::abs(s.cell.edges[r][c] - s.neighbours.reference_edges[r][c]);
-  return sum;
-}
-
-template <int D>
-bool list_is_stale(const System<D>& s) {
-  const auto& p = s.particles;
-  const auto& n = s.neighbours;
-  if (n.reference.size() != static_cast<std::size_t>(p.size())) return true;
-  const double drift = 0.5 * image_drift(s);
-  for (std::size_t u = 0; u < n.reference.size(); ++u) {
-    const double allowed = n.skin[u] - drift;
-    // Written so that NaN counts as moved.
-    if (!(allowed > 0.0) || !(norm2(p.sphere[u].x - n.reference[u]) <= allowed * allowed)) return true;
-  }
-  return false;
-}
-
 }  // namespace
-
-template <int D>
-std::vector<double> default_skin(const Particles<D>& p) {
-  double smallest = 0.0;
-  for (Slot i = 0; i < p.grains; ++i) {
-    const double r = p.sphere[static_cast<std::size_t>(i)].r;
-    smallest = i == 0 ? r : std::min(smallest, r);
-  }
-  std::vector<double> skin(static_cast<std::size_t>(p.size()), 0.0);
-  double largest = 0.0;
-  for (Slot i = 0; i < p.grains; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    skin[u] = std::min(0.125 * p.sphere[u].r, 0.5 * smallest);
-    largest = std::max(largest, skin[u]);
-  }
-  for (auto u = static_cast<std::size_t>(p.grains); u < skin.size(); ++u) skin[u] = largest;
-  return skin;
-}
 
 template <int D>
 void adopt_list(System<D>& s) {
   fill_constants(s);
   size_history(s.contacts, s.laws, static_cast<std::size_t>(s.particles.size()));
+  note_skin(s);
   static std::atomic<std::uint64_t> builds{0};
   s.contacts.build = ++builds;
 }
@@ -287,33 +267,31 @@ void adopt_list(System<D>& s) {
 template <int D>
 void rebuild_neighbours(System<D>& s) {
   require_sound(s.particles);
-  wrap(s);
   NeighbourState<D>& n = s.neighbours;
   if (n.skin.size() != static_cast<std::size_t>(s.particles.size())) n.skin = default_skin(s.particles);
-  const auto saved = save_history(s.contacts);
-  std::vector<ListedPair> pairs;
-  list_grain_pairs(s, pairs);
-  list_shells(s, pairs);
-  list_planes(s, pairs);
-  std::sort(pairs.begin(), pairs.end(), [](const ListedPair& a, const ListedPair& b) { return a.key < b.key; });
-  fill_list(s, pairs);
+  adapt_skin(s);
+  wrap(s);
+  fit_skin_to_cell(s);
+  const OldHistory<D> old = take_history(s.contacts);
+  append_sections(s.contacts, Geometry::sphere_sphere, grain_pairs(s), s.laws.size());
+  append_sections(s.contacts, Geometry::sphere_shell, shell_pairs(s), s.laws.size());
+  append_sections(s.contacts, Geometry::sphere_plane, plane_pairs(s), s.laws.size());
   adopt_list(s);
-  restore_history(s.contacts, saved);
+  restore_history(s.contacts, old);
   n.reference.resize(static_cast<std::size_t>(s.particles.size()));
   for (std::size_t u = 0; u < n.reference.size(); ++u) n.reference[u] = s.particles.sphere[u].x;
   n.reference_edges = s.cell.edges;
+  n.passes_at_build = s.cost.loop_passes;
   ++n.rebuilds;
 }
 
 template <int D>
 bool update_neighbours(System<D>& system) {
-  if (!list_is_stale(system)) return false;
+  if (skin_used(system) <= 1.0) return false;
   rebuild_neighbours(system);
   return true;
 }
 
-template std::vector<double> default_skin<2>(const Particles<2>&);
-template std::vector<double> default_skin<3>(const Particles<3>&);
 template void adopt_list<2>(System<2>&);
 template void adopt_list<3>(System<3>&);
 template void rebuild_neighbours<2>(System<2>&);

@@ -1,6 +1,7 @@
 // The neighbour list: which pairs the loop looks at, when the list must be made anew, and how histories survive that.
 #pragma once
 
+#include "common/neighbours/skin.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -20,9 +21,5 @@ void rebuild_neighbours(System<D>& system);
 /// histories, a new build number.
 template <int D>
 void adopt_list(System<D>& system);
-
-/// Margin per body: an eighth of the radius, at most half of the smallest one; planes and shells take the largest.
-template <int D>
-std::vector<double> default_skin(const Particles<D>& particles);
 
 }  // namespace softgrain

@@ -11,17 +11,17 @@ namespace {
 
 using Count = std::int64_t;
 
-template <int N>
-std::vector<double> flat(const std::vector<Vec<N>>& vectors) {
+template <class V>
+std::vector<double> flat(const std::vector<V>& vectors) {
   std::vector<double> out;
-  out.reserve(vectors.size() * N);
-  for (const Vec<N>& v : vectors) out.insert(out.end(), v.v.begin(), v.v.end());
+  out.reserve(vectors.size() * V{}.v.size());
+  for (const V& v : vectors) out.insert(out.end(), v.v.begin(), v.v.end());
   return out;
 }
 
-template <int N>
-void write_vectors(const h5::Group& g, const std::string& name, const std::vector<Vec<N>>& vectors) {
-  g.write(name, flat(vectors), {vectors.size(), N});
+template <class V>
+void write_vectors(const h5::Group& g, const std::string& name, const std::vector<V>& vectors) {
+  g.write(name, flat(vectors), {vectors.size(), V{}.v.size()});
 }
 
 void write_slots(const h5::Group& g, const std::string& name, const std::vector<std::int32_t>& values) {
@@ -38,10 +38,10 @@ std::vector<double> read_numbers(const h5::Group& g, const std::string& name, st
   return values;
 }
 
-template <int N>
-std::vector<Vec<N>> read_vectors(const h5::Group& g, const std::string& name, std::size_t size) {
+template <int N, class V = Vec<N>>
+std::vector<V> read_vectors(const h5::Group& g, const std::string& name, std::size_t size) {
   const std::vector<double> values = read_numbers(g, name, size * N);
-  std::vector<Vec<N>> out(size);
+  std::vector<V> out(size);
   for (std::size_t u = 0; u < size; ++u)
     for (std::size_t k = 0; k < N; ++k) out[u].v[k] = values[u * N + k];
   return out;
@@ -101,10 +101,10 @@ void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
     for (int k = 0; k < D; ++k) p.sphere[u].x[k] = spheres[u][k];
     p.sphere[u].r = spheres[u][D];
   }
-  p.velocity = read_vectors<D>(g, "velocity", n);
-  p.spin = read_vectors<kTurns>(g, "spin", n);
-  p.force = read_vectors<D>(g, "force", n);
-  p.torque = read_vectors<kTurns>(g, "torque", n);
+  p.velocity = read_vectors<D, Stored<D>>(g, "velocity", n);
+  p.spin = read_vectors<kTurns, Stored<kTurns>>(g, "spin", n);
+  p.force = read_vectors<D, Stored<D>>(g, "force", n);
+  p.torque = read_vectors<kTurns, Stored<kTurns>>(g, "torque", n);
   p.inverse_mass = read_numbers(g, "inverse_mass", n);
   p.inverse_inertia = read_numbers(g, "inverse_inertia", n);
   p.material = read_slots(g, "material", n, 0, materials);
@@ -147,6 +147,7 @@ void write_neighbours(const h5::Group& g, const NeighbourState<D>& n) {
   g.write("skin", n.skin);
   write_vectors(g, "reference_edges", rows(n.reference_edges));
   g.attribute("rebuilds", n.rebuilds);
+  g.attribute("passes_at_build", n.passes_at_build);
 }
 
 template <int D>
@@ -157,6 +158,7 @@ void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodie
   n.skin = read_numbers(g, "skin", listed);
   n.reference_edges = read_matrix<D>(g, "reference_edges");
   n.rebuilds = g.integer("rebuilds");
+  n.passes_at_build = g.integer("passes_at_build");
 }
 
 template <int D>
@@ -197,7 +199,7 @@ void read_contacts(const h5::Group& g, System<D>& s) {
   list.image = read_slots(g, "image", pairs, 0, image_count<D>());
   read_sections(g, list.sections, list.size(), s.laws.size());
   adopt_list(s);
-  list.spring = read_vectors<D>(g, "spring", list.has_spring ? pairs : 0);
+  list.spring = read_vectors<D, Stored<D>>(g, "spring", list.has_spring ? pairs : 0);
   list.memory = read_numbers(g, "memory", list.has_memory ? pairs : 0);
 }
 
@@ -209,7 +211,7 @@ void write_system(const h5::Group& group, const System<D>& s) {
   write_cell(group.create("cell"), s.cell);
   write_neighbours(group.create("neighbours"), s.neighbours);
   write_contacts(group.create("contacts"), s.contacts);
-  write_vectors<D>(group, "gravity", {s.gravity});
+  write_vectors(group, "gravity", std::vector<Vec<D>>{s.gravity});
   group.attribute("dimension", Count{D});
   group.attribute("time", s.time);
   group.attribute("step", s.step);

@@ -52,7 +52,10 @@ class Stepper {
   /// One step; false when no direction leads to a better balance.
   bool step(bool mix) {
     linearise();
-    if (mix && newton_due() && newton_step()) return true;
+    if (mix && newton_due()) {
+      if (newton_step()) return true;
+      linearise();  // what was tried may have made a new list of contacts
+    }
     const bool indefinite = solve();
     clip(direction_);
     if (mix) {

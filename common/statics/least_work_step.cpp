@@ -28,7 +28,9 @@ void LeastWorkStep::start(const System3& s, const Moves& moves) {
   passes_ = 0;
   step_ = 1.0;
   old_product_ = 0.0;
-  for (Moves* v : {&shift_, &turn_, &direction_, &spin_, &old_force_, &old_torque_}) v->assign(n, {});
+  for (Moves* v : {&shift_, &turn_, &direction_, &spin_}) v->assign(n, {});
+  old_force_.assign(n, {});
+  old_torque_.assign(n, {});
   if (!moves.empty()) shift_ = moves;
   velocity_ = s.particles.velocity;
   rate_ = s.particles.spin;
@@ -161,8 +163,8 @@ void LeastWorkStep::put_back(System3& s) const {
 }
 
 void LeastWorkStep::stop(System3& s) {
-  std::fill(s.particles.velocity.begin(), s.particles.velocity.end(), Vec3{});
-  std::fill(s.particles.spin.begin(), s.particles.spin.end(), Vec3{});
+  std::fill(s.particles.velocity.begin(), s.particles.velocity.end(), Stored<3>{});
+  std::fill(s.particles.spin.begin(), s.particles.spin.end(), Stored<3>{});
 }
 
 RelaxationResult LeastWorkStep::minimise(System3& s) {

@@ -85,7 +85,7 @@ void expect_scale_free(PairKind kind, MakeProtocol make, const MeasurementPlan& 
 }
 
 const MeasurementPlan kSolid{{0.20, 0.35}, {0.35}, {-0.05, 0.05, 0.5}, 0.01, true};
-const MeasurementPlan kSoft{{0.35, 0.50}, {0.50}, {0.05}, 0.01, false};
+const MeasurementPlan kSoft{{0.35, 0.60}, {0.60}, {0.05}, 0.01, false};
 
 TEST(MeasurementScaling, DampedSoftSolid) { expect_scale_free(PairKind::soft_solid, damped, kSolid); }
 TEST(MeasurementScaling, DampedSoftSoft) { expect_scale_free(PairKind::soft_soft, damped, kSoft); }

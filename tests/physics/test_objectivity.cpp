@@ -17,14 +17,15 @@ Vec3 turned(const Vec3& v) { return rotate(v, kAxis, kAngle); }
 System3 turned(System3 s) {
   auto& p = s.particles;
   for (auto& sphere : p.sphere) sphere.x = turned(sphere.x);
-  for (auto* vectors : {&p.velocity, &p.spin, &p.plane_normal, &s.contacts.spring})
+  for (auto* vectors : {&p.velocity, &p.spin, &s.contacts.spring})
     for (Vec3& v : *vectors) v = turned(v);
+  for (Vec3& v : p.plane_normal) v = turned(v);
   s.gravity = turned(s.gravity);
   s.neighbours.reference.clear();  // the list must be made again
   return s;
 }
 
-void expect_turned(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double tolerance) {
+void expect_turned(const std::vector<Stored<3>>& from, const std::vector<Stored<3>>& to, double tolerance) {
   double scale = 0.0;
   for (const Vec3& v : from) scale = std::max(scale, norm(v));
   ASSERT_GT(scale, 0.0);

@@ -94,12 +94,12 @@ System<D> shell_and_plane_system(double friction, double restitution, bool resca
 /// Bitwise equality, so that NaN equals itself and -0 differs from 0.
 inline bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-template <int N>
-void expect_same_bits(const std::vector<Vec<N>>& a, const std::vector<Vec<N>>& b, const char* what) {
+template <class V>
+void expect_same_bits(const std::vector<V>& a, const std::vector<V>& b, const char* what) {
   ASSERT_EQ(a.size(), b.size()) << what;
   for (std::size_t u = 0; u < a.size(); ++u)
-    for (int k = 0; k < N; ++k)
-      ASSERT_TRUE(same_bits(a[u][k], b[u][k])) << what << " of " << u << ": " << a[u][k] << ", " << b[u][k];
+    for (std::size_t k = 0; k < a[u].v.size(); ++k)
+      ASSERT_TRUE(same_bits(a[u].v[k], b[u].v[k])) << what << " of " << u << ": " << a[u].v[k] << ", " << b[u].v[k];
 }
 
 /// Motion, forces and histories of two systems are the same bits.

@@ -60,7 +60,7 @@ TEST(ParticlePass, SumsAreThereBeforeTheFirstContactIsEvaluated) {
   const ContactSection section = s.contacts.sections[0];
   detail::sum_section<3, Geometry::sphere_sphere, false>(s, section, law);
   ForceOfContact sink;
-  detail::run_section<3, Geometry::sphere_sphere, false>(s, law, 0.0, section.begin, section.end, sink);
+  detail::run_section<3, Geometry::sphere_sphere, false>(s, law, 0.0, {section.begin, section.end}, History::next, sink);
   ASSERT_EQ(sink.force.size(), 2u);
   // Sums: body 0: 0.1; body 1: 2*0.1 + 0.3; body 2: 2*0.3.
   EXPECT_NEAR(sink.force[0], 0.1 * (0.1 + 0.5), 1e-12);

@@ -1,0 +1,460 @@
+#include "common/dynamics/hertz_block.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <experimental/simd>
+#include <type_traits>
+
+#include "common/core/quad.h"
+
+namespace softgrain {
+
+namespace {
+
+using Lanes = std::experimental::native_simd<double>;
+constexpr int kLanes = static_cast<int>(Lanes::size());
+constexpr auto kAligned = std::experimental::vector_aligned;
+
+/// Pairs looked at in one go. All that a block needs stays in the first-level cache.
+constexpr int kBlock = 128;
+
+/// One number of every contact of a block.
+struct alignas(64) Row {
+  double v[kBlock + 8];
+
+  [[nodiscard]] Lanes at(int k) const { return Lanes(v + k, kAligned); }
+  void put(int k, const Lanes& x) { x.copy_to(v + k, kAligned); }
+};
+
+template <int D>
+using Rows = std::array<Row, static_cast<std::size_t>(D)>;
+
+template <int D>
+constexpr int kRot = D == 3 ? 3 : 1;
+
+template <int D>
+Vec<D, Lanes> at(const Rows<D>& rows, int k) {
+  Vec<D, Lanes> out;
+  for (int c = 0; c < D; ++c) out[c] = rows[static_cast<std::size_t>(c)].at(k);
+  return out;
+}
+template <int D>
+void put(Rows<D>& rows, int k, const Vec<D, Lanes>& x) {
+  for (int c = 0; c < D; ++c) rows[static_cast<std::size_t>(c)].put(k, x[c]);
+}
+
+/// The touching pairs of a block, number by number.
+template <int D>
+struct Block {
+  int touching = 0;
+  std::array<std::int32_t, kBlock + 8> pair;    ///< place in the list
+  std::array<std::int32_t, kBlock + 8> number;  ///< in an ordered range
+  std::array<Quad, kBlock + 8> record;          ///< x_i - x_j, r_i + r_j
+  Rows<D> branch;
+  Row reach;
+  Row radius_i, radius_j;
+  Rows<D> velocity;  ///< of i against j
+  Rows<kRot<D>> spin_i, spin_j;
+  Rows<D> spring;
+  Row a, b, memory;
+  // Results.
+  Rows<D> force;         ///< on i
+  Rows<kRot<D>> moment;  ///< of a unit arm
+  Row arm_i, arm_j;
+};
+
+/// Position with the radius in the fourth place.
+inline Quad place(const Sphere<3>& s) { return load_quad(&s); }
+inline Quad place(const Sphere<2>& s) { return __builtin_shufflevector(load_quad(&s), Quad{}, 0, 1, 4, 2); }
+
+using QuadMask = decltype(Quad{} < Quad{});
+
+/// One bit per lane of a comparison.
+inline int sign_bits(QuadMask mask) {
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256(reinterpret_cast<Quad>(mask));
+#else
+  int bits = 0;
+  for (int l = 0; l < 4; ++l) bits |= static_cast<int>(mask[l] & 1) << l;
+  return bits;
+#endif
+}
+
+/// Shift of every periodic image and the velocity that goes with it.
+template <int D>
+struct Images {
+  std::array<Quad, static_cast<std::size_t>(image_count<D>())> shift{};
+  std::array<Quad, static_cast<std::size_t>(image_count<D>())> velocity{};
+
+  explicit Images(const Cell<D>& cell) {
+    for (int image = 0; image < image_count<D>(); ++image) {
+      const Vec<D> x = cell.image_shift(image);
+      const Vec<D> v = cell.velocity_gradient * x;
+      for (int k = 0; k < D; ++k) {
+        shift[static_cast<std::size_t>(image)][k] = x[k];
+        velocity[static_cast<std::size_t>(image)][k] = v[k];
+      }
+    }
+  }
+};
+
+template <int N>
+void store_rows(Rows<N>& rows, int k, const std::array<Quad, 4>& columns) {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(N); ++c) store_quad(rows[c].v + k, columns[c]);
+}
+
+/// Where results go.
+struct Target {
+  History history = History::next;
+  ContactLoad* loads = nullptr;  ///< null: to the bodies
+  std::uint8_t* touches = nullptr;
+};
+
+template <int D, class Law, bool kPeriodic, bool kOrdered>
+class Loop {
+ public:
+  Loop(System<D>& s, const Law& law, double dt, const PairRange& range, const Target& target)
+      : s_(s), list_(s.contacts), law_(law), dt_(dt), range_(range), target_(target), images_(s.cell) {}
+
+  void run() {
+    for (std::int32_t k = range_.begin; k < range_.end; k += kBlock) {
+      find_touching(k, std::min(k + kBlock, range_.end));
+      if (block_.touching == 0) continue;
+      gather();
+      for (int g = 0; g < block_.touching; g += kLanes) evaluate(g);
+      if (target_.loads != nullptr)
+        put_down();
+      else
+        scatter();
+    }
+  }
+
+ private:
+  static std::size_t u(std::int32_t k) { return static_cast<std::size_t>(k); }
+
+  /// Place in the list of number k of the range.
+  [[nodiscard]] std::int32_t place_of(std::int32_t k) const {
+    if constexpr (kOrdered)
+      return range_.order[k];
+    else
+      return k;
+  }
+
+  // Arrays are taken by local pointers in all loops: otherwise every store makes the compiler load them again.
+
+  /// Branch vector and sum of radii; square of the distance against the square of the sum decides. No branch depends on
+  /// whether a pair touches: about one in three does, which no processor can guess.
+  void find_touching(std::int32_t begin, std::int32_t end) {
+    const Slot* const first = list_.i.data();
+    const Slot* const second = list_.j.data();
+    const Sphere<D>* const spheres = s_.particles.sphere.data();
+    const auto branch_of = [&](std::int32_t c) {
+      const Quad a = place(spheres[u(first[c])]);
+      const Quad b = place(spheres[u(second[c])]);
+      Quad d = a - b;
+      if constexpr (kPeriodic) d -= images_.shift[u(list_.image[u(c)])];
+      return with_fourth(d, a + b);
+    };
+    Quad* const record = block_.record.data();
+    std::int32_t* const pair = block_.pair.data();
+    [[maybe_unused]] std::int32_t* const number = block_.number.data();
+    int n = 0;
+    for (std::int32_t k = begin; k < end; k += 4) {
+      const int valid = std::min(end - k, 4);
+      std::array<Quad, 4> d;
+      std::array<std::int32_t, 4> c;
+      for (int l = 0; l < 4; ++l) {
+        c[u(l)] = place_of(std::min(k + l, end - 1));
+        d[u(l)] = branch_of(c[u(l)]);
+      }
+      std::array<Quad, 4> t = d;
+      transpose(t[0], t[1], t[2], t[3]);
+      Quad distance2 = t[0] * t[0];
+      for (std::size_t axis = 1; axis < D; ++axis) distance2 += t[axis] * t[axis];
+      const int touch = sign_bits(distance2 < t[3] * t[3]) & ((1 << valid) - 1);
+      for (int l = 0; l < 4; ++l) {
+        record[n] = d[u(l)];
+        pair[n] = c[u(l)];
+        if constexpr (kOrdered) number[n] = k + l;
+        n += touch >> l & 1;
+      }
+      if constexpr (Law::has_tangential) note_touch(c, valid, touch);
+      if constexpr (kOrdered)
+        if (target_.touches != nullptr)
+          for (int l = 0; l < valid; ++l) target_.touches[k + l] = static_cast<std::uint8_t>(touch >> l & 1);
+    }
+    block_.touching = n;
+    for (int pad = n; n > 0 && pad < n + 8; ++pad) {  // lanes without a contact repeat the last one
+      record[pad] = record[n - 1];
+      pair[pad] = pair[n - 1];
+    }
+  }
+
+  /// A contact that has opened forgets its history.
+  void note_touch(const std::array<std::int32_t, 4>& c, int valid, int touch) {
+    if (target_.history == History::none) return;
+    if (target_.history == History::next) {
+      for (int l = 0; l < valid; ++l)
+        if ((touch >> l & 1) == 0) forget(list_.spring_next, list_.memory_next, u(c[u(l)]));
+      return;
+    }
+    int had = 0;
+    std::uint8_t* const touched = list_.touched.data();
+    for (int l = 0; l < valid; ++l) {
+      had |= touched[c[u(l)]] << l;
+      touched[c[u(l)]] = static_cast<std::uint8_t>(touch >> l & 1);
+    }
+    if ((had & ~touch) == 0) return;
+    for (int l = 0; l < valid; ++l)
+      if (((had & ~touch) >> l & 1) != 0) forget(list_.spring, list_.memory, u(c[u(l)]));
+  }
+
+  static void forget(std::vector<Stored<D>>& spring, std::vector<double>& memory, std::size_t c) {
+    spring[c] = {};
+    if constexpr (Law::has_memory) memory[c] = 0.0;
+  }
+
+  /// From records to rows, four contacts at a time.
+  void gather() {
+    const auto& p = s_.particles;
+    const Slot* const first = list_.i.data();
+    const Slot* const second = list_.j.data();
+    const Sphere<D>* const spheres = p.sphere.data();
+    const Stored<D>* const velocities = p.velocity.data();
+    const StoredRot<D>* const spins = p.spin.data();
+    const Stored<D>* const springs = list_.spring.data();
+    const PairConstants* const all_constants = list_.constants.data();
+    for (int g = 0; g < block_.touching; g += 4) {
+      std::array<Quad, 4> branch, motion, spin_i, spin_j, spring;
+      for (std::size_t l = 0; l < 4; ++l) {
+        const std::size_t c = u(block_.pair[u(g) + l]);
+        const std::size_t i = u(first[c]);
+        const std::size_t j = u(second[c]);
+        branch[l] = block_.record[u(g) + l];
+        block_.a.v[u(g) + l] = all_constants[c].a;
+        if constexpr (Law::needs_velocity) {
+          block_.b.v[u(g) + l] = all_constants[c].b;
+          motion[l] = quad_of(velocities[i]) - quad_of(velocities[j]);
+          if constexpr (kPeriodic) motion[l] -= images_.velocity[u(list_.image[c])];
+          spin_i[l] = with_fourth(quad_of(spins[i]), place(spheres[i]));
+          spin_j[l] = with_fourth(quad_of(spins[j]), place(spheres[j]));
+        }
+        if constexpr (Law::has_tangential) spring[l] = quad_of(springs[c]);
+        if constexpr (Law::has_memory) block_.memory.v[u(g) + l] = list_.memory[c];
+      }
+      transpose(branch[0], branch[1], branch[2], branch[3]);
+      store_rows<D>(block_.branch, g, branch);
+      store_quad(block_.reach.v + g, branch[3]);
+      if constexpr (Law::needs_velocity) {
+        transpose(motion[0], motion[1], motion[2], motion[3]);
+        transpose(spin_i[0], spin_i[1], spin_i[2], spin_i[3]);
+        transpose(spin_j[0], spin_j[1], spin_j[2], spin_j[3]);
+        store_rows<D>(block_.velocity, g, motion);
+        store_rows<kRot<D>>(block_.spin_i, g, spin_i);
+        store_rows<kRot<D>>(block_.spin_j, g, spin_j);
+        store_quad(block_.radius_i.v + g, spin_i[3]);
+        store_quad(block_.radius_j.v + g, spin_j[3]);
+      }
+      if constexpr (Law::has_tangential) {
+        transpose(spring[0], spring[1], spring[2], spring[3]);
+        store_rows<D>(block_.spring, g, spring);
+      }
+    }
+  }
+
+  void evaluate(int g) {
+    using std::experimental::sqrt;
+    Vec<D, Lanes> normal = at<D>(block_.branch, g);
+    const Lanes distance = sqrt(norm2(normal));
+    const Lanes overlap = block_.reach.at(g) - distance;
+    normal *= 1.0 / distance;
+    where(!(distance > 0.0), normal[0]) = Lanes(1.0);  // coincident centres: an arbitrary, fixed normal
+    for (int c = 1; c < D; ++c) where(!(distance > 0.0), normal[c]) = Lanes(0.0);
+    const Lanes root_h = sqrt(overlap);
+    const Lanes contact_radius = block_.a.at(g) * root_h;
+    Lanes normal_force = contact_radius * overlap * law_.k.inverse_d;
+    if constexpr (Law::needs_velocity) {
+      const Lanes arm_i = block_.radius_i.at(g) - 0.5 * overlap;
+      const Lanes arm_j = block_.radius_j.at(g) - 0.5 * overlap;
+      const auto turning = at<kRot<D>>(block_.spin_i, g) * arm_i + at<kRot<D>>(block_.spin_j, g) * arm_j;
+      const Vec<D, Lanes> v = at<D>(block_.velocity, g) - cross(turning, normal);
+      const Lanes speed = dot(v, normal);
+      Lanes eta(0.0);
+      if constexpr (Law::is_damped) {
+        eta = block_.b.at(g) * sqrt(root_h);
+        normal_force -= eta * speed;
+      }
+      if constexpr (Law::has_tangential) {
+        const Vec<D, Lanes> sliding = v - normal * speed;
+        const Vec<D, Lanes> ft = tangential(g, normal, sliding, contact_radius, eta, normal_force);
+        put<D>(block_.force, g, normal * normal_force + ft);
+        put<kRot<D>>(block_.moment, g, cross(normal, ft));
+        block_.arm_i.put(g, arm_i);
+        block_.arm_j.put(g, arm_j);
+        return;
+      }
+    }
+    put<D>(block_.force, g, normal * normal_force);
+  }
+
+  /// See carried_spring and coulomb_spring.
+  Vec<D, Lanes> tangential(int g, const Vec<D, Lanes>& normal, const Vec<D, Lanes>& sliding,
+                           const Lanes& contact_radius, const Lanes& eta, const Lanes& normal_force) {
+    using std::experimental::any_of;
+    using std::experimental::max;
+    using std::experimental::sqrt;
+    const Lanes limit = law_.k.friction * max(normal_force, Lanes(0.0));
+    Vec<D, Lanes> old = at<D>(block_.spring, g);
+    if constexpr (Law::has_memory) {
+      const Lanes memory = block_.memory.at(g);
+      Lanes share(1.0);
+      where(memory > 0.0 && contact_radius > memory, share) = memory / contact_radius;
+      old *= share;
+      block_.memory.put(g, contact_radius);
+    }
+    const Vec<D, Lanes> flat = old - normal * dot(old, normal);
+    const Lanes after = norm2(flat);
+    Lanes stretch(1.0);
+    where(after > 0.0, stretch) = sqrt(norm2(old) / after);
+    Vec<D, Lanes> spring = flat * stretch + sliding * Lanes(dt_);
+    const Lanes stiffness = contact_radius * law_.k.shear;
+    Vec<D, Lanes> force = spring * -stiffness;
+    const Lanes size2 = norm2(force);
+    const Lanes limit2 = limit * limit;
+    const auto slides = size2 > limit2;
+    if constexpr (Law::is_damped) {
+      Vec<D, Lanes> damped = force - sliding * eta;
+      const Lanes damped2 = norm2(damped);
+      const auto capped = damped2 > limit2;
+      if (any_of(capped && !slides)) {
+        Lanes share(1.0);
+        where(capped, share) = limit / sqrt(damped2);
+        damped *= share;
+      }
+      for (int c = 0; c < D; ++c) where(!slides, force[c]) = damped[c];
+    }
+    if (any_of(slides)) {
+      Lanes share(1.0);
+      where(slides, share) = limit / sqrt(size2);
+      spring *= share;
+      force *= share;
+    }
+    put<D>(block_.spring, g, spring);
+    return force;
+  }
+
+  /// Rows become records again and go to the bodies in the order of the range.
+  void scatter() {
+    const Slot* const first = list_.i.data();
+    const Slot* const second = list_.j.data();
+    Stored<D>* const forces = s_.particles.force.data();
+    StoredRot<D>* const torques = s_.particles.torque.data();
+    for_records([&](int k, std::size_t c, Quad force, Quad moment) {
+      const std::size_t i = u(first[c]);
+      const std::size_t j = u(second[c]);
+      store(forces[i], quad_of(forces[i]) + force);
+      store(forces[j], quad_of(forces[j]) - force);
+      if constexpr (Law::has_tangential) {
+        store(torques[i], quad_of(torques[i]) - moment * block_.arm_i.v[k]);
+        store(torques[j], quad_of(torques[j]) - moment * block_.arm_j.v[k]);
+      }
+    });
+  }
+
+  /// The same for bodies of other threads.
+  void put_down() {
+    for_records([&](int k, std::size_t, Quad force, Quad moment) {
+      ContactLoad& load = target_.loads[block_.number[u(k)]];
+      if constexpr (Law::has_tangential) {
+        force[3] = block_.arm_i.v[k];
+        moment[3] = block_.arm_j.v[k];
+      } else {
+        force[3] = 0.0;
+      }
+      store_quad(load.force, force);
+      store_quad(load.moment, moment);
+    });
+  }
+
+  /// work(number in the block, place in the list, force, moment) for every touching pair; keeps the new history.
+  template <class Work>
+  void for_records(Work&& work) {
+    const bool next = target_.history == History::next;
+    const bool keep = target_.history != History::none;
+    Stored<D>* const springs = next ? list_.spring_next.data() : list_.spring.data();
+    double* const memories = next ? list_.memory_next.data() : list_.memory.data();
+    for (int g = 0; g < block_.touching; g += 4) {
+      const std::array<Quad, 4> force = quads<D>(block_.force, g);
+      std::array<Quad, 4> moment{}, spring;
+      if constexpr (Law::has_tangential) {
+        moment = quads<kRot<D>>(block_.moment, g);
+        spring = quads<D>(block_.spring, g);
+      }
+      const int many = std::min(4, block_.touching - g);
+      for (int l = 0; l < many; ++l) {
+        const std::size_t c = u(block_.pair[u(g + l)]);
+        work(g + l, c, force[u(l)], moment[u(l)]);
+        if constexpr (Law::has_tangential)
+          if (keep) store(springs[c], spring[u(l)]);
+        if constexpr (Law::has_memory)
+          if (keep) memories[c] = block_.memory.v[g + l];
+      }
+    }
+  }
+
+  template <int N>
+  static std::array<Quad, 4> quads(const Rows<N>& rows, int g) {
+    std::array<Quad, 4> q{};
+    for (std::size_t c = 0; c < static_cast<std::size_t>(N); ++c) q[c] = load_quad(rows[c].v + g);
+    transpose(q[0], q[1], q[2], q[3]);
+    return q;
+  }
+
+  System<D>& s_;
+  ContactList<D>& list_;
+  const Law law_;
+  const double dt_;
+  const PairRange range_;
+  const Target target_;
+  const Images<D> images_;
+  Block<D> block_{};
+};
+
+template <class Law>
+constexpr bool kIsHertz = false;
+template <Tangential kTangential, bool kDamped>
+constexpr bool kIsHertz<HertzMindlin<kTangential, kDamped>> = true;
+
+}  // namespace
+
+bool has_fast_loop(const LawSet& laws, const ContactSection& section) {
+  return section.geometry == Geometry::sphere_sphere &&
+         std::visit([]<class Law>(const Law&) { return kIsHertz<Law>; }, laws.law(section.law));
+}
+
+template <int D>
+void hertz_loop(System<D>& s, const ContactSection& section, double dt, const PairRange& range, History history,
+                ContactLoad* loads, std::uint8_t* touches) {
+  const Target target{history, loads, touches};
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (kIsHertz<Law>) {
+          const auto run = [&](auto periodic, auto ordered) {
+            Loop<D, Law, decltype(periodic)::value, decltype(ordered)::value>(s, law, dt, range, target).run();
+          };
+          const auto with_order = [&](auto periodic) {
+            range.order == nullptr ? run(periodic, std::false_type{}) : run(periodic, std::true_type{});
+          };
+          s.cell.any_periodic() ? with_order(std::true_type{}) : with_order(std::false_type{});
+        }
+      },
+      s.laws.law(section.law));
+}
+
+template void hertz_loop<2>(System<2>&, const ContactSection&, double, const PairRange&, History, ContactLoad*,
+                            std::uint8_t*);
+template void hertz_loop<3>(System<3>&, const ContactSection&, double, const PairRange&, History, ContactLoad*,
+                            std::uint8_t*);
+
+}  // namespace softgrain

@@ -1,0 +1,234 @@
+#include "common/neighbours/skin.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/neighbours/hierarchical_grid.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+template <int D>
+double frobenius(const Matrix<D>& m) {
+  double sum = 0.0;
+  for (int k = 0; k < D; ++k) sum += norm2(m[k]);
+  return std::sqrt(sum);
+}
+
+/// Whether bodies are followed relative to the cell. Walls do not flow with it.
+template <int D>
+bool follows_cell(const System<D>& s) {
+  return s.cell.any_periodic() && s.particles.shells == 0 && s.particles.planes == 0;
+}
+
+/// F of the cell since the list was made.
+template <int D>
+Matrix<D> deformation(const Cell<D>& cell, const Matrix<D>& reference) {
+  Cell<D> old;
+  old.edges = reference;
+  Matrix<D> f;
+  for (int c = 0; c < D; ++c) {
+    Vec<D> unit;
+    unit[c] = 1.0;
+    const Vec<D> column = cell.edges * old.fractional(unit);
+    for (int r = 0; r < D; ++r) f[r][c] = column[r];
+  }
+  return f;
+}
+
+template <int D>
+Matrix<D> without_unit(Matrix<D> f) {
+  for (int k = 0; k < D; ++k) f[k][k] -= 1.0;
+  return f;
+}
+
+/// How far an image of a neighbour has moved because the cell deformed.
+template <int D>
+double image_drift(const System<D>& s) {
+  if (!s.cell.any_periodic()) return 0.0;
+  double sum = 0.0;
+  for (int r = 0; r < D; ++r)
+    for (int c = 0; c < D; ++c) sum += std::abs(s.cell.edges[r][c] - s.neighbours.reference_edges[r][c]);
+  return sum;
+}
+
+/// Share of its margin that each body has used up.
+template <int D>
+class Uses {
+ public:
+  explicit Uses(const System<D>& s) : s_(s), flows_(follows_cell(s)) {
+    if (flows_ && !(s.cell.edges == s.neighbours.reference_edges)) {
+      f_ = deformation(s.cell, s.neighbours.reference_edges);
+      strain_ = frobenius(without_unit(f_));
+    } else {
+      for (int k = 0; k < D; ++k) f_[k][k] = 1.0;
+      if (!flows_) drift_ = 0.5 * image_drift(s);
+    }
+  }
+
+  [[nodiscard]] double of(std::size_t u) const {
+    const auto& n = s_.neighbours;
+    const Sphere<D>& sphere = s_.particles.sphere[u];
+    const Vec<D> from = strain_ > 0.0 ? f_ * n.reference[u] : n.reference[u];
+    const double used = (norm(sphere.x - from) + drift_ + strain_ * (sphere.r + n.skin[u])) / n.skin[u];
+    return std::isfinite(used) ? used : kNever;
+  }
+
+ private:
+  const System<D>& s_;
+  bool flows_;
+  Matrix<D> f_;
+  double strain_ = 0.0;
+  double drift_ = 0.0;
+};
+
+/// Size classes by halving of the radius, the smallest grain in class 0.
+constexpr std::size_t kClasses = 40;
+
+std::size_t class_of(double r, double smallest) {
+  return std::min(static_cast<std::size_t>(std::max(std::ilogb(r / smallest), 0)), kClasses - 1);
+}
+
+template <int D>
+double smallest_radius(const Particles<D>& p) {
+  double smallest = 0.0;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const double r = p.sphere[static_cast<std::size_t>(i)].r;
+    smallest = i == 0 ? r : std::min(smallest, r);
+  }
+  return smallest;
+}
+
+template <int D>
+double touching_pairs(const System<D>& s) {
+  const auto& list = s.contacts;
+  std::int64_t count = 0;
+  for (const ContactSection& section : list.sections) {
+    if (section.geometry != Geometry::sphere_sphere) continue;
+    for (auto c = static_cast<std::size_t>(section.begin); c < static_cast<std::size_t>(section.end); ++c) {
+      const Sphere<D>& a = s.particles.sphere[static_cast<std::size_t>(list.i[c])];
+      const Sphere<D>& b = s.particles.sphere[static_cast<std::size_t>(list.j[c])];
+      const double reach = a.r + b.r;
+      count += static_cast<std::int64_t>(norm2(a.x - b.x - s.cell.image_shift(list.image[c])) < reach * reach);
+    }
+  }
+  return static_cast<double>(count);
+}
+
+// What making a list costs, in looks at a pair that does not touch: measured on scenes A, B and C
+// (results/performance).
+constexpr double kPerGrain = 250.0;
+constexpr double kPerPair = 15.0;
+
+/// The number of passes between two lists that costs least: per pass extra pairs cost `near` N/n, lists `build`/N.
+double best_interval(double near, double build, double passes) {
+  return std::sqrt(build * passes / std::max(near, 1.0));
+}
+
+/// No margin changes faster than this from one list to the next: one wild list should not decide.
+constexpr double kFastestChange = 2.0;
+constexpr double kWidest = 0.5;            // of the radius ...
+constexpr double kWidestInSmallest = 1.0;  // ... and of the smallest one
+constexpr double kNarrowest = 0.01;        // of the radius of the smallest
+
+}  // namespace
+
+template <int D>
+std::vector<double> default_skin(const Particles<D>& p) {
+  const double smallest = smallest_radius(p);
+  std::vector<double> skin(static_cast<std::size_t>(p.size()), 0.0);
+  double largest = 0.0;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    skin[u] = std::min(0.125 * p.sphere[u].r, 0.5 * smallest);
+    largest = std::max(largest, skin[u]);
+  }
+  for (auto u = static_cast<std::size_t>(p.grains); u < skin.size(); ++u) skin[u] = largest;
+  return skin;
+}
+
+template <int D>
+double skin_used(const System<D>& s) {
+  const auto bodies = static_cast<std::size_t>(s.particles.size());
+  if (s.neighbours.reference.size() != bodies) return kNever;
+  const Uses<D> uses(s);
+  double most = 0.0;
+  for (std::size_t u = 0; u < bodies; ++u) most = std::max(most, uses.of(u));
+  return most;
+}
+
+template <int D>
+void note_skin(System<D>& s) {
+  NeighbourState<D>& n = s.neighbours;
+  n.inverse_skin2.resize(n.skin.size());
+  n.slimmest = 0.0;
+  for (std::size_t u = 0; u < n.skin.size(); ++u) {
+    n.inverse_skin2[u] = 1.0 / (n.skin[u] * n.skin[u]);
+    n.slimmest = std::max(n.slimmest, s.particles.sphere[u].r / n.skin[u]);
+  }
+}
+
+template <int D>
+void fit_skin_to_cell(System<D>& s) {
+  const double room = 0.249 * shortest_period(s.cell);
+  for (Slot i = 0; i < s.particles.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    const double r = s.particles.sphere[u].r;
+    if (room > r) s.neighbours.skin[u] = std::min(s.neighbours.skin[u], room - r);
+  }
+}
+
+template <int D>
+void adapt_skin(System<D>& s) {
+  NeighbourState<D>& n = s.neighbours;
+  const auto& p = s.particles;
+  const auto grains = static_cast<std::size_t>(p.grains);
+  const auto passes = static_cast<double>(s.cost.loop_passes - n.passes_at_build);
+  if (!follows_cell(s) || n.reference.size() != p.sphere.size() || !(passes >= 2.0) || grains < 2) return;
+  const double smallest = smallest_radius(p);
+  std::array<double, kClasses> most{};  // used up by a body of the class [m]
+  const Uses<D> uses(s);
+  for (std::size_t u = 0; u < grains; ++u) {
+    double& m = most[class_of(p.sphere[u].r, smallest)];
+    const double used = uses.of(u) * n.skin[u];
+    if (!std::isfinite(used)) return;
+    m = std::max(m, used);
+  }
+  const auto listed = static_cast<double>(s.contacts.size());
+  const double build = kPerGrain * static_cast<double>(grains) + kPerPair * listed;
+  const double target = best_interval(listed - touching_pairs(s), build, passes);
+  const double stretch = std::clamp(target / passes, 1.0 / kFastestChange, kFastestChange);
+  for (std::size_t u = 0; u < grains; ++u) {
+    const double r = p.sphere[u].r;
+    const double wanted = most[class_of(r, smallest)] * stretch;
+    const double limited = std::clamp(wanted, n.skin[u] / kFastestChange, n.skin[u] * kFastestChange);
+    n.skin[u] = std::max(std::min({limited, kWidest * r, kWidestInSmallest * smallest}), kNarrowest * smallest);
+  }
+}
+
+template <int D>
+SkinUse<D>::SkinUse(const System<D>& s) : flows_(follows_cell(s) && !(s.cell.velocity_gradient == Matrix<D>{})) {
+  if (s.cell.velocity_gradient == Matrix<D>{}) return;
+  // |u| grows by |v - L x| + |L| s at most, e by 2 |L|; walls beside a deforming cell: no bound, look every time.
+  strain_rate_ = flows_ ? frobenius(s.cell.velocity_gradient) * (1.0 + 2.0 * (1.0 + s.neighbours.slimmest)) : kNever;
+}
+
+template std::vector<double> default_skin<2>(const Particles<2>&);
+template std::vector<double> default_skin<3>(const Particles<3>&);
+template double skin_used<2>(const System<2>&);
+template double skin_used<3>(const System<3>&);
+template void note_skin<2>(System<2>&);
+template void note_skin<3>(System<3>&);
+template void fit_skin_to_cell<2>(System<2>&);
+template void fit_skin_to_cell<3>(System<3>&);
+template void adapt_skin<2>(System<2>&);
+template void adapt_skin<3>(System<3>&);
+template class SkinUse<2>;
+template class SkinUse<3>;
+
+}  // namespace softgrain
