@@ -132,28 +132,42 @@ std::string modulus_figures(const Packs& packs) {
 
 std::string share_text(double share) { return std::isfinite(share) ? format_number(share, 3) : "–"; }
 
-std::string packs_table(const Packs& packs) {
+/// Last point of a phase; of the phase before it where it has none.
+const BoxPoint& last_of(const GrainBoxResult& result, BoxPhase phase) {
+  static const BoxPoint none{};
+  for (auto k = static_cast<std::int64_t>(phase); k >= static_cast<std::int64_t>(BoxPhase::compaction); --k) {
+    const auto points = result.points_of(static_cast<BoxPhase>(k));
+    if (!points.empty()) return *points.back();
+  }
+  return none;
+}
+
+std::string generation_table(const Packs& packs) {
   HtmlTable table({"pack", "grains", "mu", "sigma_c (mu = 0) [MPa]", "solid fraction", "contacts per grain",
-                   "sigma_c at start of loading [MPa]", "sliding there", "sigma_c of smallest G [MPa]",
-                   "sigma_c at end [MPa]", "sliding at end", "with |Q| = mu P as it is then", "contacts at end",
-                   "shear/sigma_c, largest [%]", "status"});
+                   "sigma_c at start of loading [MPa]", "sliding there", "sigma_c of smallest G [MPa]"});
   for (const GrainBoxResult& r : packs) {
-    const auto compacted = r.points_of(BoxPhase::compaction);
-    const auto friction = r.points_of(BoxPhase::friction);
-    const auto loading = r.points_of(BoxPhase::loading);
-    const BoxPoint none{};
-    const BoxPoint& a = compacted.empty() ? none : *compacted.back();
-    const BoxPoint& b = friction.empty() ? a : *friction.back();
-    const BoxPoint& c = loading.empty() ? b : *loading.back();
-    double shear = 0.0;
-    for (const BoxPoint* p : loading) shear = std::max(shear, p->shear / p->pressure);
+    const BoxPoint& a = last_of(r, BoxPhase::compaction);
+    const BoxPoint& b = last_of(r, BoxPhase::friction);
     table.row({r.spec.name, format_count(r.spec.grains),
                std::isfinite(r.spec.friction) ? format_number(r.spec.friction, 3) : "infinite",
                format_number(a.pressure * kMega, 4), format_number(a.solid_fraction, 4),
                format_number(a.coordination, 4), format_number(b.pressure * kMega, 4), share_text(b.sliding_share),
-               format_number(pressure_of_smallest_shear(r) * kMega, 3), format_number(c.pressure * kMega, 4),
-               share_text(c.sliding_share), share_text(share_at_current_limit(r.state.pack)),
-               format_number(c.coordination, 4), format_number(100.0 * shear, 2), r.usable ? "good" : "broke off"});
+               format_number(pressure_of_smallest_shear(r) * kMega, 3)});
+  }
+  return table.html();
+}
+
+std::string end_table(const Packs& packs) {
+  HtmlTable table({"at the end", "sigma_c [MPa]", "solid fraction", "contacts per grain", "sliding",
+                   "with |Q| = mu P as it is then", "shear/sigma_c, largest [%]", "status"});
+  for (const GrainBoxResult& r : packs) {
+    const BoxPoint& c = last_of(r, BoxPhase::loading);
+    double shear = 0.0;
+    for (const BoxPoint* p : r.points_of(BoxPhase::loading)) shear = std::max(shear, p->shear / p->pressure);
+    table.row({r.spec.name, format_number(c.pressure * kMega, 4), format_number(c.solid_fraction, 4),
+               format_number(c.coordination, 4), share_text(c.sliding_share),
+               share_text(share_at_current_limit(r.state.pack)), format_number(100.0 * shear, 2),
+               r.usable ? "good" : "broke off"});
   }
   return table.html();
 }
@@ -217,7 +231,7 @@ std::string grain_box_section(const RunData& run) {
   if (run.grain_boxes.empty()) return "";
   const Packs& packs = run.grain_boxes;
   const std::string view = pack_view(packs.front());
-  return section("grain-boxes", "Packs", packs_table(packs) + stress_figures(packs)) +
+  return section("grain-boxes", "Packs", generation_table(packs) + end_table(packs) + stress_figures(packs)) +
          section(
              "moduli", "Moduli",
              modulus_figures(packs) + exponents_table(packs) + moduli_table(packs, true) + moduli_table(packs, false) +
