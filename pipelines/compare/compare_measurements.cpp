@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,9 +17,32 @@ std::vector<double> values_of(const std::map<std::int64_t, double>& by_packing, 
   return result;
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// See RatioRow::jumps. Below the threshold, where the median is nothing, a slope of either sign is noise.
+bool jumped(double slope, double median_slope) { return median_slope > 0.0 && slope < -median_slope; }
+
+void leave_out_jumps(RatioRow& row, const std::vector<double>& a, const std::vector<double>& b) {
+  const double median_a = median(a);
+  const double median_b = median(b);
+  std::vector<double> kept_a;
+  std::vector<double> kept_b;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (jumped(a[k], median_a) || jumped(b[k], median_b)) continue;
+    kept_a.push_back(a[k]);
+    kept_b.push_back(b[k]);
+  }
+  row.jumps = a.size() - kept_a.size();
+  if (row.jumps > 0) row.ratio_without_jumps = paired_ratio(kept_a, kept_b);
+}
+
 /// Rows over the overlaps of both sides; packings in common, paired, values divided by the unit of each side.
 std::vector<RatioRow> paired_rows(const ValuesByDelta& candidate, const ValuesByDelta& reference,
-                                  double candidate_unit = 1.0, double reference_unit = 1.0) {
+                                  double candidate_unit = 1.0, double reference_unit = 1.0, bool find_jumps = false) {
   std::vector<RatioRow> rows;
   for (const auto& [key, reference_values] : reference) {
     const auto found = candidate.find(key);
@@ -31,7 +55,9 @@ std::vector<RatioRow> paired_rows(const ValuesByDelta& candidate, const ValuesBy
       a.push_back(partner->second / candidate_unit);
       b.push_back(value / reference_unit);
     }
-    if (!a.empty()) rows.push_back({key_delta(key), mean_error(a), mean_error(b), paired_ratio(a, b)});
+    if (a.empty()) continue;
+    rows.push_back({key_delta(key), mean_error(a), mean_error(b), paired_ratio(a, b)});
+    if (find_jumps) leave_out_jumps(rows.back(), a, b);
   }
   return rows;
 }
@@ -138,8 +164,8 @@ RelaxationComparison compare_relaxations(const Measurements& data, const std::st
   if (result.normal.empty())
     throw BadInput(fmt::format("compare: no packing and overlap is in both \"{}\" and \"{}\"", candidate, reference));
   const double shell_radius = data.spec.shell_radius;
-  result.stiffness_initial =
-      paired_rows(initial_stiffness(a, angles, shell_radius), initial_stiffness(b, angles, shell_radius));
+  result.stiffness_initial = paired_rows(initial_stiffness(a, angles, shell_radius),
+                                         initial_stiffness(b, angles, shell_radius), 1.0, 1.0, true);
   result.stiffness_secant =
       paired_rows(secant_stiffness(a, angles, shell_radius), secant_stiffness(b, angles, shell_radius));
   add_costs(result, a, b);
@@ -161,13 +187,14 @@ MeasurementComparison compare_measurements(const Measurements& candidate, const 
   result.candidate_relaxation = candidate_relaxation;
   result.reference_relaxation = reference_relaxation;
   result.paired = same_packings(candidate, reference);
-  const auto rows = [&](const ValuesByDelta& x, double x_unit, const ValuesByDelta& y, double y_unit) {
-    return result.paired ? paired_rows(x, y, x_unit, y_unit) : independent_rows(x, x_unit, y, y_unit);
+  const auto rows = [&](const ValuesByDelta& x, double x_unit, const ValuesByDelta& y, double y_unit,
+                        bool find_jumps = false) {
+    return result.paired ? paired_rows(x, y, x_unit, y_unit, find_jumps) : independent_rows(x, x_unit, y, y_unit);
   };
   result.normal = rows(normal_forces(a), force_a, normal_forces(b), force_b);
   if (result.normal.empty()) throw BadInput("compare: the two measurements have no overlap Delta in common");
   result.stiffness_initial = rows(initial_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
-                                  initial_stiffness(b, angles, reference.spec.shell_radius), stiffness_b);
+                                  initial_stiffness(b, angles, reference.spec.shell_radius), stiffness_b, true);
   result.stiffness_secant = rows(secant_stiffness(a, angles, candidate.spec.shell_radius), stiffness_a,
                                  secant_stiffness(b, angles, reference.spec.shell_radius), stiffness_b);
   add_costs(result, a, b);

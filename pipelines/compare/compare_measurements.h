@@ -19,6 +19,11 @@ struct RatioRow {
   MeanError candidate;  ///< relaxations: N for forces, N/m for stiffnesses; two files: Fn/(E Rs^2) and kt/(E Rs)
   MeanError reference;
   RatioError ratio;
+  /// Initial slopes of the same packings: how many jumped, on either side. A packing that rearranges between two angles
+  /// shows as a slope that is no stiffness: negative, and larger in size than the median slope of its side. It stays in
+  /// the means and in `ratio`.
+  std::size_t jumps = 0;
+  RatioError ratio_without_jumps = {};  ///< only where there are jumps
 };
 
 /// Cost of one recorded point (one overlap, or one angle), mean over the runs.

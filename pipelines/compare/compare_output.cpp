@@ -54,6 +54,10 @@ json to_json(const std::vector<RatioRow>& rows) {
                    {"reference", to_json(r.reference)},
                    {"ratio", number(r.ratio.ratio)},
                    {"ratio_standard_error", number(r.ratio.error)}});
+    if (r.jumps == 0) continue;
+    out.back()["jumps"] = r.jumps;
+    out.back()["ratio_without_jumps"] = number(r.ratio_without_jumps.ratio);
+    out.back()["ratio_without_jumps_standard_error"] = number(r.ratio_without_jumps.error);
   }
   return out;
 }
@@ -141,6 +145,19 @@ std::string text_of(const std::string& quantity, const std::vector<RatioRow>& ro
   return out;
 }
 
+/// The line under the table for every row with jumps.
+std::string jumps_text(const std::vector<RatioRow>& rows) {
+  std::string out;
+  for (const RatioRow& r : rows) {
+    if (r.jumps == 0) continue;
+    out += fmt::format(
+        "  kt initial at {:.3f}: {} of {} packings rearranged between two angles (a negative slope above the median in "
+        "size); ratio without: {}\n",
+        r.delta, r.jumps, r.reference.n, with_error(r.ratio_without_jumps.ratio, r.ratio_without_jumps.error));
+  }
+  return out;
+}
+
 std::string ratio_header() {
   return fmt::format("  {:<14} {:>6} {:>5} {:>24} {:>24} {:>20}\n", "", "Delta", "n", "candidate", "reference",
                      "ratio");
@@ -149,7 +166,7 @@ std::string ratio_header() {
 template <class Ratios>
 std::string ratio_text(const Ratios& c) {
   return ratio_header() + text_of("Fn", c.normal) + text_of("kt initial", c.stiffness_initial) +
-         text_of("kt secant", c.stiffness_secant);
+         text_of("kt secant", c.stiffness_secant) + jumps_text(c.stiffness_initial);
 }
 
 template <class Comparison>

@@ -165,6 +165,23 @@ TEST(CompareRelaxations, StiffnessIsInNewtonPerMetre) {
   EXPECT_NEAR(c.stiffness_initial.back().reference.mean, expected, 0.01 * expected);
 }
 
+TEST(CompareRelaxations, APackingThatRearrangedUnderRotationIsNamedAndLeftOutBeside) {
+  auto data = synthetic::measurements();
+  for (PackingRun& run : data.runs) {
+    if (run.packing != 3 || run.kind != PairKind::soft_solid || run.relaxation != "published") continue;
+    for (TangentialPoint& p : run.tangential)
+      if (delta_key(p.delta) == delta_key(run.tangential.back().delta)) p.force_parallel *= -20.0;
+  }
+  const auto c = compare_relaxations(data, "published", "damped", PairKind::soft_solid);
+  const RatioRow& row = c.stiffness_initial.back();
+  EXPECT_EQ(row.jumps, 1U);
+  EXPECT_NEAR(row.ratio_without_jumps.ratio, 1.0 / 0.96, 1e-9);
+  EXPECT_EQ(row.reference.n, 8U) << "it stays in the means";
+  EXPECT_LT(row.ratio.ratio, 0.0);
+  EXPECT_EQ(c.stiffness_initial.front().jumps, 0U);
+  EXPECT_EQ(c.stiffness_secant.back().jumps, 0U);
+}
+
 TEST(CompareRelaxations, NamesWhatIsThereWhenOneIsMissing) {
   const auto data = synthetic::measurements();
   const auto message = message_of([&] { compare_relaxations(data, "published", "swift", PairKind::soft_solid); });
