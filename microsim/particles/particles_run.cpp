@@ -105,8 +105,7 @@ void ParticlesRun::begin() {
 
 /// Grains that were neighbours drift apart; watched systems are small and keep their order.
 void ParticlesRun::order_grains() {
-  if (system_.particles.grains >= kOrderedGrains && !watched())
-    reorder_grains(system_, spatial_order(system_));
+  if (system_.particles.grains >= kOrderedGrains && !watched()) reorder_grains(system_, spatial_order(system_));
 }
 
 /// The first step after this one at which there is something to do.
