@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <experimental/simd>
 #include <type_traits>
 
@@ -67,6 +69,15 @@ struct Block {
 /// Position with the radius in the fourth place.
 inline Quad place(const Sphere<3>& s) { return load_quad(&s); }
 inline Quad place(const Sphere<2>& s) { return __builtin_shufflevector(load_quad(&s), Quad{}, 0, 1, 4, 2); }
+
+/// Bit l of the index in byte l.
+constexpr std::array<std::uint32_t, 16> kFlags = [] {
+  std::array<std::uint32_t, 16> flags{};
+  for (std::uint32_t bits = 0; bits < 16; ++bits)
+    for (std::uint32_t l = 0; l < 4; ++l) flags[bits] |= (bits >> l & 1U) << (8 * l);
+  return flags;
+}();
+static_assert(std::endian::native == std::endian::little);
 
 using QuadMask = decltype(Quad{} < Quad{});
 
@@ -199,8 +210,20 @@ class Loop {
         if ((touch >> l & 1) == 0) forget(list_.spring_next, list_.memory_next, u(c[u(l)]));
       return;
     }
-    int had = 0;
     std::uint8_t* const touched = list_.touched.data();
+    int had = 0;
+    if constexpr (!kOrdered) {
+      if (valid == 4) {  // four flags in one word, which seldom changes
+        std::uint32_t old = 0;
+        std::memcpy(&old, touched + c[0], sizeof old);
+        const std::uint32_t now = kFlags[u(touch)];
+        if (old == now) return;
+        std::memcpy(touched + c[0], &now, sizeof now);
+        for (int l = 0; l < 4; ++l)
+          if ((old & ~now) >> (8 * l) & 1U) forget(list_.spring, list_.memory, u(c[u(l)]));
+        return;
+      }
+    }
     for (int l = 0; l < valid; ++l) {
       had |= touched[c[u(l)]] << l;
       touched[c[u(l)]] = static_cast<std::uint8_t>(touch >> l & 1);

@@ -298,6 +298,34 @@ class Search {
   std::array<Vec<D>, static_cast<std::size_t>(image_count<D>())> shift_;
 };
 
+/// Cells rows that a grain of one class looks at in another, about.
+template <int D>
+double rows_seen(const Level<D>& from, const Level<D>& in, const Frame<D>& frame) {
+  double rows = 1.0;
+  for (int k = 1; k < D; ++k) {
+    const auto cells = static_cast<double>(in.cells[static_cast<std::size_t>(k)]);
+    rows *= std::min(cells, 1.0 + 2.0 * (from.reach + in.reach) / frame.width[k] * cells);
+  }
+  return rows;
+}
+
+/// Which of two classes looks for partners in the other: the one that looks at fewer rows in all. A large grain sees
+/// many small cells, but there are few large ones. looks[a][b]: grains of class a look into b.
+template <int D>
+std::vector<std::vector<bool>> who_looks(const std::vector<Level<D>>& levels, const Frame<D>& frame) {
+  std::vector<std::vector<bool>> looks(levels.size(), std::vector<bool>(levels.size(), false));
+  for (std::size_t a = 0; a < levels.size(); ++a) {
+    looks[a][a] = true;
+    for (std::size_t b = a + 1; b < levels.size(); ++b) {
+      const double coarse = static_cast<double>(levels[a].members.size()) * rows_seen(levels[a], levels[b], frame);
+      const double fine = static_cast<double>(levels[b].members.size()) * rows_seen(levels[b], levels[a], frame);
+      looks[a][b] = coarse < fine;
+      looks[b][a] = !looks[a][b];
+    }
+  }
+  return looks;
+}
+
 bool before(const CandidatePair& a, const CandidatePair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; }
 
 /// Counting sort by i, then every run by j.
@@ -340,6 +368,7 @@ std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const 
   const auto levels = make_levels(particles, skin, frame, level_of);
   require_wide_cell(cell, levels.front().reach);
   const Search<D> search(particles, cell, skin, frame);
+  const auto looks = who_looks(levels, frame);
   const Slot pieces = (particles.grains + kPiece - 1) / kPiece;
   std::vector<std::vector<CandidatePair>> found(static_cast<std::size_t>(pieces));
 #pragma omp parallel for schedule(dynamic) if (particles.grains >= kParallelGrains && omp_in_parallel() == 0)
@@ -347,7 +376,8 @@ std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const 
     auto& to = found[static_cast<std::size_t>(piece)];
     for (Slot i = piece * kPiece; i < std::min((piece + 1) * kPiece, particles.grains); ++i) {
       const std::int32_t own = level_of[static_cast<std::size_t>(i)];
-      for (std::int32_t l = 0; l <= own; ++l) search.run(levels[static_cast<std::size_t>(l)], l == own, i, to);
+      for (std::size_t l = 0; l < levels.size(); ++l)
+        if (looks[static_cast<std::size_t>(own)][l]) search.run(levels[l], l == static_cast<std::size_t>(own), i, to);
     }
   }
   std::size_t total = 0;

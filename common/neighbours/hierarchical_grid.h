@@ -21,9 +21,9 @@ template <int D>
 double shortest_period(const Cell<D>& cell);
 
 /// Every pair of grains i < j (slots [0, grains)) with |x_i - x_j| < r_i + r_j + skin_i + skin_j, each once,
-/// sorted by i, then j. Size classes halve the radius; a grain looks into its own class
-/// and all coarser ones. Images of a body must be at least two diameters of the largest grain with skin apart (throws
-/// BadInput): a pair then meets in one image only.
+/// sorted by i, then j. Size classes halve the radius; of two
+/// classes the one that has less to look at searches the other. Images of a body must be at least two diameters of the
+/// largest grain with skin apart (throws BadInput): a pair then meets in one image only.
 template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
                                            const std::vector<double>& skin);

@@ -1,5 +1,6 @@
 #include "common/state/system_io.h"
 
+#include <algorithm>
 #include <string>
 
 #include "common/core/error.h"
@@ -78,6 +79,7 @@ void write_bodies(const h5::Group& g, const Particles<D>& p) {
   g.write("inverse_inertia", p.inverse_inertia);
   write_slots(g, "material", p.material);
   write_slots(g, "shell", p.shell);
+  write_slots(g, "id", p.id);
   write_vectors(g, "plane_normal", p.plane_normal);
   g.write("plane_load", p.plane_load);
 }
@@ -88,6 +90,17 @@ void read_counts(const h5::Group& g, Particles<D>& p) {
   p.grains = counts[0];
   p.shells = counts[1];
   p.planes = counts[2];
+}
+
+/// Empty, or every number below `grains` once.
+std::vector<std::int32_t> read_ids(const h5::Group& g, std::int32_t grains) {
+  const std::size_t many = g.integers("id").size();
+  if (many == 0) return {};
+  std::vector<std::int32_t> id = read_slots(g, "id", static_cast<std::size_t>(grains), 0, grains);
+  std::vector<bool> seen(id.size());
+  for (const std::int32_t k : id) seen[static_cast<std::size_t>(k)] = true;
+  if (std::find(seen.begin(), seen.end(), false) != seen.end()) damaged("id");
+  return id;
 }
 
 template <int D>
@@ -109,6 +122,7 @@ void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
   p.inverse_inertia = read_numbers(g, "inverse_inertia", n);
   p.material = read_slots(g, "material", n, 0, materials);
   p.shell = read_slots(g, "shell", n, -1, p.size());
+  p.id = read_ids(g, p.grains);
   p.plane_normal = read_vectors<D>(g, "plane_normal", static_cast<std::size_t>(p.planes));
   p.plane_load = read_numbers(g, "plane_load", static_cast<std::size_t>(p.planes));
 }

@@ -1,5 +1,6 @@
 #include "microsim/particles/particles_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -8,6 +9,7 @@
 #include "common/core/error.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
+#include "common/neighbours/spatial_order.h"
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
 #include "microsim/particles/scene_memory.h"
@@ -18,6 +20,13 @@ namespace {
 
 /// Steps between two looks at whether all is sound, and reports of progress.
 constexpr std::int64_t kCheckInterval = 64;
+
+/// Grains are put into spatial order from this many on, at the start and every so many steps.
+constexpr Slot kOrderedGrains = 2000;
+constexpr std::int64_t kOrderInterval = 8192;
+
+/// Grains times steps between two looks for a signal.
+constexpr std::int64_t kGrainStepsPerLook = 4'000'000;
 
 using Clock = std::chrono::steady_clock;
 
@@ -34,6 +43,8 @@ class ParticlesRun {
 
  private:
   void begin();
+  void order_grains();
+  [[nodiscard]] std::int64_t next_event(std::int64_t end) const;
   bool restore();
   void advance();
   LoopPart advance_to(std::int64_t step);
@@ -86,9 +97,27 @@ bool ParticlesRun::restore() {
 void ParticlesRun::begin() {
   system_ = scene_.system;
   if (restore()) return;
+  order_grains();
   integrator_.initialise(system_);
   if (watched()) monitor_.observe(system_);
   record();
+}
+
+/// Grains that were neighbours drift apart; watched systems are small and keep their order.
+void ParticlesRun::order_grains() {
+  if (system_.particles.grains >= kOrderedGrains && !watched()) reorder_grains(system_, spatial_order(system_));
+}
+
+/// The first step after this one at which there is something to do.
+std::int64_t ParticlesRun::next_event(std::int64_t end) const {
+  if (watched()) return system_.step + 1;
+  const auto next = [&](std::int64_t interval) {
+    return interval > 0 ? (system_.step / interval + 1) * interval : end;
+  };
+  // A signal is answered within a second or so, however many grains there are.
+  const std::int64_t patience = std::max<std::int64_t>(1, kGrainStepsPerLook / (system_.particles.grains + 1));
+  return std::min({end, next(kCheckInterval), next(kOrderInterval), next(scene_.output_stride),
+                   next(scene_.checkpoint_steps), system_.step + patience});
 }
 
 /// No number is lost and nothing moves its own radius in a step: it would pass through others unseen.
@@ -100,7 +129,7 @@ void ParticlesRun::require_sound() const {
     if (std::isfinite(move) && std::isfinite(norm2(p.sphere[u].x)) && std::isfinite(norm2(p.spin[u])) &&
         move < p.sphere[u].r)
       continue;
-    throw NotUsable("particle " + std::to_string(i) + " is lost: " +
+    throw NotUsable("particle " + std::to_string(p.id.empty() ? i : p.id[u]) + " is lost: " +
                     (std::isfinite(move) ? "it moves more than its radius in one step" : "its motion is not finite"));
   }
 }
@@ -140,7 +169,8 @@ LoopPart ParticlesRun::advance_to(std::int64_t step) {
   const std::clock_t cpu_from = std::clock();
   LoopPart part{-system_.step, 0.0, 0.0, -system_.cost.contact_evaluations, -system_.neighbours.rebuilds};
   while (system_.step < step) {
-    integrator_.step(system_);
+    integrator_.advance(system_, next_event(step) - system_.step);
+    if (system_.step % kOrderInterval == 0) order_grains();
     observe();
     save_if_due();
   }
@@ -161,6 +191,7 @@ void ParticlesRun::advance() {
 ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
   const double peak = peak_memory();  // before the copies that are made for output
   count_time();
+  restore_order(system_);
   record();
   return {std::move(system_),
           std::move(trajectory_),

@@ -3,6 +3,8 @@
 #include <array>
 #include <span>
 
+#include "common/neighbours/spatial_order.h"
+
 namespace softgrain {
 
 namespace {
@@ -36,7 +38,8 @@ void record_frame(Trajectory& t, const System3& s) {
   double translational = 0.0;
   double rotational = 0.0;
   double gravitational = 0.0;
-  for (std::size_t u = 0; u < static_cast<std::size_t>(p.grains); ++u) {
+  for (const Slot slot : slots_by_id(p)) {
+    const auto u = static_cast<std::size_t>(slot);
     append(t.position, p.sphere[u].x);
     append(t.velocity, p.velocity[u]);
     append(t.spin, p.spin[u]);

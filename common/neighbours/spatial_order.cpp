@@ -1,0 +1,183 @@
+#include "common/neighbours/spatial_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "common/neighbours/verlet_list.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Bits of a coordinate on the curve.
+constexpr int kBits = 16;
+
+struct Place {
+  int size_class = 0;
+  std::uint64_t curve = 0;
+  Slot slot = 0;
+
+  friend bool operator<(const Place& a, const Place& b) {
+    if (a.size_class != b.size_class) return a.size_class < b.size_class;
+    return a.curve != b.curve ? a.curve < b.curve : a.slot < b.slot;
+  }
+};
+
+template <int D>
+std::uint64_t morton(const Vec<D>& unit) {
+  std::uint64_t code = 0;
+  for (int bit = kBits - 1; bit >= 0; --bit)
+    for (int k = 0; k < D; ++k) {
+      const double whole = std::clamp(std::floor(unit[k] * (1 << kBits)), 0.0, static_cast<double>((1 << kBits) - 1));
+      code = code << 1 | (static_cast<std::uint64_t>(whole) >> bit & 1U);
+    }
+  return code;
+}
+
+/// Coordinates in the cell (periodic axes) or in the box around all grains (open ones), 0 to 1.
+template <int D>
+std::vector<Vec<D>> unit_places(const System<D>& s) {
+  std::vector<Vec<D>> unit;
+  for (Slot i = 0; i < s.particles.grains; ++i)
+    unit.push_back(s.cell.fractional(s.particles.sphere[static_cast<std::size_t>(i)].x));
+  for (int k = 0; k < D; ++k) {
+    if (s.cell.periodic[static_cast<std::size_t>(k)]) {
+      for (Vec<D>& u : unit) u[k] -= std::floor(u[k]);
+      continue;
+    }
+    double low = unit.front()[k];
+    double high = low;
+    for (const Vec<D>& u : unit) {
+      low = std::min(low, u[k]);
+      high = std::max(high, u[k]);
+    }
+    for (Vec<D>& u : unit) u[k] = high > low ? (u[k] - low) / (high - low) : 0.0;
+  }
+  return unit;
+}
+
+template <class T>
+void permute(std::vector<T>& values, const std::vector<Slot>& order) {
+  if (values.empty()) return;
+  std::vector<T> out(values);
+  for (std::size_t k = 0; k < order.size(); ++k) out[k] = values[static_cast<std::size_t>(order[k])];
+  values.swap(out);
+}
+
+/// A pair under its new names.
+template <int D>
+struct RenamedPair {
+  Slot i = 0;
+  Slot j = 0;
+  std::int32_t image = 0;
+  Stored<D> spring{};
+  double memory = 0.0;
+};
+
+/// The body with the smaller slot is i: where that changes, the pair is seen from the other side.
+template <int D>
+RenamedPair<D> renamed(const ContactList<D>& list, std::size_t c, const std::vector<Slot>& slot_of) {
+  const auto name = [&](Slot s) {
+    return s < static_cast<Slot>(slot_of.size()) ? slot_of[static_cast<std::size_t>(s)] : s;
+  };
+  RenamedPair<D> pair{name(list.i[c]), name(list.j[c]), list.image[c], {}, 0.0};
+  if (list.has_spring) pair.spring = list.spring[c];
+  if (list.has_memory) pair.memory = list.memory[c];
+  if (pair.i < pair.j) return pair;
+  std::swap(pair.i, pair.j);
+  pair.image = image_count<D>() - 1 - pair.image;
+  pair.spring = -pair.spring;
+  return pair;
+}
+
+template <int D>
+void rename_pairs(System<D>& s, const std::vector<Slot>& order) {
+  ContactList<D>& list = s.contacts;
+  std::vector<Slot> slot_of(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) slot_of[static_cast<std::size_t>(order[k])] = static_cast<Slot>(k);
+  std::vector<RenamedPair<D>> pairs;
+  for (std::size_t c = 0; c < list.i.size(); ++c) pairs.push_back(renamed(list, c, slot_of));
+  for (const ContactSection& section : list.sections)
+    std::sort(pairs.begin() + section.begin, pairs.begin() + section.end,
+              [](const auto& a, const auto& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
+  for (std::size_t c = 0; c < pairs.size(); ++c) {
+    list.i[c] = pairs[c].i;
+    list.j[c] = pairs[c].j;
+    list.image[c] = pairs[c].image;
+  }
+  adopt_list(s);
+  for (std::size_t c = 0; c < pairs.size(); ++c) {
+    if (list.has_spring) list.spring[c] = pairs[c].spring;
+    if (list.has_memory) list.memory[c] = pairs[c].memory;
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Slot> spatial_order(const System<D>& s) {
+  const auto& p = s.particles;
+  std::vector<Slot> order;
+  if (p.grains == 0) return order;
+  double smallest = p.sphere[0].r;
+  for (Slot i = 1; i < p.grains; ++i) smallest = std::min(smallest, p.sphere[static_cast<std::size_t>(i)].r);
+  const std::vector<Vec<D>> unit = unit_places(s);
+  std::vector<Place> places;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    places.push_back({std::ilogb(p.sphere[u].r / smallest), morton<D>(unit[u]), i});
+  }
+  std::sort(places.begin(), places.end());
+  for (const Place& place : places) order.push_back(place.slot);
+  return order;
+}
+
+template <int D>
+void reorder_grains(System<D>& s, const std::vector<Slot>& order) {
+  auto& p = s.particles;
+  if (p.id.empty()) {
+    p.id.resize(order.size());
+    std::iota(p.id.begin(), p.id.end(), 0);
+  }
+  permute(p.id, order);
+  permute(p.sphere, order);
+  permute(p.velocity, order);
+  permute(p.spin, order);
+  permute(p.force, order);
+  permute(p.torque, order);
+  permute(p.inverse_mass, order);
+  permute(p.inverse_inertia, order);
+  permute(p.material, order);
+  permute(p.shell, order);
+  permute(s.neighbours.reference, order);
+  permute(s.neighbours.skin, order);
+  if (!s.neighbours.reference.empty()) rename_pairs(s, order);
+}
+
+template <int D>
+void restore_order(System<D>& s) {
+  if (s.particles.id.empty()) return;
+  reorder_grains(s, slots_by_id(s.particles));
+  s.particles.id.clear();
+}
+
+template <int D>
+std::vector<Slot> slots_by_id(const Particles<D>& p) {
+  std::vector<Slot> slots(static_cast<std::size_t>(p.grains));
+  std::iota(slots.begin(), slots.end(), 0);
+  for (std::size_t u = 0; u < p.id.size(); ++u) slots[static_cast<std::size_t>(p.id[u])] = static_cast<Slot>(u);
+  return slots;
+}
+
+template std::vector<Slot> spatial_order<2>(const System<2>&);
+template std::vector<Slot> spatial_order<3>(const System<3>&);
+template void reorder_grains<2>(System<2>&, const std::vector<Slot>&);
+template void reorder_grains<3>(System<3>&, const std::vector<Slot>&);
+template void restore_order<2>(System<2>&);
+template void restore_order<3>(System<3>&);
+template std::vector<Slot> slots_by_id<2>(const Particles<2>&);
+template std::vector<Slot> slots_by_id<3>(const Particles<3>&);
+
+}  // namespace softgrain
