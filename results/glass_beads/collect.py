@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Tables of grain-box runs: collect.py RUN_DIR... > tables.md. Standard library only.
+"""Tables of grain-box runs: collect.py RUN_DIR... for one part of tables.md. Standard library only (Python 3.11 or later).
 
 Reads summary.json of every run directory and sets their packs side by side. RUN_DIR=NAME renames the pack of a run of one.
 """
 import json
 import os
 import sys
+import tomllib
 
 STRESSES = [10e6, 15e6, 20e6, 30e6, 40e6, 60e6, 80e6, 100e6]
 
@@ -25,6 +26,10 @@ def text(value, digits=3):
     return "-" if value is None else f"{value:.{digits}g}"
 
 
+def in_mpa(value):
+    return None if value is None else value / 1e6
+
+
 def row(cells):
     print("| " + " | ".join(cells) + " |")
 
@@ -37,14 +42,14 @@ def header(cells):
 def states(packs):
     header(["pack", "grains", "mu", "increment", "sigma_c(mu=0) [MPa]", "solid fraction", "z", "sigma_c at end of (b) [MPa]",
             "sliding there", "sigma_c at end [MPa]", "sliding at end", "with Q = mu P as it is", "z at end",
-            "largest shear/sigma_c"])
+            "sigma_c of smallest G [MPa]", "largest shear/sigma_c"])
     for pack, _ in packs:
         a, b, c = pack["after_compaction"], pack["after_friction"] or pack["after_compaction"], pack["at_end"]
         row([pack["name"], str(pack["grains"]), str(pack["mu"]), ", ".join(f"{x:g}" for x in pack["increments"]),
              text(a["pressure"] / 1e6), text(a["solid_fraction"], 4), text(a["coordination"], 4), text(b["pressure"] / 1e6),
              text(b["sliding_share"]), text(c["pressure"] / 1e6, 4) if c else "-", text(c["sliding_share"]) if c else "-",
              text(pack.get("share_at_current_limit_at_end")), text(c["coordination"], 4) if c else "-",
-             text(pack["largest_shear_stress_ratio"], 2)])
+             text(in_mpa(pack["pressure_of_smallest_G"])), text(pack["largest_shear_stress_ratio"], 2)])
 
 
 def moduli(packs, name):
@@ -59,7 +64,9 @@ def moduli(packs, name):
 
 
 def exponents(packs):
-    header(["growth exponent", "K, 10 to 30 MPa", "K, 50 to 130 MPa", "G, 10 to 30 MPa", "G, 50 to 130 MPa"])
+    fit = tomllib.loads(packs[0][1]["provenance"]["scene"])["fit"]
+    low, high = (" to ".join(fit[k]) for k in ("low", "high"))
+    header(["growth exponent", f"K, {low}", f"K, {high}", f"G, {low}", f"G, {high}"])
     for pack, _ in packs:
         e = pack["exponents"]
         row([pack["name"]] + [
