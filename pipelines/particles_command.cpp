@@ -1,6 +1,7 @@
 #include "pipelines/particles_command.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "common/io/progress.h"
 #include "common/state/checkpoint.h"
@@ -15,14 +16,14 @@ namespace {
 
 using nlohmann::json;
 
-ParticlesResult run_with_progress(const ParticlesScene& scene, const RunContext& context) {
+ParticlesResult run_with_progress(const ParticlesScene& scene, System3 start, const RunContext& context) {
   Progress progress("particles", static_cast<double>(scene.time.steps), context.quiet());
   ParticlesControl control;
   control.checkpoint = context.path("checkpoint.h5");
   control.resume = context.resume();
   control.say = [&](const std::string& line) { context.say(line); };
   control.progress = [&](std::int64_t step) { progress.set(static_cast<double>(step)); };
-  ParticlesResult result = run_particles(scene, control);
+  ParticlesResult result = run_particles(scene, std::move(start), control);
   progress.finish();
   return result;
 }
@@ -31,10 +32,10 @@ ParticlesResult run_with_progress(const ParticlesScene& scene, const RunContext&
 
 ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
-  const ParticlesScene setup = read_particles_scene(scene);
+  ParticlesScene setup = read_particles_scene(scene);
   const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
   const Provenance provenance = context.provenance(scene, context.seed(0));
-  const ParticlesResult result = run_with_progress(setup, context);
+  const ParticlesResult result = run_with_progress(setup, std::move(setup.system), context);
   json summary = particles_summary(setup, result, memory_before);
   std::string text = particles_text(result);
   if (setup.record) {

@@ -328,16 +328,20 @@ std::vector<std::vector<bool>> who_looks(const std::vector<Level<D>>& levels, co
 
 bool before(const CandidatePair& a, const CandidatePair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; }
 
-/// Counting sort by i, then every run by j.
-void sort_pairs(std::vector<CandidatePair>& pairs, std::size_t grains) {
-  std::vector<std::int32_t> start(grains + 1, 0);
-  for (const CandidatePair& c : pairs) ++start[static_cast<std::size_t>(c.i) + 1];
-  for (std::size_t g = 1; g <= grains; ++g) start[g] += start[g - 1];
-  std::vector<CandidatePair> sorted(pairs.size());
-  std::vector<std::int32_t> next(start.begin(), start.end() - 1);
-  for (const CandidatePair& c : pairs) sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(c.i)]++)] = c;
-  for (std::size_t g = 0; g < grains; ++g) std::sort(sorted.begin() + start[g], sorted.begin() + start[g + 1], before);
-  pairs.swap(sorted);
+/// Counting sort by i, then every run by j. Pieces are given back as they are used up.
+std::vector<CandidatePair> sorted_pairs(std::vector<std::vector<CandidatePair>>& pieces, std::size_t grains) {
+  std::vector<std::int32_t> next(grains + 1, 0);
+  for (const auto& piece : pieces)
+    for (const CandidatePair& c : piece) ++next[static_cast<std::size_t>(c.i) + 1];
+  for (std::size_t g = 1; g <= grains; ++g) next[g] += next[g - 1];
+  std::vector<CandidatePair> sorted(static_cast<std::size_t>(next[grains]));
+  for (auto& piece : pieces) {
+    for (const CandidatePair& c : piece) sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(c.i)]++)] = c;
+    std::vector<CandidatePair>().swap(piece);
+  }
+  for (std::size_t g = 0; g < grains; ++g)  // next[g] is now where the run of g ends
+    std::sort(sorted.begin() + (g == 0 ? 0 : next[g - 1]), sorted.begin() + next[g], before);
+  return sorted;
 }
 
 /// Grains per piece of work; pieces are joined in order, so the result does not depend on the threads.
@@ -361,8 +365,7 @@ double shortest_period(const Cell<D>& cell) {
 template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
                                            const std::vector<double>& skin) {
-  std::vector<CandidatePair> out;
-  if (particles.grains < 2) return out;
+  if (particles.grains < 2) return {};
   const Frame<D> frame = make_frame(particles, cell);
   std::vector<std::int32_t> level_of;
   const auto levels = make_levels(particles, skin, frame, level_of);
@@ -380,12 +383,7 @@ std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const 
         if (looks[static_cast<std::size_t>(own)][l]) search.run(levels[l], l == static_cast<std::size_t>(own), i, to);
     }
   }
-  std::size_t total = 0;
-  for (const auto& part : found) total += part.size();
-  out.reserve(total);
-  for (const auto& part : found) out.insert(out.end(), part.begin(), part.end());
-  sort_pairs(out, static_cast<std::size_t>(particles.grains));
-  return out;
+  return sorted_pairs(found, static_cast<std::size_t>(particles.grains));
 }
 
 template <int D>

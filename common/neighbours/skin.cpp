@@ -122,7 +122,7 @@ double touching_pairs(const System<D>& s) {
 
 // What making a list costs, in looks at a pair that does not touch: measured on scenes A, B and C
 // (results/performance).
-constexpr double kPerGrain = 250.0;
+constexpr double kPerGrain = 120.0;
 constexpr double kPerPair = 15.0;
 
 /// The number of passes between two lists that costs least: per pass extra pairs cost `near` N/n, lists `build`/N.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 #include <sstream>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/dynamics/verlet.h"
@@ -32,9 +33,10 @@ using Clock = std::chrono::steady_clock;
 
 class ParticlesRun {
  public:
-  ParticlesRun(const ParticlesScene& scene, const ParticlesControl& control)
+  ParticlesRun(const ParticlesScene& scene, System3 start, const ParticlesControl& control)
       : scene_(scene),
         control_(control),
+        system_(std::move(start)),
         integrator_(scene.time.step),
         due_(scene.checkpoint_seconds),
         started_(Clock::now()) {}
@@ -95,7 +97,6 @@ bool ParticlesRun::restore() {
 }
 
 void ParticlesRun::begin() {
-  system_ = scene_.system;
   if (restore()) return;
   order_grains();
   integrator_.initialise(system_);
@@ -219,8 +220,12 @@ ParticlesResult ParticlesRun::run() {
 
 }  // namespace
 
+ParticlesResult run_particles(const ParticlesScene& scene, System3 start, const ParticlesControl& control) {
+  return ParticlesRun(scene, std::move(start), control).run();
+}
+
 ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control) {
-  return ParticlesRun(scene, control).run();
+  return run_particles(scene, scene.system, control);
 }
 
 namespace {

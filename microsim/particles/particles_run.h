@@ -49,6 +49,9 @@ struct ParticlesResult {
 /// checkpoint.
 ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control);
 
+/// The same from a state that is handed over, so that large scenes are not in memory twice.
+ParticlesResult run_particles(const ParticlesScene& scene, System3 start, const ParticlesControl& control);
+
 /// run.h5: provenance, bodies, trajectory, contacts, and the final state in full. Atomic. Throws FileTrouble.
 void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result,
                         const Provenance& provenance);

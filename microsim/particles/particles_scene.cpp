@@ -114,7 +114,7 @@ ParticlesScene read_particles_scene(const Scene& scene) {
   require_contacts(scene, s);
   require_walls_solid(scene, s, laws.description);
   out.time = read_time(root.table("time"), s, laws.description);
-  require_wide_cell(root, s.particles, s.cell, out.time.end);
+  require_wide_cell(root, s.particles, s.cell);
   read_output(root.table_or_empty("output"), out);
   read_checkpoint(root.table_or_empty("checkpoint"), out);
   root.finish();

@@ -46,19 +46,17 @@ Cell<3> read_cell(const SceneTable& root, const SceneBodies& bodies) {
   return cell;
 }
 
-void require_wide_cell(const SceneTable& root, const Particles<3>& p, const Cell<3>& cell, double end) {
+void require_wide_cell(const SceneTable& root, const Particles<3>& p, const Cell<3>& cell) {
   if (!cell.any_periodic()) return;
   double largest = 0.0;
   for (Slot i = 0; i < p.grains; ++i) largest = std::max(largest, p.sphere[static_cast<std::size_t>(i)].r);
-  // Beyond half an edge the cell is replaced by the equivalent one that leans the other way.
-  const double tilt = std::min(0.5, std::abs(cell.velocity_gradient[0][1]) * end);
+  // Shear does not bring images nearer: beyond half an edge the cell is replaced by the one that leans the other way.
   for (int k = 0; k < 3; ++k) {
     if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
-    const double width = cell.edges[k][k] / (k == 0 ? std::sqrt(1.0 + tilt * tilt) : 1.0);
+    const double width = cell.edges[k][k];
     if (width >= 4.0 * largest) continue;
     root.table("cell").reject("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " + std::to_string(width) +
-                                          " m wide" + (k == 0 && tilt > 0.0 ? " when sheared" : "") +
-                                          "; allowed: at least " + std::to_string(4.0 * largest) +
+                                          " m wide; allowed: at least " + std::to_string(4.0 * largest) +
                                           " m, two diameters of the largest particle");
   }
 }

@@ -12,8 +12,8 @@ namespace softgrain {
 /// everywhere. Throws BadInput.
 Cell<3> read_cell(const SceneTable& root, const SceneBodies& bodies);
 
-/// A grain may meet each neighbour under one image alone: throws BadInput when a periodic axis becomes narrower than
-/// two diameters of the largest grain, at the largest tilt that the shear reaches until `end` [s].
-void require_wide_cell(const SceneTable& root, const Particles<3>& particles, const Cell<3>& cell, double end);
+/// A grain may meet each neighbour under one image alone: throws BadInput when a periodic axis is narrower than two
+/// diameters of the largest grain.
+void require_wide_cell(const SceneTable& root, const Particles<3>& particles, const Cell<3>& cell);
 
 }  // namespace softgrain

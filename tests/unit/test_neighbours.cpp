@@ -95,6 +95,18 @@ TEST(Neighbours, ANarrowPeriodicCellIsRefused) {
   EXPECT_THROW((void)candidate_pairs(p, cell, {0.0, 0.0}), BadInput);
 }
 
+/// Images stay two diameters apart however the cell leans, though its faces come nearer.
+TEST(Neighbours, ALeaningCellNeedsNoMoreRoom) {
+  Cell<3> cell = box_cell<3>({{4.1, 4.1, 4.1}}, {true, true, true});
+  cell.edges[0][1] = 2.05;
+  cell.edges[0][2] = -1.9;
+  cell.edges[1][2] = 1.5;
+  EXPECT_GE(shortest_period(cell), 4.1);
+  const Particles<3> p = cloud<3>(cell, 60, 4.0, 11);
+  const std::vector<double> skin(60, 0.02);
+  EXPECT_EQ(sorted(candidate_pairs(p, cell, skin)), sorted(candidate_pairs_brute_force(p, cell, skin)));
+}
+
 /// Every touching pair is in the list, at every step, with its image.
 template <int D>
 void expect_complete_list(const System<D>& s) {
