@@ -183,31 +183,53 @@ void fit_skin_to_cell(System<D>& s) {
   }
 }
 
+/// What bodies have used up of their margins [m], largest per size class of grains; walls go by themselves.
+template <int D>
+class UsedUp {
+ public:
+  explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
+    const Uses<D> uses(s);
+    used_.resize(s.particles.sphere.size());
+    for (std::size_t u = 0; u < used_.size(); ++u) {
+      used_[u] = uses.of(u) * s.neighbours.skin[u];
+      known_ = known_ && std::isfinite(used_[u]);
+      if (static_cast<Slot>(u) >= grains_) continue;
+      double& most = of_class_[class_of(s.particles.sphere[u].r, smallest_)];
+      most = std::max(most, used_[u]);
+    }
+  }
+
+  [[nodiscard]] bool known() const { return known_; }
+  [[nodiscard]] double smallest() const { return smallest_; }
+  [[nodiscard]] double of(std::size_t u, double r) const {
+    return static_cast<Slot>(u) < grains_ ? of_class_[class_of(r, smallest_)] : used_[u];
+  }
+
+ private:
+  double smallest_;
+  Slot grains_;
+  bool known_ = true;
+  std::array<double, kClasses> of_class_{};
+  std::vector<double> used_;
+};
+
 template <int D>
 void adapt_skin(System<D>& s) {
   NeighbourState<D>& n = s.neighbours;
   const auto& p = s.particles;
-  const auto grains = static_cast<std::size_t>(p.grains);
   const auto passes = static_cast<double>(s.cost.loop_passes - n.passes_at_build);
-  if (!follows_cell(s) || n.reference.size() != p.sphere.size() || !(passes >= 2.0) || grains < 2) return;
-  const double smallest = smallest_radius(p);
-  std::array<double, kClasses> most{};  // used up by a body of the class [m]
-  const Uses<D> uses(s);
-  for (std::size_t u = 0; u < grains; ++u) {
-    double& m = most[class_of(p.sphere[u].r, smallest)];
-    const double used = uses.of(u) * n.skin[u];
-    if (!std::isfinite(used)) return;
-    m = std::max(m, used);
-  }
+  if (n.reference.size() != p.sphere.size() || !(passes >= 2.0) || p.grains < 2) return;
+  const UsedUp<D> used(s);
+  if (!used.known()) return;
   const auto listed = static_cast<double>(s.contacts.size());
-  const double build = kPerGrain * static_cast<double>(grains) + kPerPair * listed;
+  const double build = kPerGrain * static_cast<double>(p.grains) + kPerPair * listed;
   const double target = best_interval(listed - touching_pairs(s), build, passes);
   const double stretch = std::clamp(target / passes, 1.0 / kFastestChange, kFastestChange);
-  for (std::size_t u = 0; u < grains; ++u) {
+  for (std::size_t u = 0; u < n.skin.size(); ++u) {
     const double r = p.sphere[u].r;
-    const double wanted = most[class_of(r, smallest)] * stretch;
-    const double limited = std::clamp(wanted, n.skin[u] / kFastestChange, n.skin[u] * kFastestChange);
-    n.skin[u] = std::max(std::min({limited, kWidest * r, kWidestInSmallest * smallest}), kNarrowest * smallest);
+    const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * kFastestChange);
+    const double widest = std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
+    n.skin[u] = std::max(std::min(limited, widest), kNarrowest * used.smallest());
   }
 }
 
