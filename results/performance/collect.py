@@ -228,7 +228,7 @@ COLOURS = {"sums and products": "#0072b2", "roots, divisions": "#d55e00", "gathe
 def picture(loop):
     """Counted work as bars, one part after the other; what was measured as marks."""
     names = [name for name in CASES if loop.ns(name) is not None]
-    left, top, height, width = 250, 46, 26, 480
+    left, top, height, width = 275, 46, 26, 480
     longest = max(max(loop.ns(name), sum(loop.parts(name).values())) for name in names)
     scale = width / (5 * (int(longest / 5) + 1))
     out = []
@@ -261,7 +261,7 @@ def picture(loop):
                f'<text x="{x + 100}" y="20">program for that scene alone</text>')
     bottom = top + height * len(names)
     out.append(f'<text x="{left + width / 2}" y="{bottom + 34}" text-anchor="middle">ns per touching contact</text>')
-    size = f'width="{left + width + 60}" height="{bottom + 44}"'
+    size = f'width="{left + width + 100}" height="{bottom + 44}"'
     return (f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif" font-size="12">\n'
             '<title>Counted and measured time of the contact loop</title>\n<rect width="100%" height="100%" fill="#fff"/>\n'
             + "\n".join(out) + "\n</svg>\n")
