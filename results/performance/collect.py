@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+"""README.md and floor.svg of this folder from what was measured: python3 results/performance/collect.py DIRECTORY
+
+DIRECTORY holds what text.md says how to make, each left out with a word when it is not there:
+  loop.json     bench_softgrain --benchmark_filter='Contact|Bare|Roofline' --benchmark_format=json
+  scaling.json  tests/bench/scaling --json
+  engines.json  tests/bench/compare_engines --json
+  instructions.json  the same with --callgrind, when counted in another run
+"""
+import json
+import pathlib
+import re
+import sys
+
+HERE = pathlib.Path(__file__).parent
+
+
+class Work:
+    """Operations of one scene, counted by hand in common/dynamics/hertz_block.cpp: what the physics needs, not what the
+    loop happens to do. Per listed pair, then per touching contact. A gather is a record of 32 bytes of a body, a scatter
+    one that is added to; streams are bytes of the list, once each."""
+
+    def __init__(self, pair_flops, flops, roots, divisions, gathers, scatters, pair_bytes, bytes_):
+        self.pair_flops, self.flops, self.roots, self.divisions = pair_flops, flops, roots, divisions
+        self.gathers, self.scatters, self.pair_bytes, self.bytes = gathers, scatters, pair_bytes, bytes_
+
+    def times(self, machine, listed, locality):
+        """ns per touching contact of each kind of work; `listed`: listed pairs per contact."""
+        return {"sums and products": (self.flops + listed * self.pair_flops) * machine["RooflineFlop"],
+                "roots, divisions": self.roots * machine["RooflineRoot"] + self.divisions * machine["RooflineDivision"],
+                "gathers": (self.gathers + 2 * listed) * machine[f"RooflineGather/{locality}"],
+                "scatters": self.scatters * machine[f"RooflineScatter/{locality}"],
+                "list": (self.bytes + listed * self.pair_bytes) * machine["RooflineRead/6291456"]}
+
+
+# Distance and test of a pair 14 (11 without periodicity); elastic 15 and 6 to add; motion of two points 35, spring and
+# limit 50, dashpot 3 along and 12 across the normal, total and moment 12, torques 12.
+FULL = Work(14, 145, 4, 2, 4, 4, 13, 80)
+ELASTIC = Work(14, 21, 2, 1, 0, 2, 12, 16)
+CASES = {  # benchmark: words, work
+    "ContactLoop/full": ("full: friction, damping, rotation, periodic", FULL),
+    "ContactLoop/as_read": ("full, grains in the order of the file", FULL),
+    "ContactLoop/undamped": ("no damping", Work(14, 130, 3, 2, 4, 4, 13, 80)),
+    "ContactLoop/frictionless": ("no friction, no rotation", Work(14, 35, 3, 1, 2, 2, 12, 16)),
+    "ContactLoop/frictionless_undamped": ("neither", ELASTIC),
+    "ContactLoop/frictionless_undamped_as_read": ("neither, in the order of the file", ELASTIC),
+    "ContactLoop/rescaled": ("rescaled spring", Work(14, 150, 4, 3, 4, 4, 13, 96)),
+    "ContactLoop/open_cell": ("open cell", Work(11, 142, 4, 2, 4, 4, 9, 80)),
+    "ContactLoop/polydisperse": ("radii 0.1-1 m (scene B)", FULL),
+    "ContactLoopDiscs/full": ("2D", Work(10, 85, 4, 2, 3, 3, 13, 48)),
+    "ContactLoopDiscs/frictionless_undamped": ("2D, neither friction nor damping", Work(10, 15, 2, 1, 0, 2, 12, 16)),
+}
+OTHERS = {  # no count by hand: what they are compared with
+    "ContactLoopScalar/full": ("scalar loop, full", "ContactLoop/full"),
+    "ContactLoopScalar/frictionless_undamped": ("scalar loop, neither", "ContactLoop/frictionless_undamped"),
+    "ContactLoopWalls/full": ("walls only (scalar), full", "ContactLoopScalar/full"),
+    "ContactLoopWalls/frictionless_undamped": ("walls only (scalar), neither", "ContactLoopScalar/frictionless_undamped"),
+    "ContactLoopOutput/full": ("pass and records of all contacts", "ContactLoop/full"),
+    "ContactLoopStiffnessOff/full": ("pass, list looked at, forces set to zero", "ContactLoop/full"),
+    "ContactLoopStiffnessOn/full": ("the same with sums of stiffness", "ContactLoopStiffnessOff/full"),
+    "ContactLoopSoft/touching": ("soft grains, threshold 0.001", "ContactLoopScalar/full"),
+}
+SOFT = {"ContactLoopSoft/below_threshold": "threshold 0.1, margins as scene A has them",
+        "ContactLoopSoft/below_threshold_listed": "threshold 0.1, margins of 0.2 m"}
+BARE = {"ContactLoop/full": "BareFull/sorted", "ContactLoop/as_read": "BareFull/as_read",
+        "ContactLoop/frictionless_undamped": "BareElastic/sorted",
+        "ContactLoop/frictionless_undamped_as_read": "BareElastic/as_read"}
+MACHINE = {
+    "RooflineFlop": "sum or product", "RooflineRoot": "square root", "RooflineDivision": "division",
+    "RooflineGather/anywhere": "record gathered, random body", "RooflineGather/nearby": "record gathered, body near the last",
+    "RooflineScatter/anywhere": "record added to, random body", "RooflineScatter/nearby": "record added to, body near the last",
+    "RooflineRead/6291456": "byte read, 6 MB", "RooflineRead/268435456": "byte read, 256 MB",
+    "RooflineUpdate/6291456": "byte updated, 6 MB", "RooflineUpdate/268435456": "byte updated, 256 MB",
+}
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+class Loop:
+    """Medians of the repetitions of every benchmark."""
+
+    def __init__(self, report):
+        runs = {}
+        for b in report["benchmarks"]:
+            if b.get("run_type", "iteration") == "iteration" and not b.get("error_occurred"):
+                runs.setdefault(b["run_name"], []).append(b)
+        self.rows = {name: sorted(of, key=lambda b: b["cpu_time"])[(len(of) - 1) // 2] for name, of in runs.items()}
+        self.machine = {name: 1e9 * self.rows[name]["each"] for name in MACHINE if name in self.rows}
+
+    def ns(self, name, counter="per_contact"):
+        row = self.rows.get(name)
+        return 1e9 * row[counter] if row and counter in row else None
+
+    def parts(self, name):
+        row = self.rows[name]
+        locality = "anywhere" if name.endswith("as_read") else "nearby"
+        return CASES[name][1].times(self.machine, row["listed"] / row["touching"], locality)
+
+
+def number(x, digits=1):
+    return "-" if x is None else f"{x:.{digits}f}"
+
+
+def feature_rows(loop):
+    reference = {False: "ContactLoop/full", True: "ContactLoopDiscs/full"}
+    for name, (words, work) in CASES.items():
+        if loop.ns(name) is None:
+            continue
+        full = reference[name.startswith("ContactLoopDiscs")]
+        parts, all_parts = loop.parts(name), loop.parts(full)
+        said = sum(parts.values()) / sum(all_parts.values())
+        yield (words, number(loop.ns(name)), number(loop.ns(name, "per_pair")), number(loop.ns(name) / loop.ns(full), 2),
+               number(said, 2), number(loop.ns(BARE.get(name, ""))), number(max(parts.values())), number(sum(parts.values())),
+               f"{work.flops} + {work.pair_flops}", str(work.roots), str(work.divisions), f"{work.gathers} + 2",
+               str(work.scatters), f"{work.bytes} + {work.pair_bytes}")
+
+
+def features(loop):
+    head = ("scene", "ns/contact", "ns/pair", "of full", "counted", "bare", "floor", "sum", "flops + per pair", "roots",
+            "divisions", "gathers + per pair", "scatters", "list bytes + per pair")
+    return table(head, feature_rows(loop))
+
+
+def others(loop):
+    rows = []
+    for name, (words, against) in OTHERS.items():
+        if loop.ns(name) is not None:
+            rows.append((words, number(loop.ns(name)), number(loop.ns(name) / loop.ns(against), 2) + " x",
+                         CASES[against][0] if against in CASES else OTHERS[against][0]))
+    return table(("case", "ns/contact", "", "compared with"), rows)
+
+
+def soft(loop):
+    rows = [(words, f"{loop.rows[name]['listed']:.0f}", f"{loop.rows[name]['touching']:.0f}",
+             number(loop.ns(name, "per_pair"))) for name, words in SOFT.items() if name in loop.rows]
+    return table(("soft grains", "listed pairs", "carry force", "ns/listed pair"), rows)
+
+
+def machine(loop):
+    rows = [(words, number(loop.machine[name], 3)) for name, words in MACHINE.items() if name in loop.machine]
+    return table(("one", "ns"), rows)
+
+
+def lists(loop):
+    rows = []
+    words = {"A": "A", "A_as_read": "A, grains in the order of the file", "B": "B", "C": "C"}
+    for name in (f"ContactList/{key}" for key in words if f"ContactList/{key}" in loop.rows):
+        rows.append((words[name.split("/")[1]], number(loop.ns(name, "per_grain"), 0),
+                     number(loop.ns(name, "per_pair"), 0), number(loop.rows[name]["cpu_time"] / 1e3, 2)))
+    return table(("scene", "ns/grain", "ns/listed pair", "ms"), rows)
+
+
+def steps(loop):
+    names = {"full": "full", "frictionless": "no friction, no rotation", "frictionless_undamped": "neither"}
+    rows = []
+    for key, words in names.items():
+        step, whole = loop.ns(f"ContactLoop/{key}"), loop.ns(f"ContactStep/{key}")
+        if step and whole:
+            rows.append((words, number(whole), number(step), number(loop.ns(f"ContactStep/{key}", "per_grain")),
+                         number(whole / loop.ns("ContactStep/full"), 2)))
+    return table(("scene A", "step, ns/contact", "its pass", "step, ns/grain", "of full"), rows)
+
+
+def scaling(report):
+    rows = []
+    for r in report["rows"]:
+        rows.append((r["title"], str(r["threads"]), str(r["grains"]), number(r["contacts_per_grain"], 2),
+                     number(r["listed_pairs"] / max(r["contacts"], 1), 2), number(r["ns_per_particle_step"]),
+                     number(r["ns_per_contact"]), number(r["ns_per_listed_pair"]), number(r["rebuilds_per_1000_steps"]),
+                     number(r["bytes_per_grain"], 0), number(r["bytes_of_target"], 2)))
+    head = ("scene", "threads", "grains", "touching pairs/grain", "listed/touching", "ns/grain-step", "ns/contact", "ns/listed pair",
+            "lists/1000 steps", "bytes/grain", "of 400/grain + 150/contact")
+    out = table(head, rows)
+    single = {r["title"]: r for r in report["rows"] if r["threads"] == 1}
+    for r in report["rows"]:
+        if r["threads"] > 1 and r["title"] in single:
+            out += (f"\n\n{r['title']}: {r['threads']} threads {single[r['title']]['seconds'] / r['seconds']:.2f} times as fast "
+                    f"by the wall clock (load {report['load'][0]:.1f} on {report['cores']} cores).")
+    return out
+
+
+def engines(report):
+    rows = []
+    for scene, result in report["scenes"].items():
+        ours = result["engines"].get("softgrain", {}).get("ns_per_contact")
+        for name, f in result["engines"].items():
+            spread = f["ns_per_contact_rounds"]
+            rows.append((scene.replace("_", " "), name, number(f["ns_per_contact"]), f"{min(spread):.1f}-{max(spread):.1f}",
+                         number(f.get("force_ns_per_contact")), number(f["ns_per_contact"] / ours, 2) if ours else "-",
+                         number(f["coordination_number"], 4), number(f["pressure"], 2), number(f["peak_memory"] / 1e6, 0)))
+    out = table(("scene", "engine", "ns/contact", "of all rounds", "forces", "times ours", "contacts per grain", "pressure [Pa]",
+                 "MB"), rows)
+    out += (f"\n\n{report['rounds']} rounds, {report['steps']} steps after {report['warm_up']}, {report['clock']} time, "
+            f"{report['processor']}.")
+    for scene, result in report["scenes"].items():
+        if "thread_speedup" in result:
+            out += f" {scene.replace('_', ' ')}: {result['thread_speedup']:.2f} times as fast with all threads."
+    return out
+
+
+def instructions(report):
+    rows = [(scene.replace("_", " "), number(result["instructions_per_contact"], 0))
+            for scene, result in report["scenes"].items() if "instructions_per_contact" in result]
+    return table(("scene", "instructions per contact and step"), rows) if rows else None
+
+
+# Phase of the loop: share of samples [%] with everything, without friction, with neither friction nor damping.
+PROFILE = {
+    "find_touching, note_touch": ((29, 36, 52), "branch vectors of all listed pairs, which of them touch, histories forgotten"),
+    "gather": ((28, 35, 12), "records of the touching pairs become rows"),
+    "evaluate": ((26, 15, 15), "all arithmetic of the law"),
+    "scatter": ((17, 13, 21), "forces and torques to bodies, history to the list"),
+}
+
+
+def profile(_):
+    return table(("phase", "full", "no friction", "neither", ""),
+                 [(name, *(f"{share} %" for share in shares), words) for name, (shares, words) in PROFILE.items()])
+
+
+COLOURS = {"sums and products": "#0072b2", "roots, divisions": "#d55e00", "gathers": "#009e73", "scatters": "#56b4e9",
+           "list": "#e69f00"}
+
+
+def picture(loop):
+    """Counted work as bars, one part after the other; what was measured as marks."""
+    names = [name for name in CASES if loop.ns(name) is not None]
+    left, top, height, width = 275, 46, 26, 480
+    longest = max(max(loop.ns(name), sum(loop.parts(name).values())) for name in names)
+    scale = width / (5 * (int(longest / 5) + 1))
+    out = []
+    for tick in range(0, int(width / scale) + 1, 5):
+        x = left + tick * scale
+        out.append(f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{top + height * len(names)}" stroke="#ddd"/>')
+        out.append(f'<text x="{x:.1f}" y="{top + height * len(names) + 16}" text-anchor="middle">{tick}</text>')
+    for row, name in enumerate(names):
+        y = top + row * height
+        out.append(f'<text x="{left - 8}" y="{y + 17}" text-anchor="end">{CASES[name][0]}</text>')
+        at = left
+        for part, ns in loop.parts(name).items():
+            out.append(f'<rect x="{at:.1f}" y="{y + 5}" width="{ns * scale:.1f}" height="{height - 10}" '
+                       f'fill="{COLOURS[part]}"/>')
+            at += ns * scale
+        x = left + loop.ns(name) * scale
+        out.append(f'<line x1="{x:.1f}" y1="{y + 1}" x2="{x:.1f}" y2="{y + height - 1}" stroke="#000" stroke-width="3"/>')
+        bare = loop.ns(BARE.get(name, ""))
+        if bare is not None:
+            out.append(f'<circle cx="{left + bare * scale:.1f}" cy="{y + height / 2}" r="5" fill="#fff" stroke="#000" '
+                       'stroke-width="2"/>')
+    x = 8
+    for words, colour in COLOURS.items():
+        out.append(f'<rect x="{x}" y="10" width="12" height="12" fill="{colour}"/>'
+                   f'<text x="{x + 16}" y="20">{words}</text>')
+        x += 40 + 6.4 * len(words)
+    out.append(f'<line x1="{x + 4}" y1="8" x2="{x + 4}" y2="24" stroke="#000" stroke-width="3"/>'
+               f'<text x="{x + 12}" y="20">measured</text>')
+    out.append(f'<circle cx="{x + 90}" cy="16" r="5" fill="#fff" stroke="#000" stroke-width="2"/>'
+               f'<text x="{x + 100}" y="20">program for that scene alone</text>')
+    bottom = top + height * len(names)
+    out.append(f'<text x="{left + width / 2}" y="{bottom + 34}" text-anchor="middle">ns per touching contact</text>')
+    size = f'width="{left + width + 100}" height="{bottom + 44}"'
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif" font-size="12">\n'
+            '<title>Counted and measured time of the contact loop</title>\n<rect width="100%" height="100%" fill="#fff"/>\n'
+            + "\n".join(out) + "\n</svg>\n")
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    directory = pathlib.Path(sys.argv[1])
+    read = {key: json.loads((directory / f"{key}.json").read_text()) if (directory / f"{key}.json").exists() else None
+            for key in ("loop", "scaling", "engines", "instructions")}
+    loop = Loop(read["loop"]) if read["loop"] else None
+    makers = {**{f.__name__: (f, loop) for f in (features, others, soft, machine, lists, steps, profile)},
+              "scaling": (scaling, read["scaling"]), "engines": (engines, read["engines"]),
+              "instructions": (instructions, read["instructions"] or read["engines"])}
+
+    def fill(match):
+        make, source = makers[match.group(1)]
+        return (make(source) if source else None) or "*Not measured yet.*"
+
+    text = re.sub(r"^\{(\w+)\}$", fill, (HERE / "text.md").read_text(), flags=re.M)
+    (HERE / "README.md").write_text(text)
+    if loop:
+        (HERE / "floor.svg").write_text(picture(loop))
+
+
+if __name__ == "__main__":
+    main()
