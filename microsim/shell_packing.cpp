@@ -5,41 +5,12 @@
 
 #include "common/core/error.h"
 #include "common/core/random.h"
+#include "microsim/shell_placement.h"
 #include "microsim/size_distribution.h"
 
 namespace softgrain {
 
 namespace {
-
-/// Which grains may overlap a later (smaller or equal) grain centred in a voxel: lists per voxel, largest first.
-class TrialGrid {
- public:
-  TrialGrid() : lists_(static_cast<std::size_t>(kCells * kCells * kCells)) {}
-
-  void insert(std::int32_t grain, const Vec3& x, double r) {
-    // Later grains are no larger than this one, so their centres matter within 2 r.
-    std::array<int, 3> low{};
-    std::array<int, 3> high{};
-    for (int k = 0; k < 3; ++k) {
-      low[static_cast<std::size_t>(k)] = cell(x[k] - 2.0 * r);
-      high[static_cast<std::size_t>(k)] = cell(x[k] + 2.0 * r);
-    }
-    for (int a = low[0]; a <= high[0]; ++a)
-      for (int b = low[1]; b <= high[1]; ++b)
-        for (int c = low[2]; c <= high[2]; ++c) lists_[index(a, b, c)].push_back(grain);
-  }
-
-  [[nodiscard]] const std::vector<std::int32_t>& near(const Vec3& x) const {
-    return lists_[index(cell(x[0]), cell(x[1]), cell(x[2]))];
-  }
-
- private:
-  static constexpr int kCells = 24;
-  static int cell(double x) { return std::clamp(static_cast<int>((x + 1.0) * (0.5 * kCells)), 0, kCells - 1); }
-  static std::size_t index(int a, int b, int c) { return static_cast<std::size_t>((a * kCells + b) * kCells + c); }
-
-  std::vector<std::vector<std::int32_t>> lists_;
-};
 
 std::vector<double> draw_radii(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index) {
   const double rmax = spec.rmax_over_shell;
@@ -53,24 +24,6 @@ std::vector<double> draw_radii(const SoftParticleSpec& spec, std::uint64_t seed,
   }
   std::sort(radii.begin(), radii.end(), std::greater<>());
   return radii;
-}
-
-Vec3 random_point_in_shell(RandomStream& random) {
-  for (;;) {
-    Vec3 x;
-    for (int k = 0; k < 3; ++k) x[k] = 2.0 * random.uniform() - 1.0;
-    if (norm2(x) < 1.0) return x;
-  }
-}
-
-bool is_free(const ShellPacking& packing, const TrialGrid& grid, const Vec3& x, double r) {
-  if (norm2(x) > (1.0 - r) * (1.0 - r)) return false;
-  for (const std::int32_t g : grid.near(x)) {
-    const auto u = static_cast<std::size_t>(g);
-    const double reach = packing.radius[u] + r;
-    if (norm2(packing.position[u] - x) < reach * reach) return false;
-  }
-  return true;
 }
 
 /// Largest first, each grain grows until it touches its nearest neighbour or the shell.
@@ -88,17 +41,13 @@ void grow(ShellPacking& packing) {
 ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index) {
   ShellPacking packing;
   packing.seed = index;
-  TrialGrid grid;
+  PlacedGrains grains(packing);
+  VoidPlacement voids(spec.rmax_over_shell / spec.polydispersity);
   RandomStream random(seed, RandomPurpose::positions, index);
   for (const double r : draw_radii(spec, seed, index)) {
-    for (std::int64_t trial = 0; trial < spec.trials; ++trial) {
-      const Vec3 x = random_point_in_shell(random);
-      if (!is_free(packing, grid, x, r)) continue;
-      grid.insert(static_cast<std::int32_t>(packing.radius.size()), x, r);
-      packing.position.push_back(x);
-      packing.radius.push_back(r);
-      break;
-    }
+    const std::optional<Vec3> x = spec.placement == Placement::voids ? voids.place(grains, r, spec.trials, random)
+                                                                     : place_by_trials(grains, r, spec.trials, random);
+    if (x) grains.add(*x, r);
   }
   if (packing.radius.empty())
     throw BadInput("packing: no grain could be placed in the shell; raise 'trials' or lower 'rmax_over_shell'");

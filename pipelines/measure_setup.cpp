@@ -32,6 +32,8 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   }
   spec.beta = t.number("beta", Unit::none, Range::above(1.0), spec.beta);
   spec.trials = t.count("trials", 1, 1000000000, spec.trials);
+  spec.placement =
+      t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
 }
 
 void read_damped(const SceneTable& t, DampedProtocolOptions& o) {

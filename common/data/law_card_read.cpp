@@ -111,6 +111,8 @@ SoftParticleSpec read_spec(const SceneTable& table) {
   s.rmax_over_shell = table.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, false});
   s.beta = table.number("beta", Unit::none, Range::positive());
   s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());
+  s.placement =
+      table.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
   return s;
 }
 

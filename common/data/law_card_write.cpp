@@ -85,6 +85,8 @@ void write_measurement(Out out, const LawCard& card) {
   fmt::format_to(out, "rmax_over_shell = {}  # rmax/Rs\n", real(s.rmax_over_shell));
   fmt::format_to(out, "beta = {}  # volume of drawn grains over volume of the shell\n", real(s.beta));
   fmt::format_to(out, "trials = {}  # random positions tried per grain\n", s.trials);
+  fmt::format_to(out, "placement = {}  # blind trials, or the same law by looking only where there is room\n",
+                 quoted(s.placement == Placement::voids ? "voids" : "trials"));
 }
 
 void write_estimate(Out out, const std::string& table, const Estimate& e, const std::string& comment) {

@@ -11,19 +11,23 @@
 
 namespace softgrain {
 
+/// How grains are placed in a shell: the published trials, or the same law without the trials that must fail.
+enum class Placement { trials, voids };
+
 /// The soft particle that was measured [SP 1.1-1.3]. SI units.
 struct SoftParticleSpec {
-  double shell_radius = 0.016;    ///< Rs [m]
-  double youngs_modulus = 5.0e5;  ///< E [Pa]
-  double poisson_ratio = 0.3;     ///< nu
-  double friction = 0.3;          ///< mu, Coulomb coefficient
-  double density = 2500.0;        ///< rho [kg/m^3]
-  double restitution = 0.5;       ///< e of the Tsuji damping (dynamic runs)
-  double exponent = 3.5;          ///< b of the size distribution P(r) ~ r^-b
-  double polydispersity = 10.0;   ///< Pi = rmax/rmin
-  double rmax_over_shell = 0.5;   ///< rmax/Rs
-  double beta = 3.0;              ///< volume of drawn grains over the volume of the shell
-  std::int64_t trials = 10000;    ///< I, random positions tried per grain
+  double shell_radius = 0.016;              ///< Rs [m]
+  double youngs_modulus = 5.0e5;            ///< E [Pa]
+  double poisson_ratio = 0.3;               ///< nu
+  double friction = 0.3;                    ///< mu, Coulomb coefficient
+  double density = 2500.0;                  ///< rho [kg/m^3]
+  double restitution = 0.5;                 ///< e of the Tsuji damping (dynamic runs)
+  double exponent = 3.5;                    ///< b of the size distribution P(r) ~ r^-b
+  double polydispersity = 10.0;             ///< Pi = rmax/rmin
+  double rmax_over_shell = 0.5;             ///< rmax/Rs
+  double beta = 3.0;                        ///< volume of drawn grains over the volume of the shell
+  std::int64_t trials = 10000;              ///< I, random positions tried per grain
+  Placement placement = Placement::trials;  ///< the same law either way, other random numbers
 };
 
 /// One packing as generated.

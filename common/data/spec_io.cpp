@@ -30,6 +30,7 @@ void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
   group.attribute("units", "shell_radius m, youngs_modulus Pa, density kg/m^3, all others 1");
   for (const SpecField& field : kFields) group.attribute(field.name, spec.*field.value);
   group.attribute("trials", spec.trials);
+  group.attribute("placement", std::string(spec.placement == Placement::voids ? "voids" : "trials"));
 }
 
 SoftParticleSpec read_spec(const h5::Group& root) {
@@ -37,6 +38,7 @@ SoftParticleSpec read_spec(const h5::Group& root) {
   SoftParticleSpec spec;
   for (const SpecField& field : kFields) spec.*field.value = group.number(field.name);
   spec.trials = group.integer("trials");
+  if (group.has_attribute("placement") && group.text("placement") == "voids") spec.placement = Placement::voids;
   return spec;
 }
 

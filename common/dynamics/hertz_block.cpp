@@ -260,10 +260,12 @@ class Loop {
           block_.b.v[u(g) + l] = all_constants[c].b;
           motion[l] = quad_of(velocities[i]) - quad_of(velocities[j]);
           if constexpr (kPeriodic) motion[l] -= images_.velocity[u(list_.image[c])];
+        }
+        if constexpr (Law::has_tangential) {
           spin_i[l] = with_fourth(quad_of(spins[i]), place(spheres[i]));
           spin_j[l] = with_fourth(quad_of(spins[j]), place(spheres[j]));
+          spring[l] = quad_of(springs[c]);
         }
-        if constexpr (Law::has_tangential) spring[l] = quad_of(springs[c]);
         if constexpr (Law::has_memory) block_.memory.v[u(g) + l] = list_.memory[c];
       }
       transpose(branch[0], branch[1], branch[2], branch[3]);
@@ -271,15 +273,15 @@ class Loop {
       store_quad(block_.reach.v + g, branch[3]);
       if constexpr (Law::needs_velocity) {
         transpose(motion[0], motion[1], motion[2], motion[3]);
+        store_rows<D>(block_.velocity, g, motion);
+      }
+      if constexpr (Law::has_tangential) {
         transpose(spin_i[0], spin_i[1], spin_i[2], spin_i[3]);
         transpose(spin_j[0], spin_j[1], spin_j[2], spin_j[3]);
-        store_rows<D>(block_.velocity, g, motion);
         store_rows<kRot<D>>(block_.spin_i, g, spin_i);
         store_rows<kRot<D>>(block_.spin_j, g, spin_j);
         store_quad(block_.radius_i.v + g, spin_i[3]);
         store_quad(block_.radius_j.v + g, spin_j[3]);
-      }
-      if constexpr (Law::has_tangential) {
         transpose(spring[0], spring[1], spring[2], spring[3]);
         store_rows<D>(block_.spring, g, spring);
       }
@@ -298,10 +300,14 @@ class Loop {
     const Lanes contact_radius = block_.a.at(g) * root_h;
     Lanes normal_force = contact_radius * overlap * law_.k.inverse_d;
     if constexpr (Law::needs_velocity) {
-      const Lanes arm_i = block_.radius_i.at(g) - 0.5 * overlap;
-      const Lanes arm_j = block_.radius_j.at(g) - 0.5 * overlap;
-      const auto turning = at<kRot<D>>(block_.spin_i, g) * arm_i + at<kRot<D>>(block_.spin_j, g) * arm_j;
-      const Vec<D, Lanes> v = at<D>(block_.velocity, g) - cross(turning, normal);
+      Vec<D, Lanes> v = at<D>(block_.velocity, g);
+      Lanes arm_i(0.0);
+      Lanes arm_j(0.0);
+      if constexpr (Law::has_tangential) {
+        arm_i = block_.radius_i.at(g) - 0.5 * overlap;
+        arm_j = block_.radius_j.at(g) - 0.5 * overlap;
+        v -= cross(at<kRot<D>>(block_.spin_i, g) * arm_i + at<kRot<D>>(block_.spin_j, g) * arm_j, normal);
+      }
       const Lanes speed = dot(v, normal);
       Lanes eta(0.0);
       if constexpr (Law::is_damped) {

@@ -68,14 +68,15 @@ inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<
   }
 }
 
-/// Relative velocity of i against j at the contact point, split along the normal.
-template <int D>
+/// Relative velocity of i against j at the contact point, split along the normal. Spins move the contact point across
+/// the normal only: without a tangential force they are not needed.
+template <int D, bool kSpins>
 inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j, const ContactGeometry<D>& g,
                             const Vec<D>& image_velocity, ContactState<D>& state) {
-  const Rot<D> turning = p.spin[i] * g.arm_i + p.spin[j] * g.arm_j;
-  const Vec<D> v = p.velocity[i] - p.velocity[j] - image_velocity - cross(turning, g.normal);
+  Vec<D> v = p.velocity[i] - p.velocity[j] - image_velocity;
+  if constexpr (kSpins) v -= cross(p.spin[i] * g.arm_i + p.spin[j] * g.arm_j, g.normal);
   state.normal_speed = dot(v, g.normal);
-  state.sliding = v - g.normal * state.normal_speed;
+  if constexpr (kSpins) state.sliding = v - g.normal * state.normal_speed;
 }
 
 template <int D, Geometry kGeometry, bool kPeriodic, class Law, class Sink>
@@ -109,7 +110,8 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
     state.normal = g.normal;
     state.dt = dt;
     state.constants = list.constants[c];
-    if constexpr (Law::needs_velocity) relative_motion(s.particles, i, j, g, image_velocity, state);
+    if constexpr (Law::needs_velocity)
+      relative_motion<D, Law::has_tangential>(s.particles, i, j, g, image_velocity, state);
     if constexpr (Law::has_tangential) state.spring = list.spring[c];
     if constexpr (Law::has_memory) state.memory = list.memory[c];
     if constexpr (Law::needs_particle_pass) {
