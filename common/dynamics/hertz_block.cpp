@@ -120,6 +120,7 @@ struct Target {
   History history = History::next;
   ContactLoad* loads = nullptr;  ///< null: to the bodies
   std::uint8_t* touches = nullptr;
+  WaitingLoads* waiting = nullptr;
 };
 
 template <int D, class Law, bool kPeriodic, bool kOrdered>
@@ -380,6 +381,9 @@ class Loop {
     Stored<D>* const forces = s_.particles.force.data();
     StoredRot<D>* const torques = s_.particles.torque.data();
     for_records([&](int k, std::size_t c, Quad force, Quad moment) {
+      if constexpr (kOrdered)
+        if (target_.waiting != nullptr && target_.waiting->next < static_cast<std::int32_t>(c))
+          target_.waiting->add_before(static_cast<std::int32_t>(c));
       const std::size_t i = u(first[c]);
       const std::size_t j = u(second[c]);
       store(forces[i], quad_of(forces[i]) + force);
@@ -464,8 +468,8 @@ bool has_fast_loop(const LawSet& laws, const ContactSection& section) {
 
 template <int D>
 void hertz_loop(System<D>& s, const ContactSection& section, double dt, const PairRange& range, History history,
-                ContactLoad* loads, std::uint8_t* touches) {
-  const Target target{history, loads, touches};
+                ContactLoad* loads, std::uint8_t* touches, WaitingLoads* waiting) {
+  const Target target{history, loads, touches, waiting};
   std::visit(
       [&]<class Law>(const Law& law) {
         if constexpr (kIsHertz<Law>) {
@@ -482,8 +486,8 @@ void hertz_loop(System<D>& s, const ContactSection& section, double dt, const Pa
 }
 
 template void hertz_loop<2>(System<2>&, const ContactSection&, double, const PairRange&, History, ContactLoad*,
-                            std::uint8_t*);
+                            std::uint8_t*, WaitingLoads*);
 template void hertz_loop<3>(System<3>&, const ContactSection&, double, const PairRange&, History, ContactLoad*,
-                            std::uint8_t*);
+                            std::uint8_t*, WaitingLoads*);
 
 }  // namespace softgrain

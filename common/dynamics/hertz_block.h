@@ -19,11 +19,22 @@ struct alignas(64) ContactLoad {
   double arm_j;      ///< [m]
 };
 
+/// Loads that wait to be added to bodies, in list order.
+class WaitingLoads {
+ public:
+  virtual ~WaitingLoads() = default;
+  /// Place in the list of the next one; beyond every place when there is none.
+  std::int32_t next = 0;
+  /// Adds all that stand before place `c`.
+  virtual void add_before(std::int32_t c) = 0;
+};
+
 /// Adds the forces and torques of some pairs of a section to their bodies, in the order of the range, and treats their
 /// history as asked. Pairs that do not touch lose theirs. With `loads` the bodies are left alone: the load of pair k of
-/// the range goes to loads[k], and touches[k] says whether it touches. Requires has_fast_loop.
+/// the range goes to loads[k], and touches[k] says whether it touches. Loads that wait are added in between, in list
+/// order. Requires has_fast_loop.
 template <int D>
 void hertz_loop(System<D>& system, const ContactSection& section, double dt, const PairRange& range, History history,
-                ContactLoad* loads = nullptr, std::uint8_t* touches = nullptr);
+                ContactLoad* loads = nullptr, std::uint8_t* touches = nullptr, WaitingLoads* waiting = nullptr);
 
 }  // namespace softgrain

@@ -1,7 +1,9 @@
 #include "common/dynamics/parallel_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "common/dynamics/scatter_sink.h"
@@ -10,18 +12,21 @@ namespace softgrain {
 
 namespace {
 
-/// Pairs of one section that belong to one thread.
+/// A pair that another thread, or this one, has put down, and one of its bodies here.
+struct Waiting {
+  std::int32_t place = 0;  ///< in the list
+  std::int32_t thread = 0;
+  std::int32_t number = 0;
+  bool first = false;  ///< the body here is the first of the pair
+};
+
+/// Pairs of one section that concern one thread.
 struct Share {
   std::vector<std::int32_t> inner;    ///< places in the list of pairs whose bodies are both the thread's
-  std::vector<std::int32_t> outer;    ///< of those whose second body is another's
+  std::vector<std::int32_t> outer;    ///< of those whose first body is the thread's and whose second is another's
   std::vector<ContactLoad> loads;     ///< of outer
   std::vector<std::uint8_t> touches;  ///< of outer
-
-  struct Incoming {
-    std::int32_t thread = 0;
-    std::int32_t number = 0;
-  };
-  std::vector<Incoming> incoming;  ///< outer pairs of earlier threads that end here, in list order
+  std::vector<Waiting> waiting;       ///< bodies here of all pairs that were put down, in list order
 };
 
 /// Who does what, good for one list and number of threads.
@@ -31,54 +36,124 @@ struct Plan {
   std::vector<std::vector<Share>> shares;  ///< [thread][section]
 };
 
-/// First body of every thread, so that each has about as many pairs; one more entry at the end.
+/// Slabs across the longest axis with about as many pairs each. Walls belong to the first thread.
 template <int D>
-std::vector<Slot> split_bodies(const System<D>& s, int threads) {
-  const auto bodies = static_cast<std::size_t>(s.particles.size());
-  std::vector<std::int64_t> before(bodies + 1, 0);
-  for (const Slot i : s.contacts.i) ++before[static_cast<std::size_t>(i) + 1];
-  for (std::size_t b = 1; b <= bodies; ++b) before[b] += before[b - 1];
-  std::vector<Slot> first{0};
-  for (int t = 1; t < threads; ++t) {
-    const std::int64_t target = before.back() * t / threads;
-    const auto at = std::lower_bound(before.begin(), before.end(), target) - before.begin();
-    first.push_back(std::max(static_cast<Slot>(at), first.back()));
+std::vector<std::uint8_t> owners_of(const System<D>& s, int threads) {
+  constexpr std::size_t kBins = 4096;
+  const auto& p = s.particles;
+  Vec<D> low = p.sphere.front().x;
+  Vec<D> high = low;
+  for (Slot i = 0; i < p.grains; ++i)
+    for (int k = 0; k < D; ++k) {
+      const double x = p.sphere[static_cast<std::size_t>(i)].x[k];
+      low[k] = std::min(low[k], x);
+      high[k] = std::max(high[k], x);
+    }
+  int axis = 0;
+  for (int k = 1; k < D; ++k)
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  const double scale = high[axis] > low[axis] ? static_cast<double>(kBins) / (high[axis] - low[axis]) : 0.0;
+  const auto bin = [&](Slot i) {
+    const double at = (p.sphere[static_cast<std::size_t>(i)].x[axis] - low[axis]) * scale;
+    return std::min(static_cast<std::size_t>(std::max(at, 0.0)), kBins - 1);
+  };
+  std::vector<std::int64_t> pairs(kBins, 0);
+  for (const Slot i : s.contacts.i) ++pairs[bin(i)];
+  std::vector<std::uint8_t> thread_of(kBins, 0);
+  std::int64_t before = 0;
+  const auto all = static_cast<std::int64_t>(s.contacts.i.size());
+  for (std::size_t b = 0; b < kBins; ++b) {
+    thread_of[b] = static_cast<std::uint8_t>(
+        std::min<std::int64_t>(before * threads / std::max<std::int64_t>(all, 1), threads - 1));
+    before += pairs[b];
   }
-  first.push_back(s.particles.size());
-  return first;
+  std::vector<std::uint8_t> owner(p.sphere.size(), 0);
+  for (Slot i = 0; i < p.grains; ++i) owner[static_cast<std::size_t>(i)] = thread_of[bin(i)];
+  return owner;
 }
 
-int owner(const std::vector<Slot>& first, Slot body) {
-  return static_cast<int>(std::upper_bound(first.begin(), first.end() - 1, body) - first.begin()) - 1;
+template <int D>
+void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t>& owner, Plan& plan) {
+  const auto& list = s.contacts;
+  for (std::int32_t c = list.sections[k].begin; c < list.sections[k].end; ++c) {
+    const std::uint8_t mine = owner[static_cast<std::size_t>(list.i[static_cast<std::size_t>(c)])];
+    const std::uint8_t other = owner[static_cast<std::size_t>(list.j[static_cast<std::size_t>(c)])];
+    Share& share = plan.shares[mine][k];
+    if (mine == other) {
+      share.inner.push_back(c);
+      continue;
+    }
+    const auto number = static_cast<std::int32_t>(share.outer.size());
+    share.outer.push_back(c);
+    share.waiting.push_back({c, mine, number, true});
+    plan.shares[other][k].waiting.push_back({c, mine, number, false});
+  }
+  for (auto& of_thread : plan.shares) {
+    of_thread[k].loads.resize(of_thread[k].outer.size());
+    of_thread[k].touches.resize(of_thread[k].outer.size());
+  }
 }
 
 template <int D>
 void make_plan(const System<D>& s, int threads, Plan& plan) {
-  const auto& list = s.contacts;
-  const std::vector<Slot> first = split_bodies(s, threads);
-  plan.build = list.build;
+  const std::vector<std::uint8_t> owner = owners_of(s, threads);
+  plan.build = s.contacts.build;
   plan.threads = threads;
-  plan.shares.assign(static_cast<std::size_t>(threads), std::vector<Share>(list.sections.size()));
-  for (std::size_t k = 0; k < list.sections.size(); ++k) {
-    const ContactSection& section = list.sections[k];
-    for (std::int32_t c = section.begin; c < section.end; ++c) {
-      const int mine = owner(first, list.i[static_cast<std::size_t>(c)]);
-      const int other = owner(first, list.j[static_cast<std::size_t>(c)]);
-      Share& share = plan.shares[static_cast<std::size_t>(mine)][k];
-      if (mine == other) {
-        share.inner.push_back(c);
-        continue;
-      }
-      plan.shares[static_cast<std::size_t>(other)][k].incoming.push_back(
-          {mine, static_cast<std::int32_t>(share.outer.size())});
-      share.outer.push_back(c);
-    }
-    for (auto& of_thread : plan.shares) {
-      of_thread[k].loads.resize(of_thread[k].outer.size());
-      of_thread[k].touches.resize(of_thread[k].outer.size());
-    }
-  }
+  plan.shares.assign(static_cast<std::size_t>(threads), std::vector<Share>(s.contacts.sections.size()));
+  for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, owner, plan);
 }
+
+/// The waiting loads of one thread and section.
+template <int D>
+class Waiters : public WaitingLoads {
+ public:
+  Waiters(System<D>& s, const Plan& plan, std::size_t thread, std::size_t section)
+      : s_(s), plan_(plan), section_(section), waiting_(plan.shares[thread][section].waiting) {
+    find_next();
+  }
+
+  void add_before(std::int32_t c) override {
+    for (; at_ < waiting_.size() && waiting_[at_].place < c; ++at_) add(waiting_[at_]);
+    find_next();
+  }
+  void add_all() { add_before(std::numeric_limits<std::int32_t>::max()); }
+
+ private:
+  void find_next() { next = at_ < waiting_.size() ? waiting_[at_].place : std::numeric_limits<std::int32_t>::max(); }
+
+  void add(const Waiting& w) {
+    const Share& from = plan_.shares[static_cast<std::size_t>(w.thread)][section_];
+    const auto n = static_cast<std::size_t>(w.number);
+    if (from.touches[n] == 0) return;
+    const ContactLoad& load = from.loads[n];
+    const auto c = static_cast<std::size_t>(w.place);
+    const auto body = static_cast<std::size_t>(w.first ? s_.contacts.i[c] : s_.contacts.j[c]);
+    const double sign = w.first ? 1.0 : -1.0;
+    const double arm = w.first ? load.arm_i : load.arm_j;
+    for (int k = 0; k < D; ++k) s_.particles.force[body][k] += sign * load.force[k];
+    for (int k = 0; k < (D == 3 ? 3 : 1); ++k) s_.particles.torque[body][k] -= load.moment[k] * arm;
+  }
+
+  System<D>& s_;
+  const Plan& plan_;
+  std::size_t section_;
+  const std::vector<Waiting>& waiting_;
+  std::size_t at_ = 0;
+};
+
+/// The scalar loop's sink, with the waiting loads in between.
+template <int D>
+struct MergingSink {
+  ScatterSink<D> scatter;
+  Waiters<D>& waiting;
+
+  void apart(std::size_t) {}
+  template <bool kTorque>
+  void touch(std::size_t c, std::size_t i, std::size_t j, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
+    waiting.add_before(static_cast<std::int32_t>(c));
+    scatter.template touch<kTorque>(c, i, j, g, r);
+  }
+};
 
 template <int D>
 class Pass {
@@ -101,44 +176,21 @@ class Pass {
 
   void add(std::size_t thread) {
     for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
-      Share& share = plan_.shares[thread][k];
-      add_incoming(share, k);
+      const Share& share = plan_.shares[thread][k];
       const ContactSection& section = s_.contacts.sections[k];
       const PairRange range{0, static_cast<std::int32_t>(share.inner.size()), share.inner.data()};
+      Waiters<D> waiting(s_, plan_, thread, k);
       if (has_fast_loop(s_.laws, section)) {
-        hertz_loop(s_, section, dt_, range, history_);
+        hertz_loop(s_, section, dt_, range, history_, nullptr, nullptr, &waiting);
       } else {
-        ScatterSink<D> sink{s_.particles};
+        MergingSink<D> sink{{s_.particles}, waiting};
         pair_loop(s_, section, dt_, range, sink, history_);
       }
-      add_outer(share);
+      waiting.add_all();
     }
   }
 
  private:
-  static void apply(const ContactLoad& load, double sign, double arm, Stored<D>& force, StoredRot<D>& torque) {
-    for (int c = 0; c < D; ++c) force[c] += sign * load.force[c];
-    for (int c = 0; c < (D == 3 ? 3 : 1); ++c) torque[c] -= load.moment[c] * arm;
-  }
-
-  void add_incoming(const Share& share, std::size_t section) {
-    for (const auto& in : share.incoming) {
-      const Share& from = plan_.shares[static_cast<std::size_t>(in.thread)][section];
-      const auto n = static_cast<std::size_t>(in.number);
-      if (from.touches[n] == 0) continue;
-      const auto j = static_cast<std::size_t>(s_.contacts.j[static_cast<std::size_t>(from.outer[n])]);
-      apply(from.loads[n], -1.0, from.loads[n].arm_j, s_.particles.force[j], s_.particles.torque[j]);
-    }
-  }
-
-  void add_outer(const Share& share) {
-    for (std::size_t n = 0; n < share.outer.size(); ++n) {
-      if (share.touches[n] == 0) continue;
-      const auto i = static_cast<std::size_t>(s_.contacts.i[static_cast<std::size_t>(share.outer[n])]);
-      apply(share.loads[n], 1.0, share.loads[n].arm_i, s_.particles.force[i], s_.particles.torque[i]);
-    }
-  }
-
   System<D>& s_;
   double dt_;
   History history_;
@@ -151,15 +203,16 @@ template <int D>
 void parallel_pass(System<D>& s, double dt, History history, int threads) {
   thread_local Plan kept;
   Plan& plan = kept;  // threads of the team would otherwise each look at their own
-  if (plan.build != s.contacts.build || plan.threads != threads) make_plan(s, threads, plan);
+  const int many = std::min(threads, 255);
+  if (plan.build != s.contacts.build || plan.threads != many) make_plan(s, many, plan);
   particle_pass(s);
   Pass<D> pass(s, dt, history, plan);
-#pragma omp parallel num_threads(threads)
+#pragma omp parallel num_threads(many)
   {
 #pragma omp for schedule(static, 1)
-    for (int t = 0; t < threads; ++t) pass.put_down(static_cast<std::size_t>(t));
+    for (int t = 0; t < many; ++t) pass.put_down(static_cast<std::size_t>(t));
 #pragma omp for schedule(static, 1)
-    for (int t = 0; t < threads; ++t) pass.add(static_cast<std::size_t>(t));
+    for (int t = 0; t < many; ++t) pass.add(static_cast<std::size_t>(t));
   }
 }
 

@@ -5,10 +5,10 @@
 
 namespace softgrain {
 
-/// Adds all contact forces to their bodies, whose forces must be zero. Every thread owns a run of bodies and the pairs
-/// whose first body is among them. Pairs with a second body elsewhere are evaluated first and put down; then each
-/// thread adds, in list order, what others put down for its bodies, its own pairs, and its share of what it put down.
-/// As lists are sorted by bodies, that is the order of the whole list for every body.
+/// Adds all contact forces to their bodies, whose forces must be zero. Every thread owns the bodies of a slab of space.
+/// Pairs with bodies of two threads are evaluated first, by the owner of the first body, and put down. Then each thread
+/// goes through the list in order: pairs of its own are evaluated and added, its share of those put down is added when
+/// their turn comes. So every body gets its sums in list order, whatever the number of threads.
 template <int D>
 void parallel_pass(System<D>& system, double dt, History history, int threads);
 
