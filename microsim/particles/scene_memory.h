@@ -7,11 +7,11 @@
 namespace softgrain {
 
 /// What a run holds at its peak, per grain and per listed pair, as measured with two threads on the packings of
-/// tests/reference/bench (20,000 and 50,000 grains, size ratio 1 to 50; within 10 %). A grain: state, forces of two
+/// tests/reference/bench (20,000 and 50,000 grains, size ratio 1 to 50; within 20 %). A grain: state, forces of two
 /// steps, neighbour search. A pair: bodies, constants, history of two steps, its share of the forces, and copies while
 /// the list is made anew.
-inline constexpr double kBytesPerGrain = 700.0;
-inline constexpr double kBytesPerPair = 300.0;
+inline constexpr double kBytesPerGrain = 500.0;
+inline constexpr double kBytesPerPair = 190.0;
 /// Listed pairs per grain of dense packings.
 inline constexpr double kPairsPerGrain = 4.0;
 
