@@ -1,0 +1,117 @@
+// What the vectorised contact loop works on: the touching pairs of a block, number by number, in lanes of the
+// processor. For hertz_block.cpp alone: the header of the vector types is a heavy one.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <experimental/simd>
+
+#include "common/core/cell.h"
+#include "common/core/particles.h"
+#include "common/core/quad.h"
+
+namespace softgrain::hertz {
+
+using Lanes = std::experimental::native_simd<double>;
+constexpr int kLanes = static_cast<int>(Lanes::size());
+constexpr auto kAligned = std::experimental::vector_aligned;
+
+/// Pairs looked at in one go. All that a block needs stays in the first-level cache.
+constexpr int kBlock = 128;
+
+/// One number of every contact of a block.
+struct alignas(64) Row {
+  double v[kBlock + 8];
+
+  [[nodiscard]] Lanes at(int k) const { return Lanes(v + k, kAligned); }
+  void put(int k, const Lanes& x) { x.copy_to(v + k, kAligned); }
+};
+
+template <int D>
+using Rows = std::array<Row, static_cast<std::size_t>(D)>;
+
+template <int D>
+constexpr int kRot = D == 3 ? 3 : 1;
+
+template <int D>
+Vec<D, Lanes> at(const Rows<D>& rows, int k) {
+  Vec<D, Lanes> out;
+  for (int c = 0; c < D; ++c) out[c] = rows[static_cast<std::size_t>(c)].at(k);
+  return out;
+}
+template <int D>
+void put(Rows<D>& rows, int k, const Vec<D, Lanes>& x) {
+  for (int c = 0; c < D; ++c) rows[static_cast<std::size_t>(c)].put(k, x[c]);
+}
+
+/// The touching pairs of a block, number by number.
+template <int D>
+struct Block {
+  int touching = 0;
+  std::array<std::int32_t, kBlock + 8> pair;    ///< place in the list
+  std::array<std::int32_t, kBlock + 8> number;  ///< in an ordered range
+  std::array<Quad, kBlock + 8> record;          ///< x_i - x_j, r_i + r_j
+  Rows<D> branch;
+  Row reach;
+  Row radius_i, radius_j;
+  Rows<D> velocity;  ///< of i against j
+  Rows<kRot<D>> spin_i, spin_j;
+  Rows<D> spring;
+  Row a, b, memory;
+  // Results.
+  Rows<D> force;         ///< on i
+  Rows<kRot<D>> moment;  ///< of a unit arm
+  Row arm_i, arm_j;
+};
+
+/// Position with the radius in the fourth place.
+inline Quad place(const Sphere<3>& s) { return load_quad(&s); }
+inline Quad place(const Sphere<2>& s) { return __builtin_shufflevector(load_quad(&s), Quad{}, 0, 1, 4, 2); }
+
+/// Bit l of the index in byte l.
+constexpr std::array<std::uint32_t, 16> kFlags = [] {
+  std::array<std::uint32_t, 16> flags{};
+  for (std::uint32_t bits = 0; bits < 16; ++bits)
+    for (std::uint32_t l = 0; l < 4; ++l) flags[bits] |= (bits >> l & 1U) << (8 * l);
+  return flags;
+}();
+static_assert(std::endian::native == std::endian::little);
+
+using QuadMask = decltype(Quad{} < Quad{});
+
+/// One bit per lane of a comparison.
+inline int sign_bits(QuadMask mask) {
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256(reinterpret_cast<Quad>(mask));
+#else
+  int bits = 0;
+  for (int l = 0; l < 4; ++l) bits |= static_cast<int>(mask[l] & 1) << l;
+  return bits;
+#endif
+}
+
+/// Shift of every periodic image and the velocity that goes with it.
+template <int D>
+struct Images {
+  std::array<Quad, static_cast<std::size_t>(image_count<D>())> shift{};
+  std::array<Quad, static_cast<std::size_t>(image_count<D>())> velocity{};
+
+  explicit Images(const Cell<D>& cell) {
+    for (int image = 0; image < image_count<D>(); ++image) {
+      const Vec<D> x = cell.image_shift(image);
+      const Vec<D> v = cell.velocity_gradient * x;
+      for (int k = 0; k < D; ++k) {
+        shift[static_cast<std::size_t>(image)][k] = x[k];
+        velocity[static_cast<std::size_t>(image)][k] = v[k];
+      }
+    }
+  }
+};
+
+template <int N>
+void store_rows(Rows<N>& rows, int k, const std::array<Quad, 4>& columns) {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(N); ++c) store_quad(rows[c].v + k, columns[c]);
+}
+
+}  // namespace softgrain::hertz
