@@ -54,6 +54,7 @@ struct HertzMindlin {
   static constexpr bool has_memory = kTangential == Tangential::rescaled;
   static constexpr bool needs_velocity = has_tangential || kDamped;
   static constexpr bool needs_particle_pass = false;
+  static constexpr bool has_onset = false;  ///< onset() is not always zero
 
   HertzCoefficients k;
 

@@ -17,6 +17,7 @@ struct LinearSpring {
   static constexpr bool has_memory = false;
   static constexpr bool needs_velocity = true;
   static constexpr bool needs_particle_pass = false;
+  static constexpr bool has_onset = false;  ///< onset() is not always zero
 
   double normal = 0.0;      ///< kn [N/m]
   double tangential = 0.0;  ///< kt [N/m]

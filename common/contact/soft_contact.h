@@ -27,6 +27,7 @@ struct SoftContact {
   static constexpr bool has_memory = false;
   static constexpr bool needs_velocity = true;
   static constexpr bool needs_particle_pass = false;
+  static constexpr bool has_onset = true;  ///< onset() is not always zero
 
   PowerTerm normal;
   PowerTerm tangential;

@@ -91,9 +91,13 @@ inline int sign_bits(QuadMask mask) {
 #endif
 }
 
-/// Shift of every periodic image and the velocity that goes with it.
-template <int D>
+/// Shift of every periodic image and the velocity that goes with it; nothing in an open cell.
+template <int D, bool kPeriodic>
 struct Images {
+  explicit Images(const Cell<D>&) {}
+};
+template <int D>
+struct Images<D, true> {
   std::array<Quad, static_cast<std::size_t>(image_count<D>())> shift{};
   std::array<Quad, static_cast<std::size_t>(image_count<D>())> velocity{};
 

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "common/core/error.h"
@@ -40,7 +39,7 @@ double onset_of(const System<D>& s, std::int32_t law, const PairBodies& bodies) 
 
 /// Whether pairs under a law may overlap without touching, so that they enter the list late.
 bool has_onset(const AnyLaw& any) {
-  return std::visit([]<class Law>(const Law&) { return std::is_same_v<Law, SoftContact>; }, any);
+  return std::visit([]<class Law>(const Law&) { return Law::has_onset; }, any);
 }
 
 template <int D>
