@@ -1,0 +1,80 @@
+// What was recorded of a soft particle with several neighbours at once [SP 1.7, 1.7.1]: which bodies touch it, how deep
+// each one presses and what force each one feels. Dimensionless, so one record serves every E and Rs [SP 1.6].
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/cost.h"
+#include "common/core/vec.h"
+#include "common/data/measurements.h"
+
+namespace softgrain {
+
+/// What presses on the soft particle that is measured.
+enum class PartnerKind { plane, solid, soft };
+
+std::string to_string(PartnerKind kind);  ///< "plane", "solid", "soft"
+
+/// One neighbour; it is moved towards the centre and never by forces.
+struct CrowdPartner {
+  PartnerKind kind = PartnerKind::plane;
+  double ratio = 0.0;  ///< its radius over Rs; 0 for planes (infinite)
+  Vec3 direction{};    ///< unit vector from the centre of the soft particle to the neighbour
+};
+
+/// A stretch of the path: all overlaps go in straight lines from where they are to `overlap`, one value per neighbour
+/// [Rs].
+struct CrowdStage {
+  std::string name;             ///< "load", "unload", "reload" or "slide"
+  std::vector<double> overlap;  ///< h/Rs of each neighbour at the end
+  double slide = 0.0;           ///< stage "slide": how far the first neighbour moves across its normal [Rs]
+};
+
+/// A measurement set: neighbours and path.
+struct CrowdConfiguration {
+  std::string name;  ///< unique in the file, e.g. "cube-plane"
+  std::vector<CrowdPartner> partners;
+  std::vector<CrowdStage> stages;
+  bool centre_free = false;  ///< the shell moves and turns with the forces of its grains; else it is held
+  bool held_out = false;     ///< not for the fit: the law has to predict it
+};
+
+/// One relaxed state.
+struct CrowdPoint {
+  std::int64_t stage = 0;        ///< index into CrowdConfiguration::stages
+  std::vector<double> overlap;   ///< h/Rs of each neighbour, towards the shell where it is now
+  std::vector<double> normal;    ///< force on each neighbour along its direction, over E Rs^2, compression positive
+  std::vector<Vec3> tangential;  ///< the rest of that force
+  double slide = 0.0;            ///< of the first neighbour so far [Rs]
+  Vec3 centre{};                 ///< displacement of the shell [Rs]; zero when it is held
+  double residual = 0.0;         ///< largest net force on a grain over the mean contact force (or floor)
+  double max_overlap = 0.0;      ///< largest overlap over the smaller radius
+  bool converged = false;
+};
+
+/// All points of one packing in one configuration.
+struct CrowdRun {
+  std::int64_t configuration = 0;  ///< index into CrowdMeasurements::configurations
+  std::int64_t packing = 0;        ///< index into CrowdMeasurements::packings
+  std::vector<CrowdPoint> points;
+  Cost cost;
+};
+
+struct CrowdMeasurements {
+  SoftParticleSpec spec;
+  std::string relaxation;  ///< how every state came to rest
+  std::vector<PackingInfo> packings;
+  std::vector<CrowdConfiguration> configurations;
+  std::vector<CrowdRun> runs;
+};
+
+/// Writes to an HDF5 file, atomically. Throws FileTrouble.
+void save_crowd(const CrowdMeasurements& data, const std::string& path,
+                const Provenance& provenance = build_provenance());
+
+/// Reads what save_crowd() wrote. Throws FileTrouble naming the file and what is missing or damaged.
+CrowdMeasurements load_crowd(const std::string& path);
+
+}  // namespace softgrain
