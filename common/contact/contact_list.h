@@ -47,8 +47,8 @@ struct ContactList {
   std::vector<Stored<D>> spring_next;    ///< history of the state tried last; there after the first pass that tries
   std::vector<double> memory;  ///< committed history of laws with a memory; empty when no law of the scene has one
   std::vector<double> memory_next;
-  std::vector<std::uint8_t> touched;  ///< 0: the committed history is known to be empty
-  std::vector<double> particle_sum;   ///< scratch of laws with a particle pass, per body; empty when no law has one
+  std::vector<std::uint8_t> touched;      ///< 0: the committed history is known to be empty
+  std::vector<CrowdSum<D>> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
   std::vector<ContactSection> sections;
   bool has_spring = false;  ///< some law of the scene has a tangential spring
   bool has_memory = false;

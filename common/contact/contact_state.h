@@ -2,6 +2,7 @@
 // caller decides (minimisers try states that are thrown away).
 #pragma once
 
+#include "common/contact/crowd_form.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
@@ -23,8 +24,10 @@ struct ContactState {
   PairConstants constants{};
   Vec<D> spring{};      ///< history: tangential spring [m]
   double memory = 0.0;  ///< history: one number for laws that ask for it
-  double sum_i = 0.0;   ///< of the particle pass, for laws that ask for it: what all contacts of body i added up to
-  double sum_j = 0.0;
+  double radius_i = 0.0;
+  double radius_j = 0.0;               ///< 0 for a plane, negative for the inside of a shell
+  const CrowdSum<D>* sum_i = nullptr;  ///< of the particle pass, for laws that ask for it: all contacts of body i
+  const CrowdSum<D>* sum_j = nullptr;
 };
 
 /// Answer of a law: force on i is normal_force * normal + tangential_force.

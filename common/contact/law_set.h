@@ -10,6 +10,7 @@
 #include "common/contact/hertz_mindlin.h"
 #include "common/contact/linear_spring.h"
 #include "common/contact/soft_contact.h"
+#include "common/contact/soft_crowd.h"
 
 namespace softgrain {
 
@@ -17,7 +18,16 @@ namespace softgrain {
 using AnyLaw = std::variant<HertzMindlin<Tangential::none, false>, HertzMindlin<Tangential::none, true>,
                             HertzMindlin<Tangential::mindlin, false>, HertzMindlin<Tangential::mindlin, true>,
                             HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>,
-                            LinearSpring, SoftContact>;
+                            LinearSpring, SoftContact, SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::pair, true>,
+                            SoftCrowd<Crowd::bag, false>, SoftCrowd<Crowd::bag, true>,
+                            SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>>;
+
+/// Whether a law knows this number of dimensions; all do but those that name one.
+template <class Law, int D>
+constexpr bool law_serves() {
+  if constexpr (requires { Law::dimension; }) return Law::dimension == D;
+  return true;
+}
 
 /// The cheapest Hertz law that does what the coefficients ask for: no friction, no history; no damping, no dashpot.
 AnyLaw hertz_law(const HertzCoefficients& coefficients, bool rescaled);

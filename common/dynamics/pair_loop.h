@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <type_traits>
 
 #include "common/contact/contact_list.h"
@@ -79,6 +80,19 @@ inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j,
   if constexpr (kSpins) state.sliding = v - g.normal * state.normal_speed;
 }
 
+/// What a law is told of a contact before motion and history.
+template <int D, Geometry kGeometry>
+inline ContactState<D> contact_state(const System<D>& s, std::size_t c, const ContactGeometry<D>& g) {
+  ContactState<D> state;
+  state.overlap = g.overlap;
+  state.normal = g.normal;
+  state.constants = s.contacts.constants[c];
+  const double rj = s.particles.sphere[static_cast<std::size_t>(s.contacts.j[c])].r;
+  state.radius_i = s.particles.sphere[static_cast<std::size_t>(s.contacts.i[c])].r;
+  state.radius_j = kGeometry == Geometry::sphere_shell ? -rj : rj;
+  return state;
+}
+
 template <int D, Geometry kGeometry, bool kPeriodic, class Law, class Sink>
 void run_section(System<D>& s, const Law& law, double dt, const PairRange& range, History history, Sink& sink) {
   ContactList<D>& list = s.contacts;
@@ -105,18 +119,15 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
       sink.apart(c);
       continue;
     }
-    ContactState<D> state;
-    state.overlap = g.overlap;
-    state.normal = g.normal;
+    ContactState<D> state = contact_state<D, kGeometry>(s, c, g);
     state.dt = dt;
-    state.constants = list.constants[c];
     if constexpr (Law::needs_velocity)
       relative_motion<D, Law::has_tangential>(s.particles, i, j, g, image_velocity, state);
     if constexpr (Law::has_tangential) state.spring = list.spring[c];
     if constexpr (Law::has_memory) state.memory = list.memory[c];
     if constexpr (Law::needs_particle_pass) {
-      state.sum_i = list.particle_sum[i];
-      state.sum_j = list.particle_sum[j];
+      state.sum_i = &list.particle_sum[i];
+      state.sum_j = &list.particle_sum[j];
     }
     const ContactResponse<D> response = law.evaluate(state);
     keep(c, response.spring, response.memory);
@@ -124,8 +135,8 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
   }
 }
 
-/// The pass over particles that a law may ask for: every contact adds law.share(state, of_i) to the sums of its bodies,
-/// before any contact is evaluated. Laws that do not ask compile to nothing.
+/// The pass over particles that a law may ask for: every contact adds its share to the sums of its bodies, before any
+/// contact is evaluated. Laws that do not ask compile to nothing.
 template <int D, Geometry kGeometry, bool kPeriodic, class Law>
 void sum_section(System<D>& s, const ContactSection& section, const Law& law) {
   if constexpr (Law::needs_particle_pass) {
@@ -138,12 +149,30 @@ void sum_section(System<D>& s, const ContactSection& section, const Law& law) {
       if constexpr (kPeriodic) shift = s.cell.image_shift(list.image[c]);
       ContactGeometry<D> g;
       if (!meet<D, kGeometry>(s.particles, i, j, shift, g)) continue;
-      ContactState<D> state;
-      state.overlap = g.overlap;
-      state.normal = g.normal;
-      state.constants = list.constants[c];
-      list.particle_sum[i] += law.share(state, true);
-      list.particle_sum[j] += law.share(state, false);
+      ContactState<D> state = contact_state<D, kGeometry>(s, c, g);
+      if constexpr (Law::has_memory) state.memory = list.memory[c];
+      law.share(state, true, list.particle_sum[i]);
+      law.share(state, false, list.particle_sum[j]);
+    }
+  } else {
+    (void)s;
+    (void)section;
+    (void)law;
+  }
+}
+
+/// Closes the sums of all bodies that a section knows, once each.
+template <int D, class Law>
+void finish_section(System<D>& s, const ContactSection& section, const Law& law) {
+  if constexpr (Law::needs_particle_pass) {
+    ContactList<D>& list = s.contacts;
+    const auto close = [&](Slot body) {
+      CrowdSum<D>& sum = list.particle_sum[static_cast<std::size_t>(body)];
+      if (!sum.ready && sum.square > 0.0) law.finish(sum);
+    };
+    for (auto c = static_cast<std::size_t>(section.begin); c < static_cast<std::size_t>(section.end); ++c) {
+      close(list.i[c]);
+      close(list.j[c]);
     }
   } else {
     (void)s;
@@ -157,22 +186,25 @@ template <int D, class Work>
 void with_types(const System<D>& s, const ContactSection& section, Work&& work) {
   const bool periodic = s.cell.any_periodic();
   std::visit(
-      [&](const auto& law) {
+      [&]<class Law>(const Law& law) {
         using G = Geometry;
-        switch (section.geometry) {
-          case G::sphere_sphere:
-            if (periodic)
-              work(law, std::integral_constant<G, G::sphere_sphere>{}, std::true_type{});
-            else
-              work(law, std::integral_constant<G, G::sphere_sphere>{}, std::false_type{});
-            break;
-          case G::sphere_shell:
-            work(law, std::integral_constant<G, G::sphere_shell>{}, std::false_type{});
-            break;
-          case G::sphere_plane:
-            work(law, std::integral_constant<G, G::sphere_plane>{}, std::false_type{});
-            break;
-        }
+        if constexpr (!law_serves<Law, D>())
+          throw std::logic_error("a law for another number of dimensions");
+        else
+          switch (section.geometry) {
+            case G::sphere_sphere:
+              if (periodic)
+                work(law, std::integral_constant<G, G::sphere_sphere>{}, std::true_type{});
+              else
+                work(law, std::integral_constant<G, G::sphere_sphere>{}, std::false_type{});
+              break;
+            case G::sphere_shell:
+              work(law, std::integral_constant<G, G::sphere_shell>{}, std::false_type{});
+              break;
+            case G::sphere_plane:
+              work(law, std::integral_constant<G, G::sphere_plane>{}, std::false_type{});
+              break;
+          }
       },
       s.laws.law(section.law));
 }
@@ -192,11 +224,13 @@ void pair_loop(System<D>& s, const ContactSection& section, double dt, const Pai
 template <int D>
 void particle_pass(System<D>& s) {
   if (s.contacts.particle_sum.empty()) return;
-  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), 0.0);
+  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), CrowdSum<D>{});
   for (const ContactSection& section : s.contacts.sections)
     detail::with_types(s, section, [&](const auto& law, auto geometry, auto periodic) {
       detail::sum_section<D, decltype(geometry)::value, decltype(periodic)::value>(s, section, law);
     });
+  for (const ContactSection& section : s.contacts.sections)
+    detail::with_types(s, section, [&](const auto& law, auto, auto) { detail::finish_section<D>(s, section, law); });
 }
 
 /// Runs all contacts through `sink`, in list order. Asked for the next history, it leaves the committed one alone.

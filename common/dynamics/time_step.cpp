@@ -10,14 +10,36 @@ namespace {
 /// Overlap in units of the shell radius at which soft contacts are judged: near the end of their measured range.
 constexpr double kSoftOverlap = 0.35;
 
+/// The sums of a body pressed from six sides like this, the common crowd; whichever of the two is soft.
+template <class Law>
+CrowdSum<3> crowded(const Law& law, ContactState<3> state) {
+  CrowdSum<3> sum;
+  for (int side = 0; side < 6; ++side) {
+    state.normal = {};
+    state.normal[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
+    law.share(state, law.i_is_soft, sum);
+  }
+  law.finish(sum);
+  return sum;
+}
+
 double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
       [&]<class Law>(const Law& law) {
+        constexpr bool kSoft = !requires { law.k; }
+        &&!std::is_same_v<Law, LinearSpring>;
         ContactState<3> state;
-        state.overlap = radius * (std::is_same_v<Law, SoftContact> ? kSoftOverlap : overlap_ratio);
+        state.overlap = radius * (kSoft ? kSoftOverlap : overlap_ratio);
         state.normal = {{1.0, 0.0, 0.0}};
+        state.radius_i = state.radius_j = radius;
         state.constants = law.pair_constants({radius, radius, inverse_mass, inverse_mass});
-        return law.evaluate(state).normal_stiffness;
+        if constexpr (Law::needs_particle_pass) {
+          const CrowdSum<3> sum = crowded(law, state);
+          state.sum_i = state.sum_j = &sum;
+          return law.evaluate(state).normal_stiffness;
+        } else {
+          return law.evaluate(state).normal_stiffness;
+        }
       },
       any);
 }

@@ -188,7 +188,7 @@ void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) 
   list.memory.assign(memories, 0.0);
   list.memory_next.clear();
   list.touched.assign(list.i.size(), 1);
-  list.particle_sum.assign(sums ? bodies : 0, 0.0);
+  list.particle_sum.assign(sums ? bodies : 0, CrowdSum<D>{});
 }
 
 template <int D>

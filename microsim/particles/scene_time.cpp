@@ -54,7 +54,7 @@ double impact_time(const AnyLaw& any, double r, double inverse_mass, double spee
   const double m12 = bodies.effective_mass();
   return std::visit(
       [&]<class Law>(const Law& law) {
-        if constexpr (std::is_same_v<Law, SoftContact>) {
+        if constexpr (!std::is_same_v<Law, LinearSpring> && !requires { law.k; }) {
           return kForever;  // judged by its stiffness alone
         } else if constexpr (std::is_same_v<Law, LinearSpring>) {
           return std::numbers::pi * std::sqrt(m12 / law.normal);

@@ -16,13 +16,13 @@ struct CrowdLaw {
   static constexpr bool needs_particle_pass = true;
 
   template <int D>
-  [[nodiscard]] double share(const ContactState<D>& s, bool of_i) const {
-    return of_i ? s.overlap : 2.0 * s.overlap;
+  void share(const ContactState<D>& s, bool of_i, CrowdSum<D>& sum) const {
+    sum.add(of_i ? s.overlap : 2.0 * s.overlap, s.normal);
   }
   template <int D>
   [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
     ContactResponse<D> out;
-    out.normal_force = out.elastic_force = s.overlap * (s.sum_i + s.sum_j);
+    out.normal_force = out.elastic_force = s.overlap * (s.sum_i->volume + s.sum_j->volume);
     return out;
   }
 };
@@ -55,12 +55,13 @@ System3 three_in_a_row() {
 TEST(ParticlePass, SumsAreThereBeforeTheFirstContactIsEvaluated) {
   System3 s = three_in_a_row();  // overlaps 0.1 (0-1) and 0.3 (1-2)
   ASSERT_EQ(s.contacts.sections.size(), 1u);
-  s.contacts.particle_sum.assign(3, 0.0);
+  s.contacts.particle_sum.assign(3, CrowdSum<3>{});
   const CrowdLaw law;
   const ContactSection section = s.contacts.sections[0];
   detail::sum_section<3, Geometry::sphere_sphere, false>(s, section, law);
   ForceOfContact sink;
-  detail::run_section<3, Geometry::sphere_sphere, false>(s, law, 0.0, {section.begin, section.end}, History::next, sink);
+  detail::run_section<3, Geometry::sphere_sphere, false>(s, law, 0.0, {section.begin, section.end}, History::next,
+                                                         sink);
   ASSERT_EQ(sink.force.size(), 2u);
   // Sums: body 0: 0.1; body 1: 2*0.1 + 0.3; body 2: 2*0.3.
   EXPECT_NEAR(sink.force[0], 0.1 * (0.1 + 0.5), 1e-12);

@@ -1,0 +1,173 @@
+// The mechanics of a soft particle with several contacts, dimensionless and free of any loop: what volume each contact
+// takes from its shell, how the contacts add up, and what pressure answers [SP 1.7.1]. Shared by the law of the contact
+// loop and by the fits.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "common/core/vec.h"
+
+namespace softgrain {
+
+/// The part of a sphere of radius 1 that another body covers, and how it grows with the overlap x.
+struct Lens {
+  double volume = 0.0;     ///< over that of the sphere
+  double slope = 0.0;      ///< d volume/dx = 3/4 a^2, a the radius of the circle where the surfaces meet
+  double curvature = 0.0;  ///< d slope/dx
+};
+
+/// Overlap x (in radii of the sphere) with a sphere of curvature k = R/R': 0 is a plane, negative the inside of a
+/// larger sphere. With s = 1 + k: V = pi x^2 (12 - 4 s x + k x^2)/(12 (s - k x)), depth of the cap D = x (2 - k x)/(2
+/// (s - k x)), a^2 = 2 D - D^2. Valid for 0 <= x < 2 and while neither sphere holds the centre of the other beyond its
+/// own.
+inline Lens lens(double x, double k) {
+  const double s = 1.0 + k;
+  const double den = s - k * x;
+  const double depth = x * (2.0 - k * x) / (2.0 * den);
+  const double depth_slope = ((1.0 - k * x) * den + 0.5 * k * x * (2.0 - k * x)) / (den * den);
+  return {0.75 * x * x * (1.0 - s * x / 3.0 + k * x * x / 12.0) / den, 0.75 * depth * (2.0 - depth),
+          1.5 * (1.0 - depth) * depth_slope};
+}
+
+/// Depth D of the plane cap with volume S: 3/4 D^2 (1 - D/3) = S, 0 <= S <= 1 (S = 1: D = 2).
+inline double cap_depth(double s) {
+  const double phi = std::acos(std::clamp(1.0 - 2.0 * s, -1.0, 1.0));
+  const double d = 1.0 - 2.0 * std::cos((std::numbers::pi + phi) / 3.0);
+  // The cosine cancels for small S, where D = sqrt(4 S/3) (1 + D/6 + ...): one Newton step mends either.
+  const double small = std::sqrt(4.0 * s / 3.0);
+  const double start = s < 1e-4 ? small * (1.0 + small / 6.0) : d;
+  const double slope = 0.75 * start * (2.0 - start);
+  return slope > 1e-12 ? start - (0.75 * start * start * (1.0 - start / 3.0) - s) / slope : start;
+}
+
+/// Pressure over E as it follows from the law of one plane, F/(E Rs^2) = a (D^b - delta^b): that plane has the disk
+/// dV/dD = 3/4 (2 D - D^2), so p = F/(dV/dD), and with one plane the crowd law is the pair law.
+struct CrowdPressure {
+  double a = 0.0;
+  double b = 1.0;
+  double delta = 0.0;
+
+  struct Value {
+    double p = 0.0;
+    double slope = 0.0;  ///< dp/dS
+  };
+
+  [[nodiscard]] Value at(double s) const {
+    const double d = cap_depth(s);
+    if (!(d > delta)) return {};
+    const double force = a * (std::pow(d, b) - std::pow(delta, b));
+    const double disk = 0.75 * d * (2.0 - d);
+    const double p = force / disk;
+    return {p, (a * b * std::pow(d, b - 1.0) - p * 1.5 * (1.0 - d)) / (disk * disk)};
+  }
+};
+
+/// How strongly a contact feels another one whose direction makes an angle with cosine c with its own:
+/// M(c) = m0 - m1 c - m2 c^2; a contact feels itself with 1. The bag of grains under one pressure is m0 = 1,
+/// m1 = m2 = 0.
+struct CrowdCoupling {
+  double m0 = 1.0;
+  double m1 = 0.0;
+  double m2 = 0.0;
+
+  [[nodiscard]] double at(double c) const { return m0 - (m1 + m2 * c) * c; }
+  [[nodiscard]] double own() const { return 1.0 - at(1.0); }
+};
+
+/// What the contacts of one body add up to: nu_c the effective lost volume of contact c, n_c its direction.
+template <int D>
+struct CrowdSum {
+  double volume = 0.0;                         ///< sum nu
+  double square = 0.0;                         ///< sum nu^2
+  Vec<D> first{};                              ///< sum nu n
+  std::array<double, D*(D + 1) / 2> second{};  ///< sum nu n n, upper triangle by rows
+  double gain = 0.0;                           ///< p(S)/S, once all contacts are in
+  double gain_slope = 0.0;                     ///< d gain/dS over S
+  bool ready = false;                          ///< whether gain is there
+
+  /// For laws that do not ask for directions.
+  void add(double nu) {
+    volume += nu;
+    square += nu * nu;
+  }
+
+  void add(double nu, const Vec<D>& n) {
+    add(nu);
+    first += n * nu;
+    std::size_t k = 0;
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c) second[k++] += nu * n[r] * n[c];
+  }
+
+  /// All contacts are in and make an equivalent volume s.
+  void close(const CrowdPressure& pressure, double s) {
+    ready = true;
+    gain = gain_slope = 0.0;
+    if (!(s > 0.0)) return;
+    const CrowdPressure::Value p = pressure.at(s);
+    gain = p.p / s;
+    gain_slope = (p.slope - gain) / (s * s);
+  }
+
+  [[nodiscard]] double second_along(const Vec<D>& n) const {
+    double sum = 0.0;
+    std::size_t k = 0;
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c) sum += (c > r ? 2.0 : 1.0) * second[k++] * n[r] * n[c];
+    return sum;
+  }
+
+  [[nodiscard]] double second_squared() const {
+    double sum = 0.0;
+    std::size_t k = 0;
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c, ++k) sum += (c > r ? 2.0 : 1.0) * second[k] * second[k];
+    return sum;
+  }
+};
+
+/// Energy of a soft particle over E Rs^3: Phi(S) with Phi' = p and S^2 = sum_cd M(n_c.n_d) nu_c nu_d, the equivalent
+/// volume. It is homogeneous of degree one in the nu, so one contact alone gives S = nu whatever the coupling is. The
+/// force of a contact, over E Rs^2, is its derivative at fixed directions, p(S)/S B_c dnu_c/dx with
+/// B_c = sum_d M(n_c.n_d) nu_d; three sums over the contacts are all it takes.
+struct CrowdForm {
+  CrowdPressure pressure;
+  CrowdCoupling coupling;
+
+  /// S from the sums.
+  template <int D>
+  [[nodiscard]] double equivalent_volume(const CrowdSum<D>& sum) const {
+    const double s2 = coupling.own() * sum.square + coupling.m0 * sum.volume * sum.volume -
+                      coupling.m1 * norm2(sum.first) - coupling.m2 * sum.second_squared();
+    return std::sqrt(std::max(s2, 0.0));
+  }
+
+  /// B of a contact with these nu and direction; never negative (a contact does not pull).
+  template <int D>
+  [[nodiscard]] double felt(const CrowdSum<D>& sum, double nu, const Vec<D>& n) const {
+    return std::max(coupling.own() * nu + coupling.m0 * sum.volume - coupling.m1 * dot(n, sum.first) -
+                        coupling.m2 * sum.second_along(n),
+                    0.0);
+  }
+};
+
+/// Effective lost volume of one contact: nu = w v^m, v the volume of the lens over that of the shell. w = m = 1 is a
+/// plane; other bodies have other constants.
+struct LostVolume {
+  double nu = 0.0;
+  double slope = 0.0;      ///< d nu/dx
+  double curvature = 0.0;  ///< d slope/dx
+};
+
+inline LostVolume lost_volume(const Lens& l, double w, double m) {
+  if (!(l.volume > 0.0)) return {};
+  if (m == 1.0) return {w * l.volume, w * l.slope, w * l.curvature};
+  const double nu = w * std::pow(l.volume, m);
+  const double first = m * nu / l.volume;
+  return {nu, first * l.slope, first * (l.curvature + (m - 1.0) * l.slope * l.slope / l.volume)};
+}
+
+}  // namespace softgrain
