@@ -43,7 +43,8 @@ struct LawTableRows {
   std::vector<double> kt_secant_deviation;
 };
 
-/// 95 % band of one fitted curve, by bootstrap over packings. Dimensionless; kept in the table (law.h5), not in the card.
+/// 95 % band of one fitted curve, by bootstrap over packings. Dimensionless; kept in the table (law.h5), not in the
+/// card.
 struct LawBandRows {
   std::string law;  ///< "normal", "tangential_initial" or "tangential_secant"
   std::vector<double> low;

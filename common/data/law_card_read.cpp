@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/core/error.h"
+#include "common/data/card_text.h"
 #include "common/data/law_card_format.h"
 #include "common/io/scene.h"
 
@@ -15,22 +16,14 @@ namespace {
 /// c may differ from -a delta^b by rounding only.
 constexpr double kContinuityTolerance = 1e-6;
 
-/// A number, or what was not known at the time of writing: "nan", "inf", "-inf".
-double real(const SceneTable& table, const std::string& key, const Range& range) {
-  if (!table.is_text(key)) return table.number(key, Unit::none, range);
-  const std::string word = table.choice(key, {"nan", "inf", "-inf"});
-  if (word == "nan") return std::numeric_limits<double>::quiet_NaN();
-  return word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
-}
-
 Estimate read_estimate(const SceneTable& table, const Range& range, bool must_be_known) {
   Estimate e;
-  e.value = must_be_known ? table.number("value", Unit::none, range) : real(table, "value", Range::any());
+  e.value = must_be_known ? table.number("value", Unit::none, range) : read_real(table, "value", Range::any());
   (void)table.choice("unit", {"1"});
-  e.standard_error = real(table, "standard_error", Range::not_negative());
+  e.standard_error = read_real(table, "standard_error", Range::not_negative());
   const SceneTable interval = table.table("interval_95");
-  e.low = real(interval, "low", Range::any());
-  e.high = real(interval, "high", Range::any());
+  e.low = read_real(interval, "low", Range::any());
+  e.high = read_real(interval, "high", Range::any());
   if (e.low > e.high) interval.reject("low", "must not be above the high end");
   return e;
 }
@@ -66,7 +59,7 @@ void read_validity(const SceneTable& table, PairLaw& law) {
   law.delta_min = table.number("delta_min", Unit::none, Range::not_negative());
   law.delta_max = table.number("delta_max", Unit::none, Range::not_negative());
   if (law.delta_max < law.delta_min) table.reject("delta_max", "must not be below delta_min");
-  law.max_overlap = real(table, "max_overlap", Range::not_negative());
+  law.max_overlap = read_real(table, "max_overlap", Range::not_negative());
 }
 
 void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& angle, bool& fitted, bool good) {
@@ -84,8 +77,8 @@ PairLaw read_pair(const SceneTable& table) {
   law.reason = table.text("reason", "");
   law.packings = static_cast<int>(table.count("packings", 0, kMany));
   law.points = static_cast<int>(table.count("points", 0, kMany));
-  law.chi2_per_dof = real(table, "chi2_per_dof", Range::not_negative());
-  law.quality = real(table, "quality", Range::closed(0.0, 1.0));
+  law.chi2_per_dof = read_real(table, "chi2_per_dof", Range::not_negative());
+  law.quality = read_real(table, "quality", Range::closed(0.0, 1.0));
   read_validity(table.table("validity"), law);
   const bool good = law.status == "good" || law.status == "underdetermined";
   law.normal = read_law(table.table("normal"), good);
@@ -95,25 +88,6 @@ PairLaw read_pair(const SceneTable& table) {
                   law.has_tangential_secant, good);
   law.covariance = read_covariance(table);
   return law;
-}
-
-SoftParticleSpec read_spec(const SceneTable& table) {
-  SoftParticleSpec s;
-  s.shell_radius = table.number("shell_radius", Unit::length, Range::positive());
-  s.youngs_modulus = table.number("youngs_modulus", Unit::pressure, Range::positive());
-  s.poisson_ratio = table.number("poisson_ratio", Unit::none, Range{-1.0, 0.5, true, false});
-  s.friction = table.number("friction", Unit::none, Range::not_negative());
-  s.density = table.number("density", Unit::density, Range::positive());
-  s.restitution = table.number("restitution", Unit::none, Range::closed(0.0, 1.0));
-  s.exponent = table.number("exponent", Unit::none);
-  s.polydispersity =
-      table.number("polydispersity", Unit::none, Range{1.0, std::numeric_limits<double>::infinity(), false, false});
-  s.rmax_over_shell = table.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, false});
-  s.beta = table.number("beta", Unit::none, Range::positive());
-  s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());
-  s.placement =
-      table.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
-  return s;
 }
 
 /// Words for people: known, but nothing depends on them.
@@ -135,7 +109,7 @@ LawCard read_card_text(const std::string& toml_path) {
   skip_words(root);
   const SceneTable measurement = root.table("measurement");
   card.relaxation = measurement.text("relaxation");
-  card.spec = read_spec(measurement);
+  card.spec = read_spec_text(measurement);
   for (const SceneTable& pair : root.tables("pair")) {
     const PairLaw law = read_pair(pair);
     if (card.find(law.kind) != nullptr) pair.reject("kind", "this pair kind was given before");

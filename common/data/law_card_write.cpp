@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "common/data/card_text.h"
 #include "common/data/law_card_format.h"
 
 namespace softgrain {
@@ -12,27 +13,6 @@ namespace softgrain {
 namespace {
 
 using Out = std::back_insert_iterator<std::string>;
-
-/// Shortest text that reads back to the same double; what is not finite goes into quotes.
-std::string real(double value) {
-  if (std::isnan(value)) return "\"nan\"";
-  if (std::isinf(value)) return value > 0.0 ? "\"inf\"" : "\"-inf\"";
-  std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
-}
 
 std::string row(const double* values, std::size_t n) {
   std::string text = "[";
@@ -71,22 +51,9 @@ void write_head(Out out, const LawCard& card, const Provenance& provenance) {
 }
 
 void write_measurement(Out out, const LawCard& card) {
-  const SoftParticleSpec& s = card.spec;
   fmt::format_to(out, "\n# The soft particle that was measured.\n[measurement]\nrelaxation = {}\n",
                  quoted(card.relaxation));
-  fmt::format_to(out, "shell_radius = {}  # Rs [m]\n", real(s.shell_radius));
-  fmt::format_to(out, "youngs_modulus = {}  # E [Pa]\n", real(s.youngs_modulus));
-  fmt::format_to(out, "poisson_ratio = {}  # nu\n", real(s.poisson_ratio));
-  fmt::format_to(out, "friction = {}  # mu\n", real(s.friction));
-  fmt::format_to(out, "density = {}  # [kg/m^3]\n", real(s.density));
-  fmt::format_to(out, "restitution = {}\n", real(s.restitution));
-  fmt::format_to(out, "exponent = {}  # b of P(r) ~ r^-b\n", real(s.exponent));
-  fmt::format_to(out, "polydispersity = {}  # rmax/rmin\n", real(s.polydispersity));
-  fmt::format_to(out, "rmax_over_shell = {}  # rmax/Rs\n", real(s.rmax_over_shell));
-  fmt::format_to(out, "beta = {}  # volume of drawn grains over volume of the shell\n", real(s.beta));
-  fmt::format_to(out, "trials = {}  # random positions tried per grain\n", s.trials);
-  fmt::format_to(out, "placement = {}  # blind trials, or the same law by looking only where there is room\n",
-                 quoted(s.placement == Placement::voids ? "voids" : "trials"));
+  fmt::format_to(out, "{}", spec_text(card.spec));
 }
 
 void write_estimate(Out out, const std::string& table, const Estimate& e, const std::string& comment) {

@@ -1,0 +1,335 @@
+#include "calibrate/crowd_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "calibrate/bootstrap.h"
+#include "calibrate/crowd_problem.h"
+#include "calibrate/crowd_side_fits.h"
+#include "common/contact/crowd_from_table.h"
+#include "common/core/error.h"
+#include "common/core/random.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::array kForms{"pair", "bag", "directional"};
+
+/// Where the fit of the planes starts: near what the published soft particle gives.
+CrowdModel starting_model(const std::string& form) {
+  CrowdModel model;
+  model.crowd = crowd_of(form);
+  model.form.pressure = {0.7, 2.9, 0.08};
+  model.form.coupling = model.crowd == Crowd::directional ? CrowdCoupling{0.6, 0.9, 0.4} : CrowdCoupling{1.0, 0.0, 0.0};
+  return model;
+}
+
+bool fits(const CrowdStates& c, PartnerKind kind) {
+  const CrowdConfiguration& configuration = *c.configuration;
+  return !configuration.held_out && !configuration.centre_free && !c.states.empty() && c.all_of(kind);
+}
+
+/// The pair law knows one contact only; the others use every configuration of planes that is not held out.
+StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd crowd, const CrowdStates* without) {
+  StateSelection out;
+  for (const CrowdStates& c : states)
+    if (&c != without && fits(c, PartnerKind::plane) && (crowd != Crowd::pair || c.configuration->partners.size() == 1))
+      out.push_back(&c);
+  return out;
+}
+
+/// Size of a neighbour as the tables know it: soft ones the same from either side.
+double table_ratio(const CrowdPartner& p) {
+  return p.kind == PartnerKind::soft ? std::max(p.ratio, 1.0 / p.ratio) : p.ratio;
+}
+
+std::vector<double> ratios_of(const StateSelection& selection) {
+  std::set<double> out;
+  for (const CrowdStates* c : selection)
+    for (const CrowdPartner& p : c->configuration->partners) out.insert(table_ratio(p));
+  return {out.begin(), out.end()};
+}
+
+StateSelection partner_selection(const std::vector<CrowdStates>& states, PartnerKind kind, Crowd crowd) {
+  StateSelection out;
+  for (const CrowdStates& c : states)
+    if (fits(c, kind) && c.largest_force() > 0.0 && (crowd != Crowd::pair || c.configuration->partners.size() == 1))
+      out.push_back(&c);
+  return out;
+}
+
+/// The parameters of one form, as one row: planes, then per kind ln w by ratio and m.
+struct FormFit {
+  CrowdModel model;
+  LeastSquaresFit planes;
+  std::vector<double> solid_ratios;
+  std::vector<double> soft_ratios;
+  LeastSquaresFit solid;
+  LeastSquaresFit soft;
+};
+
+FormFit fit_form(const std::string& form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
+                 const CrowdModel& start) {
+  FormFit out;
+  out.model = start;
+  out.model.crowd = crowd_of(form);
+  const StateSelection planes = plane_selection(states, out.model.crowd, nullptr);
+  out.planes = fit_planes(out.model, planes, discrepancy, thorough);
+  const StateSelection solid = partner_selection(states, PartnerKind::solid, out.model.crowd);
+  out.solid_ratios = ratios_of(solid);
+  if (!solid.empty()) out.solid = fit_partners(out.model, PartnerKind::solid, out.solid_ratios, solid, discrepancy);
+  const StateSelection soft = partner_selection(states, PartnerKind::soft, out.model.crowd);
+  out.soft_ratios = ratios_of(soft);
+  if (!soft.empty()) out.soft = fit_partners(out.model, PartnerKind::soft, out.soft_ratios, soft, discrepancy);
+  return out;
+}
+
+std::vector<double> all_parameters(const FormFit& f) {
+  std::vector<double> all = f.planes.parameters;
+  all.insert(all.end(), f.solid.parameters.begin(), f.solid.parameters.end());
+  all.insert(all.end(), f.soft.parameters.begin(), f.soft.parameters.end());
+  return all;
+}
+
+/// Refits to packings drawn with replacement; one column of values per parameter.
+std::vector<std::vector<double>> bootstrap_form(const CrowdMeasurements& data, const std::string& form,
+                                                const FormFit& full, const CrowdFitOptions& options) {
+  std::vector<std::vector<double>> columns(all_parameters(full).size());
+  for (int r = 0; r < options.replicates; ++r) {
+    RandomStream random(options.seed, RandomPurpose::bootstrap, static_cast<std::uint64_t>(r));
+    std::vector<double> weight(data.packings.size(), 0.0);
+    for (std::size_t k = 0; k < weight.size(); ++k) weight[random.below(weight.size())] += 1.0;
+    const std::vector<CrowdStates> states = average_states(data, weight);
+    const std::vector<double> p = all_parameters(fit_form(form, states, options.discrepancy, false, full.model));
+    if (p.size() != columns.size()) continue;
+    for (std::size_t j = 0; j < p.size(); ++j) columns[j].push_back(p[j]);
+  }
+  return columns;
+}
+
+/// A fitted number with covariance error and, where there are replicates, their interval.
+Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<double>& replicates, bool logarithm) {
+  const double value = fit.parameters[j];
+  const double sd = fit.standard_deviations.empty() ? 0.0 : fit.standard_deviations[j];
+  auto [low, high] = interval95(replicates);
+  if (replicates.size() < 10) {
+    low = value - 1.96 * sd;
+    high = value + 1.96 * sd;
+  }
+  if (!logarithm) return {value, sd, low, high};
+  return {std::exp(value), std::exp(value) * sd, std::exp(low), std::exp(high)};
+}
+
+class Filler {
+ public:
+  Filler(const FormFit& fit, std::vector<std::vector<double>> columns) : fit_(fit), columns_(std::move(columns)) {}
+
+  void planes(CrowdLaw& law) const {
+    law.a = estimate(fit_.planes, 0, columns_[0], true);
+    law.b = estimate(fit_.planes, 1, columns_[1], false);
+    law.delta = estimate(fit_.planes, 2, columns_[2], false);
+    const CrowdCoupling& m = fit_.model.form.coupling;
+    law.m0.value = m.m0;
+    if (fit_.model.crowd != Crowd::directional) return;
+    law.m0 = estimate(fit_.planes, 3, columns_[3], false);
+    law.m1 = estimate(fit_.planes, 4, columns_[4], false);
+    law.m2 = estimate(fit_.planes, 5, columns_[5], false);
+  }
+
+  void partners(CrowdLaw& law, const std::vector<CrowdStates>& states, PartnerKind kind) const {
+    const LeastSquaresFit& fit = kind == PartnerKind::solid ? fit_.solid : fit_.soft;
+    const std::vector<double>& ratios = kind == PartnerKind::solid ? fit_.solid_ratios : fit_.soft_ratios;
+    std::size_t first = fit_.planes.parameters.size();
+    if (kind == PartnerKind::soft) first += fit_.solid.parameters.size();
+    for (std::size_t k = 0; k < ratios.size(); ++k) {
+      PartnerRow row{kind,
+                     ratios[k],
+                     estimate(fit, k, columns_[first + k], true),
+                     estimate(fit, ratios.size(), columns_[first + ratios.size()], false),
+                     0.0,
+                     0.0};
+      describe(row, states);
+      law.partners.push_back(row);
+    }
+  }
+
+ private:
+  /// Range and error of one row, from the configurations that have this neighbour.
+  void describe(PartnerRow& row, const std::vector<CrowdStates>& states) const {
+    for (const CrowdStates& c : states) {
+      if (!fits(c, row.kind) || table_ratio(c.configuration->partners.front()) != row.ratio) continue;
+      for (const CrowdState* s : loading_states(c))
+        for (std::size_t k = 0; k < s->overlap.size(); ++k)
+          row.overlap_max =
+              std::max(row.overlap_max, s->overlap[k] / std::min(1.0, c.configuration->partners[k].ratio));
+      row.error = std::max(row.error, crowd_error(fit_.model, c));
+    }
+  }
+
+  const FormFit& fit_;
+  std::vector<std::vector<double>> columns_;
+};
+
+double end_ratio(const CrowdModel& model, const CrowdStates& c) {
+  const CrowdState& last = *loading_states(c).back();
+  double law = 0.0;
+  double mean = 0.0;
+  const std::vector<double> force = crowd_forces(model, c.configuration->partners, last.overlap);
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    law += force[k];
+    mean += last.mean[k];
+  }
+  return mean > 0.0 ? law / mean : 0.0;
+}
+
+double noise(const CrowdStates& c) {
+  double error = 0.0;
+  double all = 0.0;
+  for (const CrowdState* s : loading_states(c))
+    for (std::size_t k = 0; k < s->mean.size(); ++k) {
+      error += s->error[k] * s->error[k];
+      all += s->mean[k] * s->mean[k];
+    }
+  return all > 0.0 ? std::sqrt(error / all) : 0.0;
+}
+
+void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& states) {
+  double sums[2] = {0.0, 0.0};
+  int counts[2] = {0, 0};
+  for (const CrowdStates& c : states) {
+    if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
+    const bool out = c.configuration->held_out || c.configuration->centre_free;
+    const ConfigurationError e{c.configuration->name, out, crowd_error(fit.model, c), end_ratio(fit.model, c),
+                               noise(c)};
+    law.errors.push_back(e);
+    sums[out ? 1 : 0] += e.error;
+    ++counts[out ? 1 : 0];
+  }
+  if (counts[0] > 0) law.error_fitted = sums[0] / counts[0];
+  if (counts[1] > 0) law.error_held_out = sums[1] / counts[1];
+}
+
+/// Leave one configuration of planes out, fit the others, predict it; held-out ones are predicted by the full fit. For
+/// the pair law, which is fitted to one plane alone, nothing changes.
+double cross_validate(const FormFit& full, const std::vector<CrowdStates>& states, double discrepancy) {
+  double sum = 0.0;
+  int count = 0;
+  for (const CrowdStates& c : states) {
+    if (c.states.empty() || c.configuration->centre_free || !c.all_of(PartnerKind::plane)) continue;
+    CrowdModel model = full.model;
+    const StateSelection rest = plane_selection(states, model.crowd, &c);
+    if (!c.configuration->held_out && c.configuration->partners.size() > 1 && model.crowd != Crowd::pair)
+      (void)fit_planes(model, rest, discrepancy, false);
+    sum += crowd_error(model, c);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// Corrected Akaike information criterion over all configurations of planes that may be fitted, with errors of known
+/// size: S + 2 k + 2 k (k + 1)/(n - k - 1).
+double criterion(const FormFit& fit, const std::vector<CrowdStates>& states, double discrepancy) {
+  const auto r = crowd_residuals(fit.model, plane_selection(states, Crowd::bag, nullptr), discrepancy);
+  double s = 0.0;
+  for (const double x : r) s += x * x;
+  const auto k = static_cast<double>(fit.planes.parameters.size());
+  const auto n = static_cast<double>(r.size());
+  return n > k + 1.0 ? s + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0) : HUGE_VAL;
+}
+
+void set_status(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& states) {
+  const CrowdPressure& p = fit.model.form.pressure;
+  double deepest = 0.0;
+  for (const CrowdStates& c : states)
+    if (fits(c, PartnerKind::plane))
+      for (const CrowdState& s : c.states)
+        deepest = std::max(deepest, *std::max_element(s.overlap.begin(), s.overlap.end()));
+  if (!(p.delta < deepest)) {
+    law.status = "no threshold crossing";
+    law.reason = fmt::format("the threshold {:.3f} lies beyond the largest overlap {:.3f}", p.delta, deepest);
+  } else if (!fit.planes.usable()) {
+    law.status = "underdetermined";
+    law.reason = "planes: " + fit.planes.message;
+  }
+}
+
+CrowdLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>& states, const std::string& form,
+                  const CrowdFitOptions& options) {
+  const FormFit fit = fit_form(form, states, options.discrepancy, true, starting_model(form));
+  CrowdLaw law;
+  law.form = form;
+  law.parameters = static_cast<int>(fit.planes.parameters.size());
+  const Filler filler(fit, bootstrap_form(data, form, fit, options));
+  filler.planes(law);
+  filler.partners(law, states, PartnerKind::solid);
+  filler.partners(law, states, PartnerKind::soft);
+  set_status(law, fit, states);
+  judge(law, fit, states);
+  law.error_cross = cross_validate(fit, states, options.discrepancy);
+  law.criterion = criterion(fit, states, options.discrepancy);
+  return law;
+}
+
+/// Nothing measured at all, or no force anywhere: there is no law to fit.
+void require_data(const CrowdMeasurements& data, const std::vector<CrowdStates>& states, const CrowdFitOptions& o) {
+  if (static_cast<int>(data.packings.size()) < o.min_packings)
+    throw BadInput(fmt::format("crowd laws: {} packings are too few, at least {} are needed", data.packings.size(),
+                               o.min_packings));
+  double force = 0.0;
+  for (const CrowdStates* c : plane_selection(states, Crowd::pair, nullptr))
+    force = std::max(force, c->largest_force());
+  if (!(force > 0.0))
+    throw NotUsable(
+        "crowd laws: no configuration with one plane crossed its threshold (no force at any recorded overlap); press "
+        "deeper");
+}
+
+void describe_packings(const CrowdMeasurements& data, LawTableEntry& entry) {
+  double sum = 0.0;
+  double square = 0.0;
+  const auto n = static_cast<double>(data.packings.size());
+  for (const PackingInfo& p : data.packings) {
+    sum += p.solid_fraction;
+    square += p.solid_fraction * p.solid_fraction;
+  }
+  entry.solid_fraction = sum / n;
+  entry.solid_fraction_error = std::sqrt(std::max(square / n - entry.solid_fraction * entry.solid_fraction, 0.0) / n);
+  entry.packings = static_cast<int>(data.packings.size());
+}
+
+void describe_range(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry) {
+  for (const CrowdStates& c : states) {
+    if (!fits(c, PartnerKind::plane)) continue;
+    for (const CrowdState* s : loading_states(c)) {
+      entry.volume_max = std::max(entry.volume_max, crowd_volume(model, c.configuration->partners, s->overlap));
+      entry.grain_overlap_max = std::max(entry.grain_overlap_max, s->max_overlap);
+      for (const double x : s->overlap) entry.overlap_max = std::max(entry.overlap_max, x);
+    }
+  }
+}
+
+}  // namespace
+
+LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOptions& options) {
+  const std::vector<CrowdStates> states = average_states(data);
+  require_data(data, states, options);
+  LawTableEntry entry;
+  entry.spec = data.spec;
+  entry.relaxation = data.relaxation;
+  describe_packings(data, entry);
+  for (const char* form : kForms) entry.laws.push_back(make_law(data, states, form, options));
+  const auto best = std::min_element(entry.laws.begin(), entry.laws.end(), [](const CrowdLaw& a, const CrowdLaw& b) {
+    return a.error_cross < b.error_cross;
+  });
+  entry.best = best->form;
+  const CrowdModel model = crowd_model(*best);
+  describe_range(states, model, entry);
+  fit_sides(states, model, entry);
+  return entry;
+}
+
+}  // namespace softgrain

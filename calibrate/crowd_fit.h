@@ -1,0 +1,24 @@
+// Fits laws of soft particles with several contacts to crowd measurements and says how well they predict what they have
+// not seen.
+#pragma once
+
+#include "common/contact/crowd_prediction.h"
+#include "common/data/crowd_law.h"
+#include "common/data/crowd_measurements.h"
+
+namespace softgrain {
+
+struct CrowdFitOptions {
+  double discrepancy = 0.05;  ///< what a law may be off besides the noise: share of the force, and a tenth of it of the
+                              ///< largest force of the configuration
+  int min_packings = 4;
+  int replicates = 40;  ///< bootstrap over packings; 0: intervals from the covariance alone
+  std::uint64_t seed = 1;
+};
+
+/// All three forms for the packings of `data`, best one named. Planes fix pressure and coupling; solid spheres, then
+/// soft neighbours, their constants w and m at each ratio that was measured. Configurations marked as held out are
+/// predicted. Throws BadInput when there is no configuration with one plane, or too few packings.
+LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOptions& options = {});
+
+}  // namespace softgrain

@@ -1,0 +1,122 @@
+#include "calibrate/crowd_side_fits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibrate/least_squares.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Mean and scatter of a few values as an estimate.
+Estimate mean_of(const std::vector<double>& values, double fallback) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  if (values.empty()) return {fallback, kUnknown, -kUnknown, kUnknown};
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  const double mean = sum / static_cast<double>(values.size());
+  double square = 0.0;
+  for (const double v : values) square += (v - mean) * (v - mean);
+  const double n = static_cast<double>(values.size());
+  const double error = n > 1.0 ? std::sqrt(square / (n * (n - 1.0))) : 0.0;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return {mean, error, *low, *high};
+}
+
+/// d force/d overlap of the first neighbour over E Rs.
+double normal_stiffness(const CrowdModel& model, const CrowdConfiguration& c, std::vector<double> overlap) {
+  constexpr double kStep = 1e-5;
+  overlap[0] += kStep;
+  const double up = crowd_forces(model, c.partners, overlap)[0];
+  overlap[0] -= 2.0 * kStep;
+  return (up - crowd_forces(model, c.partners, overlap)[0]) / (2.0 * kStep);
+}
+
+struct SlideResult {
+  double kt_ratio = 0.0;
+  double friction = 0.0;
+};
+
+/// From the state before the slide and those along it; false when the configuration does not slide.
+bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& out) {
+  const CrowdState* before = nullptr;
+  const CrowdState* first = nullptr;
+  for (const CrowdState& s : c.states) {
+    if (s.slide == 0.0) {
+      before = &s;
+      continue;
+    }
+    if (first == nullptr) first = &s;
+    if (s.mean[0] > 0.0) out.friction = std::max(out.friction, s.tangential / s.mean[0]);
+  }
+  if (before == nullptr || first == nullptr) return false;
+  const double kn = normal_stiffness(model, *c.configuration, before->overlap);
+  if (!(kn > 0.0)) return false;
+  out.kt_ratio = (first->tangential - before->tangential) / first->slide / kn;
+  return true;
+}
+
+/// States of the retreat that follows the deepest one, every neighbour going back.
+std::vector<const CrowdState*> retreat_states(const CrowdStates& c, const CrowdState*& deepest) {
+  std::vector<const CrowdState*> out;
+  for (const CrowdState& s : c.states) {
+    if (deepest == nullptr || s.overlap[0] >= deepest->overlap[0]) {
+      if (!out.empty()) break;  // reloaded
+      deepest = &s;
+    } else if (c.configuration->stages[static_cast<std::size_t>(s.stage)].name == "unload") {
+      out.push_back(&s);
+    }
+  }
+  return out;
+}
+
+/// s that best gives back a retreat, relative to the law at the deepest state; not above 5.
+bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
+  const CrowdState* deepest = nullptr;
+  const std::vector<const CrowdState*> states = retreat_states(c, deepest);
+  if (states.size() < 3 || !(deepest->mean[0] > 0.0)) return false;
+  const auto& partners = c.configuration->partners;
+  const double end = crowd_forces(model, partners, deepest->overlap)[0];
+  if (!(end > 0.0)) return false;
+  LeastSquaresProblem problem;
+  problem.residuals = states.size();
+  problem.bounds = {{1.0, 5.0}};
+  problem.evaluate = [&](std::span<const double> p, std::span<double> r) {
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      std::vector<double> felt = deepest->overlap;
+      for (std::size_t j = 0; j < felt.size(); ++j)
+        felt[j] = std::max(felt[j] - p[0] * (felt[j] - states[k]->overlap[j]), 0.0);
+      r[k] = crowd_forces(model, partners, felt)[0] / end - states[k]->mean[0] / deepest->mean[0];
+    }
+    return true;
+  };
+  LeastSquaresOptions options;
+  options.thorough = false;
+  s = fit_least_squares(problem, {{1.5}}, options).parameters[0];
+  return true;
+}
+
+}  // namespace
+
+void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry) {
+  std::vector<double> kt;
+  std::vector<double> friction;
+  std::vector<double> retreat;
+  for (const CrowdStates& c : states) {
+    if (c.states.empty() || !c.all_of(PartnerKind::plane)) continue;
+    SlideResult slide;
+    if (slide_result(c, model, slide)) {
+      kt.push_back(slide.kt_ratio);
+      friction.push_back(slide.friction);
+    }
+    double s = 1.0;
+    if (retreat_result(c, model, s)) retreat.push_back(s);
+  }
+  entry.kt_ratio = mean_of(kt, 0.3);
+  entry.friction = mean_of(friction, entry.spec.friction);
+  entry.retreat = mean_of(retreat, 1.0);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,37 @@
+// Means over packings of what a crowd measurement recorded: the numbers that crowd laws are fitted to.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/data/crowd_measurements.h"
+
+namespace softgrain {
+
+/// One recorded state of a configuration, averaged over packings. Forces over E Rs^2.
+struct CrowdState {
+  std::vector<double> overlap;  ///< h/Rs per neighbour
+  std::vector<double> mean;     ///< normal force per neighbour
+  std::vector<double> error;    ///< its standard error
+  double tangential = 0.0;      ///< what holds the first neighbour back on its slide
+  double tangential_error = 0.0;
+  double slide = 0.0;        ///< of the first neighbour [Rs]
+  double max_overlap = 0.0;  ///< of grains, largest over packings
+  std::int64_t stage = 0;
+  std::int64_t packings = 0;  ///< converged ones
+};
+
+/// The states of one configuration, in the order of the path.
+struct CrowdStates {
+  const CrowdConfiguration* configuration = nullptr;  ///< in the data they come from
+  std::vector<CrowdState> states;
+
+  [[nodiscard]] bool all_of(PartnerKind kind) const;
+  [[nodiscard]] double largest_force() const;  ///< mean normal force of a neighbour, over all states
+};
+
+/// Averages every configuration. `weight[p]` says how often packing p counts (a bootstrap replicate); empty: once each.
+/// States with fewer than two converged packings are left out.
+std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std::vector<double>& weight = {});
+
+}  // namespace softgrain

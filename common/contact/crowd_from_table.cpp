@@ -1,0 +1,82 @@
+#include "common/contact/crowd_from_table.h"
+
+#include <cmath>
+
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+const CrowdLaw& usable(const LawTableEntry& entry, const std::string& form) {
+  const CrowdLaw* law = entry.find(form);
+  if (law == nullptr) throw BadInput("law table: no law of the form \"" + form + "\"");
+  if (law->status == "no threshold crossing")
+    throw BadInput("law table: the " + form + " law is not usable: " + law->status + " (" + law->reason + ")");
+  if (law->rows(PartnerKind::solid).empty() || law->rows(PartnerKind::soft).empty())
+    throw BadInput("law table: the " + form + " law knows no " +
+                   (law->rows(PartnerKind::soft).empty() ? std::string("soft") : std::string("solid")) +
+                   " neighbours: measure at least one configuration with them");
+  return *law;
+}
+
+template <Crowd kCrowd, bool kUnloading>
+CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const CrowdChoices& choices) {
+  SoftCrowd<kCrowd, kUnloading> law;
+  law.form = model.form;
+  law.partner = model.solid;
+  law.modulus = choices.modulus;
+  law.friction = choices.friction >= 0.0 ? choices.friction : entry.friction.value;
+  law.kt_ratio = entry.kt_ratio.value;
+  law.retreat = entry.retreat.value;
+  CrowdLaws out;
+  out.soft_solid = law;
+  law.i_is_soft = false;
+  law.j_is_soft = true;
+  out.solid_soft = law;
+  law.i_is_soft = true;
+  law.partner = model.soft;
+  out.soft_soft = law;
+  return out;
+}
+
+template <Crowd kCrowd>
+CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const CrowdChoices& choices) {
+  return choices.unloading ? laws_of<kCrowd, true>(entry, model, choices)
+                           : laws_of<kCrowd, false>(entry, model, choices);
+}
+
+}  // namespace
+
+Crowd crowd_of(const std::string& form) {
+  if (form == "pair") return Crowd::pair;
+  return form == "bag" ? Crowd::bag : Crowd::directional;
+}
+
+CrowdModel crowd_model(const CrowdLaw& law) {
+  CrowdModel model;
+  model.crowd = crowd_of(law.form);
+  model.form.pressure = {law.a.value, law.b.value, law.delta.value};
+  model.form.coupling = {law.m0.value, law.m1.value, law.m2.value};
+  for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {
+    std::vector<double> ratios;
+    std::vector<double> weights;
+    double exponent = 1.0;
+    for (const PartnerRow& row : law.rows(kind)) {
+      ratios.push_back(row.ratio);
+      weights.push_back(std::log(row.weight.value));
+      exponent = row.exponent.value;
+    }
+    if (!ratios.empty()) set_partners(model, kind, ratios, weights, exponent);
+  }
+  return model;
+}
+
+CrowdLaws make_crowd_laws(const LawTableEntry& entry, const CrowdChoices& choices) {
+  const CrowdModel model = crowd_model(usable(entry, choices.form));
+  if (model.crowd == Crowd::pair) return laws_of<Crowd::pair>(entry, model, choices);
+  if (model.crowd == Crowd::bag) return laws_of<Crowd::bag>(entry, model, choices);
+  return laws_of<Crowd::directional>(entry, model, choices);
+}
+
+}  // namespace softgrain

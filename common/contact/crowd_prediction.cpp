@@ -1,0 +1,101 @@
+#include "common/contact/crowd_prediction.h"
+
+namespace softgrain {
+
+namespace {
+
+/// A solid sphere of so many radii presses like a plane.
+constexpr double kPlaneLike = 100.0;
+
+double positive(double x) { return std::max(x, 0.0); }
+
+PairConstants constants_of(const CrowdModel& model, const CrowdPartner& p) {
+  if (p.kind == PartnerKind::plane) return {model.solid.plane_weight, model.solid.plane_exponent};
+  if (p.kind == PartnerKind::solid) return model.solid.at(p.ratio);
+  return {model.soft.at(p.ratio).a, model.soft.plane_exponent};
+}
+
+LostVolume lost_to(const CrowdModel& model, const CrowdPartner& p, double overlap) {
+  const PairConstants k = constants_of(model, p);
+  const double curvature = p.kind == PartnerKind::plane ? 0.0 : 1.0 / p.ratio;
+  return lost_volume(lens(positive(overlap), curvature), k.a, k.b);
+}
+
+double volume_of(const CrowdModel& model, const CrowdSum<3>& sum) {
+  return model.crowd == Crowd::bag ? sum.volume : model.form.equivalent_volume(sum);
+}
+
+CrowdSum<3> sum_of(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
+                   const std::vector<double>& overlap) {
+  CrowdSum<3> sum;
+  for (std::size_t k = 0; k < partners.size(); ++k)
+    sum.add(lost_to(model, partners[k], overlap[k]).nu, partners[k].direction);
+  return sum;
+}
+
+/// Of one contact of a body that has no other.
+double alone(const CrowdModel& model, const LostVolume& nu) {
+  return nu.nu > 0.0 ? nu.slope * model.form.pressure.at(nu.nu).p : 0.0;
+}
+
+/// What a soft neighbour adds: it sees the particle in the middle as a soft one of radius 1/ratio.
+double other_side(const CrowdModel& model, const CrowdPartner& p, double overlap) {
+  if (p.kind != PartnerKind::soft) return 0.0;
+  const CrowdPartner back{PartnerKind::soft, 1.0 / p.ratio, {}};
+  return p.ratio * p.ratio * alone(model, lost_to(model, back, overlap / p.ratio));
+}
+
+}  // namespace
+
+std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
+                                 const std::vector<double>& overlap) {
+  CrowdSum<3> sum = sum_of(model, partners, overlap);
+  if (model.crowd != Crowd::pair) sum.close(model.form.pressure, volume_of(model, sum));
+  std::vector<double> force;
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    const LostVolume nu = lost_to(model, partners[k], overlap[k]);
+    double own = 0.0;
+    if (model.crowd == Crowd::pair)
+      own = alone(model, nu);
+    else
+      own = nu.slope * sum.gain *
+            (model.crowd == Crowd::bag ? sum.volume : model.form.felt(sum, nu.nu, partners[k].direction));
+    force.push_back(own + other_side(model, partners[k], overlap[k]));
+  }
+  return force;
+}
+
+double crowd_volume(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
+                    const std::vector<double>& overlap) {
+  return volume_of(model, sum_of(model, partners, overlap));
+}
+
+void set_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
+                  const std::vector<double>& log_weights, double exponent) {
+  LostVolumeTable& table = kind == PartnerKind::solid ? model.solid : model.soft;
+  std::vector<double> x;
+  std::vector<double> y;
+  if (kind == PartnerKind::soft) {  // the same from either side: mirrored at ratio 1
+    for (std::size_t k = ratios.size(); k-- > 0;) {
+      if (!(ratios[k] > 1.0)) continue;
+      x.push_back(-std::log(ratios[k]));
+      y.push_back(log_weights[k]);
+    }
+  }
+  for (std::size_t k = 0; k < ratios.size(); ++k) {
+    x.push_back(std::log(ratios[k]));
+    y.push_back(log_weights[k]);
+  }
+  if (kind == PartnerKind::soft) {
+    table.plane_exponent = exponent;
+  } else {  // very large spheres are planes
+    std::vector<double> m(x.size(), exponent);
+    x.push_back(std::log(std::max(kPlaneLike, 2.0 * ratios.back())));
+    y.push_back(0.0);
+    m.push_back(1.0);
+    table.exponent = MonotoneCurve(x, m);
+  }
+  table.log_weight = MonotoneCurve(x, y);
+}
+
+}  // namespace softgrain

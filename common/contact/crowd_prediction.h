@@ -1,0 +1,32 @@
+// What a law says about a configuration of a crowd measurement: for fits, reports and tests; the contact loop has its
+// own way to the same numbers.
+#pragma once
+
+#include <vector>
+
+#include "common/contact/soft_crowd.h"
+#include "common/data/crowd_measurements.h"
+
+namespace softgrain {
+
+/// A law of soft particles without units.
+struct CrowdModel {
+  Crowd crowd = Crowd::directional;
+  CrowdForm form;
+  LostVolumeTable solid;
+  LostVolumeTable soft;
+};
+
+/// Forces on the neighbours over E Rs^2 at these overlaps [Rs]. Soft neighbours have this one contact only.
+std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
+                                 const std::vector<double>& overlap);
+
+/// The equivalent volume S of the particle in the middle.
+double crowd_volume(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
+                    const std::vector<double>& overlap);
+
+/// Sets w per ratio (ascending; soft neighbours: at least 1, the same from either side) and m of one kind.
+void set_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
+                  const std::vector<double>& log_weights, double exponent);
+
+}  // namespace softgrain

@@ -1,0 +1,28 @@
+// Pieces that all cards share: numbers that read back to the same double, the soft particle that was measured,
+// estimates.
+#pragma once
+
+#include <string>
+
+#include "common/data/law_card.h"
+#include "common/data/measurements.h"
+#include "common/io/scene.h"
+
+namespace softgrain {
+
+/// Shortest text that reads back to the same double; what is not finite goes into quotes.
+std::string real(double value);
+/// In quotes, with what TOML wants escaped.
+std::string quoted(const std::string& text);
+/// A number, or what was not known at the time of writing: "nan", "inf", "-inf".
+double read_real(const SceneTable& table, const std::string& key, const Range& range);
+
+/// "key = value" lines of a soft particle, and back.
+std::string spec_text(const SoftParticleSpec& spec);
+SoftParticleSpec read_spec_text(const SceneTable& table);
+
+/// An inline table { value, standard_error, low, high }, and back; the value must be in range.
+std::string estimate_text(const Estimate& estimate);
+Estimate read_estimate_text(const SceneTable& table, const Range& range);
+
+}  // namespace softgrain

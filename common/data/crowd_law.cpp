@@ -1,0 +1,130 @@
+#include "common/data/crowd_law.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/monotone_curve.h"
+
+namespace softgrain {
+
+namespace {
+
+/// One entry alone serves soft particles whose solid fraction differs from its own by less than this.
+constexpr double kSameFraction = 0.02;
+
+/// A parameter of one law along the entries, as a curve over solid fraction.
+class AlongEntries {
+ public:
+  AlongEntries(const LawTable& table, double x) : table_(table), x_(x) {
+    for (const LawTableEntry& e : table.entries) fractions_.push_back(e.solid_fraction);
+  }
+
+  /// Value, error and interval, each along its own curve.
+  template <class Get>
+  [[nodiscard]] Estimate estimate(const Get& get) const {
+    return {value([&](const auto& e) { return get(e).value; }),
+            value([&](const auto& e) { return get(e).standard_error; }),
+            value([&](const auto& e) { return get(e).low; }), value([&](const auto& e) { return get(e).high; })};
+  }
+
+  template <class Get>
+  [[nodiscard]] double value(const Get& get) const {
+    std::vector<double> y;
+    for (const LawTableEntry& e : table_.entries) y.push_back(get(e));
+    if (!std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); })) return y.front();
+    return MonotoneCurve(fractions_, y).value(x_);
+  }
+
+ private:
+  const LawTable& table_;
+  double x_;
+  std::vector<double> fractions_;
+};
+
+void require_same_forms(const LawTable& table) {
+  const LawTableEntry& first = table.entries.front();
+  for (const LawTableEntry& e : table.entries) {
+    bool same = e.laws.size() == first.laws.size();
+    for (std::size_t k = 0; same && k < e.laws.size(); ++k)
+      same = e.laws[k].form == first.laws[k].form && e.laws[k].partners.size() == first.laws[k].partners.size();
+    if (!same)
+      throw BadInput(fmt::format(
+          "law table: the entries at solid fraction {:.3f} and {:.3f} were not measured with the same neighbours and "
+          "cannot be interpolated",
+          first.solid_fraction, e.solid_fraction));
+  }
+}
+
+constexpr std::array kShapeParameters{&CrowdLaw::a,  &CrowdLaw::b,  &CrowdLaw::delta,
+                                      &CrowdLaw::m0, &CrowdLaw::m1, &CrowdLaw::m2};
+
+void interpolate_law(const AlongEntries& along, std::size_t k, CrowdLaw& law) {
+  for (const auto member : kShapeParameters)
+    law.*member = along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].*member; });
+  for (std::size_t r = 0; r < law.partners.size(); ++r) {
+    PartnerRow& row = law.partners[r];
+    row.weight =
+        along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].partners[r].weight; });
+    row.exponent =
+        along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].partners[r].exponent; });
+    row.overlap_max = along.value([&](const LawTableEntry& e) { return e.laws[k].partners[r].overlap_max; });
+    row.error = along.value([&](const LawTableEntry& e) { return e.laws[k].partners[r].error; });
+  }
+}
+
+LawTableEntry interpolate(const LawTable& table, double x) {
+  require_same_forms(table);
+  const AlongEntries along(table, x);
+  const auto nearest = std::min_element(table.entries.begin(), table.entries.end(), [x](const auto& a, const auto& b) {
+    return std::abs(a.solid_fraction - x) < std::abs(b.solid_fraction - x);
+  });
+  LawTableEntry out = *nearest;
+  out.solid_fraction = x;
+  out.kt_ratio = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.kt_ratio; });
+  out.friction = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.friction; });
+  out.retreat = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.retreat; });
+  out.volume_max = along.value([](const LawTableEntry& e) { return e.volume_max; });
+  out.overlap_max = along.value([](const LawTableEntry& e) { return e.overlap_max; });
+  for (std::size_t k = 0; k < out.laws.size(); ++k) interpolate_law(along, k, out.laws[k]);
+  return out;
+}
+
+}  // namespace
+
+std::vector<PartnerRow> CrowdLaw::rows(PartnerKind kind) const {
+  std::vector<PartnerRow> out;
+  std::copy_if(partners.begin(), partners.end(), std::back_inserter(out),
+               [kind](const PartnerRow& r) { return r.kind == kind; });
+  return out;
+}
+
+const CrowdLaw* LawTableEntry::find(const std::string& form) const {
+  const auto at = std::find_if(laws.begin(), laws.end(), [&](const CrowdLaw& l) { return l.form == form; });
+  return at == laws.end() ? nullptr : &*at;
+}
+
+LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark) {
+  if (table.entries.empty()) throw BadInput("law table: it has no entries");
+  double low = table.entries.front().solid_fraction;
+  double high = table.entries.back().solid_fraction;
+  if (low == high) {
+    low -= kSameFraction;
+    high += kSameFraction;
+  }
+  if (solid_fraction < low || solid_fraction > high) {
+    const std::string problem =
+        fmt::format("solid fraction {:.3f} of the soft particles is outside the law table ({:.3f} to {:.3f})",
+                    solid_fraction, low, high);
+    if (policy == RangePolicy::reject)
+      throw BadInput("law table: " + problem + ": measure it, or allow the nearest entry with range = \"clamp\"");
+    remark = problem + "; the nearest entry was used";
+  }
+  if (table.entries.size() == 1) return table.entries.front();
+  return interpolate(table, std::clamp(solid_fraction, low, high));
+}
+
+}  // namespace softgrain

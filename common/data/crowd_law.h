@@ -1,0 +1,93 @@
+// Laws of soft particles with several contacts, as fitted, over size ratio and solid fraction: a card for people (TOML)
+// and a table for programs (HDF5). Dimensionless inside [SP 1.6].
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/crowd_measurements.h"
+#include "common/data/law_card.h"
+
+namespace softgrain {
+
+/// nu = w v^m of one kind of neighbour at one size ratio.
+struct PartnerRow {
+  PartnerKind kind = PartnerKind::solid;
+  double ratio = 1.0;        ///< radius of the neighbour over that of the soft particle
+  Estimate weight;           ///< w
+  Estimate exponent;         ///< m; the same for all ratios of soft neighbours
+  double overlap_max = 0.0;  ///< h over the smaller radius, the end of what was measured
+  double error = 0.0;        ///< root mean square of (law - mean) over that of the mean
+};
+
+/// How well a law gives back one configuration.
+struct ConfigurationError {
+  std::string name;
+  bool held_out = false;   ///< not used in the fit: predicted
+  double error = 0.0;      ///< root mean square of (law - mean) over that of the mean, all recorded states
+  double end_ratio = 0.0;  ///< law over mean at the largest overlap, sums over the neighbours
+  double noise = 0.0;      ///< root mean square standard error of the mean over that of the mean
+};
+
+/// One form of law with its parameters.
+struct CrowdLaw {
+  std::string form;             ///< "pair", "bag" or "directional"
+  std::string status = "good";  ///< "good", "no threshold crossing", "underdetermined"
+  std::string reason;
+  Estimate a;  ///< pressure: F/(E Rs^2) of one plane is a (D^b - delta^b)
+  Estimate b;
+  Estimate delta;
+  Estimate m0;  ///< coupling M(c) = m0 - m1 c - m2 c^2
+  Estimate m1;
+  Estimate m2;
+  std::vector<PartnerRow> partners;  ///< solid, then soft, by ratio
+  std::vector<ConfigurationError> errors;
+  double error_fitted = 0.0;    ///< mean over the configurations of the fit
+  double error_held_out = 0.0;  ///< over those left out of it
+  double error_cross = 0.0;     ///< leave one configuration out, mean over configurations
+  double criterion = 0.0;       ///< corrected Akaike information criterion: smaller is better
+  int parameters = 0;
+
+  [[nodiscard]] std::vector<PartnerRow> rows(PartnerKind kind) const;
+};
+
+/// All laws of one kind of packing.
+struct LawTableEntry {
+  SoftParticleSpec spec;
+  double solid_fraction = 0.0;
+  double solid_fraction_error = 0.0;  ///< standard error over packings
+  int packings = 0;
+  std::string relaxation;
+  double volume_max = 0.0;         ///< validity: largest equivalent volume S among the fitted states
+  double overlap_max = 0.0;        ///< and overlap with a plane, h/Rs
+  double grain_overlap_max = 0.0;  ///< largest overlap of grains over the smaller radius in that range
+  Estimate kt_ratio;               ///< kt/kn
+  Estimate friction;               ///< mu_soft
+  Estimate retreat;                ///< s of the unloading branch
+  std::vector<CrowdLaw> laws;
+  std::string best;  ///< the form that cross-validation prefers
+
+  [[nodiscard]] const CrowdLaw* find(const std::string& form) const;
+};
+
+/// What to do when a law is asked outside what was measured.
+enum class RangePolicy { reject, clamp };
+
+struct LawTable {
+  int schema = 1;
+  std::vector<LawTableEntry> entries;  ///< by solid fraction, ascending
+};
+
+/// Writes `table.toml` and, beside it with extension .h5, the measured means behind it. Atomic. Throws FileTrouble.
+void save_law_table(const LawTable& table, const std::string& toml_path,
+                    const Provenance& provenance = build_provenance());
+
+/// Reads the card. Throws BadInput with file:line for wrong content, FileTrouble for files.
+LawTable load_law_table(const std::string& toml_path);
+
+/// The entry at a solid fraction: each parameter along a monotone curve through the entries. Entries must agree in
+/// material (nu, mu) and in the law of sizes. Outside the range: BadInput, or the nearest end with a remark. One entry
+/// serves within 0.02 of its own solid fraction.
+LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark);
+
+}  // namespace softgrain

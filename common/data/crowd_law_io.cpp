@@ -1,0 +1,245 @@
+// A law table as text (the card) and, for programs, the forces it stands for on a grid (HDF5).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/core/error.h"
+#include "common/data/card_text.h"
+#include "common/data/crowd_law.h"
+#include "common/data/law_card_format.h"
+#include "common/data/spec_io.h"
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+constexpr const char* kFormat = "crowd law table";
+
+struct Parameter {
+  const char* key;
+  Estimate CrowdLaw::*estimate;
+};
+constexpr std::array<Parameter, 6> kParameters{{{"a", &CrowdLaw::a},
+                                                {"b", &CrowdLaw::b},
+                                                {"delta", &CrowdLaw::delta},
+                                                {"m0", &CrowdLaw::m0},
+                                                {"m1", &CrowdLaw::m1},
+                                                {"m2", &CrowdLaw::m2}}};
+
+void write_head(Out out, const LawTable& table, const Provenance& provenance) {
+  fmt::format_to(out, "# Laws of soft particles with several contacts: fitted parameters and how well they predict.\n");
+  fmt::format_to(out, "# The forces they stand for are tabulated in the .h5 file of the same name.\n");
+  fmt::format_to(out, "schema = {}\n\n[provenance]\n", table.schema);
+  fmt::format_to(out, "version = {}\ncommit = {}\n", quoted(provenance.version), quoted(provenance.commit));
+  fmt::format_to(out, "compiler = {}\ncommand = {}\n", quoted(provenance.compiler), quoted(provenance.command));
+  fmt::format_to(out, "seed = {}\nthreads = {}\n", quoted(fmt::format("{}", provenance.seed)), provenance.threads);
+  fmt::format_to(out, "\n[definitions]\n");
+  fmt::format_to(out,
+                 "lost_volume = \"nu = w v^m, v the volume of the lens with the neighbour over that of the shell; a "
+                 "plane has w = m = 1\"\n");
+  fmt::format_to(out,
+                 "equivalent_volume = \"S^2 = sum_cd M(n_c.n_d) nu_c nu_d, M = 1 for a contact with itself, else m0 - "
+                 "m1 c - m2 c^2; the pair law has M = 0 else\"\n");
+  fmt::format_to(out,
+                 "pressure = \"p(S)/E = a (D^b - delta^b)/(3/4 (2 D - D^2)) for D >= delta, else 0; 3/4 D^2 (1 - D/3) "
+                 "= S\"\n");
+  fmt::format_to(
+      out, "force = \"E Rs^2 dnu/d(h/Rs) p(S)/S sum_d M nu_d along the normal; a soft neighbour adds its own\"\n");
+  fmt::format_to(out, "ratio = \"radius of the neighbour over Rs; soft neighbours: larger over smaller\"\n");
+}
+
+void write_partner(Out out, const PartnerRow& row) {
+  fmt::format_to(out, "\n[[entry.law.partner]]\nkind = \"{}\"\nratio = {}\n", to_string(row.kind), real(row.ratio));
+  fmt::format_to(out, "weight = {}\nexponent = {}\n", estimate_text(row.weight), estimate_text(row.exponent));
+  fmt::format_to(out, "overlap_max = {}  # over the smaller radius\nerror = {}\n", real(row.overlap_max),
+                 real(row.error));
+}
+
+void write_law(Out out, const CrowdLaw& law) {
+  fmt::format_to(out, "\n[[entry.law]]\nform = {}\nstatus = {}\nreason = {}\n", quoted(law.form), quoted(law.status),
+                 quoted(law.reason));
+  for (const Parameter& p : kParameters) fmt::format_to(out, "{} = {}\n", p.key, estimate_text(law.*p.estimate));
+  fmt::format_to(out, "parameters = {}\n", law.parameters);
+  fmt::format_to(out, "error_fitted = {}  # root mean square over that of the mean force, configurations of the fit\n",
+                 real(law.error_fitted));
+  fmt::format_to(out, "error_held_out = {}  # those left out of it\n", real(law.error_held_out));
+  fmt::format_to(out, "error_cross = {}  # leave one out, all configurations of planes\n", real(law.error_cross));
+  fmt::format_to(out, "criterion = {}  # corrected Akaike, smaller is better\n", real(law.criterion));
+  for (const PartnerRow& row : law.partners) write_partner(out, row);
+  for (const ConfigurationError& e : law.errors) {
+    fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nheld_out = {}\n", quoted(e.name), e.held_out);
+    fmt::format_to(out, "error = {}\nend_ratio = {}\nnoise = {}\n", real(e.error), real(e.end_ratio), real(e.noise));
+  }
+}
+
+void write_entry(Out out, const LawTableEntry& e) {
+  fmt::format_to(out, "\n[[entry]]\nsolid_fraction = {}\nsolid_fraction_error = {}\npackings = {}\n",
+                 real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
+  fmt::format_to(out, "relaxation = {}\nbest = {}  # by cross-validation\n", quoted(e.relaxation), quoted(e.best));
+  fmt::format_to(out, "volume_max = {}  # validity: equivalent volume S\n", real(e.volume_max));
+  fmt::format_to(out, "overlap_max = {}  # and overlap with a plane, h/Rs\n", real(e.overlap_max));
+  fmt::format_to(out, "grain_overlap_max = {}  # of grains over the smaller radius in that range\n",
+                 real(e.grain_overlap_max));
+  fmt::format_to(out, "kt_ratio = {}  # kt/kn\nfriction = {}  # mu_soft\nretreat = {}  # s of the unloading branch\n",
+                 estimate_text(e.kt_ratio), estimate_text(e.friction), estimate_text(e.retreat));
+  fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
+  for (const CrowdLaw& law : e.laws) write_law(out, law);
+}
+
+PartnerRow read_partner(const SceneTable& t) {
+  PartnerRow row;
+  row.kind = t.choice("kind", {"solid", "soft"}) == "soft" ? PartnerKind::soft : PartnerKind::solid;
+  row.ratio = t.number("ratio", Unit::none, Range::positive());
+  row.weight = read_estimate_text(t.table("weight"), Range::positive());
+  row.exponent = read_estimate_text(t.table("exponent"), Range::positive());
+  row.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
+  row.error = t.number("error", Unit::none, Range::not_negative());
+  return row;
+}
+
+CrowdLaw read_law(const SceneTable& t) {
+  CrowdLaw law;
+  law.form = t.choice("form", {"pair", "bag", "directional"});
+  law.status = t.choice("status", {"good", "no threshold crossing", "underdetermined"});
+  law.reason = t.text("reason", "");
+  for (const Parameter& p : kParameters) {
+    const bool shape = p.estimate == &CrowdLaw::a || p.estimate == &CrowdLaw::b;
+    const Range range =
+        shape ? Range::positive() : (p.estimate == &CrowdLaw::delta ? Range{0.0, 1.0, false, true} : Range::any());
+    law.*p.estimate = read_estimate_text(t.table(p.key), range);
+  }
+  law.parameters = static_cast<int>(t.count("parameters", 1, 1000));
+  law.error_fitted = t.number("error_fitted", Unit::none, Range::not_negative());
+  law.error_held_out = t.number("error_held_out", Unit::none, Range::not_negative());
+  law.error_cross = t.number("error_cross", Unit::none, Range::not_negative());
+  law.criterion = read_real(t, "criterion", Range::any());
+  for (const SceneTable& p : t.tables("partner")) law.partners.push_back(read_partner(p));
+  for (const SceneTable& e : t.tables("error"))
+    law.errors.push_back({e.text("configuration"), e.flag("held_out", false),
+                          e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
+                          e.number("noise", Unit::none, Range::not_negative())});
+  for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {
+    const auto rows = law.rows(kind);
+    for (std::size_t k = 1; k < rows.size(); ++k)
+      if (!(rows[k - 1].ratio < rows[k].ratio)) t.reject("partner", "ratios of one kind must ascend");
+    if (kind == PartnerKind::soft && !rows.empty() && rows.front().ratio < 1.0)
+      t.reject("partner", "soft neighbours: the ratio is larger over smaller, at least 1");
+  }
+  return law;
+}
+
+LawTableEntry read_entry(const SceneTable& t) {
+  LawTableEntry e;
+  e.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
+  e.solid_fraction_error = t.number("solid_fraction_error", Unit::none, Range::not_negative());
+  e.packings = static_cast<int>(t.count("packings", 1, 1000000000));
+  e.relaxation = t.text("relaxation");
+  e.best = t.choice("best", {"pair", "bag", "directional"});
+  e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
+  e.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
+  e.grain_overlap_max = t.number("grain_overlap_max", Unit::none, Range::not_negative());
+  e.kt_ratio = read_estimate_text(t.table("kt_ratio"), Range::not_negative());
+  e.friction = read_estimate_text(t.table("friction"), Range::not_negative());
+  e.retreat = read_estimate_text(t.table("retreat"), Range{1.0, HUGE_VAL, false, false});
+  e.spec = read_spec_text(t.table("measurement"));
+  for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));
+  if (e.find(e.best) == nullptr) t.reject("best", "is no form that the entry has");
+  return e;
+}
+
+void skip_words(const SceneTable& root) {
+  const SceneTable provenance = root.table_or_empty("provenance");
+  for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
+  (void)provenance.count("threads", 1, 1000000000, 1);
+  const SceneTable definitions = root.table_or_empty("definitions");
+  for (const char* key : {"lost_volume", "equivalent_volume", "pressure", "force", "ratio"})
+    (void)definitions.text(key, "");
+}
+
+/// Force of one contact over E Rs^2 on a grid of overlaps, one row per neighbour.
+void write_grid(const h5::Group& group, const CrowdLaw& law, double overlap_max) {
+  constexpr std::size_t kPoints = 101;
+  const CrowdModel model = crowd_model(law);
+  std::vector<CrowdPartner> partners{{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
+  std::vector<double> reach{overlap_max};
+  for (const PartnerRow& row : law.partners) {
+    partners.push_back({row.kind, row.ratio, {{1.0, 0.0, 0.0}}});
+    reach.push_back(row.overlap_max * std::min(1.0, row.ratio));
+  }
+  std::vector<double> overlap;
+  std::vector<double> force;
+  std::vector<double> ratio;
+  std::vector<std::int64_t> kind;
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    ratio.push_back(partners[k].ratio);
+    kind.push_back(static_cast<std::int64_t>(partners[k].kind));
+    for (std::size_t n = 0; n < kPoints; ++n) {
+      overlap.push_back(reach[k] * static_cast<double>(n) / static_cast<double>(kPoints - 1));
+      force.push_back(crowd_forces(model, {partners[k]}, {overlap.back()}).front());
+    }
+  }
+  group.attribute("rows", "neighbours: kind 0 plane, 1 solid, 2 soft; ratio of radii, 0 for planes");
+  group.attribute("units", "overlap h/Rs, force F/(E Rs^2) of one contact alone");
+  group.write("kind", kind);
+  group.write("ratio", ratio);
+  group.write("overlap", overlap, {partners.size(), kPoints});
+  group.write("force", force, {partners.size(), kPoints});
+}
+
+void write_table_file(const LawTable& table, const std::string& path, const Provenance& provenance) {
+  h5::AtomicFile file(path);
+  write_format(file.root(), kFormat);
+  write_provenance(file.root(), provenance);
+  for (std::size_t k = 0; k < table.entries.size(); ++k) {
+    const LawTableEntry& e = table.entries[k];
+    const h5::Group group = file.root().create(fmt::format("entry_{}", k));
+    group.attribute("solid_fraction", e.solid_fraction);
+    group.attribute("best", e.best);
+    write_spec(group, e.spec);
+    for (const CrowdLaw& law : e.laws) {
+      const h5::Group of_law = group.create(law.form);
+      for (const Parameter& p : kParameters) {
+        const Estimate& v = law.*p.estimate;
+        of_law.write(p.key, std::array<double, 4>{v.value, v.standard_error, v.low, v.high});
+      }
+      write_grid(of_law, law, e.overlap_max);
+    }
+  }
+  file.commit();
+}
+
+}  // namespace
+
+void save_law_table(const LawTable& table, const std::string& toml_path, const Provenance& provenance) {
+  std::string text;
+  const Out out(text);
+  write_head(out, table, provenance);
+  for (const LawTableEntry& e : table.entries) write_entry(out, e);
+  write_table_file(table, table_path(toml_path), provenance);
+  write_text_atomic(toml_path, text);
+}
+
+LawTable load_law_table(const std::string& toml_path) {
+  const Scene scene = Scene::load(toml_path);
+  const SceneTable root = scene.root();
+  LawTable table;
+  table.schema = static_cast<int>(root.count("schema", 1, 1));
+  skip_words(root);
+  for (const SceneTable& e : root.tables("entry")) {
+    const LawTableEntry entry = read_entry(e);
+    if (!table.entries.empty() && !(table.entries.back().solid_fraction < entry.solid_fraction))
+      e.reject("solid_fraction", "entries must ascend");
+    table.entries.push_back(entry);
+  }
+  if (table.entries.empty()) root.reject("entry", "a law table needs at least one [[entry]]");
+  root.finish();
+  return table;
+}
+
+}  // namespace softgrain
