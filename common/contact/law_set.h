@@ -43,11 +43,18 @@ class LawSet {
 
   /// `law` serves bodies i of material m1 with j of m2 (and the reverse unless `ordered`).
   void set(std::int32_t m1, std::int32_t m2, const AnyLaw& law, bool ordered = false) {
+    use(m1, m2, add(law), ordered);
+  }
+
+  /// A law for use() by several pairs of materials: they share sections of the contact list.
+  std::int32_t add(const AnyLaw& law) {
     if (laws_.size() == kMostLaws) throw std::length_error("more than 64 contact laws in one system");
-    const auto index = static_cast<std::int32_t>(laws_.size());
     laws_.push_back(law);
-    table_[at(m1, m2)] = index;
-    if (!ordered) table_[at(m2, m1)] = index;
+    return size() - 1;
+  }
+  void use(std::int32_t m1, std::int32_t m2, std::int32_t law, bool ordered = false) {
+    table_[at(m1, m2)] = law;
+    if (!ordered) table_[at(m2, m1)] = law;
   }
 
   [[nodiscard]] std::int32_t index(std::int32_t m1, std::int32_t m2) const { return table_[at(m1, m2)]; }

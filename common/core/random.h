@@ -17,6 +17,7 @@ enum class RandomPurpose : std::uint64_t {
   macro_positions = 5,
   test = 6,
   rotation = 7,
+  directions = 8,
   grain_box_radii = 20,
   grain_box_elasticity = 21,
   grain_box_positions = 22

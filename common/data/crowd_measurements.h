@@ -77,4 +77,9 @@ void save_crowd(const CrowdMeasurements& data, const std::string& path,
 /// Reads what save_crowd() wrote. Throws FileTrouble naming the file and what is missing or damaged.
 CrowdMeasurements load_crowd(const std::string& path);
 
+/// The runs alone, as data sets of `group`: for files that keep single runs.
+void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs);
+/// Reads them back. Throws FileTrouble when columns are missing or do not fit together.
+std::vector<CrowdRun> read_crowd_runs(const h5::Group& group);
+
 }  // namespace softgrain

@@ -1,0 +1,246 @@
+// Layout of crowd.h5: "spec", "packings", "configurations" (one row each; "partners" and "stages" of all of them one
+// after the other), "runs" (one row each; "points", and "neighbours" with one row per point and neighbour, likewise).
+#include "common/data/crowd_measurements.h"
+
+#include "common/data/columns.h"
+#include "common/data/packing_io.h"
+#include "common/data/spec_io.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr const char* kFormat = "crowd-measurements";
+
+std::int64_t below(std::int64_t value, std::size_t limit, const char* what) {
+  if (value < 0 || static_cast<std::uint64_t>(value) >= limit) throw FileTrouble(std::string(what) + " out of range");
+  return value;
+}
+
+template <class Record, class Field>
+void write_vector(const h5::Group& group, const std::string& name, const std::string& unit,
+                  const std::vector<Record>& records, Field field) {
+  constexpr const char* kAxis[] = {"_x", "_y", "_z"};
+  for (int k = 0; k < 3; ++k)
+    write_column(group, name + kAxis[k], unit, records, [&](const Record& r) -> double { return field(r)[k]; });
+}
+
+template <class Record, class Field>
+void read_vector(const h5::Group& group, const std::string& name, std::vector<Record>& records, Field field) {
+  constexpr const char* kAxis[] = {"_x", "_y", "_z"};
+  for (int k = 0; k < 3; ++k)
+    read_doubles(group, name + kAxis[k], records, [&](Record& r, double v) { field(r)[k] = v; });
+}
+
+void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration>& configurations) {
+  std::vector<CrowdPartner> all;
+  for (const auto& c : configurations) all.insert(all.end(), c.partners.begin(), c.partners.end());
+  const h5::Group g = group.create("partners");
+  g.attribute("kinds", "0 plane, 1 solid, 2 soft");
+  write_column(g, "kind", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.kind); });
+  write_column(g, "ratio", "1", all, [](const auto& p) { return p.ratio; });
+  write_vector(g, "direction", "1", all, [](const auto& p) { return p.direction; });
+}
+
+std::vector<CrowdPartner> read_partners(const h5::Group& group) {
+  const h5::Group g = group.open("partners");
+  std::vector<CrowdPartner> all(column_length(g, "kind"));
+  read_integers(g, "kind", all,
+                [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
+  read_doubles(g, "ratio", all, [](auto& p, double v) { p.ratio = v; });
+  read_vector(g, "direction", all, [](auto& p) -> Vec3& { return p.direction; });
+  return all;
+}
+
+void write_stages(const h5::Group& group, const std::vector<CrowdConfiguration>& configurations) {
+  std::vector<CrowdStage> all;
+  for (const auto& c : configurations) all.insert(all.end(), c.stages.begin(), c.stages.end());
+  const h5::Group g = group.create("stages");
+  for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
+  write_column(g, "slide", "Rs", all, [](const auto& s) { return s.slide; });
+  write_column(g, "overlaps", "1", all, [](const auto& s) { return s.overlap.size(); });
+  std::vector<double> overlaps;
+  for (const auto& s : all) overlaps.insert(overlaps.end(), s.overlap.begin(), s.overlap.end());
+  g.write("overlap", std::span<const double>(overlaps));
+  g.attribute_of("overlap", "unit", "Rs");
+}
+
+std::vector<CrowdStage> read_stages(const h5::Group& group) {
+  const h5::Group g = group.open("stages");
+  std::vector<CrowdStage> all(column_length(g, "overlaps"));
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
+  read_doubles(g, "slide", all, [](auto& s, double v) { s.slide = v; });
+  const std::vector<double> overlaps = g.doubles("overlap");
+  Slices slices(overlaps.size());
+  read_integers(g, "overlaps", all, [&](auto& s, auto v) { s.overlap = take(overlaps, slices, v); });
+  slices.finish();
+  return all;
+}
+
+void write_configurations(const h5::Group& root, const std::vector<CrowdConfiguration>& all) {
+  const h5::Group g = root.create("configurations");
+  for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
+  write_column(g, "centre_free", "1", all, [](const auto& c) { return c.centre_free; });
+  write_column(g, "held_out", "1", all, [](const auto& c) { return c.held_out; });
+  write_column(g, "partner_count", "1", all, [](const auto& c) { return c.partners.size(); });
+  write_column(g, "stage_count", "1", all, [](const auto& c) { return c.stages.size(); });
+  write_partners(g, all);
+  write_stages(g, all);
+}
+
+std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
+  const h5::Group g = root.open("configurations");
+  std::vector<CrowdConfiguration> all(column_length(g, "centre_free"));
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
+  read_integers(g, "centre_free", all, [](auto& c, auto v) { c.centre_free = v != 0; });
+  read_integers(g, "held_out", all, [](auto& c, auto v) { c.held_out = v != 0; });
+  const std::vector<CrowdPartner> partners = read_partners(g);
+  const std::vector<CrowdStage> stages = read_stages(g);
+  Slices partner_slices(partners.size());
+  Slices stage_slices(stages.size());
+  read_integers(g, "partner_count", all, [&](auto& c, auto v) { c.partners = take(partners, partner_slices, v); });
+  read_integers(g, "stage_count", all, [&](auto& c, auto v) { c.stages = take(stages, stage_slices, v); });
+  partner_slices.finish();
+  stage_slices.finish();
+  for (const CrowdConfiguration& c : all)
+    for (const CrowdStage& s : c.stages)
+      if (s.overlap.size() != c.partners.size()) throw FileTrouble("a stage has another number of overlaps");
+  return all;
+}
+
+/// What a point says of one neighbour.
+struct NeighbourRow {
+  double overlap = 0.0;
+  double normal = 0.0;
+  Vec3 tangential{};
+};
+
+void write_points(const h5::Group& group, const std::vector<CrowdPoint>& points) {
+  const h5::Group g = group.create("points");
+  write_column(g, "stage", "1", points, [](const auto& p) { return p.stage; });
+  write_column(g, "neighbours", "1", points, [](const auto& p) { return p.overlap.size(); });
+  write_column(g, "slide", "Rs", points, [](const auto& p) { return p.slide; });
+  write_vector(g, "centre", "Rs", points, [](const auto& p) { return p.centre; });
+  write_column(g, "residual", "1", points, [](const auto& p) { return p.residual; });
+  write_column(g, "max_overlap", "1", points, [](const auto& p) { return p.max_overlap; });
+  write_column(g, "converged", "1", points, [](const auto& p) { return p.converged; });
+  std::vector<NeighbourRow> rows;
+  for (const CrowdPoint& p : points)
+    for (std::size_t k = 0; k < p.overlap.size(); ++k) rows.push_back({p.overlap[k], p.normal[k], p.tangential[k]});
+  const h5::Group n = group.create("neighbours");
+  write_column(n, "overlap", "Rs", rows, [](const auto& r) { return r.overlap; });
+  write_column(n, "normal", "E Rs^2", rows, [](const auto& r) { return r.normal; });
+  write_vector(n, "tangential", "E Rs^2", rows, [](const auto& r) { return r.tangential; });
+}
+
+std::vector<NeighbourRow> read_neighbours(const h5::Group& group) {
+  const h5::Group g = group.open("neighbours");
+  std::vector<NeighbourRow> rows(g.doubles("overlap").size());
+  read_doubles(g, "overlap", rows, [](auto& r, double v) { r.overlap = v; });
+  read_doubles(g, "normal", rows, [](auto& r, double v) { r.normal = v; });
+  read_vector(g, "tangential", rows, [](auto& r) -> Vec3& { return r.tangential; });
+  return rows;
+}
+
+void append_neighbours(CrowdPoint& p, const std::vector<NeighbourRow>& rows) {
+  for (const NeighbourRow& r : rows) {
+    p.overlap.push_back(r.overlap);
+    p.normal.push_back(r.normal);
+    p.tangential.push_back(r.tangential);
+  }
+}
+
+std::vector<CrowdPoint> read_points(const h5::Group& group) {
+  const h5::Group g = group.open("points");
+  std::vector<CrowdPoint> points(column_length(g, "stage"));
+  read_integers(g, "stage", points, [](auto& p, auto v) { p.stage = v; });
+  const std::vector<NeighbourRow> rows = read_neighbours(group);
+  Slices slices(rows.size());
+  read_integers(g, "neighbours", points, [&](auto& p, auto v) { append_neighbours(p, take(rows, slices, v)); });
+  slices.finish();
+  read_doubles(g, "slide", points, [](auto& p, double v) { p.slide = v; });
+  read_vector(g, "centre", points, [](auto& p) -> Vec3& { return p.centre; });
+  read_doubles(g, "residual", points, [](auto& p, double v) { p.residual = v; });
+  read_doubles(g, "max_overlap", points, [](auto& p, double v) { p.max_overlap = v; });
+  read_integers(g, "converged", points, [](auto& p, auto v) { p.converged = v != 0; });
+  return points;
+}
+
+/// Runs, configurations and packings must speak of each other.
+void require_consistent(const CrowdMeasurements& data) {
+  for (const CrowdRun& run : data.runs) {
+    (void)below(run.packing, data.packings.size(), "packing of a run");
+    const auto k = below(run.configuration, data.configurations.size(), "configuration of a run");
+    const CrowdConfiguration& c = data.configurations[static_cast<std::size_t>(k)];
+    for (const CrowdPoint& p : run.points) {
+      (void)below(p.stage, c.stages.size(), "stage of a point");
+      if (p.overlap.size() != c.partners.size()) throw FileTrouble("a point has another number of neighbours");
+    }
+  }
+}
+
+}  // namespace
+
+std::string to_string(PartnerKind kind) {
+  if (kind == PartnerKind::plane) return "plane";
+  return kind == PartnerKind::solid ? "solid" : "soft";
+}
+
+void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs) {
+  write_column(group, "configuration", "1", runs, [](const auto& r) { return r.configuration; });
+  write_column(group, "packing", "1", runs, [](const auto& r) { return r.packing; });
+  write_column(group, "point_count", "1", runs, [](const auto& r) { return r.points.size(); });
+  write_column(group, "loop_passes", "1", runs, [](const auto& r) { return r.cost.loop_passes; });
+  write_column(group, "contact_evaluations", "1", runs, [](const auto& r) { return r.cost.contact_evaluations; });
+  write_column(group, "seconds", "s", runs, [](const auto& r) { return r.cost.seconds; });
+  std::vector<CrowdPoint> points;
+  for (const CrowdRun& run : runs) points.insert(points.end(), run.points.begin(), run.points.end());
+  write_points(group, points);
+}
+
+std::vector<CrowdRun> read_crowd_runs(const h5::Group& group) {
+  std::vector<CrowdRun> runs(column_length(group, "configuration"));
+  read_integers(group, "configuration", runs, [](auto& r, auto v) { r.configuration = v; });
+  read_integers(group, "packing", runs, [](auto& r, auto v) { r.packing = v; });
+  read_integers(group, "loop_passes", runs, [](auto& r, auto v) { r.cost.loop_passes = v; });
+  read_integers(group, "contact_evaluations", runs, [](auto& r, auto v) { r.cost.contact_evaluations = v; });
+  read_doubles(group, "seconds", runs, [](auto& r, double v) { r.cost.seconds = v; });
+  const std::vector<CrowdPoint> points = read_points(group);
+  Slices slices(points.size());
+  read_integers(group, "point_count", runs, [&](auto& r, auto v) { r.points = take(points, slices, v); });
+  slices.finish();
+  return runs;
+}
+
+void save_crowd(const CrowdMeasurements& data, const std::string& path, const Provenance& provenance) {
+  h5::AtomicFile file(path);
+  const h5::Group root = file.root();
+  write_format(root, kFormat);
+  root.attribute("relaxation", data.relaxation);
+  write_spec(root, data.spec);
+  write_packings(root, data.packings);
+  write_configurations(root, data.configurations);
+  write_crowd_runs(root.create("runs"), data.runs);
+  write_provenance(root, provenance);
+  file.commit();
+}
+
+CrowdMeasurements load_crowd(const std::string& path) {
+  const h5::Group root = h5::open_file(path);
+  require_format(root, kFormat, path);
+  CrowdMeasurements data;
+  try {
+    data.relaxation = root.text("relaxation");
+    data.spec = read_spec(root);
+    data.packings = read_packings(root);
+    data.configurations = read_configurations(root);
+    data.runs = read_crowd_runs(root.open("runs"));
+    require_consistent(data);
+  } catch (const FileTrouble& e) {
+    const std::string text = e.what();
+    throw FileTrouble(text.starts_with(path) ? text : path + ": damaged: " + text);
+  }
+  return data;
+}
+
+}  // namespace softgrain

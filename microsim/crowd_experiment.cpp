@@ -1,0 +1,436 @@
+#include "microsim/crowd_experiment.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/solid_sphere.h"
+#include "common/dynamics/damped_relaxation.h"
+#include "common/dynamics/displace.h"
+#include "common/dynamics/force_pass.h"
+#include "common/dynamics/residual.h"
+#include "microsim/protocol.h"
+
+namespace softgrain {
+
+namespace {
+
+// Grains and inner soft particles of every soft particle have materials of their own, so that neighbours can be made
+// blind to each other: kGrain and kInner of the centre, then two for each soft neighbour.
+constexpr std::int32_t kGrain = 0;
+constexpr std::int32_t kInner = 1;
+constexpr std::int32_t kSolid = 2;  ///< solid spheres as neighbours
+constexpr std::int32_t kWall = 3;   ///< planes and shells: neither meets the other, both meet grains
+constexpr std::int32_t kPlane = 4;
+constexpr std::int32_t kFirstOther = 5;
+
+/// Laws are added once and shared by many pairs of materials.
+class LawTable {
+ public:
+  LawTable(std::int32_t materials, const AnyLaw& hertz, const InnerLaws* inner) : laws_(materials) {
+    hertz_ = laws_.add(hertz);
+    if (inner == nullptr) return;
+    soft_solid_ = laws_.add(inner->soft_solid);
+    solid_soft_ = laws_.add(inner->solid_soft);
+    soft_soft_ = laws_.add(inner->soft_soft);
+  }
+  void solids(std::int32_t m1, std::int32_t m2) { laws_.use(m1, m2, hertz_); }
+  void soft_with_solid(std::int32_t soft, std::int32_t solid) {
+    if (soft_solid_ == LawSet::kNoContact) return;
+    laws_.use(soft, solid, soft_solid_, true);
+    laws_.use(solid, soft, solid_soft_, true);
+  }
+  void softs(std::int32_t m1, std::int32_t m2) {
+    if (soft_soft_ != LawSet::kNoContact) laws_.use(m1, m2, soft_soft_);
+  }
+  /// Two contents meet (or one with itself).
+  void contents(std::int32_t grain1, std::int32_t grain2) {
+    solids(grain1, grain2);
+    soft_with_solid(grain1 + 1, grain2);
+    soft_with_solid(grain2 + 1, grain1);
+    softs(grain1 + 1, grain2 + 1);
+  }
+  /// A content meets something solid.
+  void content_with(std::int32_t grain, std::int32_t solid) {
+    solids(grain, solid);
+    soft_with_solid(grain + 1, solid);
+  }
+  [[nodiscard]] const LawSet& laws() const { return laws_; }
+
+ private:
+  LawSet laws_;
+  std::int32_t hertz_ = LawSet::kNoContact;
+  std::int32_t soft_solid_ = LawSet::kNoContact;
+  std::int32_t solid_soft_ = LawSet::kNoContact;
+  std::int32_t soft_soft_ = LawSet::kNoContact;
+};
+
+std::int32_t other_material(std::size_t soft) { return kFirstOther + 2 * static_cast<std::int32_t>(soft); }
+
+LawSet crowd_laws(const SoftParticleSpec& spec, const Material& grain, std::size_t softs, const InnerLaws* inner) {
+  const AnyLaw hertz = hertz_law(HertzCoefficients::of(grain, grain, spec.friction, 1.0), false);
+  LawTable table(other_material(softs), hertz, inner);
+  table.contents(kGrain, kGrain);
+  for (const std::int32_t wall : {kSolid, kWall, kPlane}) table.content_with(kGrain, wall);
+  for (std::size_t k = 0; k < softs; ++k) {
+    const std::int32_t other = other_material(k);
+    table.contents(other, other);
+    table.contents(kGrain, other);
+    table.content_with(other, kWall);
+  }
+  return table.laws();
+}
+
+std::vector<Material> crowd_materials(const SoftParticleSpec& spec, std::size_t softs) {
+  std::vector<Material> materials;
+  for (std::int32_t m = 0; m < other_material(softs); ++m)
+    materials.push_back(
+        {"material " + std::to_string(m), spec.density, spec.youngs_modulus, spec.poisson_ratio, false});
+  return materials;
+}
+
+void require_configuration(const CrowdConfiguration& c, std::size_t others) {
+  constexpr double kUnit = 1e-9;
+  std::size_t softs = 0;
+  for (const CrowdPartner& p : c.partners) {
+    if (std::abs(norm(p.direction) - 1.0) > kUnit) throw BadInput(c.name + ": a direction is no unit vector");
+    if (p.kind != PartnerKind::plane && !(p.ratio > 0.0))
+      throw BadInput(c.name + ": the ratio of a sphere must be > 0");
+    softs += p.kind == PartnerKind::soft ? 1 : 0;
+  }
+  if (others < softs)
+    throw BadInput(c.name + ": " + std::to_string(softs) + " soft neighbours, content for " + std::to_string(others));
+  for (const CrowdStage& s : c.stages)
+    if (s.overlap.size() != c.partners.size()) throw BadInput(c.name + ": one overlap per neighbour and stage");
+}
+
+/// Content of a soft particle as bodies of radius scale * r.
+struct ContentPlace {
+  Vec3 centre{};
+  double scale = 0.0;  ///< radius of its shell [m]
+  std::int32_t material = 0;
+  Slot shell = 0;
+};
+
+void add_content(System3& s, const SoftParticleSpec& spec, const SoftContent& content, const ContentPlace& at,
+                 double inner_fraction) {
+  const auto add = [&](const Vec3& x, double r, double density, std::int32_t material) {
+    NewBody<3> body = solid_sphere(at.centre + x * at.scale, r * at.scale, density, material);
+    body.shell = at.shell;
+    add_grain(s.particles, body);
+  };
+  for (std::size_t k = 0; k < content.grains.radius.size(); ++k)
+    add(content.grains.position[k], content.grains.radius[k], spec.density, at.material);
+  for (const InnerSoft& inner : content.inner) add(inner.x, inner.r, spec.density * inner_fraction, at.material + 1);
+}
+
+Slot count(const SoftContent& content) {
+  return static_cast<Slot>(content.grains.radius.size() + content.inner.size());
+}
+
+/// Solid volume over the volume of the shell.
+double solid_fraction(const SoftContent& content, double inner_fraction) {
+  double sum = content.grains.solid_fraction();
+  for (const InnerSoft& inner : content.inner) sum += inner_fraction * inner.r * inner.r * inner.r;
+  return sum;
+}
+
+/// A free shell has the mass of its content.
+NewBody<3> centre_shell(const SoftParticleSpec& spec, bool free, double fraction) {
+  if (free) return solid_sphere({}, spec.shell_radius, spec.density * fraction, kWall);
+  NewBody<3> shell;
+  shell.r = spec.shell_radius;
+  shell.material = kWall;
+  return shell;
+}
+
+/// Where neighbour k sits for an overlap and a direction; of planes a point of them [m].
+Vec3 place(const SoftParticleSpec& spec, const CrowdPartner& p, const Vec3& direction, double overlap) {
+  return direction * ((1.0 + p.ratio - overlap) * spec.shell_radius);
+}
+
+/// Adds bodies group by group, because slots are ordered grains, shells, planes.
+class Builder {
+ public:
+  Builder(CrowdExperiment& e, const std::vector<const SoftContent*>& others, double inner_fraction)
+      : e_(e), others_(others), fraction_(inner_fraction) {
+    e_.neighbours.resize(e.configuration.partners.size());
+  }
+
+  void build(const SoftContent& centre) {
+    e_.centre_bodies = count(centre);
+    const Slot shell = first_shell();
+    e_.centre_shell = shell;
+    add_content(e_.system, e_.spec, centre, {{}, e_.spec.shell_radius, kGrain, shell}, fraction_);
+    soft_contents(shell + 1);
+    solids();
+    add_shell(e_.system.particles,
+              centre_shell(e_.spec, e_.configuration.centre_free, solid_fraction(centre, fraction_)));
+    soft_shells();
+    planes();
+  }
+
+ private:
+  template <class Work>
+  void each(PartnerKind kind, Work&& work) {
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < e_.neighbours.size(); ++k)
+      if (e_.configuration.partners[k].kind == kind) work(e_.configuration.partners[k], e_.neighbours[k], found++);
+  }
+  [[nodiscard]] Vec3 at(const CrowdPartner& p) const { return place(e_.spec, p, p.direction, 0.0); }
+
+  Slot first_shell() {
+    Slot grains = e_.centre_bodies;
+    each(PartnerKind::soft, [&](const auto&, auto&, std::size_t k) { grains += count(*others_[k]); });
+    each(PartnerKind::solid, [&](const auto&, auto&, std::size_t) { ++grains; });
+    return grains;
+  }
+  void soft_contents(Slot first) {
+    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t k) {
+      n.begin = e_.system.particles.grains;
+      add_content(e_.system, e_.spec, *others_[k],
+                  {at(p), p.ratio * e_.spec.shell_radius, other_material(k), first + static_cast<Slot>(k)}, fraction_);
+      n.end = e_.system.particles.grains;
+    });
+  }
+  void solids() {
+    each(PartnerKind::solid, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
+      NewBody<3> ball;
+      ball.x = at(p);
+      ball.r = p.ratio * e_.spec.shell_radius;
+      ball.material = kSolid;
+      n.body = add_grain(e_.system.particles, ball);
+    });
+  }
+  void soft_shells() {
+    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
+      NewBody<3> shell;
+      shell.x = at(p);
+      shell.r = p.ratio * e_.spec.shell_radius;
+      shell.material = kWall;
+      n.body = add_shell(e_.system.particles, shell);
+    });
+  }
+  void planes() {
+    each(PartnerKind::plane, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
+      NewBody<3> plane;
+      plane.x = at(p);
+      plane.material = kPlane;
+      n.body = add_plane(e_.system.particles, plane, -p.direction);
+    });
+  }
+
+  CrowdExperiment& e_;
+  const std::vector<const SoftContent*>& others_;
+  double fraction_;
+};
+
+/// Which neighbour a body belongs to; -1 for the centre.
+std::vector<std::int32_t> owners(const CrowdExperiment& e) {
+  std::vector<std::int32_t> owner(static_cast<std::size_t>(e.system.particles.size()), -1);
+  for (std::size_t k = 0; k < e.neighbours.size(); ++k) {
+    const CrowdExperiment::Neighbour& n = e.neighbours[k];
+    for (Slot i = n.begin; i < n.end; ++i) owner[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(k);
+    owner[static_cast<std::size_t>(n.body)] = static_cast<std::int32_t>(k);
+  }
+  return owner;
+}
+
+/// Force on each neighbour from the content of the centre [N].
+std::vector<Vec3> neighbour_forces(const CrowdExperiment& e, const std::vector<ContactRecord<3>>& records) {
+  const std::vector<std::int32_t> owner = owners(e);
+  std::vector<Vec3> forces(e.neighbours.size());
+  for (const ContactRecord<3>& c : records) {
+    if (c.i >= e.centre_bodies) continue;
+    const std::int32_t k = owner[static_cast<std::size_t>(c.j)];
+    if (k >= 0) forces[static_cast<std::size_t>(k)] -= c.normal * c.normal_force + c.tangential_force;
+  }
+  return forces;
+}
+
+/// h/Rs of neighbour k, towards the shell where it is now.
+double present_overlap(const CrowdExperiment& e, std::size_t k) {
+  const auto& p = e.system.particles;
+  const Vec3 apart =
+      p.sphere[static_cast<std::size_t>(e.neighbours[k].body)].x - p.sphere[static_cast<std::size_t>(e.centre_shell)].x;
+  const CrowdPartner& partner = e.configuration.partners[k];
+  const double distance = partner.kind == PartnerKind::plane ? dot(apart, partner.direction) : norm(apart);
+  return 1.0 + partner.ratio - distance / e.spec.shell_radius;
+}
+
+RelaxationResult relax(CrowdExperiment& e, const CrowdOptions& options, double tolerance) {
+  DampedOptions damped;
+  damped.tolerance = tolerance;
+  damped.force_floor = force_floor(e.spec);
+  damped.max_passes = options.max_passes;
+  return DampedRelaxation<3>(damped).relax(e.system);
+}
+
+/// Prescribed position: overlaps and slide [Rs].
+struct Target {
+  std::vector<double> overlap;
+  double slide = 0.0;
+};
+
+/// `share` of the way from one to the other; exactly `to` at 1.
+Target between(const Target& from, const Target& to, double share) {
+  if (share == 1.0) return to;
+  Target t{from.overlap, from.slide + share * (to.slide - from.slide)};
+  for (std::size_t k = 0; k < t.overlap.size(); ++k) t.overlap[k] += share * (to.overlap[k] - from.overlap[k]);
+  return t;
+}
+
+double distance(const Target& a, const Target& b) {
+  double most = std::abs(a.slide - b.slide);
+  for (std::size_t k = 0; k < a.overlap.size(); ++k) most = std::max(most, std::abs(a.overlap[k] - b.overlap[k]));
+  return most;
+}
+
+std::int64_t steps_for(double length, double increment) {
+  constexpr double kRounding = 1e-9;
+  return std::max(std::int64_t{1}, static_cast<std::int64_t>(std::ceil(length / increment - kRounding)));
+}
+
+void advance(CrowdExperiment& e, const Target& to, const CrowdOptions& options) {
+  const Target from{e.overlap, e.slide};
+  const double length = distance(from, to);
+  if (length <= 0.0) return;
+  const std::int64_t steps = steps_for(length, options.increment);
+  for (std::int64_t k = 1; k <= steps; ++k) {
+    const Target next = between(from, to, static_cast<double>(k) / static_cast<double>(steps));
+    e.move_to(next.overlap, next.slide);
+    relax(e, options, options.tolerance_between);
+  }
+}
+
+Target end_of(const CrowdStage& stage, double slide_before) { return {stage.overlap, slide_before + stage.slide}; }
+
+CrowdPoint recorded(CrowdExperiment& e, const CrowdOptions& options, std::size_t stage) {
+  const RelaxationResult rest = relax(e, options, options.tolerance);
+  CrowdPoint point = e.observe();
+  point.stage = static_cast<std::int64_t>(stage);
+  point.residual = rest.residual;
+  point.converged = rest.end == RelaxationEnd::converged;
+  return point;
+}
+
+void require_plan(const CrowdConfiguration& c, const CrowdPlan& plan) {
+  if (plan.size() != c.stages.size()) throw BadInput(c.name + ": the plan has another number of stages");
+}
+
+}  // namespace
+
+Vec3 slide_direction(const Vec3& direction) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(direction[k]) < std::abs(direction[axis])) axis = k;
+  Vec3 along{};
+  along[axis] = 1.0;
+  along -= direction * dot(along, direction);
+  return along * (1.0 / norm(along));
+}
+
+Vec3 CrowdExperiment::direction(std::size_t k) const {
+  const CrowdPartner& p = configuration.partners[k];
+  if (k > 0 || slide == 0.0 || p.kind == PartnerKind::plane) return p.direction;
+  const double angle = slide / (1.0 + p.ratio - overlap[0]);
+  return p.direction * std::cos(angle) + slide_direction(p.direction) * std::sin(angle);
+}
+
+void CrowdExperiment::move_to(const std::vector<double>& overlaps, double slide_to) {
+  std::vector<Vec3> moves(static_cast<std::size_t>(system.particles.size()));
+  std::vector<Vec3> before(neighbours.size());
+  for (std::size_t k = 0; k < neighbours.size(); ++k) before[k] = direction(k);
+  const std::vector<double> overlaps_before = overlap;
+  const double slide_before = slide;
+  overlap = overlaps;
+  slide = slide_to;
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const CrowdPartner& p = configuration.partners[k];
+    Vec3 move = before[k] * ((overlaps_before[k] - overlap[k]) * spec.shell_radius);
+    if (k == 0 && slide != slide_before)
+      move = p.kind == PartnerKind::plane
+                 ? move + slide_direction(p.direction) * ((slide - slide_before) * spec.shell_radius)
+                 : place(spec, p, direction(0), overlap[0]) - place(spec, p, before[0], overlaps_before[0]);
+    for (Slot i = neighbours[k].begin; i < neighbours[k].end; ++i) moves[static_cast<std::size_t>(i)] = move;
+    moves[static_cast<std::size_t>(neighbours[k].body)] = move;
+  }
+  displace(system, moves);
+}
+
+CrowdPoint CrowdExperiment::observe() const {
+  CrowdPoint point;
+  const double unit = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
+  const std::vector<Vec3> forces = neighbour_forces(*this, contact_records(system));
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const Vec3 n = direction(k);
+    const double normal = dot(forces[k], n);
+    point.overlap.push_back(present_overlap(*this, k));
+    point.normal.push_back(normal / unit);
+    point.tangential.push_back((forces[k] - n * normal) * (1.0 / unit));
+  }
+  const Residual rest = softgrain::residual(system);
+  point.residual = rest.relative(force_floor(spec));
+  point.max_overlap = rest.max_overlap;
+  point.slide = slide;
+  point.centre = system.particles.sphere[static_cast<std::size_t>(centre_shell)].x * (1.0 / spec.shell_radius);
+  return point;
+}
+
+CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguration& configuration,
+                           const SoftContent& centre, const std::vector<const SoftContent*>& others,
+                           const InnerLaws* laws) {
+  require_configuration(configuration, others.size());
+  bool inner = !centre.inner.empty();
+  for (const SoftContent* other : others) inner = inner || !other->inner.empty();
+  if (inner && laws == nullptr) throw BadInput(configuration.name + ": inner soft particles need laws");
+  CrowdExperiment e;
+  e.spec = spec;
+  e.configuration = configuration;
+  e.overlap.assign(configuration.partners.size(), 0.0);
+  e.system.materials = crowd_materials(spec, others.size());
+  e.system.laws = crowd_laws(spec, e.system.materials[kGrain], others.size(), inner ? laws : nullptr);
+  Builder(e, others, laws == nullptr ? 1.0 : laws->solid_fraction).build(centre);
+  return e;
+}
+
+CrowdRun run_crowd(CrowdExperiment& e, const CrowdPlan& plan, const CrowdOptions& options,
+                   const CrowdObserver& observer) {
+  require_plan(e.configuration, plan);
+  const auto start = std::chrono::steady_clock::now();
+  CrowdRun run;
+  for (std::size_t k = 0; k < plan.size(); ++k) {
+    const Target from{e.overlap, e.slide};
+    const Target to = end_of(e.configuration.stages[k], e.slide);
+    for (const double share : plan[k]) {
+      advance(e, between(from, to, share), options);
+      run.points.push_back(recorded(e, options, k));
+      if (observer) observer(run.points.back());
+    }
+    advance(e, to, options);  // nothing left to do when the end was recorded
+  }
+  run.cost = e.system.cost;
+  run.cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return run;
+}
+
+std::int64_t count_increments(const CrowdConfiguration& configuration, const CrowdPlan& plan,
+                              const CrowdOptions& options) {
+  require_plan(configuration, plan);
+  std::int64_t count = 0;
+  Target from{std::vector<double>(configuration.partners.size(), 0.0), 0.0};
+  for (std::size_t k = 0; k < plan.size(); ++k) {
+    const Target to = end_of(configuration.stages[k], from.slide);
+    double done = 0.0;
+    for (const double share : plan[k]) {
+      count += steps_for((share - done) * distance(from, to), options.increment);
+      done = share;
+    }
+    if (done < 1.0) count += steps_for((1.0 - done) * distance(from, to), options.increment);
+    from = to;
+  }
+  return count;
+}
+
+}  // namespace softgrain

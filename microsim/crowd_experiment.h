@@ -1,0 +1,99 @@
+// One soft particle with several neighbours at once [SP 1.7, 1.7.1]: planes, solid spheres or other soft particles that
+// are pressed in along a given path while the grains come to rest.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "common/contact/law_set.h"
+#include "common/data/crowd_measurements.h"
+#include "common/data/shell_packing.h"
+#include "common/system.h"
+
+namespace softgrain {
+
+/// A soft particle inside a soft particle.
+struct InnerSoft {
+  Vec3 x{};        ///< in units of the shell that holds it, from its centre
+  double r = 0.0;  ///< likewise
+};
+
+/// What a soft particle holds.
+struct SoftContent {
+  ShellPacking grains;
+  std::vector<InnerSoft> inner;  ///< of the next level; they act by law
+};
+
+/// How soft particles inside soft particles interact. Laws must be without damping.
+struct InnerLaws {
+  AnyLaw soft_solid;            ///< body i is the soft one: against grains, solid spheres, planes and shells
+  AnyLaw solid_soft;            ///< the same law with body j soft
+  AnyLaw soft_soft;             ///< two soft particles, also of different parents
+  double solid_fraction = 1.0;  ///< of an inner soft particle, for its mass (no effect on states of rest)
+};
+
+/// How states come to rest: mass-scaled relaxation with adaptive damping.
+struct CrowdOptions {
+  double increment = 0.005;         ///< largest change of an overlap (or slide) between two relaxations [Rs]
+  double tolerance = 1e-2;          ///< of a recorded state: largest net force over mean contact force
+  double tolerance_between = 0.3;   ///< of all states between
+  std::int64_t max_passes = 20000;  ///< per relaxation
+};
+
+/// Where states are recorded: per stage, ascending shares of the stage in (0, 1]; the end of a stage is recorded only
+/// when 1 is among them.
+using CrowdPlan = std::vector<std::vector<double>>;
+
+/// Slots: grains and inner soft particles of the centre, then those of soft neighbours, solid spheres, shells (centre
+/// first), planes. Materials: see microsim/crowd_experiment.cpp.
+struct CrowdExperiment {
+  /// The bodies that make up one neighbour: all of them move as one when it is moved.
+  struct Neighbour {
+    Slot begin = 0;  ///< grains of a soft neighbour are [begin, end)
+    Slot end = 0;
+    Slot body = 0;  ///< its shell, sphere or plane
+  };
+
+  SoftParticleSpec spec;
+  CrowdConfiguration configuration;
+  System3 system;
+  std::vector<Neighbour> neighbours;
+  Slot centre_bodies = 0;       ///< bodies [0, centre_bodies) are the content of the centre
+  Slot centre_shell = 0;        ///< slot
+  std::vector<double> overlap;  ///< as prescribed, towards the shell where it was at first [Rs]
+  double slide = 0.0;           ///< of the first neighbour [Rs]
+
+  /// Direction from the first place of the shell to neighbour k; a sphere that slides goes round.
+  [[nodiscard]] Vec3 direction(std::size_t k) const;
+
+  /// Moves every neighbour to these overlaps and the first one to this slide, in one stroke; springs follow.
+  void move_to(const std::vector<double>& overlaps, double slide_to);
+
+  /// Forces, overlaps, residual of the state as it is; `stage` and `converged` are left to the caller.
+  [[nodiscard]] CrowdPoint observe() const;
+};
+
+/// The unit vector along which the first neighbour slides: the coordinate axis least aligned with `direction` (the
+/// first of equals), made perpendicular to it. +x slides along +y.
+Vec3 slide_direction(const Vec3& direction);
+
+/// All neighbours touch and none overlaps. `others`: content of the soft neighbours in their order. `laws` are needed
+/// when some content has inner soft particles. Neighbours never interact with each other.
+/// Throws BadInput (directions that are no unit vectors, ratios, too few contents, no laws).
+CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguration& configuration,
+                           const SoftContent& centre, const std::vector<const SoftContent*>& others,
+                           const InnerLaws* laws = nullptr);
+
+/// Called after each recorded point.
+using CrowdObserver = std::function<void(const CrowdPoint&)>;
+
+/// Goes through all stages: straight lines in overlap, a relaxation after each increment. Throws NotUsable (a grain is
+/// lost) and what the observer throws. `configuration` and `packing` of the run are left to the caller.
+CrowdRun run_crowd(CrowdExperiment& experiment, const CrowdPlan& plan, const CrowdOptions& options,
+                   const CrowdObserver& observer = {});
+
+/// Number of relaxations of a path, for progress.
+std::int64_t count_increments(const CrowdConfiguration& configuration, const CrowdPlan& plan,
+                              const CrowdOptions& options);
+
+}  // namespace softgrain

@@ -1,0 +1,282 @@
+// A soft particle with several neighbours [SP 1.7.1]: the same mechanics as the measurement of one contact, balance of
+// forces, symmetry, and inner soft particles that act by law.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/dynamics/force_pass.h"
+#include "microsim/crowd_arrangements.h"
+#include "microsim/crowd_experiment.h"
+#include "microsim/protocol.h"
+#include "microsim/soft_experiment.h"
+#include "tests/support/crowd.h"
+
+namespace softgrain {
+namespace {
+
+using test::coarse_spec;
+using test::content_of;
+using test::crowd_of;
+
+const CrowdPlan kHalfAndEnd{{0.5, 1.0}};
+
+/// Rs, increment and overlaps are powers of two: every prescribed position is exact, whatever the order of additions.
+SoftParticleSpec binary_spec() {
+  SoftParticleSpec spec = coarse_spec();
+  spec.shell_radius = 0x1p-6;
+  return spec;
+}
+
+template <class MakeExperiment>
+std::vector<double> single_contact_forces(const SoftParticleSpec& spec, MakeExperiment make, double deltas[2]) {
+  DampedProtocolOptions options;
+  options.increment = 0x1p-7;
+  options.tolerance = 1e-2;
+  const auto protocol = make_damped_protocol(options);
+  SoftExperiment e = make();
+  std::vector<double> forces;
+  for (int k = 0; k < 2; ++k) {
+    protocol->approach(e, deltas[k] * spec.shell_radius);
+    forces.push_back(protocol->settle(e, false).force[0] /
+                     (spec.youngs_modulus * spec.shell_radius * spec.shell_radius));
+  }
+  return forces;
+}
+
+CrowdOptions binary_options() {
+  CrowdOptions options;
+  options.increment = 0x1p-7;
+  return options;
+}
+
+TEST(CrowdExperiment, OnePlaneIsTheMeasurementOfOneContactBitForBit) {
+  const SoftParticleSpec spec = binary_spec();
+  const SoftContent content = content_of(spec, 0);
+  double deltas[2] = {0.125, 0.25};
+  const auto expected = single_contact_forces(
+      spec, [&] { return make_soft_solid(spec, content.grains, false); }, deltas);
+  CrowdExperiment e = make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.25), content, {});
+  const CrowdRun run = run_crowd(e, kHalfAndEnd, binary_options());
+  ASSERT_EQ(run.points.size(), 2U);
+  EXPECT_GT(run.points[1].normal[0], 1e-4);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(run.points[k].normal[0], expected[k]);
+    EXPECT_NEAR(run.points[k].overlap[0], deltas[k], 1e-15);
+    EXPECT_TRUE(run.points[k].converged);
+  }
+  EXPECT_EQ(run.cost.loop_passes, e.system.cost.loop_passes);
+}
+
+TEST(CrowdExperiment, OneEqualSoftNeighbourIsTheSoftSoftMeasurementBitForBit) {
+  const SoftParticleSpec spec = binary_spec();
+  const SoftContent first = content_of(spec, 0);
+  const SoftContent second = content_of(spec, 1);
+  double deltas[2] = {0.25, 0.5};
+  const auto expected = single_contact_forces(
+      spec, [&] { return make_soft_soft(spec, first.grains, second.grains, false); }, deltas);
+  CrowdExperiment e = make_crowd(spec, crowd_of(PartnerKind::soft, 1.0, arrangement("one"), 0.5), first, {&second});
+  const CrowdRun run = run_crowd(e, kHalfAndEnd, binary_options());
+  EXPECT_GT(run.points[1].normal[0], 1e-5);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(run.points[k].normal[0], expected[k]);
+}
+
+/// Sum of all forces on what is not moved by forces, over the sum of their sizes.
+double imbalance(const CrowdExperiment& e) {
+  Vec3 sum{};
+  double sizes = 0.0;
+  for (const ContactRecord<3>& c : contact_records(e.system)) {
+    if (c.j < e.centre_bodies) continue;
+    const Vec3 force = c.normal * c.normal_force + c.tangential_force;
+    if (c.i < e.centre_bodies) sum += force;
+    sizes += norm(force);
+  }
+  return norm(sum) / sizes;
+}
+
+TEST(CrowdExperiment, ForcesOfNeighboursAndShellBalance) {
+  const SoftParticleSpec spec = coarse_spec();
+  const SoftContent content = content_of(spec, 2);
+  const SoftContent other = content_of(spec, 3);
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("octant"), 0.2);
+  c.partners[1].kind = PartnerKind::solid;
+  c.partners[1].ratio = 0.5;
+  c.partners[2].kind = PartnerKind::soft;
+  c.partners[2].ratio = 1.0;
+  CrowdOptions options;
+  options.tolerance = 1e-6;
+  CrowdExperiment e = make_crowd(spec, c, content, {&other});
+  const CrowdRun run = run_crowd(e, {{1.0}}, options);
+  EXPECT_TRUE(run.points[0].converged);
+  EXPECT_GT(run.points[0].normal[0], 1e-4);
+  EXPECT_GT(run.points[0].normal[1], 0.0);
+  EXPECT_LT(imbalance(e), 1e-5);
+}
+
+TEST(CrowdExperiment, ForceOnAFreeShellVanishesAndOverlapsFollowIt) {
+  const SoftParticleSpec spec = coarse_spec();
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("cube"), 0.15);
+  c.centre_free = true;
+  CrowdOptions options;
+  options.tolerance = 1e-5;
+  CrowdExperiment e = make_crowd(spec, c, content_of(spec, 4), {});
+  const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
+  ASSERT_TRUE(p.converged);
+  EXPECT_GT(norm(p.centre), 1e-4);
+  Vec3 sum{};
+  double total = 0.0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(p.overlap[k], 0.15 + dot(p.centre, c.partners[k].direction), 1e-12);
+    sum += c.partners[k].direction * p.normal[k] + p.tangential[k];
+    total += p.normal[k];
+  }
+  EXPECT_LT(norm(sum), 1e-4 * total);  // nothing but the neighbours holds it
+}
+
+SoftContent mirrored(SoftContent content) {
+  for (Vec3& x : content.grains.position) x[0] = -x[0];
+  return content;
+}
+
+TEST(CrowdExperiment, AMirroredParticleFeelsTheMirroredForces) {
+  SoftParticleSpec spec = coarse_spec();
+  spec.friction = 0.0;  // paths without friction end in the same state
+  const SoftContent content = content_of(spec, 5);
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("opposite"), 0.2);
+  CrowdOptions options;
+  options.tolerance = 1e-4;
+  CrowdExperiment e = make_crowd(spec, c, content, {});
+  CrowdExperiment m = make_crowd(spec, c, mirrored(content), {});
+  const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
+  const CrowdPoint q = run_crowd(m, {{1.0}}, options).points[0];
+  EXPECT_GT(p.normal[0], 0.0);
+  EXPECT_EQ(p.normal[0], q.normal[1]);
+  EXPECT_EQ(p.normal[1], q.normal[0]);
+}
+
+TEST(CrowdExperiment, NeighboursAreBlindToEachOther) {
+  const SoftParticleSpec spec = coarse_spec();
+  const SoftContent content = content_of(spec, 0);
+  CrowdConfiguration c;
+  c.name = "blind";
+  c.partners = {{PartnerKind::soft, 2.0, {{1.0, 0.0, 0.0}}},
+                {PartnerKind::soft, 2.0, {{0.5, std::sqrt(0.75), 0.0}}},
+                {PartnerKind::solid, 2.0, {{0.5, 0.0, std::sqrt(0.75)}}},
+                {PartnerKind::plane, 0.0, {{0.0, 1.0, 0.0}}}};
+  c.stages = {{"load", std::vector<double>(4, 0.05), 0.0}};
+  CrowdExperiment e = make_crowd(spec, c, content, {&content, &content});
+  (void)run_crowd(e, {{1.0}}, {});
+  const auto& n = e.neighbours;
+  const auto owner = [&](Slot s) {
+    if (s < e.centre_bodies || s == e.centre_shell) return -1;
+    for (std::size_t k = 0; k < n.size(); ++k)
+      if (s == n[k].body || (s >= n[k].begin && s < n[k].end)) return static_cast<int>(k);
+    return -2;
+  };
+  for (std::size_t k = 0; k < e.system.contacts.i.size(); ++k) {
+    const int a = owner(e.system.contacts.i[k]);
+    const int b = owner(e.system.contacts.j[k]);
+    EXPECT_TRUE(a == b || a == -1 || b == -1) << a << " meets " << b;
+  }
+}
+
+TEST(CrowdExperiment, UnloadingComesBackToNothingAndSlidingDragsTheNeighbour) {
+  const SoftParticleSpec spec = coarse_spec();
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.25);
+  c.stages.push_back({"slide", {0.25}, 0.05});
+  c.stages.push_back({"unload", {0.0}, 0.0});
+  CrowdExperiment e = make_crowd(spec, c, content_of(spec, 1), {});
+  const CrowdRun run = run_crowd(e, {{1.0}, {0.5, 1.0}, {1.0}}, {});
+  ASSERT_EQ(run.points.size(), 4U);
+  const Vec3 along = slide_direction(c.partners[0].direction);
+  EXPECT_NEAR(run.points[1].slide, 0.025, 1e-12);
+  EXPECT_NEAR(run.points[2].slide, 0.05, 1e-12);
+  EXPECT_NEAR(run.points[2].overlap[0], 0.25, 1e-12);
+  // The plane is dragged back by the grains it slides over, at most by their friction.
+  const double drag = -dot(run.points[2].tangential[0], along);
+  EXPECT_GT(drag, 0.02 * run.points[2].normal[0]);
+  EXPECT_LE(drag, spec.friction * run.points[2].normal[0] * (1.0 + 1e-9));
+  EXPECT_NEAR(run.points[3].normal[0], 0.0, 1e-9);
+}
+
+TEST(CrowdExperiment, ASlidingSphereKeepsItsOverlap) {
+  const SoftParticleSpec spec = coarse_spec();
+  CrowdConfiguration c = crowd_of(PartnerKind::solid, 0.5, arrangement("one"), 0.1);
+  c.stages.push_back({"slide", {0.1}, 0.1});
+  CrowdExperiment e = make_crowd(spec, c, content_of(spec, 1), {});
+  const CrowdRun run = run_crowd(e, {{1.0}, {0.3, 1.0}}, {});
+  for (const CrowdPoint& p : run.points) EXPECT_NEAR(p.overlap[0], 0.1, 1e-12);
+  EXPECT_NEAR(std::acos(e.direction(0)[0]) * 1.4, 0.1, 1e-9);
+}
+
+SoftContact inner_law(const SoftParticleSpec& spec, bool i_is_soft, bool partner_is_soft) {
+  SoftContact law;
+  law.normal = {2.0, 2.5, -2.0 * std::pow(0.05, 2.5)};
+  law.tangential = {1.0, 1.0, -0.05};
+  law.delta = 0.05;
+  law.modulus = spec.youngs_modulus;
+  law.friction = 0.2;
+  law.i_is_soft = i_is_soft;
+  law.partner_is_soft = partner_is_soft;
+  return law;
+}
+
+InnerLaws inner_laws(const SoftParticleSpec& spec) {
+  return {inner_law(spec, true, false), inner_law(spec, false, false), inner_law(spec, true, true), 0.7};
+}
+
+/// One inner soft particle in the middle and one small grain.
+SoftContent one_inner(double r) {
+  SoftContent content;
+  content.grains.position = {{{0.0, 0.0, -0.94}}};
+  content.grains.radius = {0.05};
+  content.inner = {{{{0.0, 0.0, 0.0}}, r}};
+  return content;
+}
+
+TEST(CrowdExperiment, AnInnerSoftParticleCarriesTheForceOfItsLaw) {
+  const SoftParticleSpec spec = coarse_spec();
+  const InnerLaws laws = inner_laws(spec);
+  const CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.6);
+  CrowdOptions options;
+  options.tolerance = 1e-8;
+  // The grain stays out of the way. The plane, 0.6 deep, leaves 1.4 between it and the shell for a diameter of 1.6.
+  constexpr double kRadius = 0.8;
+  CrowdExperiment e = make_crowd(spec, c, one_inner(kRadius), {}, &laws);
+  const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
+  ASSERT_TRUE(p.converged);
+  const SoftContact law = inner_law(spec, true, false);
+  EXPECT_NEAR(p.normal[0], kRadius * kRadius * law.normal.value(0.1 / kRadius), 1e-6 * p.normal[0]);
+}
+
+TEST(CrowdExperiment, InnerSoftParticlesMeetThoseOfSoftNeighboursAndSolids) {
+  const SoftParticleSpec spec = coarse_spec();
+  const InnerLaws laws = inner_laws(spec);
+  CrowdConfiguration c = crowd_of(PartnerKind::soft, 0.5, arrangement("opposite"), 0.2);
+  c.partners[1].kind = PartnerKind::solid;
+  const SoftContent content = one_inner(1.0 - 1e-9);
+  CrowdExperiment e = make_crowd(spec, c, content, {&content}, &laws);
+  CrowdOptions options;
+  options.tolerance = 1e-8;
+  const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
+  ASSERT_TRUE(p.converged);
+  EXPECT_GT(p.normal[0], 1e-4);
+  EXPECT_GT(p.normal[1], 1e-4);
+  EXPECT_LT(imbalance(e), 1e-7);
+}
+
+TEST(CrowdExperiment, BadArrangementsAreRefused) {
+  const SoftParticleSpec spec = coarse_spec();
+  const SoftContent content = content_of(spec, 0);
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, {Vec3{{1.0, 1.0, 0.0}}}, 0.1);
+  EXPECT_THROW((void)make_crowd(spec, c, content, {}), BadInput);
+  c = crowd_of(PartnerKind::soft, 1.0, arrangement("opposite"), 0.1);
+  EXPECT_THROW((void)make_crowd(spec, c, content, {&content}), BadInput);
+  c = crowd_of(PartnerKind::solid, 0.0, arrangement("one"), 0.1);
+  EXPECT_THROW((void)make_crowd(spec, c, content, {}), BadInput);
+  c = crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.1);
+  EXPECT_THROW((void)make_crowd(spec, c, one_inner(0.5), {}), BadInput);
+}
+
+}  // namespace
+}  // namespace softgrain
