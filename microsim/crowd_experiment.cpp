@@ -122,11 +122,43 @@ void add_content(System3& s, const SoftParticleSpec& spec, const SoftContent& co
   };
   for (std::size_t k = 0; k < content.grains.radius.size(); ++k)
     add(content.grains.position[k], content.grains.radius[k], spec.density, at.material);
-  for (const InnerSoft& inner : content.inner) add(inner.x, inner.r, spec.density * inner_fraction, at.material + 1);
+  if (content.inner_packings.empty())
+    for (const InnerSoft& inner : content.inner) add(inner.x, inner.r, spec.density * inner_fraction, at.material + 1);
+}
+
+/// Grains of the packing that inner soft particle k holds.
+const ShellPacking& inner_packing(const SoftContent& content, std::size_t k) {
+  return content.inner_packings[k % content.inner_packings.size()];
+}
+
+/// Grains of resolved inner soft particles; they live in their own shell, which lives in the shell of the content.
+void add_inner_grains(System3& s, const SoftParticleSpec& spec, const SoftContent& content, const ContentPlace& at,
+                      Slot first_shell) {
+  if (content.inner_packings.empty()) return;
+  for (std::size_t k = 0; k < content.inner.size(); ++k) {
+    const ContentPlace inner{at.centre + content.inner[k].x * at.scale, content.inner[k].r * at.scale, at.material,
+                             first_shell + static_cast<Slot>(k)};
+    add_content(s, spec, {inner_packing(content, k), {}, {}}, inner, 1.0);
+  }
+}
+
+void add_inner_shells(System3& s, const SoftParticleSpec& spec, const SoftContent& content, const ContentPlace& at) {
+  if (content.inner_packings.empty()) return;
+  for (std::size_t k = 0; k < content.inner.size(); ++k) {
+    const double fraction = inner_packing(content, k).solid_fraction();
+    NewBody<3> shell = solid_sphere(at.centre + content.inner[k].x * at.scale, content.inner[k].r * at.scale,
+                                    spec.density * fraction, kWall);
+    shell.shell = at.shell;
+    add_shell(s.particles, shell);
+  }
 }
 
 Slot count(const SoftContent& content) {
-  return static_cast<Slot>(content.grains.radius.size() + content.inner.size());
+  std::size_t n = content.grains.radius.size();
+  if (content.inner_packings.empty()) n += content.inner.size();
+  for (std::size_t k = 0; k < content.inner.size() && !content.inner_packings.empty(); ++k)
+    n += inner_packing(content, k).radius.size();
+  return static_cast<Slot>(n);
 }
 
 /// Solid volume over the volume of the shell.
@@ -162,12 +194,17 @@ class Builder {
     e_.centre_bodies = count(centre);
     const Slot shell = first_shell();
     e_.centre_shell = shell;
-    add_content(e_.system, e_.spec, centre, {{}, e_.spec.shell_radius, kGrain, shell}, fraction_);
+    const ContentPlace place{{}, e_.spec.shell_radius, kGrain, shell};
+    Slot softs = 0;
+    each(PartnerKind::soft, [&](const auto&, auto&, std::size_t) { ++softs; });
+    add_content(e_.system, e_.spec, centre, place, fraction_);
+    add_inner_grains(e_.system, e_.spec, centre, place, shell + 1 + softs);
     soft_contents(shell + 1);
     solids();
     add_shell(e_.system.particles,
               centre_shell(e_.spec, e_.configuration.centre_free, solid_fraction(centre, fraction_)));
     soft_shells();
+    add_inner_shells(e_.system, e_.spec, centre, place);
     planes();
   }
 

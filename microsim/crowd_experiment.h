@@ -21,7 +21,9 @@ struct InnerSoft {
 /// What a soft particle holds.
 struct SoftContent {
   ShellPacking grains;
-  std::vector<InnerSoft> inner;  ///< of the next level; they act by law
+  std::vector<InnerSoft> inner;              ///< of the next level; they act by law
+  std::vector<ShellPacking> inner_packings;  ///< unless their grains are here: inner soft particle k holds packing k,
+                                             ///< turn by turn, in a shell that moves with the forces on it
 };
 
 /// How soft particles inside soft particles interact. Laws must be without damping.

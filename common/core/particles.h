@@ -26,7 +26,7 @@ struct Particles {
   std::vector<double> inverse_mass;     ///< [1/kg]; 0: not moved by forces
   std::vector<double> inverse_inertia;  ///< [1/(kg m^2)]; 0: not turned by torques
   std::vector<std::int32_t> material;   ///< index into the materials of the scene
-  std::vector<std::int32_t> shell;      ///< slot of the shell this grain lives in, -1: none
+  std::vector<std::int32_t> shell;      ///< slot of the shell this grain (or shell) lives in, -1: none
   std::vector<std::int32_t> id;         ///< of grains: number in which they were added; empty while that is the slot
   std::vector<Vec<D>> plane_normal;     ///< one per plane, unit, into the space of the grains
   std::vector<double>

@@ -65,19 +65,23 @@ std::vector<FoundPair> grain_pairs(const System<D>& s) {
   return out;
 }
 
+/// A grain meets the shell it lives in and, when that lives in another one, that too.
 template <int D>
 std::vector<FoundPair> shell_pairs(const System<D>& s) {
   const auto& p = s.particles;
   std::vector<FoundPair> out;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto a = static_cast<std::size_t>(i);
-    const Slot shell = p.shell[a];
-    if (shell < 0) continue;
-    const auto b = static_cast<std::size_t>(shell);
-    const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
-    if (law == LawSet::kNoContact) continue;
-    const double gap = p.sphere[b].r - p.sphere[a].r - norm(p.sphere[a].x - p.sphere[b].x);
-    if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back({i, shell, home_image<D>(), law});
+    const std::size_t first = out.size();
+    for (Slot shell = p.shell[a]; shell >= 0; shell = p.shell[static_cast<std::size_t>(shell)]) {
+      const auto b = static_cast<std::size_t>(shell);
+      const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
+      if (law == LawSet::kNoContact) continue;
+      const double gap = p.sphere[b].r - p.sphere[a].r - norm(p.sphere[a].x - p.sphere[b].x);
+      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back({i, shell, home_image<D>(), law});
+    }
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
+              [](const FoundPair& x, const FoundPair& y) { return x.j < y.j; });
   }
   return out;
 }
@@ -210,11 +214,13 @@ void require_sound(const Particles<D>& p) {
     const auto u = static_cast<std::size_t>(i);
     if (!std::isfinite(norm2(p.sphere[u].x)))
       throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
-    if (i >= p.grains || p.shell[u] < 0) continue;
-    const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(p.shell[u])];
-    if (norm(p.sphere[u].x - shell.x) - p.sphere[u].r > shell.r)
+    if (i >= p.grains) continue;
+    for (Slot k = p.shell[u]; k >= 0; k = p.shell[static_cast<std::size_t>(k)]) {
+      const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(k)];
+      if (norm(p.sphere[u].x - shell.x) - p.sphere[u].r <= shell.r) continue;
       throw NotUsable("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
                       " m) has been squeezed out of its shell");
+    }
   }
 }
 

@@ -1,0 +1,171 @@
+#include "pipelines/hierarchy_level.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/contact/crowd_from_table.h"
+
+namespace softgrain {
+
+namespace {
+
+std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
+  const CrowdLaw& law = *below.find(setup.form);
+  std::string tag = fmt::format("{} {} voids {:a} {:a} {}", setup.form, setup.unloading, setup.voids.r_max,
+                                setup.voids.r_min, setup.voids.count);
+  for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2, &below.kt_ratio, &below.friction,
+                            &below.retreat})
+    tag += fmt::format(" {:a}", e->value);
+  for (const PartnerRow& row : law.partners)
+    tag += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);
+  return tag;
+}
+
+/// Facts about the inner soft particles, over the packings of the pool.
+void describe_inner(const HierarchySetup& setup, const std::vector<ShellPacking>& pool, HierarchyLevel& level) {
+  level.inner_low = 1.0;
+  for (const ShellPacking& packing : pool) {
+    const SoftContent content = fill_level(setup, packing);
+    for (const InnerSoft& inner : content.inner) {
+      level.inner_volume += inner.r * inner.r * inner.r / static_cast<double>(pool.size());
+      level.inner_low = std::min(level.inner_low, inner.r);
+      level.inner_high = std::max(level.inner_high, inner.r);
+    }
+    level.inner_mean += static_cast<double>(content.inner.size()) / static_cast<double>(pool.size());
+  }
+}
+
+/// Sum over neighbours of the last loading point of a run, -1 when it is not there.
+double end_force(const CrowdRun& run) {
+  const CrowdPoint* last = nullptr;
+  for (const CrowdPoint& p : run.points)
+    if (p.stage == 0) last = &p;
+  if (last == nullptr || !last->converged) return -1.0;
+  double sum = 0.0;
+  for (const double f : last->normal) sum += f;
+  return sum;
+}
+
+/// Ratio of mean end forces on the packings that both levels have, with its error by linear propagation of the paired
+/// residuals.
+LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& below, std::int64_t configuration) {
+  std::vector<std::pair<double, double>> pairs;
+  for (const CrowdRun& a : data.runs)
+    for (const CrowdRun& b : below.runs)
+      if (a.configuration == configuration && b.configuration == configuration && a.packing == b.packing) {
+        const double here = end_force(a);
+        const double there = end_force(b);
+        if (here >= 0.0 && there >= 0.0) pairs.emplace_back(here, there);
+      }
+  LevelChange change{data.configurations[static_cast<std::size_t>(configuration)].name, 1.0, 0.0};
+  double here = 0.0;
+  double there = 0.0;
+  for (const auto& [a, b] : pairs) {
+    here += a;
+    there += b;
+  }
+  if (!(there > 0.0)) return change;
+  change.ratio = here / there;
+  double square = 0.0;
+  for (const auto& [a, b] : pairs) square += (a - change.ratio * b) * (a - change.ratio * b);
+  const auto n = static_cast<double>(pairs.size());
+  if (n > 1.0) change.error = std::sqrt(square * n / (n - 1.0)) / there;
+  return change;
+}
+
+Cost cost_of(const CrowdMeasurements& data) {
+  Cost cost;
+  for (const CrowdRun& run : data.runs) cost += run.cost;
+  return cost;
+}
+
+}  // namespace
+
+SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing) {
+  SoftContent content{packing, {}, {}};
+  std::vector<PackedSphere> placed;
+  for (std::size_t k = 0; k < packing.radius.size(); ++k) placed.push_back({packing.position[k], packing.radius[k]});
+  for (const PackedSphere& s : fill_voids(placed, VoidDomain::unit_sphere(), setup.voids).added)
+    content.inner.push_back({s.x, s.r});
+  return content;
+}
+
+InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
+  CrowdChoices choices;
+  choices.form = setup.form;
+  choices.modulus = setup.crowd.spec.youngs_modulus;
+  choices.unloading = setup.unloading;
+  const CrowdLaws laws = make_crowd_laws(below, choices);
+  return {laws.soft_solid, laws.solid_soft, laws.soft_soft, below.solid_fraction};
+}
+
+double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form) {
+  const CrowdModel here = crowd_model(*law.find(form));
+  const CrowdModel there = crowd_model(*below.find(form));
+  std::vector<CrowdPartner> cube;
+  for (int k = 0; k < 6; ++k) {
+    CrowdPartner plane;
+    plane.direction[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
+    cube.push_back(plane);
+  }
+  double square = 0.0;
+  int count = 0;
+  for (const std::size_t planes : {std::size_t{1}, cube.size()}) {
+    const std::vector<CrowdPartner> partners(cube.begin(), cube.begin() + static_cast<std::ptrdiff_t>(planes));
+    const double end = planes == 1 ? below.overlap_max : 2.0 / 3.0 * below.overlap_max;
+    const double largest = crowd_forces(there, partners, std::vector<double>(planes, end))[0];
+    for (int k = 1; k <= 30; ++k) {
+      const std::vector<double> overlap(planes, end * k / 30.0);
+      const double b = crowd_forces(there, partners, overlap)[0];
+      if (b < 0.01 * largest) continue;
+      const double d = crowd_forces(here, partners, overlap)[0] / b - 1.0;
+      square += d * d;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(square / count) : 0.0;
+}
+
+HierarchyLevel run_level(const HierarchySetup& setup, std::int64_t number, const HierarchyLevel* below,
+                         const CrowdMeasurements* data_below, CrowdMeasurements& data, const TaskStore& store,
+                         const RunContext& context, const Provenance& provenance) {
+  const auto start = std::chrono::steady_clock::now();
+  HierarchyLevel level;
+  level.number = number;
+  std::vector<ShellPacking> pool;
+  if (below == nullptr) {
+    data = run_crowd_stage(setup.crowd, store, context, provenance, &pool);
+  } else {
+    CrowdLevel crowd;
+    crowd.fill = [&setup](const ShellPacking& packing, std::int64_t) { return fill_level(setup, packing); };
+    crowd.laws = inner_laws(setup, below->entry);
+    crowd.tag = tag_of(setup, below->entry);
+    crowd.file = fmt::format("crowd_level_{}.h5", number);
+    data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &crowd);
+    describe_inner(setup, pool, level);
+  }
+  CrowdFitOptions fit;
+  fit.seed = context.seed(setup.crowd.seed);
+  fit.replicates = 0;
+  level.entry = fit_crowd_laws(data, fit);
+  double grains = 0.0;
+  for (const ShellPacking& p : pool) grains += static_cast<double>(p.radius.size()) / static_cast<double>(pool.size());
+  level.grains = grains + (below != nullptr ? level.inner_mean * below->grains : 0.0);
+  level.cost = cost_of(data);
+  if (below != nullptr) {
+    double noise = 0.0;
+    for (std::size_t c = 0; c < data.configurations.size(); ++c) {
+      level.changes.push_back(change_of(data, *data_below, static_cast<std::int64_t>(c)));
+      noise += level.changes.back().error * level.changes.back().error;
+    }
+    level.distance = law_distance(level.entry, below->entry, setup.form);
+    level.distance_noise = std::sqrt(noise / static_cast<double>(level.changes.size()));
+  }
+  level.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return level;
+}
+
+}  // namespace softgrain
