@@ -301,6 +301,7 @@ RelaxationResult relax(CrowdExperiment& e, const CrowdOptions& options, double t
   damped.tolerance = tolerance;
   damped.force_floor = force_floor(e.spec);
   damped.max_passes = options.max_passes;
+  damped.least_stiffness = options.least_stiffness * e.spec.youngs_modulus;
   return DampedRelaxation<3>(damped).relax(e.system);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iostream>
 
+#include "common/data/crowd_measurements.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
@@ -15,6 +16,7 @@
 #include "microsim/particles/particles_scene.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/grain_box_check.h"
+#include "pipelines/law_table_command.h"
 #include "pipelines/particles_check.h"
 #include "pipelines/pipeline_setup.h"
 #include "pipelines/run_context.h"
@@ -119,12 +121,14 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out)
 void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
   const Scene scene = Scene::load(path, options.overrides);
   const SceneTable root = scene.root();
-  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box"});
+  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box", "law-table"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
     check_particles(read_particles_scene(scene), out.facts, out.lines);
   } else if (kind == "grain-box") {
     check_grain_box(read_grain_box(scene), out.facts, out.lines);
+  } else if (kind == "law-table") {
+    check_law_table(scene, out.facts, out.lines);
   } else if (kind == "macro") {
     (void)root.text("title", "");
     (void)root.text("law", "");
@@ -157,6 +161,13 @@ void check_card(const std::string& path, Findings& out) {
 
 void check_data(const std::string& path, Findings& out) {
   const h5::Group root = h5::open_file(path);
+  if (root.has("configurations")) {
+    const CrowdMeasurements data = load_crowd(path);
+    out.add("kind", "crowd measurements",
+            fmt::format("crowd measurements: {} configurations, {} packings, {} runs", data.configurations.size(),
+                        data.packings.size(), data.runs.size()));
+    return;
+  }
   if (root.has("runs")) {
     const Measurements data = load_measurements(path);
     out.add("kind", "measurements",

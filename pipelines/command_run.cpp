@@ -8,6 +8,7 @@
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/law_json.h"
+#include "pipelines/law_table_command.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/measure_stage.h"
 #include "pipelines/pipeline_setup.h"
@@ -151,6 +152,7 @@ ExitStatus command_run(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("run: give one pipeline file");
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
+  if (is_law_table(scene)) return run_law_table(scene, options);
   const PipelineSetup setup = read_pipeline_setup(scene.root());
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.measure.seed);

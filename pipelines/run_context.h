@@ -30,6 +30,7 @@ struct CommonOptions {
   bool quiet = false;                  ///< --quiet
   bool json = false;                   ///< --json
   std::string law;                     ///< --law law.toml (macrosim)
+  std::string law_cache;               ///< --law-cache DIR; empty: nothing is kept between runs
   std::string command_line;            ///< as given, for provenance
 };
 
@@ -44,6 +45,8 @@ class RunContext {
   [[nodiscard]] int threads() const { return threads_; }
   [[nodiscard]] bool quiet() const { return options_.quiet; }
   [[nodiscard]] bool resume() const { return options_.resume; }
+  /// Directory where measurements are kept for other runs; empty: none.
+  [[nodiscard]] const std::string& law_cache() const { return options_.law_cache; }
   /// Seed from --seed, else from the scene (`scene_seed`).
   [[nodiscard]] std::uint64_t seed(std::uint64_t scene_seed) const {
     return options_.seed_given ? options_.seed : scene_seed;

@@ -92,6 +92,10 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
   app.add_flag("--resume", o.resume, "Continues from the checkpoint in the run directory");
   app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
   app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
+  if (command.function == command_run)
+    app.add_option("--law-cache", o.law_cache,
+                   "Keeps finished measurements of law tables here and takes from here what is known already")
+        ->option_text("DIR");
   if (command.function == command_macrosim)
     app.add_option("--law", o.law, "Law card of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
@@ -144,6 +148,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   }
   require_inputs(*chosen, options);
   if (!options.out.empty()) require_writable_directory(options.out);
+  if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
   install_interrupt_handler();
   return chosen->function(options);
 }

@@ -43,7 +43,9 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
     radii += p.sphere[u].r;
   }
   // A body without contacts gets a share of the mean stiffness per size, so that a new contact does not throw it.
-  const double floor_per_radius = radii > 0.0 ? 0.1 * sum / radii : 0.0;
+  // Where hardly anything touches, that mean says nothing, and grains that meet would find themselves too light for
+  // their contact.
+  const double floor_per_radius = std::max(radii > 0.0 ? 0.1 * sum / radii : 0.0, options_.least_stiffness);
   // With no contact anywhere, weights alone pull: a body then moves its radius in a step of 1, before the limit on
   // moves.
   const double pull = sum > 0.0 ? 0.0 : worst_net_force(p);

@@ -14,7 +14,8 @@ struct DampedOptions {
   double tolerance = 1e-2;   ///< largest net force over mean contact force at the end
   double force_floor = 0.0;  ///< the mean contact force never counts for less than this [N]
   std::int64_t max_passes = 20000;
-  double max_move = 0.05;  ///< largest move of a body per pass, in its radius
+  double max_move = 0.05;        ///< largest move of a body per pass, in its radius
+  double least_stiffness = 0.0;  ///< no body counts as softer than this times its radius [Pa]; 0: a share of the mean
 };
 
 /// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate

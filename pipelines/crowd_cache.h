@@ -1,0 +1,41 @@
+// Finished crowd runs that later runs need not measure again: one small file each, named by what determines it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/data/crowd_measurements.h"
+#include "microsim/crowd_experiment.h"
+
+namespace softgrain {
+
+/// Everything that determines a run, as text. `contents` says what the bodies hold (seed and packing of the centre and
+/// of its soft neighbours, and the tag of a level that adds inner soft particles). Neither names nor threads matter.
+std::string crowd_run_key(const SoftParticleSpec& spec, const CrowdConfiguration& configuration, const CrowdPlan& plan,
+                          const CrowdOptions& options, const std::string& contents);
+
+/// "crowd-" and 16 hexadecimal digits (FNV-1a, 64 bits) of a key.
+std::string crowd_run_name(const std::string& key);
+
+class CrowdCache {
+ public:
+  /// `directory` empty: nothing is ever found or kept. `say` takes remarks.
+  CrowdCache(std::string directory, std::function<void(const std::string&)> say)
+      : directory_(std::move(directory)), say_(std::move(say)) {}
+
+  /// A file that is damaged or belongs to another key is ignored, with a remark.
+  [[nodiscard]] std::optional<CrowdRun> find(const std::string& key) const;
+  /// Atomic, also among several processes. Throws FileTrouble.
+  void keep(const std::string& key, const CrowdRun& run) const;
+
+ private:
+  [[nodiscard]] std::string file(const std::string& key) const {
+    return directory_ + "/" + crowd_run_name(key) + ".h5";
+  }
+
+  std::string directory_;
+  std::function<void(const std::string&)> say_;
+};
+
+}  // namespace softgrain

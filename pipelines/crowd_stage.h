@@ -1,0 +1,34 @@
+// The measuring part of a law table: packings, pilot, and runs of every configuration in parallel until the means are
+// known well enough. What is finished is kept, for --resume and for --law-cache.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/data/crowd_measurements.h"
+#include "pipelines/crowd_setup.h"
+#include "pipelines/run_context.h"
+#include "pipelines/task_store.h"
+
+namespace softgrain {
+
+/// A level of a hierarchy whose soft particles hold soft particles.
+struct CrowdLevel {
+  std::function<SoftContent(const ShellPacking&, std::int64_t packing)>
+      fill;  ///< adds what the packing leaves room for
+  InnerLaws laws;
+  std::string tag;                ///< all that decides `fill` and `laws`, for the cache
+  std::string file = "crowd.h5";  ///< in the run directory
+};
+
+/// Measures and saves DIR/crowd.h5 (or the file of the level). All configurations use the packings 0, 1, ... of one
+/// pool of setup.packings_max; soft neighbour number k of packing p holds packing (p + 1 + k) mod packings_max.
+/// Recorded overlaps follow from a pilot of three packings and are the same for all of them. Batches of packings are
+/// added to a configuration until its target is met. Results do not depend on the number of threads. `contents`: the
+/// pool. Throws NotUsable (a grain is lost), Interrupted.
+CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
+                                  const Provenance& provenance, std::vector<ShellPacking>* contents,
+                                  const CrowdLevel* level = nullptr);
+
+}  // namespace softgrain

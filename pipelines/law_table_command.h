@@ -1,0 +1,21 @@
+// Scene kind "law-table": a soft particle is measured with several neighbours at once.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/io/scene.h"
+#include "pipelines/run_context.h"
+
+namespace softgrain {
+
+/// Whether `softgrain run` hands this scene to run_law_table().
+bool is_law_table(const Scene& scene);
+
+/// Measures; writes crowd.h5 and summary.json. Status not_usable when a recorded point did not converge.
+ExitStatus run_law_table(const Scene& scene, const CommonOptions& options);
+
+/// What follows from such a scene: numbers of runs and points, added to `facts` and, as indented lines, to `lines`.
+void check_law_table(const Scene& scene, nlohmann::json& facts, std::string& lines);
+
+}  // namespace softgrain

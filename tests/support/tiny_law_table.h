@@ -1,0 +1,37 @@
+// A law table that takes a second: few coarse grains, three packings, short paths.
+#pragma once
+
+namespace softgrain::test {
+
+inline constexpr const char* kTinyLawTable = R"(kind = "law-table"
+title = "tiny"
+seed = 1
+[packing]
+trials = 1000
+polydispersity = 4.0
+beta = 8.0
+placement = "voids"
+[crowd]
+increment = 0.02
+packings_min = 2
+packings_max = 3
+target = 0.2
+points = 4
+[[configuration]]
+arrangement = "one"
+partner = "plane"
+overlap = 0.3
+[[configuration]]
+arrangement = "opposite"
+partner = "plane"
+overlap = 0.2
+path = "unload"
+[[configuration]]
+arrangement = "one"
+partner = "soft"
+ratio = 1.0
+overlap = 0.4
+held_out = true
+)";
+
+}  // namespace softgrain::test

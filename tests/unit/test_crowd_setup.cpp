@@ -1,0 +1,186 @@
+// Scenes of kind law-table: what is read, what is refused, where states are recorded, what names a kept run.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "pipelines/crowd_cache.h"
+#include "pipelines/crowd_plan.h"
+#include "pipelines/crowd_setup.h"
+#include "tests/support/crowd.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_law_table.h"
+
+namespace softgrain {
+namespace {
+
+using test::kTinyLawTable;
+
+CrowdSetup read(const std::string& text) {
+  const Scene scene = Scene::parse(text, "scene.toml");
+  (void)scene.root().text("kind");
+  (void)scene.root().text("title");
+  const CrowdSetup setup = read_crowd_setup(scene.root());
+  scene.root().finish();
+  return setup;
+}
+
+/// Replaces the first `from` of the good scene.
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = kTinyLawTable;
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+void expect_refused(const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+  try {
+    (void)read(with(from, to));
+    ADD_FAILURE() << to << " was accepted";
+  } catch (const BadInput& e) {
+    for (const std::string& word : words)
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << word << " not in: " << e.what();
+  }
+}
+
+TEST(CrowdSetup, ReadsConfigurations) {
+  const CrowdSetup setup = read(kTinyLawTable);
+  ASSERT_EQ(setup.configurations.size(), 3U);
+  EXPECT_EQ(setup.configurations[0].name, "one-plane");
+  EXPECT_EQ(setup.configurations[1].name, "opposite-plane-unload");
+  EXPECT_EQ(setup.configurations[2].name, "one-soft-1");
+  EXPECT_TRUE(setup.configurations[2].held_out);
+  const auto& stages = setup.configurations[1].stages;
+  ASSERT_EQ(stages.size(), 3U);
+  EXPECT_EQ(stages[1].name, "unload");
+  EXPECT_EQ(stages[1].overlap, (std::vector<double>{0.0, 0.0}));
+  EXPECT_EQ(stages[2].name, "reload");
+  EXPECT_EQ(stages[2].overlap, (std::vector<double>{0.2, 0.2}));
+}
+
+TEST(CrowdSetup, PathsAndDepths) {
+  const CrowdSetup s = read(with("path = \"unload\"", "path = \"sequential\""));
+  ASSERT_EQ(s.configurations[1].stages.size(), 2U);
+  EXPECT_EQ(s.configurations[1].stages[0].overlap, (std::vector<double>{0.2, 0.0}));
+  EXPECT_EQ(s.configurations[1].stages[1].overlap, (std::vector<double>{0.2, 0.2}));
+  const CrowdSetup b = read(with("arrangement = \"one\"", "arrangement = \"beside-five\"\nshallow = 0.25"));
+  EXPECT_EQ(b.configurations[0].stages[0].overlap, (std::vector<double>{0.075, 0.3, 0.3, 0.3, 0.3, 0.3}));
+  const CrowdSetup f = read(with("path = \"unload\"", "path = \"slide\"\nslide = 0.05\ncentre = \"free\""));
+  EXPECT_EQ(f.configurations[1].stages[1].slide, 0.05);
+  EXPECT_TRUE(f.configurations[1].centre_free);
+  EXPECT_EQ(f.configurations[1].name, "opposite-plane-slide-free");
+}
+
+TEST(CrowdSetup, RefusesWhatMakesNoSense) {
+  expect_refused("\"opposite\"", "\"oposite\"", {"scene.toml:20", "arrangement", "opposite"});
+  expect_refused("partner = \"plane\"", "partner = \"wall\"", {"scene.toml:17", "partner"});
+  expect_refused("overlap = 0.3", "overlap = 0.0", {"scene.toml:18", "overlap", "above 0"});
+  expect_refused("overlap = 0.3", "overlap = 1.0", {"scene.toml:18", "overlap", "below 1"});
+  expect_refused("overlap = 0.3", "", {"overlap"});
+  expect_refused("overlap = 0.3", "overlap = 0.3\nratio = 1.0", {"scene.toml:19", "a plane has no radius"});
+  expect_refused("overlap = 0.3", "overlap = 0.3\nslide = 0.1", {"scene.toml:19", "slide"});
+  expect_refused("overlap = 0.3", "overlap = 0.3\nshallow = 0.1", {"scene.toml:19", "beside-five"});
+  expect_refused("ratio = 1.0", "ratio = 0.0", {"scene.toml:27", "ratio", "above 0"});
+  expect_refused("ratio = 1.0", "ratio = 0.4", {"overlap", "below the ratio"});
+  expect_refused("path = \"unload\"", "path = \"sideways\"", {"scene.toml:23", "path"});
+  expect_refused("path = \"unload\"", "name = \"one-plane\"", {"scene.toml:23", "already"});
+  expect_refused("path = \"unload\"", "pathh = \"unload\"", {"scene.toml:23", "'path'"});
+  expect_refused("packings_max = 3", "packings_max = 1", {"scene.toml:12", "packings_max"});
+  expect_refused("packings_min = 2", "packings_min = 4", {"scene.toml:12", "packings_max", "at least packings_min"});
+  expect_refused("target = 0.2", "target = 0.0", {"scene.toml:13", "target", "above 0"});
+  expect_refused("arrangement = \"opposite\"\npartner = \"plane\"", "arrangement = \"cube\"\npartner = \"soft\"",
+                 {"scene.toml:21", "6 soft neighbours", "packings_max", "7"});
+}
+
+TEST(CrowdPlan, LoadingIsDenseAroundTheOnset) {
+  const CrowdConfiguration c = test::crowd_of(PartnerKind::plane, 0.0, {Vec3{{1.0, 0.0, 0.0}}}, 0.3);
+  const CrowdPlan plan = recording_plan(c, {0.25}, 12, 0.005);
+  ASSERT_EQ(plan.size(), 1U);
+  ASSERT_EQ(plan[0].size(), 12U);
+  EXPECT_EQ(plan[0].back(), 1.0);
+  int near = 0;
+  for (std::size_t k = 0; k < plan[0].size(); ++k) {
+    EXPECT_GE(plan[0][k] - (k > 0 ? plan[0][k - 1] : 0.0), 0.005 / 0.3 * (1.0 - 1e-9));
+    if (plan[0][k] >= 0.125 && plan[0][k] <= 0.375 + 1e-12) ++near;
+  }
+  EXPECT_EQ(near, 6);
+  // Points closer than the increment are dropped, never the end.
+  EXPECT_EQ(recording_plan(c, {1.0}, 4, 0.2)[0], std::vector<double>{1.0});
+}
+
+TEST(CrowdPlan, TheOnsetIsWhereTheMeanForceRises) {
+  const CrowdConfiguration c = test::crowd_of(PartnerKind::plane, 0.0, {Vec3{{1.0, 0.0, 0.0}}}, 0.3);
+  CrowdRun run;
+  const CrowdPlan coarse = coarse_plan(c);
+  for (const double s : coarse[0]) {
+    CrowdPoint p;
+    p.overlap = {0.3 * s};
+    p.normal = {s > 0.3 ? (s - 0.3) : 0.0};
+    p.tangential = {{}};
+    run.points.push_back(p);
+  }
+  EXPECT_EQ(onset_shares(c, {run, run}), (std::vector<double>{5.0 / 16.0}));
+  for (CrowdPoint& p : run.points) p.normal = {0.0};
+  EXPECT_EQ(onset_shares(c, {run}), (std::vector<double>{1.0}));
+}
+
+CrowdRun sample_run() {
+  CrowdRun run;
+  CrowdPoint p;
+  p.overlap = {0.1};
+  p.normal = {1.0 / 3.0};
+  p.tangential = {{{1e-5, 0.0, 2.0}}};
+  run.points = {p, p};
+  run.cost = {1, 2, 0.5};
+  return run;
+}
+
+TEST(CrowdCache, ARunIsFoundByWhatDeterminesIt) {
+  const CrowdConfiguration c = test::crowd_of(PartnerKind::plane, 0.0, {Vec3{{1.0, 0.0, 0.0}}}, 0.3);
+  const CrowdPlan plan{{0.5, 1.0}};
+  const std::string key = crowd_run_key({}, c, plan, {}, "seed 1 packings 0");
+  CrowdConfiguration renamed = c;
+  renamed.name = "other";
+  renamed.held_out = true;
+  EXPECT_EQ(crowd_run_key({}, renamed, plan, {}, "seed 1 packings 0"), key);
+  EXPECT_NE(crowd_run_key({}, c, plan, {}, "seed 1 packings 1"), key);
+  EXPECT_NE(crowd_run_key({}, c, {{0.4, 1.0}}, {}, "seed 1 packings 0"), key);
+  CrowdOptions finer;
+  finer.increment = 0.004;
+  EXPECT_NE(crowd_run_key({}, c, plan, finer, "seed 1 packings 0"), key);
+  SoftParticleSpec rough;
+  rough.friction = 0.4;
+  EXPECT_NE(crowd_run_key(rough, c, plan, {}, "seed 1 packings 0"), key);
+  CrowdConfiguration free = c;
+  free.centre_free = true;
+  EXPECT_NE(crowd_run_key({}, free, plan, {}, "seed 1 packings 0"), key);
+  EXPECT_EQ(crowd_run_name(""), "crowd-cbf29ce484222325");
+  EXPECT_EQ(crowd_run_name("a"), "crowd-af63dc4c8601ec8c");  // published values of FNV-1a
+}
+
+TEST(CrowdCache, KeepsAndIgnoresDamage) {
+  const test::TemporaryDirectory directory;
+  std::string remarks;
+  const CrowdCache cache(directory.path(), [&](const std::string& remark) { remarks += remark + "\n"; });
+  EXPECT_FALSE(cache.find("key"));
+  cache.keep("key", sample_run());
+  const auto found = cache.find("key");
+  ASSERT_TRUE(found);
+  test::expect_equal(found->points, sample_run().points);
+  EXPECT_EQ(remarks, "");
+  const std::string file = directory.file(crowd_run_name("key") + ".h5");
+  std::filesystem::copy_file(file, directory.file(crowd_run_name("other") + ".h5"));
+  EXPECT_FALSE(cache.find("other"));
+  EXPECT_NE(remarks.find("another measurement"), std::string::npos) << remarks;
+  remarks.clear();
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_FALSE(cache.find("key"));
+  EXPECT_NE(remarks.find("measured again"), std::string::npos) << remarks;
+  cache.keep("key", sample_run());
+  EXPECT_TRUE(cache.find("key"));
+  EXPECT_FALSE(CrowdCache("", [](const std::string&) {}).find("key"));
+}
+
+}  // namespace
+}  // namespace softgrain
