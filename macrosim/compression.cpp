@@ -7,33 +7,63 @@
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/io/interrupt.h"
+#include "macrosim/body_contacts.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Nominal strain of the whole test after increment n of N, as a step from the state before: keeps increments equal in
-/// length.
-Vec3 increment(const MacroSpec& spec, std::int64_t n, std::int64_t total) {
-  const auto at = [&](std::int64_t k) { return spec.strain_end * static_cast<double>(k) / static_cast<double>(total); };
-  const double factor = 1.0 - (1.0 - at(n)) / (1.0 - at(n - 1));
+/// Recorded points of the isotropic part of a shear test.
+std::int64_t preload_points(const MacroSpec& spec) {
+  return spec.test == "shear" && spec.preload > 0.0 ? spec.preload_steps : 0;
+}
+
+/// Step k of `total` equal ones to the nominal strain `end`, as a share of the length before it.
+double nominal_step(double end, std::int64_t k, std::int64_t total) {
+  const auto at = [&](std::int64_t n) { return end * static_cast<double>(n) / static_cast<double>(total); };
+  return 1.0 - (1.0 - at(k)) / (1.0 - at(k - 1));
+}
+
+/// Strain of the box, as strain_box takes it, in increment k (from 1) on the way to recorded point `point` (from 1).
+Vec3 increment(const MacroSpec& spec, std::int64_t point, std::int64_t k) {
+  const std::int64_t n = (point - 1) * spec.increments_per_step + k;
+  const std::int64_t preloading = preload_points(spec) * spec.increments_per_step;
+  const std::int64_t total = spec.steps * spec.increments_per_step;
+  if (spec.test == "shear") {
+    if (n <= preloading) {
+      const double factor = nominal_step(spec.preload, n, preloading);
+      return {{factor, factor, factor}};
+    }
+    const double logarithmic = spec.strain_end / static_cast<double>(total);
+    return {{-std::expm1(logarithmic), 0.0, -std::expm1(-logarithmic)}};
+  }
+  const double factor = nominal_step(spec.strain_end, n, total);
   if (spec.test == "isotropic") return {{factor, factor, factor}};
   return {{0.0, 0.0, factor}};
 }
 
-double largest_radius(const Particles<3>& p) {
-  double r = 0.0;
-  for (const auto& s : p.sphere) r = std::max(r, s.r);
-  return r;
+double strain_at(const MacroSpec& spec, std::int64_t point) {
+  const std::int64_t before = preload_points(spec);
+  if (point < before) return -spec.preload * static_cast<double>(before - point) / static_cast<double>(before);
+  return spec.strain_end * static_cast<double>(point - before) / static_cast<double>(spec.steps);
 }
 
-DampedOptions relaxation_options(const MacroSpec& spec, const System3& s) {
+DampedOptions relaxation_options(const MacroSpec& spec, const MacroSystem& macro) {
   DampedOptions options;
   options.tolerance = spec.tolerance;
   options.max_passes = spec.max_passes;
-  const double r = largest_radius(s.particles);
-  options.force_floor = spec.force_floor * spec.youngs_modulus * r * r;
+  options.force_floor = spec.force_floor * spec.youngs_modulus * macro.largest_radius * macro.largest_radius;
   return options;
+}
+
+void record_bodies(const MacroSystem& macro, MacroCurve& c) {
+  const auto contacts = contact_records(macro.system);
+  const auto between = body_contacts(macro, contacts);
+  c.fabric.push_back(fabric_anisotropy(macro, contacts));
+  c.fabric_bodies.push_back(fabric_anisotropy(macro, between));
+  c.coordination_bodies.push_back(body_coordination(macro, between));
+  c.body_forces.clear();
+  for (const BodyContact& b : between) c.body_forces.push_back(b.normal_force);
 }
 
 void record(CompressionState& state, const MacroSpec& spec, double strain, const RelaxationResult& rest) {
@@ -44,10 +74,14 @@ void record(CompressionState& state, const MacroSpec& spec, double strain, const
   c.strain.push_back(strain);
   c.stress_axial.push_back(wall[2]);
   c.stress_lateral.push_back(0.5 * (wall[0] + wall[1]));
+  c.stress_x.push_back(wall[0]);
+  c.stress_y.push_back(wall[1]);
+  c.stress_deviator.push_back(wall[2] - wall[0]);
   c.stress_axial_contacts.push_back(contact_stress(s, state.macro.box)[2]);
   const auto bodies = static_cast<double>(c.grains > 0 ? s.particles.grains : c.bodies);
   c.coordination.push_back(2.0 * static_cast<double>(r.contacts) / bodies);
   c.residual.push_back(rest.residual);
+  record_bodies(state.macro, c);
   if (rest.end == RelaxationEnd::converged) return;
   c.usable = false;
   c.note = "relaxation " + to_string(rest.end) + " at strain " + std::to_string(strain) + " (residual " +
@@ -65,30 +99,33 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   curve.bodies = static_cast<std::int64_t>(packing.bodies.size());
   curve.soft = packing.soft_count();
   curve.grains = macro.inner_grains;
+  curve.preload = preload_points(spec) > 0 ? spec.preload : 0.0;
   curve.soft_volume_share = packing.soft_volume_share();
   curve.solid_fraction = packing.solid_fraction();
   return curve;
 }
 
+std::int64_t recorded_points(const MacroSpec& spec) { return preload_points(spec) + spec.steps + 1; }
+
 void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer) {
   System3& s = state.macro.system;
-  DampedRelaxation<3> relaxation(relaxation_options(spec, s));
-  const std::int64_t total = spec.steps * spec.increments_per_step;
-  while (static_cast<std::int64_t>(state.curve.strain.size()) <= spec.steps) {
+  DampedRelaxation<3> relaxation(relaxation_options(spec, state.macro));
+  const std::int64_t points = recorded_points(spec);
+  while (static_cast<std::int64_t>(state.curve.strain.size()) < points) {
     const auto point = static_cast<std::int64_t>(state.curve.strain.size());
     const auto start = std::chrono::steady_clock::now();
     const Cost before = s.cost;
     RelaxationResult rest;
     if (point == 0) rest = relaxation.relax(s);
-    for (std::int64_t k = 0; point > 0 && k < spec.increments_per_step; ++k) {
-      strain_box(s, state.macro.box, increment(spec, (point - 1) * spec.increments_per_step + k + 1, total));
+    for (std::int64_t k = 1; point > 0 && k <= spec.increments_per_step; ++k) {
+      strain_box(s, state.macro.box, increment(spec, point, k));
       rest = relaxation.relax(s);
     }
-    record(state, spec, spec.strain_end * static_cast<double>(point) / static_cast<double>(spec.steps), rest);
+    record(state, spec, strain_at(spec, point), rest);
     state.curve.cost +=
         {s.cost.loop_passes - before.loop_passes, s.cost.contact_evaluations - before.contact_evaluations,
          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-    observer(state, static_cast<double>(point + 1) / static_cast<double>(spec.steps + 1));
+    observer(state, static_cast<double>(point + 1) / static_cast<double>(points));
     if (interrupt_requested()) throw Interrupted("stopped by a signal; finished points are saved");
   }
 }

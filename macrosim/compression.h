@@ -1,4 +1,4 @@
-// Oedometric and isotropic compression of a macro system, law-based or resolved, by relaxed strain increments.
+// Oedometric, isotropic and shear tests of a macro system, law-based or resolved, by relaxed strain increments.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,14 @@ struct CompressionState {
 /// Called after each recorded point.
 using CompressionObserver = std::function<void(const CompressionState&, double share_done)>;
 
-/// Strains the box step by step to spec.strain_end (oedometric: z planes move, four stand; isotropic: all six),
-/// relaxing every increment; records strain (from the start), wall stress, contact stress, coordination, residual.
+/// Number of points that a test records, the unstrained one included.
+std::int64_t recorded_points(const MacroSpec& spec);
+
+/// Strains the box step by step to spec.strain_end, relaxing every increment. Oedometric: the z planes move, four
+/// stand; isotropic: all six; shear: all six to the nominal strain `preload`, then z shortens and x lengthens by equal
+/// logarithmic strains while y stands. Records strain (nominal from the start; in shear logarithmic from the end of
+/// the preload, which is recorded at -preload .. 0), wall and contact stresses, coordination, fabric, residual, and the
+/// forces between bodies of the last point.
 /// Points that did not converge make the curve not usable, with a note. Throws NotUsable (lost grain) and Interrupted.
 void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer);
 

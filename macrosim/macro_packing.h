@@ -23,7 +23,8 @@ struct MacroPacking {
   std::vector<MacroBody> bodies;
 
   [[nodiscard]] Vec3 size() const { return high - low; }
-  [[nodiscard]] double solid_fraction() const;
+  [[nodiscard]] double body_volume() const;     ///< of solid grains and shells [m^3]
+  [[nodiscard]] double solid_fraction() const;  ///< body_volume() over the volume of the box
   [[nodiscard]] double soft_volume_share() const;
   [[nodiscard]] std::int64_t soft_count() const;
 };

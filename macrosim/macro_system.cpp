@@ -1,5 +1,6 @@
 #include "macrosim/macro_system.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -33,15 +34,17 @@ std::array<Vec3, 3> random_rotation(RandomStream& random) {
           Vec3{{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
-void add_content(System3& s, const MacroSpec& spec, const MacroBody& body, const ShellPacking& content, Slot shell,
-                 RandomStream& random) {
+/// Adds the grains of a soft particle, turned; they belong to body `number` and to a shell (-1: none).
+void add_content(MacroSystem& out, const MacroSpec& spec, const MacroBody& body, const ShellPacking& content,
+                 Slot shell, std::int32_t number, RandomStream& random) {
   const auto axes = random_rotation(random);
   for (std::size_t k = 0; k < content.radius.size(); ++k) {
     const Vec3& y = content.position[k];
     const Vec3 turned = axes[0] * y[0] + axes[1] * y[1] + axes[2] * y[2];
     NewBody<3> grain = solid_sphere(body.x + turned * body.r, content.radius[k] * body.r, spec.density, 0);
     grain.shell = shell;
-    add_grain(s.particles, grain);
+    add_grain(out.system.particles, grain);
+    out.body.push_back(number);
   }
 }
 
@@ -53,34 +56,29 @@ std::int64_t count_inner_grains(const MacroPacking& packing, const std::vector<S
   return inner;
 }
 
-}  // namespace
-
-MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,
-                            double inner_solid_fraction) {
-  MacroSystem out;
-  System3& s = out.system;
-  s.materials = {solid_material(spec, "solid"), solid_material(spec, "soft"), solid_material(spec, "wall")};
-  s.laws = LawSet(3);
-  s.laws.set(0, 0, solid_law(s.materials[0], spec.friction));
-  s.laws.set(0, 2, solid_law(s.materials[0], spec.wall_friction));
-  SoftContact law = laws.soft_solid;
-  law.i_is_soft = true;
-  s.laws.set(1, 0, law, true);
-  law.i_is_soft = false;
-  s.laws.set(0, 1, law, true);
-  law.i_is_soft = true;
-  law.friction = spec.wall_friction;
-  s.laws.set(1, 2, law);
-  s.laws.set(1, 1, laws.soft_soft);
-  for (const MacroBody& b : packing.bodies)
-    add_grain(s.particles,
-              solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
-  out.box = add_box(s, packing.low, packing.high, 2);
-  return out;
+/// Walls come last: they take the numbers after the bodies.
+void close_box(MacroSystem& out, const MacroPacking& packing, std::int32_t material) {
+  out.box = add_box(out.system, packing.low, packing.high, material);
+  out.bodies = static_cast<std::int32_t>(packing.bodies.size());
+  for (std::int32_t wall = 0; wall < 6; ++wall) out.body.push_back(out.bodies + wall);
+  for (const MacroBody& b : packing.bodies) out.largest_radius = std::max(out.largest_radius, b.r);
 }
 
-MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing,
-                                const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample) {
+void add_shells(MacroSystem& out, const MacroSpec& spec, const MacroPacking& packing,
+                const std::vector<ShellPacking>& contents) {
+  std::size_t k = 0;
+  for (std::size_t n = 0; n < packing.bodies.size(); ++n) {
+    const MacroBody& b = packing.bodies[n];
+    if (!b.soft) continue;
+    const double density = spec.density * contents[k++ % contents.size()].solid_fraction();
+    add_shell(out.system.particles, solid_sphere(b.x, b.r, density, 0));
+    out.body.push_back(static_cast<std::int32_t>(n));
+  }
+}
+
+/// Solid grains first, then the contents of the soft particles, then their shells (of the shelled twin).
+MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const std::vector<ShellPacking>& contents,
+                      std::uint64_t seed, std::uint64_t sample, bool shelled) {
   if (contents.empty() && packing.soft_count() > 0)
     throw BadInput("resolved twin: no packing to fill the soft particles with");
   MacroSystem out;
@@ -90,24 +88,69 @@ MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packi
   s.laws.set(0, 0, solid_law(s.materials[0], spec.friction));
   s.laws.set(0, 1, solid_law(s.materials[0], spec.wall_friction));
   out.inner_grains = count_inner_grains(packing, contents);
-  const auto solids = static_cast<Slot>(packing.bodies.size()) - static_cast<Slot>(packing.soft_count());
-  const Slot first_shell = solids + static_cast<Slot>(out.inner_grains);
+  const auto bodies = static_cast<std::int32_t>(packing.bodies.size());
+  for (std::int32_t n = 0; n < bodies; ++n) {
+    const MacroBody& b = packing.bodies[static_cast<std::size_t>(n)];
+    if (b.soft) continue;
+    add_grain(s.particles, solid_sphere(b.x, b.r, spec.density, 0));
+    out.body.push_back(n);
+  }
+  const Slot first_shell = s.particles.grains + static_cast<Slot>(out.inner_grains);
   RandomStream random(seed, RandomPurpose::rotation, sample);
-  for (const MacroBody& b : packing.bodies)
-    if (!b.soft) add_grain(s.particles, solid_sphere(b.x, b.r, spec.density, 0));
   std::size_t k = 0;
-  for (const MacroBody& b : packing.bodies) {
+  for (std::int32_t n = 0; n < bodies; ++n) {
+    const MacroBody& b = packing.bodies[static_cast<std::size_t>(n)];
     if (!b.soft) continue;
-    add_content(s, spec, b, contents[k % contents.size()], first_shell + static_cast<Slot>(k), random);
+    const Slot shell = shelled ? first_shell + static_cast<Slot>(k) : -1;
+    add_content(out, spec, b, contents[k % contents.size()], shell, n, random);
     ++k;
   }
-  k = 0;
-  for (const MacroBody& b : packing.bodies)
-    if (b.soft)
-      add_shell(s.particles,
-                solid_sphere(b.x, b.r, spec.density * contents[k++ % contents.size()].solid_fraction(), 0));
-  out.box = add_box(s, packing.low, packing.high, 1);
+  if (shelled) add_shells(out, spec, packing, contents);
+  close_box(out, packing, 1);
   return out;
+}
+
+}  // namespace
+
+SoftLaws pair_soft_laws(const SoftContact& soft_solid, const SoftContact& soft_soft, double wall_friction) {
+  SoftContact soft_first = soft_solid;
+  soft_first.i_is_soft = true;
+  SoftContact solid_first = soft_solid;
+  solid_first.i_is_soft = false;
+  SoftContact wall = soft_first;
+  wall.friction = wall_friction;
+  return {soft_first, solid_first, wall, soft_soft};
+}
+
+MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,
+                            double inner_solid_fraction) {
+  MacroSystem out;
+  System3& s = out.system;
+  s.materials = {solid_material(spec, "solid"), solid_material(spec, "soft"), solid_material(spec, "wall")};
+  s.laws = LawSet(3);
+  s.laws.set(0, 0, solid_law(s.materials[0], spec.friction));
+  s.laws.set(0, 2, solid_law(s.materials[0], spec.wall_friction));
+  s.laws.set(1, 0, laws.soft_solid, true);
+  s.laws.set(0, 1, laws.solid_soft, true);
+  s.laws.set(1, 2, laws.soft_wall);
+  s.laws.set(1, 1, laws.soft_soft);
+  for (const MacroBody& b : packing.bodies) {
+    out.body.push_back(static_cast<std::int32_t>(out.body.size()));
+    add_grain(s.particles,
+              solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
+  }
+  close_box(out, packing, 2);
+  return out;
+}
+
+MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing,
+                                const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample) {
+  return make_twin(spec, packing, contents, seed, sample, true);
+}
+
+MacroSystem make_free_system(const MacroSpec& spec, const MacroPacking& packing,
+                             const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample) {
+  return make_twin(spec, packing, contents, seed, sample, false);
 }
 
 }  // namespace softgrain

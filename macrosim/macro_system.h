@@ -1,9 +1,10 @@
 // A macro packing as a system: with fitted laws, or with every soft particle resolved inside a moving shell.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "common/contact/soft_contact.h"
+#include "common/contact/law_set.h"
 #include "common/data/shell_packing.h"
 #include "macrosim/box.h"
 #include "macrosim/macro_packing.h"
@@ -14,16 +15,26 @@ struct MacroSystem {
   System3 system;
   Box box;
   std::int64_t inner_grains = 0;  ///< resolved inside soft particles
+  /// Per slot: number of the body in its packing, for grains inside a soft particle and its shell that of the soft
+  /// particle; walls follow after the bodies, in the order of the box.
+  std::vector<std::int32_t> body;
+  std::int32_t bodies = 0;
+  double largest_radius = 0.0;  ///< of the bodies [m]: the scale of the force floor, the same for all engines
 };
 
-/// The two laws of soft particles in a macro scene, frictions set; damping 0 for quasi-static loading.
+/// The laws of soft particles in a macro scene, as the contact loop takes them: frictions set, without damping
+/// (quasi-static loading). Any law of the loop will do.
 struct SoftLaws {
-  SoftContact soft_solid;
-  SoftContact soft_soft;
+  AnyLaw soft_solid;  ///< body i soft, j solid
+  AnyLaw solid_soft;  ///< body i solid, j soft
+  AnyLaw soft_wall;
+  AnyLaw soft_soft;
 };
 
-/// Materials 0 solid grain, 1 soft particle, 2 wall. A soft particle has the mass of its content. Planes use the
-/// soft-solid law.
+/// The pair law: each contact by itself. The wall is a solid of friction `wall_friction`.
+SoftLaws pair_soft_laws(const SoftContact& soft_solid, const SoftContact& soft_soft, double wall_friction);
+
+/// Materials 0 solid grain, 1 soft particle, 2 wall. A soft particle has the mass of its content.
 MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, const SoftLaws& laws,
                             double inner_solid_fraction);
 
@@ -31,5 +42,9 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
 /// shell that moves with the forces on it and has the mass of its content [SP 1.9]. Materials 0 grain, 1 wall.
 MacroSystem make_shelled_system(const MacroSpec& spec, const MacroPacking& packing,
                                 const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample);
+
+/// The free twin: the same grains at the same places, without any shell. Materials 0 grain, 1 wall.
+MacroSystem make_free_system(const MacroSpec& spec, const MacroPacking& packing,
+                             const std::vector<ShellPacking>& contents, std::uint64_t seed, std::uint64_t sample);
 
 }  // namespace softgrain

@@ -112,7 +112,7 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out)
   out.add("macro_bodies", setup.spec.bodies,
           fmt::format("macro: {} samples of {} bodies, {} compression to a strain of {}", setup.samples,
                       setup.spec.bodies, setup.spec.test, setup.spec.strain_end));
-  if (setup.resolved) {
+  if (!setup.twins.empty()) {
     out.add("twin_grains", resolved, fmt::format("resolved twin: about {:.0f} grains per sample", resolved));
     out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
   }

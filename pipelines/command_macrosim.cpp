@@ -57,19 +57,22 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(scene_seed);
   const TaskStore store(context, scene, seed);
-  const auto contents = setup.resolved ? twin_contents(card.spec, contents_count, seed) : std::vector<ShellPacking>{};
+  const auto contents =
+      !setup.twins.empty() ? twin_contents(card.spec, contents_count, seed) : std::vector<ShellPacking>{};
   std::vector<MacroCurve> curves;
   context.guard(
       [&] { curves = run_macro_stage(setup, card, contents, seed, store, context, context.provenance(scene, seed)); });
 
   nlohmann::json summary;
+  const bool resolved = has_twin(setup, "shelled");
   bool usable = true;
   for (const MacroCurve& c : curves) usable = usable && c.usable;
   summary["status"] = usable ? "good" : "not usable";
   summary["title"] = title;
   summary["macro"] = macro_json(curves, "law");
-  if (setup.resolved) summary["resolved"] = macro_json(curves, "shelled");
-  if (setup.resolved && usable) {
+  if (resolved) summary["resolved"] = macro_json(curves, "shelled");
+  if (has_twin(setup, "free")) summary["free"] = macro_json(curves, "free");
+  if (resolved && usable) {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
     summary["comparison"] = {{"stress_error", c.axial_difference.mean},
                              {"speedup_seconds", c.speedup_seconds},

@@ -96,7 +96,7 @@ void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunCont
   if (!setup.macro || !run_macro_samples(setup, store, context, provenance, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
-  if (!setup.macro->resolved) return;
+  if (!has_twin(*setup.macro, "shelled")) return;
   try {
     result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
   } catch (const BadInput& e) {
@@ -125,6 +125,7 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Proven
   }
   s["macro"] = macro_json(r.curves, "law");
   s["resolved"] = macro_json(r.curves, "shelled");
+  if (setup.macro && has_twin(*setup.macro, "free")) s["free"] = macro_json(r.curves, "free");
   if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
   s["remarks"] = r.remarks;
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "common/core/error.h"
 #include "pipelines/macro_stage.h"
 
@@ -6,6 +8,7 @@ namespace softgrain {
 namespace {
 
 void read_bodies(const SceneTable& t, MacroSpec& spec) {
+  spec.construction = t.choice("construction", {"mixed", "voids"}, spec.construction);
   spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
   spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
   spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
@@ -14,20 +17,39 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
       t.number("solid_polydispersity", Unit::none, Range::above(1.0), spec.solid_polydispersity);
   spec.soft_radius_max = t.number("soft_radius_max", Unit::length, Range::positive(), spec.soft_radius_max);
   spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
+  spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
+  if (spec.construction == "voids" && spec.soft_share >= 1.0)
+    t.reject("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
 
 void read_test(const SceneTable& t, MacroSpec& spec) {
-  spec.test = t.choice("test", {"oedometric", "isotropic"}, spec.test);
+  spec.test = t.choice("test", {"oedometric", "isotropic", "shear"}, spec.test);
   spec.strain_end = t.number("strain", Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
+  spec.preload = t.number("preload", Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
+  spec.preload_steps = t.count("preload_steps", 1, 100000, spec.preload_steps);
   spec.steps = t.count("steps", 1, 100000, spec.steps);
   spec.increments_per_step = t.count("increments_per_step", 1, 10000, spec.increments_per_step);
   spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
   spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
   spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
-  spec.kt_secant = t.choice("kt", {"initial", "secant"}, "initial") == "secant";
+  spec.kt_secant = t.choice("kt", {"initial", "secant"}, spec.kt_secant ? "secant" : "initial") == "secant";
+}
+
+/// `resolved`: true for the shelled twin, or a list of twins.
+std::vector<std::string> read_twins(const SceneTable& t, const std::vector<std::string>& fallback) {
+  if (!t.has("resolved")) return fallback;
+  if (!t.is_list("resolved"))
+    return t.flag("resolved", true) ? std::vector<std::string>{"shelled"} : std::vector<std::string>{};
+  std::vector<std::string> twins = t.texts("resolved");
+  for (std::size_t k = 0; k < twins.size(); ++k) {
+    if (twins[k] != "shelled" && twins[k] != "free")
+      t.reject("resolved", "unknown twin '" + twins[k] + "'; known are \"shelled\" and \"free\"");
+    if (std::count(twins.begin(), twins.end(), twins[k]) > 1) t.reject("resolved", "'" + twins[k] + "' twice");
+  }
+  return twins;
 }
 
 }  // namespace
@@ -41,10 +63,15 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
   spec.poisson_ratio = defaults.poisson_ratio;
   spec.friction = defaults.friction;
   spec.density = defaults.density;
-  read_bodies(macro, spec);
-  read_test(macro, spec);
-  setup.samples = macro.count("samples", 1, 10000, 1);
-  setup.resolved = macro.flag("resolved", true);
+  return read_macro_setup(macro, setup);
+}
+
+MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
+  MacroSetup setup = base;
+  read_bodies(macro, setup.spec);
+  read_test(macro, setup.spec);
+  setup.samples = macro.count("samples", 1, 10000, setup.samples);
+  setup.twins = read_twins(macro, setup.twins);
   return setup;
 }
 

@@ -1,119 +1,27 @@
 #include "pipelines/macro_stage.h"
 
-#include <fmt/format.h>
 #include <omp.h>
 
-#include "common/contact/soft_contact_from_card.h"
-#include "common/dynamics/force_pass.h"
+#include <algorithm>
+
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "macrosim/compression.h"
+#include "macrosim/constructed_packing.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
 
 namespace {
 
-const char* const kCurveArrays[] = {"strain", "axial", "lateral", "axial_contacts", "coordination", "residual"};
-
-std::vector<double>* curve_array(MacroCurve& c, int k) {
-  std::vector<double>* const all[] = {&c.strain,       &c.stress_axial, &c.stress_lateral, &c.stress_axial_contacts,
-                                      &c.coordination, &c.residual};
-  return all[k];
-}
-
 void write_progress(const h5::Group& group, const CompressionState& state) {
-  MacroCurve curve = state.curve;
-  for (int k = 0; k < 6; ++k) group.write(kCurveArrays[k], *curve_array(curve, k));
-  group.write("cost", std::vector<double>{static_cast<double>(curve.cost.loop_passes),
-                                          static_cast<double>(curve.cost.contact_evaluations), curve.cost.seconds});
-  group.attribute("usable", std::int64_t{curve.usable ? 1 : 0});
-  group.attribute("note", curve.note);
+  write_macro_curve(group.create("curve"), state.curve);
   write_system(group.create("system"), state.macro.system);
 }
 
 void read_progress(const h5::Group& group, CompressionState& state) {
-  for (int k = 0; k < 6; ++k) *curve_array(state.curve, k) = group.doubles(kCurveArrays[k]);
-  const auto cost = group.doubles("cost");
-  state.curve.cost = {static_cast<std::int64_t>(cost.at(0)), static_cast<std::int64_t>(cost.at(1)), cost.at(2)};
-  state.curve.usable = group.integer("usable") != 0;
-  state.curve.note = group.text("note");
+  state.curve = read_macro_curve(group.open("curve"));
   read_system(group.open("system"), state.macro.system);
-}
-
-/// What the tasks share.
-struct Stage {
-  const MacroSetup& setup;
-  const LawCard& card;
-  const SoftLaws& laws;
-  double inner_solid_fraction;
-  const std::vector<ShellPacking>& contents;
-  std::uint64_t seed;
-  const TaskStore& store;
-  const std::vector<MacroPacking>& packings;
-};
-
-std::int32_t law_of(const System3& s, const ContactRecord<3>& c) {
-  const auto& material = s.particles.material;
-  return s.laws.index(material[static_cast<std::size_t>(c.i)], material[static_cast<std::size_t>(c.j)]);
-}
-
-double reference_radius(const System3& s, const SoftContact& law, const ContactRecord<3>& c) {
-  const double rj = c.j < s.particles.grains ? s.particles.sphere[static_cast<std::size_t>(c.j)].r : 0.0;
-  return law.pair_constants({s.particles.sphere[static_cast<std::size_t>(c.i)].r, rj, 0.0, 0.0}).a;
-}
-
-/// Largest Delta among the soft contacts of a law run, against the range its laws were fitted in; empty when inside.
-std::string extrapolation_note(const System3& s, const LawCard& card) {
-  double beyond = 0.0;
-  std::string note;
-  for (const ContactRecord<3>& c : contact_records(s)) {
-    const auto* soft = std::get_if<SoftContact>(&s.laws.law(law_of(s, c)));
-    if (soft == nullptr) continue;
-    const double delta = c.overlap / reference_radius(s, *soft, c);
-    const PairLaw* law = card.find(soft->partner_is_soft ? PairKind::soft_soft : PairKind::soft_solid);
-    if (law == nullptr || delta - law->delta_max <= beyond) continue;
-    beyond = delta - law->delta_max;
-    note = fmt::format(
-        "soft contacts reach Delta = {:.2f} at the end, the {} law was fitted up to {:.2f} and is extrapolated", delta,
-        to_string(law->kind), law->delta_max);
-  }
-  return note;
-}
-
-MacroCurve run_one(const Stage& stage, std::int64_t sample, bool resolved, Progress& progress) {
-  const MacroSpec& spec = stage.setup.spec;
-  const MacroPacking& packing = stage.packings[static_cast<std::size_t>(sample)];
-  CompressionState state;
-  state.macro = resolved
-                    ? make_shelled_system(spec, packing, stage.contents, stage.seed, static_cast<std::uint64_t>(sample))
-                    : make_law_system(spec, packing, stage.laws, stage.inner_solid_fraction);
-  state.curve = begin_curve(spec, packing, state.macro, resolved ? "shelled" : "law", sample);
-  const std::string task = "macro-" + state.curve.engine + "-" + std::to_string(sample);
-  stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
-  double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(spec.steps + 1);
-  progress.advance(done);
-  compress(state, spec, [&](const CompressionState& s, double share) {
-    stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
-    progress.advance(share - done);
-    done = share;
-  });
-  if (!resolved && state.curve.note.empty()) state.curve.note = extrapolation_note(state.macro.system, stage.card);
-  return state.curve;
-}
-
-/// Samples in parallel when there are enough of them for all threads, else one after another with threads inside.
-void over_samples(std::int64_t samples, const std::function<void(std::int64_t)>& task) {
-  if (samples >= omp_get_max_threads()) {
-    parallel_tasks(samples, task);
-  } else {
-    for (std::int64_t k = 0; k < samples; ++k) task(k);
-  }
-}
-
-SoftLaws laws_from_card(const LawCard& card, const MacroSpec& spec) {
-  return {make_soft_contact(card, PairKind::soft_solid, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant),
-          make_soft_contact(card, PairKind::soft_soft, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant)};
 }
 
 double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
@@ -124,15 +32,84 @@ double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
   return contents.empty() ? 1.0 : sum / static_cast<double>(contents.size());
 }
 
-std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
-                                        const Provenance& provenance) {
+/// Whether samples share the threads, or take them one after another.
+bool side_by_side(std::int64_t tasks) { return tasks >= omp_get_max_threads(); }
+
+/// Samples in parallel when there are enough of them for all threads, else one after another with threads inside.
+void over_samples(std::int64_t samples, const std::function<void(std::int64_t)>& task) {
+  if (side_by_side(samples)) {
+    parallel_tasks(samples, task);
+  } else {
+    for (std::int64_t k = 0; k < samples; ++k) task(k);
+  }
+}
+
+/// What the tasks share.
+struct Stage {
+  const MacroRuns& runs;
+  const TaskStore& store;
+  double inner_solid_fraction;
+};
+
+/// `laws` null: the twin of this name.
+MacroSystem make_system(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws) {
+  const MacroSpec& spec = stage.runs.setup.spec;
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
+  if (laws != nullptr) return make_law_system(spec, packing, laws->laws, stage.inner_solid_fraction);
+  const auto make = engine == "free" ? make_free_system : make_shelled_system;
+  return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
+}
+
+MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws,
+                   Progress& progress) {
+  const MacroSpec& spec = stage.runs.setup.spec;
+  CompressionState state;
+  state.macro = make_system(stage, sample, engine, laws);
+  state.curve = begin_curve(spec, stage.runs.packings[static_cast<std::size_t>(sample)], state.macro, engine, sample);
+  const std::string task = stage.runs.name + "-" + engine + "-" + std::to_string(sample);
+  stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
+  double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
+  progress.advance(done);
+  compress(state, spec, [&](const CompressionState& s, double share) {
+    stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
+    progress.advance(share - done);
+    done = share;
+  });
+  if (laws != nullptr && laws->note && state.curve.note.empty()) state.curve.note = laws->note(state.macro.system);
+  return state.curve;
+}
+
+struct Engine {
+  std::string name;
+  const NamedLaws* laws = nullptr;
+};
+
+/// All samples of all engines, in that order: engines of a kind cost about the same, and share the threads.
+void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std::string& title,
+              const RunContext& context, std::vector<MacroCurve>& curves) {
+  const std::int64_t samples = stage.runs.setup.samples;
+  const auto tasks = static_cast<std::int64_t>(engines.size()) * samples;
+  if (tasks == 0) return;
+  const std::size_t first = curves.size();
+  curves.resize(first + static_cast<std::size_t>(tasks));
+  Progress progress(stage.runs.name + title, static_cast<double>(tasks), context.quiet());
+  over_samples(tasks, [&](std::int64_t k) {
+    const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
+    curves[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine.name, engine.laws, progress);
+  });
+}
+
+}  // namespace
+
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
+                                              const Provenance& provenance, const std::string& file_name) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
-    packings[static_cast<std::size_t>(k)] = make_macro_packing(setup.spec, seed, static_cast<std::uint64_t>(k));
+    packings[static_cast<std::size_t>(k)] = make_packing(setup.spec, seed, static_cast<std::uint64_t>(k));
     progress.advance();
   });
-  h5::AtomicFile file(context.path("macro_initial.h5"));
+  h5::AtomicFile file(context.path(file_name));
   write_provenance(file.root(), provenance);
   for (std::size_t k = 0; k < packings.size(); ++k)
     write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
@@ -140,27 +117,26 @@ std::vector<MacroPacking> make_packings(const MacroSetup& setup, std::uint64_t s
   return packings;
 }
 
-}  // namespace
+std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
+                                    const RunContext& context) {
+  const Stage stage{runs, store, mean_solid_fraction(runs.contents)};
+  std::vector<Engine> with_laws;
+  std::vector<Engine> twins;
+  for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
+  for (const std::string& name : runs.setup.twins) twins.push_back({name});
+  std::vector<MacroCurve> curves;
+  run_kind(stage, with_laws, " with laws", context, curves);
+  run_kind(stage, twins, ": resolved twins", context, curves);
+  return curves;
+}
 
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card,
                                         const std::vector<ShellPacking>& contents, std::uint64_t seed,
                                         const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance) {
-  const SoftLaws laws = laws_from_card(card, setup.spec);
-  const auto packings = make_packings(setup, seed, context, provenance);
-  const Stage stage{setup, card, laws, mean_solid_fraction(contents), contents, seed, store, packings};
-  const auto n = static_cast<std::size_t>(setup.samples);
-  std::vector<MacroCurve> curves(setup.resolved ? 2 * n : n);
-  {
-    Progress progress("macro with laws", static_cast<double>(n), context.quiet());
-    over_samples(setup.samples,
-                 [&](std::int64_t k) { curves[static_cast<std::size_t>(k)] = run_one(stage, k, false, progress); });
-  }
-  if (setup.resolved) {
-    Progress progress("resolved twins", static_cast<double>(n), context.quiet());
-    over_samples(setup.samples,
-                 [&](std::int64_t k) { curves[n + static_cast<std::size_t>(k)] = run_one(stage, k, true, progress); });
-  }
+  const std::vector<NamedLaws> laws{pair_law_of(card, setup.spec, "law")};
+  const auto packings = make_macro_packings(setup, seed, context, provenance, "macro_initial.h5");
+  const auto curves = run_engines({setup, packings, contents, seed, "macro"}, laws, store, context);
   save_macro(curves, context.path("macro.h5"), provenance);
   return curves;
 }

@@ -1,6 +1,7 @@
-// The macro part of a pipeline: samples with fitted laws, their resolved twins, and what they have in common.
+// The macro part of a pipeline: samples with laws, their resolved twins, and what they have in common.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,9 @@
 #include "common/data/macro_result.h"
 #include "common/data/shell_packing.h"
 #include "common/io/scene.h"
+#include "macrosim/macro_packing.h"
 #include "macrosim/macro_spec.h"
+#include "pipelines/named_laws.h"
 #include "pipelines/run_context.h"
 #include "pipelines/task_store.h"
 
@@ -17,13 +20,37 @@ namespace softgrain {
 struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;
-  bool resolved = true;  ///< run the shelled twin of every sample
+  std::vector<std::string> twins{"shelled"};  ///< of "shelled", "free": resolved beside every sample
 };
+
+[[nodiscard]] inline bool has_twin(const MacroSetup& setup, const std::string& name) {
+  return std::find(setup.twins.begin(), setup.twins.end(), name) != setup.twins.end();
+}
 
 /// Reads [macro]; material defaults come from the measured soft particle. Throws BadInput.
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults);
 
-/// Runs all samples with the laws of `card` and, when asked, their shelled twins filled with `contents`; saves
+/// Replaces what a table says, keeps the rest. Throws BadInput.
+MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
+
+/// The starting states of all samples, the same for all engines; saved to DIR/`file`.
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
+                                              const Provenance& provenance, const std::string& file);
+
+/// One scene with all its engines.
+struct MacroRuns {
+  const MacroSetup& setup;
+  const std::vector<MacroPacking>& packings;  ///< one per sample
+  const std::vector<ShellPacking>& contents;  ///< of soft particles
+  std::uint64_t seed = 1;
+  std::string name;  ///< of checkpoints and of progress: "macro", or that of the scene
+};
+
+/// Every law, then every twin, each on all samples; goes on from checkpoints of recorded points.
+std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
+                                    const RunContext& context);
+
+/// Runs all samples with the laws of `card` (engine "law") and the twins asked for, filled with `contents`; saves
 /// DIR/macro.h5 and DIR/macro_initial.h5 (the common starting states). Throws BadInput when the card has no usable law
 /// for the scene.
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card,

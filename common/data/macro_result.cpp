@@ -25,6 +25,28 @@ constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain},
                                {"coordination", "1", &MacroCurve::coordination},
                                {"residual", "1", &MacroCurve::residual}};
 
+/// Later additions: absent in files of before.
+constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x},
+                                       {"stress_y", "Pa", &MacroCurve::stress_y},
+                                       {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
+                                       {"fabric", "1", &MacroCurve::fabric},
+                                       {"fabric_bodies", "1", &MacroCurve::fabric_bodies},
+                                       {"coordination_bodies", "1", &MacroCurve::coordination_bodies}};
+constexpr Column kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
+
+void write_column(const h5::Group& group, const MacroCurve& curve, const Column& c) {
+  group.write(c.name, std::span<const double>(curve.*c.values));
+  group.attribute_of(c.name, "unit", c.unit);
+}
+
+void write_if_any(const h5::Group& group, const MacroCurve& curve, const Column& c) {
+  if (!(curve.*c.values).empty()) write_column(group, curve, c);
+}
+
+void read_if_there(const h5::Group& group, MacroCurve& curve, const Column& c) {
+  if (group.has(c.name)) curve.*c.values = group.doubles(c.name);
+}
+
 struct Count {
   const char* name;
   std::int64_t MacroCurve::*value;
@@ -35,7 +57,9 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
                              {"soft", &MacroCurve::soft},
                              {"grains", &MacroCurve::grains}};
 
-void write_curve(const h5::Group& group, const MacroCurve& curve) {
+}  // namespace
+
+void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("engine", curve.engine);
   group.attribute("test", curve.test);
   group.attribute("note", curve.note);
@@ -46,13 +70,13 @@ void write_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("loop_passes", curve.cost.loop_passes);
   group.attribute("contact_evaluations", curve.cost.contact_evaluations);
   group.attribute("seconds", curve.cost.seconds);
-  for (const Column& c : kColumns) {
-    group.write(c.name, std::span<const double>(curve.*c.values));
-    group.attribute_of(c.name, "unit", c.unit);
-  }
+  group.attribute("preload", curve.preload);
+  for (const Column& c : kColumns) write_column(group, curve, c);
+  for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
+  write_if_any(group, curve, kBodyForces);
 }
 
-MacroCurve read_curve(const h5::Group& group) {
+MacroCurve read_macro_curve(const h5::Group& group) {
   MacroCurve curve;
   curve.engine = group.text("engine");
   curve.test = group.text("test");
@@ -62,21 +86,33 @@ MacroCurve read_curve(const h5::Group& group) {
   curve.soft_volume_share = group.number("soft_volume_share");
   curve.solid_fraction = group.number("solid_fraction");
   curve.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
+  if (group.has_attribute("preload")) curve.preload = group.number("preload");
   for (const Column& c : kColumns) curve.*c.values = group.doubles(c.name);
+  for (const Column& c : kOptionalColumns) read_if_there(group, curve, c);
+  read_if_there(group, curve, kBodyForces);
   return curve;
 }
-
-}  // namespace
 
 void save_macro(const std::vector<MacroCurve>& curves, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
   write_format(root, kFormat);
   const h5::Group group = root.create("curves");
-  for (std::size_t k = 0; k < curves.size(); ++k) write_curve(group.create(fmt::format("curve_{:06}", k)), curves[k]);
+  for (std::size_t k = 0; k < curves.size(); ++k)
+    write_macro_curve(group.create(fmt::format("curve_{:06}", k)), curves[k]);
   write_provenance(root, provenance);
   file.commit();
 }
+
+namespace {
+
+void require_length(const MacroCurve& curve, const Column& c, bool optional, const std::string& where) {
+  const std::size_t n = (curve.*c.values).size();
+  if (n == curve.strain.size() || (optional && n == 0)) return;
+  throw FileTrouble(fmt::format("{}/{}: another length than the strain", where, c.name));
+}
+
+}  // namespace
 
 std::vector<MacroCurve> load_macro(const std::string& path) {
   const h5::Group root = h5::open_file(path);
@@ -84,10 +120,9 @@ std::vector<MacroCurve> load_macro(const std::string& path) {
   const h5::Group group = root.open("curves");
   std::vector<MacroCurve> curves;
   for (const std::string& name : group.children()) {
-    curves.push_back(read_curve(group.open(name)));
-    for (const Column& c : kColumns)
-      if ((curves.back().*c.values).size() != curves.back().strain.size())
-        throw FileTrouble(fmt::format("{}: {}/{}: another length than the strain", path, name, c.name));
+    curves.push_back(read_macro_curve(group.open(name)));
+    for (const Column& c : kColumns) require_length(curves.back(), c, false, path + ": " + name);
+    for (const Column& c : kOptionalColumns) require_length(curves.back(), c, true, path + ": " + name);
   }
   return curves;
 }

@@ -6,30 +6,47 @@
 #include <vector>
 
 #include "common/core/cost.h"
+#include "common/io/hdf5_file.h"
 #include "common/io/provenance.h"
 
 namespace softgrain {
 
 /// One macro run of one sample. Stresses are compressive positive [Pa]; strain is from the start of the test.
 struct MacroCurve {
-  std::string engine;  ///< "law" (soft particles with fitted laws) or "shelled" (resolved twin)
-  std::string test;    ///< "oedometric" or "isotropic"
+  /// "law" (soft particles with the pair law of a card), "pair" (the same), or another law's name; or a resolved twin:
+  /// "shelled" (contents in moving shells), "free" (the same grains without shells)
+  std::string engine;
+  std::string test;  ///< "oedometric", "isotropic" or "shear"
   std::int64_t sample = 0;
   std::int64_t bodies = 0;  ///< solid grains + soft particles
   std::int64_t soft = 0;
-  std::int64_t grains = 0;  ///< grains resolved inside soft particles (0 for engine "law")
+  std::int64_t grains = 0;  ///< grains resolved inside soft particles (0 for laws)
   double soft_volume_share = 0.0;
   double solid_fraction = 0.0;  ///< of bodies in the box at the start
+  double preload = 0.0;         ///< shear: isotropic strain before; recorded at strains from -preload to 0
   std::vector<double> strain;
   std::vector<double> stress_axial;           ///< from wall forces
   std::vector<double> stress_lateral;         ///< from wall forces, mean of both directions
   std::vector<double> stress_axial_contacts;  ///< from the contact sum, a check on the walls
   std::vector<double> coordination;           ///< contacts per body (engine "law": force-carrying)
   std::vector<double> residual;               ///< largest net force over mean contact force
+  // The rest may be empty: files of before did not record it.
+  std::vector<double> stress_x;             ///< from wall forces
+  std::vector<double> stress_y;             ///< from wall forces
+  std::vector<double> stress_deviator;      ///< axial (z) minus x
+  std::vector<double> fabric;               ///< zz - xx of the fabric tensor of contacts between grains
+  std::vector<double> fabric_bodies;        ///< the same of contacts between bodies, a soft particle being one
+  std::vector<double> coordination_bodies;  ///< bodies and walls that a body touches, mean
+  std::vector<double> body_forces;          ///< normal forces between bodies, walls included, at the end [N]
   bool usable = true;
   std::string note;
   Cost cost;
 };
+
+/// One curve as a group of a file, for checkpoints.
+void write_macro_curve(const h5::Group& group, const MacroCurve& curve);
+/// Throws FileTrouble.
+MacroCurve read_macro_curve(const h5::Group& group);
 
 /// Writes all curves to an HDF5 file, atomically.
 void save_macro(const std::vector<MacroCurve>& curves, const std::string& path,

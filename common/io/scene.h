@@ -55,6 +55,7 @@ class SceneTable {
   [[nodiscard]] bool has(const std::string& key) const;  ///< also marks the key as known
   [[nodiscard]] bool is_text(
       const std::string& key) const;  ///< present and in quotes (a word such as "auto", or a number with unit)
+  [[nodiscard]] bool is_list(const std::string& key) const;  ///< present and in brackets
 
   [[nodiscard]] double number(const std::string& key, Unit unit, const Range& range = Range::any()) const;
   [[nodiscard]] double number(const std::string& key, Unit unit, const Range& range, double fallback) const;

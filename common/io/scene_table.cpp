@@ -111,6 +111,11 @@ bool SceneTable::is_text(const std::string& key) const {
   return node != nullptr && node->is_string();
 }
 
+bool SceneTable::is_list(const std::string& key) const {
+  const toml::node* node = impl_->find(key);
+  return node != nullptr && node->is_array();
+}
+
 SceneTable SceneTable::table(const std::string& key) const {
   if (!impl_->find(key)) throw BadInput(impl_->place + ": missing table [" + impl_->dotted(key) + "]");
   return table_or_empty(key);

@@ -17,8 +17,16 @@ constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
 
 PowerTerm threshold_term(double a, double b, double delta) { return {a, b, -a * std::pow(delta, b)}; }
 
+struct PairLaws {
+  SoftContact soft_solid;
+  SoftContact soft_soft;
+};
+
+/// For walls without friction, as in MacroSpec.
+SoftLaws in_scene(const PairLaws& laws) { return pair_soft_laws(laws.soft_solid, laws.soft_soft, 0.0); }
+
 /// The published normal laws, nearly; another one for soft-soft so that they cannot be confused.
-SoftLaws some_laws(double modulus, double friction) {
+PairLaws some_laws(double modulus, double friction) {
   SoftContact solid;
   solid.normal = threshold_term(0.5755, 2.799, 0.065);
   solid.tangential = threshold_term(1.5, 1.2, 0.065);
@@ -43,9 +51,9 @@ MacroPacking in_a_large_box(const std::vector<MacroBody>& bodies) {
 }
 
 /// Force along z on body 0 of two bodies, body 1 below.
-double force_on_first(const MacroPacking& packing, const SoftLaws& laws) {
+double force_on_first(const MacroPacking& packing, const PairLaws& laws) {
   MacroSpec spec;
-  MacroSystem macro = make_law_system(spec, packing, laws, 0.7);
+  MacroSystem macro = make_law_system(spec, packing, in_scene(laws), 0.7);
   force_pass(macro.system, 0.0);
   EXPECT_EQ(macro.system.particles.force[0][0], 0.0);
   return macro.system.particles.force[0][2];
@@ -62,7 +70,7 @@ double allowed(const SoftContact& law, double radius, double ratio) {
 }
 
 TEST(Macro, SoftParticleAndWallGiveBackTheirLaw) {
-  const SoftLaws laws = some_laws(kModulus, 0.3);
+  const PairLaws laws = some_laws(kModulus, 0.3);
   for (const double r : kRadii)
     for (const double ratio : kRatios) {
       const double force = force_on_first(in_a_large_box({{{{0.0, 0.0, -1.0 + r * (1.0 - ratio)}}, r, true}}), laws);
@@ -72,7 +80,7 @@ TEST(Macro, SoftParticleAndWallGiveBackTheirLaw) {
 }
 
 TEST(Macro, SoftAndSolidGiveBackTheirLawInEitherOrder) {
-  const SoftLaws laws = some_laws(kModulus, 0.3);
+  const PairLaws laws = some_laws(kModulus, 0.3);
   for (const double r : kRadii)
     for (const double ratio : kRatios) {
       const double solid = 0.7 * r;
@@ -86,7 +94,7 @@ TEST(Macro, SoftAndSolidGiveBackTheirLawInEitherOrder) {
 }
 
 TEST(Macro, TwoSoftParticlesUseTheSmallerRadius) {
-  const SoftLaws laws = some_laws(kModulus, 0.3);
+  const PairLaws laws = some_laws(kModulus, 0.3);
   for (const double r : kRadii)
     for (const double ratio : kRatios)
       for (const double larger : {1.0, 1.5}) {
@@ -102,7 +110,7 @@ TEST(Macro, TwoSoftParticlesUseTheSmallerRadius) {
 /// Below the threshold there is no force, no spring and no history.
 TEST(Macro, BelowItsThresholdAPairIsNotThere) {
   const MacroPacking packing = in_a_large_box({{{{0.0, 0.0, 0.032 - 0.06 * 0.016}}, 0.016, true}, {{}, 0.016, false}});
-  MacroSystem macro = make_law_system({}, packing, some_laws(kModulus, 0.3), 0.7);
+  MacroSystem macro = make_law_system({}, packing, in_scene(some_laws(kModulus, 0.3)), 0.7);
   macro.system.particles.velocity[0][0] = 1.0;
   force_pass(macro.system, 1e-4);
   macro.system.contacts.commit();
@@ -112,8 +120,9 @@ TEST(Macro, BelowItsThresholdAPairIsNotThere) {
 
 TEST(Macro, ASoftParticleWeighsWhatItHolds) {
   const MacroSpec spec;
-  const MacroSystem macro = make_law_system(
-      spec, in_a_large_box({{{}, 0.016, true}, {{{0.1, 0.0, 0.0}}, 0.016, false}}), some_laws(kModulus, 0.3), 0.7);
+  const MacroSystem macro =
+      make_law_system(spec, in_a_large_box({{{}, 0.016, true}, {{{0.1, 0.0, 0.0}}, 0.016, false}}),
+                      in_scene(some_laws(kModulus, 0.3)), 0.7);
   const double full = spec.density * kSphereVolume * 0.016 * 0.016 * 0.016;
   EXPECT_NEAR(1.0 / macro.system.particles.inverse_mass[0], 0.7 * full, 1e-12 * full);
   EXPECT_NEAR(1.0 / macro.system.particles.inverse_mass[1], full, 1e-12 * full);
@@ -136,7 +145,7 @@ MacroSystem as_hard_grains(const MacroSpec& spec, const MacroPacking& packing) {
   for (MacroBody& b : hard.bodies) b.soft = false;
   MacroSpec smooth = spec;
   smooth.friction = 0.0;
-  MacroSystem macro = make_law_system(smooth, hard, some_laws(spec.youngs_modulus, 0.0), 1.0);
+  MacroSystem macro = make_law_system(smooth, hard, in_scene(some_laws(spec.youngs_modulus, 0.0)), 1.0);
   force_pass(macro.system, 0.0);
   return macro;
 }
@@ -268,8 +277,8 @@ MacroCurve compressed(const MacroSpec& spec, MacroSystem macro, const MacroPacki
 }
 
 MacroCurve law_curve(const MacroSpec& spec, const MacroPacking& packing, MacroSystem* end = nullptr) {
-  return compressed(spec, make_law_system(spec, packing, some_laws(spec.youngs_modulus, spec.friction), 0.7), packing,
-                    "law", end);
+  return compressed(spec, make_law_system(spec, packing, in_scene(some_laws(spec.youngs_modulus, spec.friction)), 0.7),
+                    packing, "law", end);
 }
 
 /// Out of equilibrium by the residual r, walls and contacts disagree by no more than r (mean contact forces per wall

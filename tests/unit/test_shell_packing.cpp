@@ -15,7 +15,7 @@
 #include "common/core/error.h"
 #include "common/core/random.h"
 #include "microsim/shell_placement.h"
-#include "microsim/size_distribution.h"
+#include "common/packing/size_distribution.h"
 
 namespace softgrain {
 namespace {

@@ -1,4 +1,4 @@
-#include "microsim/size_distribution.h"
+#include "common/packing/size_distribution.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>

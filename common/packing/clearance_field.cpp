@@ -1,0 +1,107 @@
+#include "common/packing/clearance_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrain {
+
+namespace {
+
+constexpr int kMostCells = 64;  ///< per axis
+
+}  // namespace
+
+ClearanceField::ClearanceField(std::vector<PackedSphere> spheres, const VoidDomain& domain, double reach)
+    : spheres_(std::move(spheres)), domain_(domain) {
+  set_reach(reach);
+}
+
+void ClearanceField::set_reach(double reach) {
+  reach_ = reach;
+  std::size_t total = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double wanted = 1.5 * (domain_.high[k] - domain_.low[k]) / reach;
+    cells_[static_cast<std::size_t>(k)] = std::clamp(static_cast<int>(std::min(wanted, 1e6)), 1, kMostCells);
+    total *= static_cast<std::size_t>(cells_[static_cast<std::size_t>(k)]);
+  }
+  lists_.assign(total, {});
+  for (std::size_t s = 0; s < spheres_.size(); ++s) list(static_cast<std::int32_t>(s));
+}
+
+int ClearanceField::cell(double x, int axis) const {
+  const int n = cells_[static_cast<std::size_t>(axis)];
+  const double share = (x - domain_.low[axis]) / (domain_.high[axis] - domain_.low[axis]);
+  return static_cast<int>(std::clamp(share * n, 0.0, n - 1.0));
+}
+
+/// In every cell that comes within `reach` of its surface.
+void ClearanceField::list(std::int32_t sphere) {
+  const PackedSphere& s = spheres_[static_cast<std::size_t>(sphere)];
+  const double far = s.r + reach_;
+  std::array<int, 3> low{};
+  std::array<int, 3> high{};
+  for (int k = 0; k < 3; ++k) {
+    low[static_cast<std::size_t>(k)] = cell(s.x[k] - far, k);
+    high[static_cast<std::size_t>(k)] = cell(s.x[k] + far, k);
+  }
+  for (int a = low[0]; a <= high[0]; ++a)
+    for (int b = low[1]; b <= high[1]; ++b)
+      for (int c = low[2]; c <= high[2]; ++c) lists_[index(a, b, c)].push_back(sphere);
+}
+
+void ClearanceField::add(const PackedSphere& sphere) {
+  spheres_.push_back(sphere);
+  list(static_cast<std::int32_t>(spheres_.size() - 1));
+}
+
+double ClearanceField::wall_clearance(const Vec3& x) const {
+  if (domain_.shape == VoidDomain::Shape::sphere) return 1.0 - norm(x);
+  double room = domain_.high[0] - x[0];
+  for (int k = 0; k < 3; ++k) room = std::min({room, domain_.high[k] - x[k], x[k] - domain_.low[k]});
+  return room;
+}
+
+double ClearanceField::clearance(const Vec3& x) const {
+  double room = std::min(reach_, wall_clearance(x));
+  for (const std::int32_t s : listed(x)) {
+    const PackedSphere& sphere = spheres_[static_cast<std::size_t>(s)];
+    const double far = sphere.r + room;
+    const double distance2 = norm2(x - sphere.x);
+    if (far > 0.0 && distance2 >= far * far) continue;
+    room = std::min(room, std::sqrt(distance2) - sphere.r);
+  }
+  return room;
+}
+
+void ClearanceField::append_walls(const Vec3& x, double most, std::vector<NearSurface>& out) const {
+  if (domain_.shape == VoidDomain::Shape::sphere) {
+    const double distance = norm(x);
+    if (1.0 - distance <= most && distance > 0.0) out.push_back({1.0 - distance, x * (-1.0 / distance)});
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    Vec3 axis{};
+    axis[k] = 1.0;
+    if (x[k] - domain_.low[k] <= most) out.push_back({x[k] - domain_.low[k], axis});
+    if (domain_.high[k] - x[k] <= most) out.push_back({domain_.high[k] - x[k], -axis});
+  }
+}
+
+void ClearanceField::near(const Vec3& x, double most, std::vector<NearSurface>& out) const {
+  out.clear();
+  append_walls(x, most, out);
+  for (const std::int32_t s : listed(x)) {
+    const PackedSphere& sphere = spheres_[static_cast<std::size_t>(s)];
+    const double far = sphere.r + most;
+    const Vec3 away = x - sphere.x;
+    const double distance2 = norm2(away);
+    if (distance2 > far * far || distance2 <= 0.0) continue;
+    const double distance = std::sqrt(distance2);
+    out.push_back({distance - sphere.r, away * (1.0 / distance)});
+  }
+  // Stable: equal clearances keep the order of the surfaces, so that nothing depends on the sorting.
+  std::stable_sort(out.begin(), out.end(),
+                   [](const NearSurface& a, const NearSurface& b) { return a.clearance < b.clearance; });
+}
+
+}  // namespace softgrain

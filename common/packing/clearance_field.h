@@ -1,0 +1,56 @@
+// Distance from a point to the nearest surface of many spheres and of the domain's wall.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/packing/void_filling.h"
+
+namespace softgrain {
+
+/// One surface seen from a point x.
+struct NearSurface {
+  double clearance = 0.0;  ///< distance to it; negative inside a sphere, outside the domain
+  Vec3 away{};             ///< unit: the gradient of the clearance
+};
+
+/// Spheres in cells, each listed wherever it may be the nearest surface within `reach`. Clearances are exact up to
+/// `reach`, beyond it they are only known to exceed it.
+class ClearanceField {
+ public:
+  ClearanceField(std::vector<PackedSphere> spheres, const VoidDomain& domain, double reach);
+
+  void add(const PackedSphere& sphere);
+  /// Makes the cells smaller: clearances above `reach` no longer matter. Ends what was exact beyond it.
+  void set_reach(double reach);
+  [[nodiscard]] double reach() const { return reach_; }
+  [[nodiscard]] const std::vector<PackedSphere>& spheres() const { return spheres_; }
+
+  /// Radius of the largest sphere around x, cut at reach(); negative where x lies in a sphere or outside.
+  [[nodiscard]] double clearance(const Vec3& x) const;
+  /// All surfaces within `most` of x, nearest first.
+  void near(const Vec3& x, double most, std::vector<NearSurface>& out) const;
+
+ private:
+  [[nodiscard]] int cell(double x, int axis) const;
+  [[nodiscard]] std::size_t index(int a, int b, int c) const {
+    return (static_cast<std::size_t>(a) * static_cast<std::size_t>(cells_[1]) + static_cast<std::size_t>(b)) *
+               static_cast<std::size_t>(cells_[2]) +
+           static_cast<std::size_t>(c);
+  }
+  [[nodiscard]] const std::vector<std::int32_t>& listed(const Vec3& x) const {
+    return lists_[index(cell(x[0], 0), cell(x[1], 1), cell(x[2], 2))];
+  }
+  void list(std::int32_t sphere);
+  void append_walls(const Vec3& x, double most, std::vector<NearSurface>& out) const;
+  [[nodiscard]] double wall_clearance(const Vec3& x) const;
+
+  std::vector<PackedSphere> spheres_;
+  VoidDomain domain_;
+  double reach_ = 0.0;
+  std::array<int, 3> cells_{1, 1, 1};
+  std::vector<std::vector<std::int32_t>> lists_;
+};
+
+}  // namespace softgrain

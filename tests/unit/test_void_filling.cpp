@@ -1,0 +1,176 @@
+// Filling of voids: known holes of lattices, no overlap, largest first, against dense sampling.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "common/core/error.h"
+#include "common/core/random.h"
+#include "common/packing/void_filling.h"
+
+namespace softgrain {
+namespace {
+
+double clearance(const std::vector<PackedSphere>& spheres, const VoidDomain& domain, const Vec3& x) {
+  double room = 1.0 - norm(x);
+  if (domain.shape == VoidDomain::Shape::box) {
+    room = domain.high[0] - x[0];
+    for (int k = 0; k < 3; ++k) room = std::min({room, domain.high[k] - x[k], x[k] - domain.low[k]});
+  }
+  for (const PackedSphere& s : spheres) room = std::min(room, norm(x - s.x) - s.r);
+  return room;
+}
+
+/// Spheres of radii in [r/4, r] at random places without overlap.
+std::vector<PackedSphere> random_spheres(const VoidDomain& domain, int wanted, double r, std::uint64_t index) {
+  RandomStream random(5, RandomPurpose::test, index);
+  std::vector<PackedSphere> out;
+  for (int trial = 0; trial < 100000 && static_cast<int>(out.size()) < wanted; ++trial) {
+    Vec3 x;
+    for (int k = 0; k < 3; ++k) x[k] = domain.low[k] + random.uniform() * (domain.high[k] - domain.low[k]);
+    const double wish = r * (0.25 + 0.75 * random.uniform());
+    if (clearance(out, domain, x) >= wish) out.push_back({x, wish});
+  }
+  return out;
+}
+
+void expect_sound(const std::vector<PackedSphere>& placed, const VoidDomain& domain, const VoidFilling& filling,
+                  double r_min, double r_max) {
+  std::vector<PackedSphere> all = placed;
+  double before = r_max;
+  for (const PackedSphere& s : filling.added) {
+    EXPECT_GE(clearance(all, domain, s.x), s.r * (1.0 - 1e-12));
+    EXPECT_LE(clearance(all, domain, s.x), s.r * (1.0 + 1e-9)) << "does not touch";
+    EXPECT_LE(s.r, before);
+    EXPECT_GE(s.r, r_min);
+    before = s.r;
+    all.push_back(s);
+  }
+}
+
+TEST(VoidFilling, TheHoleOfASimpleCubicLattice) {
+  std::vector<PackedSphere> lattice;
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b)
+      for (int c = 0; c < 4; ++c) lattice.push_back({{{1.0 + 2 * a, 1.0 + 2 * b, 1.0 + 2 * c}}, 1.0});
+  const auto domain = VoidDomain::box({{1.0, 1.0, 1.0}}, {{7.0, 7.0, 7.0}});
+  VoidFillingOptions options;
+  options.r_min = 0.7;
+  const VoidFilling filling = fill_voids(lattice, domain, options);
+  EXPECT_EQ(filling.added.size(), 27U);
+  for (const PackedSphere& s : filling.added) EXPECT_NEAR(s.r, std::numbers::sqrt3 - 1.0, 1e-10);
+  EXPECT_LT(filling.next_hole, 0.7);
+}
+
+TEST(VoidFilling, TheHolesOfAFaceCentredCubicLattice) {
+  std::vector<PackedSphere> lattice;
+  const double edge = 2.0 * std::numbers::sqrt2;
+  for (int a = -1; a <= 5; ++a)
+    for (int b = -1; b <= 5; ++b)
+      for (int c = -1; c <= 5; ++c)
+        if ((a + b + c) % 2 == 0) lattice.push_back({{{a * edge / 2, b * edge / 2, c * edge / 2}}, 1.0});
+  // Wide enough that the wall cuts no hole: one cell of the lattice and a radius around it.
+  const auto domain = VoidDomain::box({{-0.5, -0.5, -0.5}}, {{edge + 0.5, edge + 0.5, edge + 0.5}});
+  VoidFillingOptions options;
+  options.r_min = 0.2;
+  const VoidFilling filling = fill_voids(lattice, domain, options);
+  const auto octahedral = std::count_if(filling.added.begin(), filling.added.end(), [](const PackedSphere& s) {
+    return std::abs(s.r - (std::numbers::sqrt2 - 1.0)) < 1e-10;
+  });
+  const auto tetrahedral = std::count_if(filling.added.begin(), filling.added.end(), [](const PackedSphere& s) {
+    return std::abs(s.r - (std::sqrt(1.5) - 1.0)) < 1e-10;
+  });
+  EXPECT_EQ(octahedral, 13);  // middle of the cell and of its twelve edges
+  EXPECT_EQ(tetrahedral, 8);
+  expect_sound(lattice, domain, filling, 0.2, 1.0);
+}
+
+TEST(VoidFilling, TheLargestHoleIsThatOfDenseSampling) {
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    const auto domain = VoidDomain::box({{-0.1, 0.0, 0.2}}, {{0.9, 1.2, 1.0}});
+    const auto spheres = random_spheres(domain, 60, 0.2, k);
+    double best = 0.0;
+    constexpr int n = 80;
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b < n; ++b)
+        for (int c = 0; c < n; ++c) {
+          const Vec3 share{{(a + 0.5) / n, (b + 0.5) / n, (c + 0.5) / n}};
+          Vec3 x = domain.low;
+          for (int i = 0; i < 3; ++i) x[i] += share[i] * (domain.high[i] - domain.low[i]);
+          best = std::max(best, clearance(spheres, domain, x));
+        }
+    const PackedSphere hole = largest_void(spheres, domain, 0.01, 1e-3);
+    EXPECT_GE(hole.r, best * (1.0 - 1e-3));
+    EXPECT_LE(hole.r, best + 0.5 * std::sqrt(1.0 + 1.44 + 0.64) / n);  // the sampling's own coarseness
+    EXPECT_NEAR(clearance(spheres, domain, hole.x), hole.r, 1e-14);
+  }
+}
+
+TEST(VoidFilling, NothingOverlapsAndRadiiDoNotGrow) {
+  for (const auto& domain : {VoidDomain::box({{-1.0, -1.0, -1.0}}, {{1.0, 1.0, 1.0}}), VoidDomain::unit_sphere()})
+    for (const double r_max : {0.12, 1.0}) {
+      const auto spheres = random_spheres(domain, 80, 0.3, 3);
+      VoidFillingOptions options;
+      options.r_max = r_max;
+      options.r_min = 0.06;
+      const VoidFilling filling = fill_voids(spheres, domain, options);
+      EXPECT_GT(filling.added.size(), 50U);
+      EXPECT_LT(filling.next_hole, 0.06);
+      expect_sound(spheres, domain, filling, 0.06, r_max);
+    }
+}
+
+/// A hole larger than r_max holds several spheres that lean on each other.
+TEST(VoidFilling, AnEmptyBoxIsPacked) {
+  VoidFillingOptions options;
+  options.r_max = 0.1;
+  options.r_min = 0.09;
+  const auto domain = VoidDomain::box({{0.0, 0.0, 0.0}}, {{1.0, 1.0, 1.0}});
+  const VoidFilling filling = fill_voids({}, domain, options);
+  expect_sound({}, domain, filling, 0.09, 0.1);
+  EXPECT_GT(filling.volume, 0.36);  // random places, one sphere after another, jam at about 0.33 here
+}
+
+TEST(VoidFilling, VolumeAndCountEndIt) {
+  const auto domain = VoidDomain::box({{0.0, 0.0, 0.0}}, {{1.0, 1.0, 1.0}});
+  VoidFillingOptions options;
+  options.r_max = 0.1;
+  options.r_min = 0.05;
+  options.count = 7;
+  EXPECT_EQ(fill_voids({}, domain, options).added.size(), 7U);
+  options.count = 100000;
+  options.volume = 0.1;
+  const VoidFilling filling = fill_voids({}, domain, options);
+  EXPECT_GE(filling.volume, 0.1);
+  EXPECT_LT(filling.volume, 0.1 + 4.2e-3);
+}
+
+TEST(VoidFilling, BadArgumentsAreNamed) {
+  const auto domain = VoidDomain::box({{0.0, 0.0, 0.0}}, {{1.0, 1.0, 1.0}});
+  VoidFillingOptions options;
+  EXPECT_THROW(fill_voids({}, domain, options), BadInput);
+  options.r_min = 0.2;
+  options.r_max = 0.1;
+  EXPECT_THROW(fill_voids({}, domain, options), BadInput);
+  EXPECT_THROW(fill_voids({}, VoidDomain::box({}, {}), {0.1, 0.01}), BadInput);
+}
+
+TEST(VoidFilling, HundredsOfSpheresTakeNoTime) {
+  const auto domain = VoidDomain::unit_sphere();
+  const auto spheres = random_spheres(domain, 300, 0.2, 9);
+  const auto start = std::chrono::steady_clock::now();
+  VoidFillingOptions options;
+  options.r_max = 0.1;
+  options.r_min = 0.03;
+  const VoidFilling filling = fill_voids(spheres, domain, options);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GT(filling.added.size(), 300U);
+  EXPECT_LT(seconds, 5.0) << filling.added.size();
+  RecordProperty("seconds", std::to_string(seconds));
+  RecordProperty("spheres", static_cast<int>(filling.added.size()));
+}
+
+}  // namespace
+}  // namespace softgrain
