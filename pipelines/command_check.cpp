@@ -16,6 +16,7 @@
 #include "microsim/particles/particles_scene.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/grain_box_check.h"
+#include "pipelines/hierarchy_command.h"
 #include "pipelines/law_table_command.h"
 #include "pipelines/particles_check.h"
 #include "pipelines/pipeline_setup.h"
@@ -129,6 +130,8 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
     check_grain_box(read_grain_box(scene), out.facts, out.lines);
   } else if (kind == "law-table") {
     check_law_table(scene, out.facts, out.lines);
+  } else if (kind == "hierarchy") {
+    check_hierarchy(scene, out.facts, out.lines);
   } else if (kind == "macro") {
     (void)root.text("title", "");
     (void)root.text("law", "");

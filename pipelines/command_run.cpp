@@ -8,6 +8,7 @@
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/law_json.h"
+#include "pipelines/hierarchy_command.h"
 #include "pipelines/law_table_command.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/measure_stage.h"
@@ -154,6 +155,7 @@ ExitStatus command_run(const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
   if (is_law_table(scene)) return run_law_table(scene, options);
+  if (is_hierarchy(scene)) return run_hierarchy(scene, options);
   const PipelineSetup setup = read_pipeline_setup(scene.root());
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.measure.seed);

@@ -248,7 +248,7 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& stor
   const std::vector<ShellPacking> pool = generate_pool(setup, context);
   std::vector<SoftContent> filled;
   for (std::size_t k = 0; k < pool.size(); ++k)
-    filled.push_back(level != nullptr ? level->fill(pool[k], static_cast<std::int64_t>(k)) : SoftContent{pool[k], {}});
+    filled.push_back(level != nullptr ? level->fill(pool[k], static_cast<std::int64_t>(k)) : SoftContent{pool[k], {}, {}});
   CrowdMeasurements data;
   data.spec = setup.spec;
   data.relaxation = fmt::format("damped, increments of {} Rs, residual {} ({} between)", setup.options.increment,

@@ -18,18 +18,18 @@ struct LevelChange {
 };
 
 struct HierarchyLevel {
-  std::int64_t number = 0;      ///< 0: the finest, grains only
+  std::int64_t number = 0;  ///< 0: the finest, grains only
   LawTableEntry entry;
-  double inner_mean = 0.0;      ///< soft particles inside, mean over packings
-  double inner_volume = 0.0;    ///< their volume over that of the shell
-  double inner_low = 0.0;       ///< radii over Rs
+  double inner_mean = 0.0;    ///< soft particles inside, mean over packings
+  double inner_volume = 0.0;  ///< their volume over that of the shell
+  double inner_low = 0.0;     ///< radii over Rs
   double inner_high = 0.0;
   std::vector<LevelChange> changes;  ///< against the level below; empty for the finest
-  double distance = 0.0;        ///< root mean square relative difference of the two laws (form of the hierarchy)
-  double distance_noise = 0.0;  ///< what packings alone would make of it, from the standard errors of the changes
+  double distance = 0.0;             ///< root mean square relative difference of the two laws (form of the hierarchy)
+  double distance_noise = 0.0;       ///< what packings alone would make of it, from the standard errors of the changes
   Cost cost;
   double seconds = 0.0;
-  double grains = 0.0;          ///< that a resolved soft particle of this level would hold
+  double grains = 0.0;  ///< that a resolved soft particle of this level would hold
 };
 
 /// Soft particles in the voids of packing `packing`; deterministic.

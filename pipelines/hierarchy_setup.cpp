@@ -11,8 +11,8 @@ constexpr std::int64_t kMany = 1000000;
 void read_levels(const SceneTable& t, HierarchySetup& out) {
   out.levels = t.count("levels", 2, 100, out.levels);
   out.voids.r_max = t.number("inner_radius_max", Unit::none, Range{0.0, 1.0, true, true}, 0.1);
-  out.voids.r_min = t.number("inner_radius_min", Unit::none, Range{0.0, out.voids.r_max, true, false},
-                             0.5 * out.voids.r_max);
+  out.voids.r_min =
+      t.number("inner_radius_min", Unit::none, Range{0.0, out.voids.r_max, true, false}, 0.5 * out.voids.r_max);
   out.voids.count = t.count("inner_count", 1, kMany, kMany);
   out.form = t.choice("form", {"pair", "bag", "directional"}, out.form);
   out.unloading = t.flag("unloading", out.unloading);
@@ -26,9 +26,8 @@ void read_fixed_point(const SceneTable& t, HierarchySetup& out) {
 void read_check(const SceneTable& t, HierarchySetup& out) {
   out.check_packings = t.count("packings", 0, out.crowd.packings_min, out.check_packings);
   out.check_overlaps = t.numbers("overlaps", Unit::none, Range{0.0, 1.0, true, true}, {0.15, 0.2, 0.25});
-  if (out.check_overlaps.empty() ||
-      std::adjacent_find(out.check_overlaps.begin(), out.check_overlaps.end(), std::greater_equal<>()) !=
-          out.check_overlaps.end())
+  if (out.check_overlaps.empty() || std::adjacent_find(out.check_overlaps.begin(), out.check_overlaps.end(),
+                                                       std::greater_equal<>()) != out.check_overlaps.end())
     t.reject("overlaps", "must ascend");
   out.check_inner = t.count("inner_count", 0, kMany, 0);
 }

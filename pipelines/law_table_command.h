@@ -12,7 +12,8 @@ namespace softgrain {
 /// Whether `softgrain run` hands this scene to run_law_table().
 bool is_law_table(const Scene& scene);
 
-/// Measures; writes crowd.h5 and summary.json. Status not_usable when a recorded point did not converge.
+/// Measures and fits; writes crowd.h5, law_table.toml, law_table.h5, summary.json and the report. Status not_usable
+/// when a recorded point did not converge or the best law is not good.
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options);
 
 /// What follows from such a scene: numbers of runs and points, added to `facts` and, as indented lines, to `lines`.

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "common/contact/crowd_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
+#include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {
@@ -37,7 +39,111 @@ std::string extrapolation_note(const System3& s, const LawCard& card) {
   return note;
 }
 
+/// What the crowd laws of a run meet that was not measured: equivalent volumes and overlaps beyond the end of the
+/// table, ratios that no row covers.
+class RangeCheck {
+ public:
+  RangeCheck(const LawTableEntry& entry, const std::string& form) : entry_(entry), law_(*entry.find(form)) {}
+
+  [[nodiscard]] std::string note(const System3& s, const CrowdForm& form) const {
+    std::size_t soft = 0;
+    std::size_t beyond = 0;
+    double largest = 0.0;
+    for (const CrowdSum<3>& sum : s.contacts.particle_sum) {
+      if (!(sum.square > 0.0)) continue;
+      ++soft;
+      const double volume = form.equivalent_volume(sum);
+      beyond += volume > entry_.volume_max ? 1 : 0;
+      largest = std::max(largest, volume);
+    }
+    std::string text;
+    if (beyond > 0)
+      text = fmt::format(
+          "{} of {} soft particles are compacted further at the end (up to a lost volume of {:.2f}) than the law was "
+          "measured ({:.2f}): extrapolated",
+          beyond, soft, largest, entry_.volume_max);
+    const std::string deep = overlap_note(s);
+    return text + (text.empty() || deep.empty() ? "" : "; ") + deep;
+  }
+
+ private:
+  /// Contacts deeper than any row of their kind, or smaller partners than the table has.
+  [[nodiscard]] std::string overlap_note(const System3& s) const {
+    std::size_t deep = 0;
+    std::size_t outside = 0;
+    std::size_t all = 0;
+    for (const ContactRecord<3>& c : contact_records(s)) {
+      if (!is_crowd_law(s.laws.law(law_of(s, c)))) continue;
+      ++all;
+      const auto& p = s.particles;
+      const double ri = p.sphere[static_cast<std::size_t>(c.i)].r;
+      const double rj = c.j < p.grains ? p.sphere[static_cast<std::size_t>(c.j)].r : 0.0;
+      const bool i_soft = p.material[static_cast<std::size_t>(c.i)] == kSoftMaterial;
+      const bool j_soft = c.j < p.grains && p.material[static_cast<std::size_t>(c.j)] == kSoftMaterial;
+      if (rj == 0.0) {
+        deep += c.overlap / ri > entry_.overlap_max ? 1 : 0;
+        continue;
+      }
+      const auto rows = law_.rows(i_soft && j_soft ? PartnerKind::soft : PartnerKind::solid);
+      double ratio = i_soft ? rj / ri : ri / rj;
+      if (i_soft && j_soft) ratio = std::max(ratio, 1.0 / ratio);
+      const bool covered =
+          !rows.empty() && ratio >= rows.front().ratio && (!j_soft || !i_soft || ratio <= rows.back().ratio);
+      outside += covered ? 0 : 1;
+      deep += !rows.empty() && c.overlap / std::min(ri, rj) > rows.back().overlap_max ? 1 : 0;
+    }
+    std::string text;
+    if (deep > 0)
+      text = fmt::format("{} of {} soft contacts are deeper at the end than any that was measured", deep, all);
+    if (outside > 0)
+      text += fmt::format("{}{} of {} have a size ratio outside the table; its nearest row was used",
+                          text.empty() ? "" : "; ", outside, all);
+    return text;
+  }
+
+  static constexpr std::int32_t kSoftMaterial = 1;  ///< of make_law_system
+  static bool is_crowd_law(const AnyLaw& law) {
+    return std::visit([]<class Law>(const Law&) { return law_serves<Law, 3>() && !law_serves<Law, 2>(); }, law);
+  }
+
+  LawTableEntry entry_;
+  CrowdLaw law_;
+};
+
+/// E scales; nu and mu do not.
+void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
+  const SoftParticleSpec& measured = entry.spec;
+  if (measured.poisson_ratio != spec.poisson_ratio || measured.friction != spec.friction)
+    throw BadInput(
+        fmt::format("law table: it was measured with nu = {}, mu = {} and serves no grains of nu = {}, mu = {}: "
+                    "measure a table for "
+                    "them",
+                    measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
+}
+
 }  // namespace
+
+NamedLaws table_law_of(const LawSources& sources, const std::string& form, const MacroSpec& spec,
+                       double solid_fraction) {
+  std::string remark;
+  const LawTableEntry entry = entry_at(*sources.table, solid_fraction, sources.range, remark);
+  require_same_material(entry, spec);
+  CrowdChoices choices;
+  choices.form = form;
+  choices.modulus = spec.youngs_modulus;
+  choices.friction = sources.friction.value_or(-1.0);
+  choices.unloading = sources.unloading;
+  const CrowdLaws laws = make_crowd_laws(entry, choices);
+  choices.friction = spec.wall_friction;
+  const CrowdModel model = crowd_model(*entry.find(form));
+  const RangeCheck check(entry, form);
+  return {form,
+          {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_solid, laws.soft_soft},
+          [=](const System3& s) {
+            const std::string note = check.note(s, model.form);
+            return remark + (remark.empty() || note.empty() ? "" : "; ") + note;
+          }};
+}
 
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name) {
   const auto contact = [&](PairKind kind) {
@@ -48,11 +154,33 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 }
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
-  return {load_card(scene.resolve(law.text("card")))};
+  LawSources out;
+  if (law.has("card")) out.card = load_card(scene.resolve(law.text("card")));
+  if (law.has("table")) out.table = load_law_table(scene.resolve(law.text("table")));
+  if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
+  if (law.has("forms")) out.forms = law.texts("forms");
+  for (const std::string& form : out.forms) {
+    if (form != "pair" && form != "bag" && form != "directional")
+      law.reject("forms", "\"" + form + "\" is none of pair, bag, directional");
+    if (form != "pair" && !out.table && law.has("forms"))
+      law.reject("forms", "the " + form + " law needs a law table (key table)");
+  }
+  if (!out.table) out.forms = {"pair"};
+  out.range = law.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
+  if (law.has("mu")) out.friction = law.number("mu", Unit::none, Range::not_negative());
+  out.unloading = law.flag("unloading", false);
+  return out;
 }
 
-std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec) {
-  return {pair_law_of(sources.card, spec, "pair")};
+std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double solid_fraction) {
+  std::vector<NamedLaws> laws;
+  for (const std::string& form : sources.forms) {
+    if (form == "pair" && sources.card)
+      laws.push_back(pair_law_of(*sources.card, spec, "pair"));
+    else
+      laws.push_back(table_law_of(sources, form, spec, solid_fraction));
+  }
+  return laws;
 }
 
 }  // namespace softgrain

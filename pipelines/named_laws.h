@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
@@ -25,13 +26,23 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 
 /// Where a comparison takes its laws from: table [law] of the scene.
 struct LawSources {
-  LawCard card;
+  std::optional<LawCard> card;    ///< pair law, as published
+  std::optional<LawTable> table;  ///< bag and directional law, and the pair law when there is no card
+  std::vector<std::string> forms{"pair", "bag", "directional"};
+  RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
+  std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
+  bool unloading = false;                   ///< with the measured unloading branch
 };
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
+/// A law of a table at the solid fraction of the contents. Throws BadInput when the table has no such law, was measured
+/// with grains of another nu or mu, or does not reach this solid fraction (policy reject).
+NamedLaws table_law_of(const LawSources& sources, const std::string& form, const MacroSpec& spec,
+                       double solid_fraction);
+
 /// Every law that a comparison runs with, in the order of its tables and figures. The one place to add laws.
-std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec);
+std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double solid_fraction);
 
 }  // namespace softgrain

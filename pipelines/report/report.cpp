@@ -15,6 +15,8 @@ void write_report(const std::string& run_directory) {
   std::string body = heading_section(run);
   body += remarks_section(run);
   body += laws_section(run);
+  body += law_table_section(run);
+  body += hierarchy_section(run);
   body += normal_section(run);
   body += tangential_section(run);
   body += stiffness_section(run);

@@ -49,6 +49,8 @@ RunData load_run(const std::string& directory) {
   if (exists("summary.json")) run.summary = parse_summary(file("summary.json")), any = true;
   if (exists("measurements.h5")) run.measurements = load_measurements(file("measurements.h5")), any = true;
   if (exists("law.toml")) run.card = load_card(file("law.toml")), any = true;
+  if (exists("crowd.h5")) run.crowd = load_crowd(file("crowd.h5")), any = true;
+  if (exists("law_table.toml")) run.law_table = load_law_table(file("law_table.toml")), any = true;
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;
   if (exists("grain_box.h5")) run.grain_boxes = load_grain_boxes(file("grain_box.h5")), any = true;
   if (!any)

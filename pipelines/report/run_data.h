@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/data/crowd_law.h"
+#include "common/data/crowd_measurements.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
@@ -27,6 +29,8 @@ struct RunData {
   nlohmann::json summary;  ///< empty object when absent
   std::optional<Measurements> measurements;
   std::optional<LawCard> card;
+  std::optional<CrowdMeasurements> crowd;
+  std::optional<LawTable> law_table;
   std::vector<MacroCurve> macro;
   std::vector<GrainBoxResult> grain_boxes;
 
@@ -38,7 +42,7 @@ struct RunData {
   [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
 };
 
-/// Reads what exists among summary.json, measurements.h5, law.toml, macro.h5 and grain_box.h5.
+/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5 and grain_box.h5.
 /// Throws FileTrouble when the directory is missing, holds none of them, or one of them is damaged.
 RunData load_run(const std::string& directory);
 

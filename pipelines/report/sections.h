@@ -14,6 +14,8 @@ std::string normal_section(const RunData& run);       ///< Fn(Delta)
 std::string tangential_section(const RunData& run);   ///< Ft(ht)
 std::string stiffness_section(const RunData& run);    ///< kt(Delta)
 std::string relaxations_section(const RunData& run);  ///< published against damped relaxation
+std::string law_table_section(const RunData& run);    ///< several neighbours at once: measured and fitted
+std::string hierarchy_section(const RunData& run);    ///< soft particles in soft particles, level by level
 std::string macro_section(const RunData& run);        ///< stress and strain, law against resolved twin
 std::string radii_section(const RunData& run);        ///< size distribution of the packed grains
 std::string particles_section(const RunData& run);    ///< final states and contacts of a scene of explicit particles

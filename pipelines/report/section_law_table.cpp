@@ -1,0 +1,162 @@
+// Soft particles with several neighbours: measured means, what the laws make of them, and how far off they are.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calibrate/crowd_problem.h"
+#include "calibrate/crowd_states.h"
+#include "common/contact/crowd_from_table.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/sections.h"
+#include "pipelines/report/svg_plot.h"
+
+namespace softgrain::report {
+namespace {
+
+struct Group {
+  const char* id;
+  const char* title;
+  PartnerKind kind;
+  bool held_out;
+};
+constexpr Group kGroups[] = {{"planes", "Planes, used in the fit", PartnerKind::plane, false},
+                             {"planes-out", "Planes, predicted", PartnerKind::plane, true},
+                             {"solids", "Solid spheres", PartnerKind::solid, false},
+                             {"softs", "Soft neighbours", PartnerKind::soft, false},
+                             {"softs-out", "Soft neighbours, predicted", PartnerKind::soft, true}};
+
+/// Plain loading only: other paths to the same overlaps would be drawn on top of each other.
+bool belongs(const CrowdStates& c, const Group& g) {
+  return c.all_of(g.kind) && c.configuration->held_out == g.held_out && !c.configuration->centre_free &&
+         c.configuration->stages.size() == 1 && c.states.size() > 1;
+}
+
+double mean_force(const std::vector<double>& forces) {
+  double sum = 0.0;
+  for (const double f : forces) sum += f;
+  return sum / static_cast<double>(forces.size());
+}
+
+void add_measured(Plot& plot, const CrowdStates& c, const std::string& color) {
+  Series s;
+  s.label = c.configuration->name;
+  for (const CrowdState* state : loading_states(c)) {
+    s.x.push_back(*std::max_element(state->overlap.begin(), state->overlap.end()));
+    s.y.push_back(mean_force(state->mean));
+    s.y_error.push_back(mean_force(state->error));
+  }
+  s.style = {color, 0.0, {}, 1.0, Marker::circle, 3.0};
+  plot.add(s);
+}
+
+void add_law(Plot& plot, const CrowdStates& c, const CrowdLaw& law, const std::string& color, const char* dash) {
+  Series s;
+  s.hover = c.configuration->name + ", " + law.form + " law";
+  const CrowdModel model = crowd_model(law);
+  const std::vector<double>& end = loading_states(c).back()->overlap;
+  for (int k = 1; k <= 60; ++k) {
+    std::vector<double> overlap = end;
+    for (double& x : overlap) x *= k / 60.0;
+    s.x.push_back(*std::max_element(overlap.begin(), overlap.end()));
+    s.y.push_back(mean_force(crowd_forces(model, c.configuration->partners, overlap)));
+  }
+  s.style = {color, 1.5, dash, 1.0, Marker::none, 3.0};
+  s.sets_range = false;
+  plot.add(s);
+}
+
+std::string group_figure(const Group& group, const std::vector<CrowdStates>& states, const LawTableEntry& entry) {
+  Plot plot({"crowd-" + std::string(group.id),
+             group.title,
+             {"overlap h/Rs", Scale::linear, {}, {}},
+             {"mean force per neighbour F/(E Rs²)", Scale::logarithmic, {}, {}},
+             {},
+             560.0,
+             420.0});
+  std::size_t color = 0;
+  for (const CrowdStates& c : states) {
+    if (!belongs(c, group)) continue;
+    const char* shade = palette::cycle(color++);
+    add_measured(plot, c, shade);
+    add_law(plot, c, *entry.find(entry.best), shade, "");
+    if (entry.best != "pair" && entry.find("pair") != nullptr) add_law(plot, c, *entry.find("pair"), shade, "2 3");
+  }
+  if (color == 0) return "";
+  return figure(plot.svg(),
+                fmt::format("Points: means over packings with standard errors; lines: the {} law, dotted: the "
+                            "pair law{}.",
+                            entry.best, group.held_out ? "; none of this was used in the fit" : ""));
+}
+
+std::string error_table(const LawTableEntry& entry) {
+  std::vector<std::string> header{"configuration", "use"};
+  for (const CrowdLaw& law : entry.laws) header.push_back(law.form + " law: error [%]");
+  header.emplace_back("noise of the mean [%]");
+  HtmlTable table(header, 2);
+  const CrowdLaw& first = entry.laws.front();
+  for (std::size_t k = 0; k < first.errors.size(); ++k) {
+    std::vector<std::string> cells{first.errors[k].name, first.errors[k].held_out ? "predicted" : "fitted"};
+    for (const CrowdLaw& law : entry.laws)
+      cells.push_back(k < law.errors.size() ? format_number(100.0 * law.errors[k].error, 2) : "–");
+    cells.push_back(format_number(100.0 * first.errors[k].noise, 2));
+    table.row(std::move(cells));
+  }
+  return table.html();
+}
+
+std::string parameter_table(const LawTableEntry& entry) {
+  HtmlTable table({"law", "a", "b", "delta", "m0", "m1", "m2", "error, fitted [%]", "error, held out [%]",
+                   "error, leave one out [%]", "information criterion"});
+  for (const CrowdLaw& law : entry.laws) {
+    std::vector<std::string> cells{law.form + (law.form == entry.best ? " (best)" : "")};
+    for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2})
+      cells.push_back(e->standard_error > 0.0 ? format_number(e->value, 3) + " ± " + format_number(e->standard_error, 2)
+                                              : format_number(e->value, 3));
+    for (const double x : {law.error_fitted, law.error_held_out, law.error_cross})
+      cells.push_back(format_number(100.0 * x, 3));
+    cells.push_back(format_number(law.criterion, 4));
+    table.row(std::move(cells));
+  }
+  return table.html();
+}
+
+std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeasurements>& crowd) {
+  std::string body = paragraph(fmt::format(
+      "Solid fraction {:.4f} ± {:.4f}, {} packings. Best by cross-validation: the {} law. Measured up to h/Rs = {:.2f} "
+      "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. kt/kn = "
+      "{:.2f}, friction limit {:.2f}, unloading {:.2f} times as stiff as loading.",
+      entry.solid_fraction, entry.solid_fraction_error, entry.packings, entry.best, entry.overlap_max, entry.volume_max,
+      entry.grain_overlap_max, entry.kt_ratio.value, entry.friction.value, entry.retreat.value));
+  body += parameter_table(entry) + error_table(entry);
+  if (!crowd) return body;
+  const std::vector<CrowdStates> states = average_states(*crowd);
+  std::vector<std::string> figures;
+  for (const Group& g : kGroups) {
+    const std::string f = group_figure(g, states, entry);
+    if (!f.empty()) figures.push_back(f);
+  }
+  return body + figure_row(figures);
+}
+
+/// The measurement in the directory belongs to the entry of the same solid fraction.
+bool measured_here(const LawTableEntry& entry, const CrowdMeasurements& crowd) {
+  double sum = 0.0;
+  for (const PackingInfo& p : crowd.packings) sum += p.solid_fraction;
+  return std::abs(sum / static_cast<double>(crowd.packings.size()) - entry.solid_fraction) < 1e-9;
+}
+
+}  // namespace
+
+std::string law_table_section(const RunData& run) {
+  if (!run.law_table) return "";
+  std::string body;
+  for (const LawTableEntry& entry : run.law_table->entries) {
+    if (entry.find(entry.best) == nullptr) continue;
+    const bool here = run.crowd && !run.crowd->packings.empty() && measured_here(entry, *run.crowd);
+    body += entry_body(entry, here ? run.crowd : std::nullopt);
+  }
+  return section("law-table", "Laws of soft particles with several neighbours", body);
+}
+
+}  // namespace softgrain::report
