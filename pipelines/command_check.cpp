@@ -122,7 +122,8 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out)
 void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
   const Scene scene = Scene::load(path, options.overrides);
   const SceneTable root = scene.root();
-  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box", "law-table"});
+  const std::string kind =
+      root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box", "law-table"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
     check_particles(read_particles_scene(scene), out.facts, out.lines);

@@ -7,6 +7,7 @@
 #include "common/data/crowd_measurements.h"
 #include "common/io/text_file.h"
 #include "tests/support/crowd.h"
+#include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_law_table.h"
@@ -87,6 +88,27 @@ TEST_F(LawTable, ADamagedCacheFileIsMeasuredAgain) {
   EXPECT_NE(outcome_.output.find("measured again"), std::string::npos) << outcome_.output;
   EXPECT_GT(fs::file_size(victim), 1000U);
   expect_same(first, second);
+}
+
+TEST_F(LawTable, AStoppedRunGoesOnWithTheSameBits) {
+  const std::string out = directory_.file("stopped");
+  const std::string work = out + "/work";
+  const auto begin = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", scene(), "--out", out, "--threads", "1", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start_program(arguments);
+  };
+  // More than the nine pilots are there: it stops among the runs that count.
+  const auto begun = [&] {
+    return fs::exists(work) && std::distance(fs::directory_iterator(work), fs::directory_iterator()) > 10;
+  };
+  const int status = signal_when(begin({}), begun, SIGINT);
+  if (!ended_with(status, 130)) GTEST_SKIP() << "the run ended before the signal came";
+  EXPECT_TRUE(begun());
+  EXPECT_FALSE(fs::exists(out + "/crowd.h5"));
+  const CrowdMeasurements resumed = run("stopped", "--resume --threads 1");
+  expect_same(run("whole", "--threads 1"), resumed);
+  EXPECT_FALSE(fs::exists(work));
 }
 
 TEST_F(LawTable, CheckSaysWhatFollows) {

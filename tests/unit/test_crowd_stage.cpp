@@ -1,0 +1,111 @@
+// The measuring stage with a level whose soft particles hold soft particles.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "pipelines/crowd_stage.h"
+#include "pipelines/crowd_summary.h"
+#include "tests/support/crowd.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_law_table.h"
+
+namespace softgrain {
+namespace {
+
+/// Room for a sphere at x: distance to the nearest grain or the shell.
+double room_at(const ShellPacking& packing, const Vec3& x) {
+  double room = 1.0 - norm(x);
+  for (std::size_t k = 0; k < packing.radius.size(); ++k)
+    room = std::min(room, norm(x - packing.position[k]) - packing.radius[k]);
+  return room;
+}
+
+/// One inner soft particle in the widest void that a coarse grid finds.
+SoftContent with_one_inner(const ShellPacking& packing) {
+  InnerSoft best;
+  for (int k = 0; k < 9 * 9 * 9; ++k) {
+    const Vec3 x{{(k % 9 - 4) * 0.2, (k / 9 % 9 - 4) * 0.2, (k / 81 - 4) * 0.2}};
+    if (const double room = room_at(packing, x); room > best.r) best = {x, room};
+  }
+  return {packing, {best}};
+}
+
+CrowdLevel stiff_level(const SoftParticleSpec& spec, const std::string& tag) {
+  SoftContact law;
+  law.normal = {1.0, 2.5, 0.0};
+  law.tangential = {0.5, 1.0, 0.0};
+  law.modulus = spec.youngs_modulus;
+  law.friction = 0.3;
+  SoftContact reverse = law;
+  reverse.i_is_soft = false;
+  SoftContact both = law;
+  both.partner_is_soft = true;
+  return {[](const ShellPacking& p, std::int64_t) { return with_one_inner(p); },
+          {law, reverse, both, 0.7},
+          tag,
+          "level.h5"};
+}
+
+class CrowdStage : public ::testing::Test {
+ protected:
+  CrowdStage() : scene_(Scene::parse(test::kTinyLawTable, "scene.toml")), setup_(read_crowd_setup(scene_.root())) {
+    options_.out = directory_.file("out");
+    options_.quiet = true;
+    options_.threads = 1;
+    options_.law_cache = directory_.file("cache");
+    std::filesystem::create_directories(options_.law_cache);
+  }
+  CrowdMeasurements measure(const CrowdLevel* level) {
+    const RunContext context(options_, "run", "tiny");
+    const TaskStore store(context, scene_, setup_.seed);
+    CrowdMeasurements data = run_crowd_stage(setup_, store, context, {}, &contents_, level);
+    store.clear();
+    return data;
+  }
+  [[nodiscard]] long cached() const {
+    return std::distance(std::filesystem::directory_iterator(options_.law_cache),
+                         std::filesystem::directory_iterator());
+  }
+
+  test::TemporaryDirectory directory_;
+  Scene scene_;
+  CrowdSetup setup_;
+  CommonOptions options_;
+  std::vector<ShellPacking> contents_;
+};
+
+TEST_F(CrowdStage, AnInnerLevelIsAnotherMeasurement) {
+  const CrowdMeasurements plain = measure(nullptr);
+  const long plain_files = cached();
+  EXPECT_EQ(contents_.size(), 3U);
+  EXPECT_TRUE(std::filesystem::exists(options_.out + "/crowd.h5"));
+  const CrowdLevel level = stiff_level(setup_.spec, "one stiff inner soft particle");
+  const CrowdMeasurements filled = measure(&level);
+  EXPECT_TRUE(std::filesystem::exists(options_.out + "/level.h5"));
+  EXPECT_GT(cached(), plain_files);
+  const CrowdConfiguration& one = setup_.configurations[0];
+  EXPECT_GT(end_force(one, {filled.runs[0], filled.runs[1]}).mean, end_force(one, {plain.runs[0], plain.runs[1]}).mean);
+  const long all_files = cached();
+  const CrowdMeasurements again = measure(&level);
+  EXPECT_EQ(cached(), all_files);
+  ASSERT_EQ(again.runs.size(), filled.runs.size());
+  for (std::size_t k = 0; k < again.runs.size(); ++k) test::expect_equal(again.runs[k].points, filled.runs[k].points);
+  const CrowdLevel other = stiff_level(setup_.spec, "another tag");
+  (void)measure(&other);
+  EXPECT_GT(cached(), all_files);
+}
+
+TEST_F(CrowdStage, PackingsAreAddedUntilTheTargetIsMet) {
+  setup_.configurations.resize(1);
+  setup_.target = 0.9;
+  EXPECT_EQ(measure(nullptr).runs.size(), 2U);
+  setup_.target = 1e-6;
+  const CrowdMeasurements data = measure(nullptr);
+  EXPECT_EQ(data.runs.size(), 3U);
+  EXPECT_EQ(crowd_remarks(data, setup_.target).size(), 1U);
+  EXPECT_TRUE(crowd_remarks(data, 0.9).empty());
+}
+
+}  // namespace
+}  // namespace softgrain
