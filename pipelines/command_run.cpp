@@ -1,4 +1,4 @@
-// softgrain run: pack, measure, fit, macro, resolved twin, compare, report.
+// softgrain run: pack, measure, fit, macro, resolved twin, compare, report; or a comparison of laws with twins.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -8,6 +8,7 @@
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/law_json.h"
+#include "pipelines/macro_comparison.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/measure_stage.h"
 #include "pipelines/pipeline_setup.h"
@@ -152,6 +153,8 @@ ExitStatus command_run(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("run: give one pipeline file");
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
+  if (scene.root().choice("kind", {"pipeline", "macro-comparison"}) == "macro-comparison")
+    return run_macro_comparison(options, scene);
   const PipelineSetup setup = read_pipeline_setup(scene.root());
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.measure.seed);

@@ -8,6 +8,7 @@
 #include "common/state/system_io.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
+#include "microsim/shell_packing.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
@@ -100,6 +101,14 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
 }
 
 }  // namespace
+
+std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed) {
+  std::vector<ShellPacking> contents(static_cast<std::size_t>(count));
+  parallel_tasks(count, [&](std::int64_t k) {
+    contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
+  });
+  return contents;
+}
 
 std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
                                               const Provenance& provenance, const std::string& file_name) {

@@ -125,13 +125,18 @@ std::int64_t MeasureSetup::packings() const {
   return most;
 }
 
+SoftParticleSpec read_soft_particle(const SceneTable& root) {
+  SoftParticleSpec spec;
+  read_material(root.table_or_empty("material"), spec);
+  read_packing(root.table_or_empty("packing"), spec);
+  return spec;
+}
+
 MeasureSetup read_measure_setup(const SceneTable& root) {
   MeasureSetup setup;
   setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-  read_material(root.table_or_empty("material"), setup.spec);
-  const SceneTable packing = root.table_or_empty("packing");
-  read_packing(packing, setup.spec);
-  const std::int64_t count = packing.count("count", 1, 100000, 7);
+  setup.spec = read_soft_particle(root);
+  const std::int64_t count = root.table_or_empty("packing").count("count", 1, 100000, 7);
   const SceneTable measure = root.table("measure");
   read_damped(measure.table_or_empty("damped"), setup.damped);
   read_published(measure.table_or_empty("published"), setup.published);

@@ -40,6 +40,9 @@ struct MeasureSetup {
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
 };
 
+/// Reads [material] and [packing] except its `count`. Throws BadInput.
+SoftParticleSpec read_soft_particle(const SceneTable& root);
+
 /// Reads [material], [packing], [measure] and [reference]. Throws BadInput.
 MeasureSetup read_measure_setup(const SceneTable& root);
 
