@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -25,10 +26,15 @@ double largest(const std::vector<MacroCurve>& curves, Stress member) {
   return value;
 }
 
+std::string capital(std::string word) {
+  word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
 std::string stress_figure(const MacroScene& scene, Stress member, const std::string& what) {
   const SiPrefix prefix = si_prefix(largest(scene.curves, member));
   Plot plot({.id = "macro-" + scene.name + "-" + what,
-             .title = what + " stress, " + scene.name,
+             .title = capital(what) + " stress, " + scene.name,
              .x = {.label = "strain [%]"},
              .y = {.label = fmt::format("{} stress [{}Pa]", what, prefix.symbol)}});
   std::set<std::string> named;

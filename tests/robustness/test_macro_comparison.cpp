@@ -5,6 +5,7 @@
 
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
+#include "tests/support/markup_check.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/synthetic_run.h"
@@ -66,6 +67,7 @@ TEST_F(MacroComparison, EveryEngineOnEveryScene) {
   const std::string report = read_text(out() + "/report.html");
   EXPECT_NE(report.find("macro-error-cost"), std::string::npos);
   EXPECT_NE(report.find("oedometric-35"), std::string::npos);
+  EXPECT_EQ(unbalanced_tags(report), "");
   EXPECT_NE(read_text(out() + "/table.md").find("| shear-35 | free | 1 |"), std::string::npos);
   EXPECT_NE(read_text(out() + "/table.csv").find("oedometric-35,pair,2,"), std::string::npos);
   EXPECT_FALSE(fs::exists(out() + "/work"));
