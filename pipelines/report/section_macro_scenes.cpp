@@ -76,11 +76,45 @@ std::string force_figure(const MacroScene& scene) {
   return plot.empty() ? "" : figure(plot.svg(), "At the end of the test, all samples together.");
 }
 
+/// One column per engine: there are many quantities and few engines.
 std::string table_of(const std::vector<EngineScore>& scores) {
   const ScoreTable table = score_table(scores);
-  HtmlTable html(table.header);
-  for (const auto& row : table.rows) html.row(row);
+  std::vector<std::string> header{""};
+  for (const auto& row : table.rows) header.push_back(engine_name(row[0]));
+  HtmlTable html(header);
+  for (std::size_t k = 1; k < table.header.size(); ++k) {
+    std::vector<std::string> cells{table.header[k]};
+    for (const auto& row : table.rows) cells.push_back(row[k]);
+    const bool any = std::any_of(cells.begin() + 1, cells.end(), [](const std::string& c) { return !c.empty(); });
+    if (any) html.row(cells);
+  }
   return html.html();
+}
+
+std::string cell_of(const nlohmann::json& facts, const char* key) {
+  const auto value = find_number(facts, key);
+  return value ? format_number(*value, 3) : "–";
+}
+
+/// What the samples of a scene are made of, from the summary.
+std::string facts_of(const RunData& run, const std::string& name) {
+  HtmlTable html({"sample", "solid grains", "soft particles", "grains inside", "volume share of soft",
+                  "bodies over box", "grains over box", "exponent of all radii", "largest over smallest"});
+  const auto* scenes = find_value(run.summary, "scenes");
+  if (scenes == nullptr || !scenes->is_array()) return "";
+  for (const auto& scene : *scenes) {
+    const auto* samples = find_value(scene, "samples");
+    if (find_text(scene, "name") != name || samples == nullptr || !samples->is_array()) continue;
+    std::size_t k = 0;
+    for (const auto& f : *samples) {
+      std::vector<std::string> row{std::to_string(k++)};
+      for (const char* key : {"solid", "soft", "inner_grains", "soft_share", "body_fraction", "solid_fraction",
+                              "exponent", "polydispersity"})
+        row.push_back(cell_of(f, key));
+      html.row(row);
+    }
+  }
+  return html.empty() ? "" : html.html();
 }
 
 /// One point per engine and scene: cost over that of the shelled twin, error against it.
@@ -111,22 +145,22 @@ std::string cost_figure(const std::vector<MacroScene>& scenes) {
   return plot.empty() ? "" : figure(plot.svg(), "Against the shelled twin, mean over samples; one point per scene.");
 }
 
-std::string scene_part(const MacroScene& scene) {
+std::string scene_part(const RunData& run, const MacroScene& scene) {
   const bool shear = !scene.curves.empty() && scene.curves.front().test == "shear";
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
   body += figure_row({stress_figure(scene, &MacroCurve::stress_axial, "axial"),
                       shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")
                             : stress_figure(scene, &MacroCurve::stress_lateral, "lateral"),
                       force_figure(scene)});
-  return body + table_of(score_engines(scene.curves));
+  return body + table_of(score_engines(scene.curves)) + facts_of(run, scene.name);
 }
 
 }  // namespace
 
 std::string macro_scenes_section(const RunData& run) {
   std::string body;
-  if (!run.macro_scenes.empty()) body += cost_figure(run.macro_scenes);
-  for (const MacroScene& scene : run.macro_scenes) body += scene_part(scene);
+  if (!run.macro_scenes.empty()) body += figure_row({cost_figure(run.macro_scenes)});
+  for (const MacroScene& scene : run.macro_scenes) body += scene_part(run, scene);
   if (!body.empty())
     body += paragraph(
         "Stress error: square root of ∫(engine − twin)² over ∫ twin² along the strain. Coordination, fabric (zz − xx) "
