@@ -12,12 +12,14 @@
 #include "common/data/measurements.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
+#include "macrosim/constructed_packing.h"
 #include "microsim/grain_box/record.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/grain_box_check.h"
 #include "pipelines/hierarchy_command.h"
 #include "pipelines/law_table_command.h"
+#include "pipelines/macro_comparison.h"
 #include "pipelines/particles_check.h"
 #include "pipelines/pipeline_setup.h"
 #include "pipelines/run_context.h"
@@ -104,17 +106,33 @@ void check_measurements(const MeasureSetup& setup, Findings& out) {
   out.add("core_seconds_measuring", seconds, fmt::format("measuring: about {:.0f} s of one core", seconds));
 }
 
+struct BodyCounts {
+  double all = 0.0;
+  double soft = 0.0;
+};
+
+/// Scenes by construction are made on trial, in a fraction of a second: how many soft particles fit, and whether the
+/// share does, is known only then.
+BodyCounts count_bodies(const MacroSetup& setup) {
+  const auto bodies = static_cast<double>(setup.spec.bodies);
+  if (setup.spec.construction != "voids") return {bodies, setup.spec.soft_share * bodies};
+  const SceneFacts facts = describe(make_packing(setup.spec, 1, 0), {});
+  return {static_cast<double>(facts.solid + facts.soft), static_cast<double>(facts.soft)};
+}
+
 void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out) {
-  const double soft = setup.spec.soft_share * static_cast<double>(setup.spec.bodies);
-  const double resolved = static_cast<double>(setup.spec.bodies) + soft * grains_per_soft;
+  const BodyCounts count = count_bodies(setup);
+  const double resolved = count.all + count.soft * grains_per_soft;
   constexpr double kBytesPerGrain = 300.0;
   constexpr double kBytesPerContact = 160.0;
   const double memory = resolved * (kBytesPerGrain + 3.0 * kBytesPerContact);
-  out.add("macro_bodies", setup.spec.bodies,
-          fmt::format("macro: {} samples of {} bodies, {} compression to a strain of {}", setup.samples,
-                      setup.spec.bodies, setup.spec.test, setup.spec.strain_end));
+  out.add("macro_bodies", count.all,
+          fmt::format("macro: {} samples of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
+                      setup.samples, count.all, count.soft, setup.spec.test, setup.spec.strain_end));
+  for (const std::string& twin : setup.twins)
+    out.lines += fmt::format("  resolved twin ({}): about {:.0f} grains per sample\n", twin, resolved);
   if (!setup.twins.empty()) {
-    out.add("twin_grains", resolved, fmt::format("resolved twin: about {:.0f} grains per sample", resolved));
+    out.facts["twin_grains"] = resolved;
     out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
   }
 }
@@ -122,8 +140,8 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, Findings& out)
 void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
   const Scene scene = Scene::load(path, options.overrides);
   const SceneTable root = scene.root();
-  const std::string kind =
-      root.choice("kind", {"pipeline", "soft-particle", "macro", "particles", "grain-box", "law-table"});
+  const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "macro-comparison", "particles",
+                                                "grain-box", "law-table", "hierarchy"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
     check_particles(read_particles_scene(scene), out.facts, out.lines);
@@ -141,6 +159,11 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
     const MacroSetup macro = read_macro_setup(root.table("macro"), SoftParticleSpec{});
     root.finish();
     check_macro(macro, 400.0, out);
+  } else if (kind == "macro-comparison") {
+    const MacroComparisonSetup setup = read_macro_comparison(scene);
+    out.add("scenes", setup.scenes.size(),
+            fmt::format("comparison of laws with twins on {} scenes", setup.scenes.size()));
+    for (const ComparisonScene& s : setup.scenes) check_macro(s.setup, 400.0, out);
   } else if (kind == "pipeline") {
     const PipelineSetup setup = read_pipeline_setup(root);
     check_measurements(setup.measure, out);

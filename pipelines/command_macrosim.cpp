@@ -3,10 +3,8 @@
 
 #include <filesystem>
 
-#include "microsim/shell_packing.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/macro_stage.h"
-#include "pipelines/parallel_tasks.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
 #include "pipelines/run_summary.h"
@@ -14,15 +12,6 @@
 namespace softgrain {
 
 namespace {
-
-/// Contents for the twins, made as they were made for the measurement behind the card.
-std::vector<ShellPacking> twin_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed) {
-  std::vector<ShellPacking> contents(static_cast<std::size_t>(count));
-  parallel_tasks(count, [&](std::int64_t k) {
-    contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
-  });
-  return contents;
-}
 
 std::string law_path(const Scene& scene, const SceneTable& root, const CommonOptions& options) {
   const std::string written = root.text("law", "");
@@ -58,7 +47,7 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   const std::uint64_t seed = context.seed(scene_seed);
   const TaskStore store(context, scene, seed);
   const auto contents =
-      !setup.twins.empty() ? twin_contents(card.spec, contents_count, seed) : std::vector<ShellPacking>{};
+      !setup.twins.empty() ? make_contents(card.spec, contents_count, seed) : std::vector<ShellPacking>{};
   std::vector<MacroCurve> curves;
   context.guard(
       [&] { curves = run_macro_stage(setup, card, contents, seed, store, context, context.provenance(scene, seed)); });

@@ -1,4 +1,4 @@
-// softgrain run: pack, measure, fit, macro, resolved twin, compare, report.
+// softgrain run: pack, measure, fit, macro, resolved twin, compare, report; or a comparison of laws with twins.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -7,9 +7,10 @@
 
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
-#include "pipelines/law_json.h"
 #include "pipelines/hierarchy_command.h"
+#include "pipelines/law_json.h"
 #include "pipelines/law_table_command.h"
+#include "pipelines/macro_comparison.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/measure_stage.h"
 #include "pipelines/pipeline_setup.h"
@@ -154,8 +155,10 @@ ExitStatus command_run(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("run: give one pipeline file");
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
-  if (is_law_table(scene)) return run_law_table(scene, options);
-  if (is_hierarchy(scene)) return run_hierarchy(scene, options);
+  const std::string kind = scene.root().choice("kind", {"pipeline", "macro-comparison", "law-table", "hierarchy"});
+  if (kind == "law-table") return run_law_table(scene, options);
+  if (kind == "hierarchy") return run_hierarchy(scene, options);
+  if (kind == "macro-comparison") return run_macro_comparison(options, scene);
   const PipelineSetup setup = read_pipeline_setup(scene.root());
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.measure.seed);

@@ -223,11 +223,6 @@ void check_levels(const HierarchySetup& setup, const TaskStore& store, const Run
 
 }  // namespace
 
-bool is_hierarchy(const Scene& scene) {
-  const SceneTable root = scene.root();
-  return root.is_text("kind") && root.text("kind") == "hierarchy";
-}
-
 ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const HierarchySetup setup = read_hierarchy_setup(scene.root());

@@ -9,9 +9,6 @@
 
 namespace softgrain {
 
-/// Whether `softgrain run` hands this scene to run_hierarchy().
-bool is_hierarchy(const Scene& scene);
-
 /// Level by level from the finest to the coarsest, then on to the fixed point, then the resolved check of two decades.
 /// Writes law_table_level_K.toml, crowd_level_K.h5, law_table.toml (coarsest level), summary.json and the report.
 /// Status not_usable when a level has no law, or the fixed point was not reached.

@@ -85,11 +85,6 @@ bool all_converged(const CrowdMeasurements& data) {
 
 }  // namespace
 
-bool is_law_table(const Scene& scene) {
-  const SceneTable root = scene.root();
-  return root.is_text("kind") && root.text("kind") == "law-table";
-}
-
 namespace {
 
 std::string law_line(const CrowdLaw& law, bool best) {

@@ -9,9 +9,6 @@
 
 namespace softgrain {
 
-/// Whether `softgrain run` hands this scene to run_law_table().
-bool is_law_table(const Scene& scene);
-
 /// Measures and fits; writes crowd.h5, law_table.toml, law_table.h5, summary.json and the report. Status not_usable
 /// when a recorded point did not converge or the best law is not good.
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options);

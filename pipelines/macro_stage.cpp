@@ -8,6 +8,7 @@
 #include "common/state/system_io.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
+#include "microsim/shell_packing.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
@@ -22,14 +23,6 @@ void write_progress(const h5::Group& group, const CompressionState& state) {
 void read_progress(const h5::Group& group, CompressionState& state) {
   state.curve = read_macro_curve(group.open("curve"));
   read_system(group.open("system"), state.macro.system);
-}
-
-double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
-  double sum = 0.0;
-  for (const ShellPacking& p : contents) sum += p.solid_fraction();
-  // Without contents the mass of soft particles is that of a solid of the same size; quasi-static results do not depend
-  // on it.
-  return contents.empty() ? 1.0 : sum / static_cast<double>(contents.size());
 }
 
 /// Whether samples share the threads, or take them one after another.
@@ -100,6 +93,22 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
 }
 
 }  // namespace
+
+double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
+  double sum = 0.0;
+  for (const ShellPacking& p : contents) sum += p.solid_fraction();
+  // Without contents the mass of soft particles is that of a solid of the same size; quasi-static results do not depend
+  // on it.
+  return contents.empty() ? 1.0 : sum / static_cast<double>(contents.size());
+}
+
+std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed) {
+  std::vector<ShellPacking> contents(static_cast<std::size_t>(count));
+  parallel_tasks(count, [&](std::int64_t k) {
+    contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
+  });
+  return contents;
+}
 
 std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
                                               const Provenance& provenance, const std::string& file_name) {

@@ -8,12 +8,15 @@ namespace softgrain {
 
 namespace {
 
+/// Shorter directions of ascent count as none: a maximum, as far as the present step can tell.
+constexpr double kFlat = 0.03;
+
 /// Shortest vector of the convex hull of the gradients (Gilbert's iteration): the direction of
 /// steepest ascent of the smallest clearance, zero at a maximum.
 Vec3 steepest(const std::vector<NearSurface>& surfaces) {
   constexpr int kMostRounds = 40;
   Vec3 d = surfaces[0].away;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostRounds && norm2(d) > kFlat * kFlat; ++round) {
     std::size_t worst = 0;
     for (std::size_t k = 1; k < surfaces.size(); ++k)
       if (dot(d, surfaces[k].away) < dot(d, surfaces[worst].away)) worst = k;
@@ -123,7 +126,7 @@ PackedSphere climb(const ClearanceField& field, const Vec3& x) {
     if (surfaces.empty()) break;
     const Vec3 d = steepest(surfaces);
     const double length = norm(d);
-    if (length < 0.03) {
+    if (length <= kFlat) {
       step *= 0.4;
       continue;
     }

@@ -22,6 +22,7 @@ void write_report(const std::string& run_directory) {
   body += stiffness_section(run);
   body += relaxations_section(run);
   body += macro_section(run);
+  body += macro_scenes_section(run);
   body += radii_section(run);
   body += particles_section(run);
   body += grain_box_section(run);

@@ -16,6 +16,19 @@ nlohmann::json parse_summary(const std::string& path) {
   return summary;
 }
 
+/// The scenes that a comparison names; a file that is not there is trouble, as the comparison says it is.
+std::vector<MacroScene> load_scenes(const std::string& directory) {
+  const nlohmann::json root = parse_summary(directory + "/comparison.json");
+  std::vector<MacroScene> scenes;
+  const auto* list = find_value(root, "scenes");
+  if (list == nullptr || !list->is_array()) throw FileTrouble(directory + "/comparison.json: has no scenes");
+  for (const auto& one : *list) {
+    const std::string name = find_text(one, "name");
+    scenes.push_back({name, load_macro(directory + "/" + fs::path(find_text(one, "file")).filename().string())});
+  }
+  return scenes;
+}
+
 }  // namespace
 
 const PairLaw* RunData::law(PairKind kind) const {
@@ -52,6 +65,7 @@ RunData load_run(const std::string& directory) {
   if (exists("crowd.h5")) run.crowd = load_crowd(file("crowd.h5")), any = true;
   if (exists("law_table.toml")) run.law_table = load_law_table(file("law_table.toml")), any = true;
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;
+  if (exists("comparison.json")) run.macro_scenes = load_scenes(directory), any = true;
   if (exists("grain_box.h5")) run.grain_boxes = load_grain_boxes(file("grain_box.h5")), any = true;
   if (!any)
     throw FileTrouble(directory + ": holds none of summary.json, measurements.h5, law.toml, macro.h5, grain_box.h5");

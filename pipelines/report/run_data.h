@@ -24,6 +24,12 @@ struct LawBand {
   std::string origin;  ///< "bootstrap over packings" or "linearised from the covariance"
 };
 
+/// One scene of a comparison of laws with twins.
+struct MacroScene {
+  std::string name;
+  std::vector<MacroCurve> curves;
+};
+
 struct RunData {
   std::string directory;
   nlohmann::json summary;  ///< empty object when absent
@@ -32,6 +38,7 @@ struct RunData {
   std::optional<CrowdMeasurements> crowd;
   std::optional<LawTable> law_table;
   std::vector<MacroCurve> macro;
+  std::vector<MacroScene> macro_scenes;
   std::vector<GrainBoxResult> grain_boxes;
 
   /// Law of a pair kind, if it was fitted and is usable for drawing.
@@ -42,7 +49,8 @@ struct RunData {
   [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
 };
 
-/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5 and grain_box.h5.
+/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5, comparison.json (and the curves that it
+/// names) and grain_box.h5.
 /// Throws FileTrouble when the directory is missing, holds none of them, or one of them is damaged.
 RunData load_run(const std::string& directory);
 

@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"
@@ -17,19 +18,6 @@ namespace softgrain::report {
 namespace {
 
 using Stress = std::vector<double> MacroCurve::*;
-
-std::string engine_name(const std::string& engine) {
-  if (engine == "law") return "soft particles with the fitted law";
-  if (engine == "shelled") return "resolved twin (shelled)";
-  return engine;
-}
-
-SeriesStyle engine_style(const std::string& engine) {
-  if (engine == "law") return {.color = palette::blue, .width = 1.5, .marker = Marker::circle, .marker_size = 2.6};
-  if (engine == "shelled")
-    return {.color = palette::vermillion, .width = 1.5, .dash = "6 3", .marker = Marker::square, .marker_size = 2.6};
-  return {.color = palette::green, .width = 1.5, .marker = Marker::triangle, .marker_size = 2.6};
-}
 
 double largest_stress(const std::vector<MacroCurve>& curves) {
   double largest = 0.0;
@@ -46,11 +34,20 @@ std::vector<MacroCurve> of_test(const std::vector<MacroCurve>& curves, const std
   return result;
 }
 
+/// 0, or where the preload of a shear test begins.
+double first_strain(const std::vector<MacroCurve>& curves) {
+  double first = 0.0;
+  for (const MacroCurve& c : curves)
+    if (!c.strain.empty()) first = std::min(first, c.strain.front());
+  return first;
+}
+
 std::string stress_figure(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
   const SiPrefix prefix = si_prefix(largest_stress(curves));
+  const double first = first_strain(curves);
   Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral"),
              .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + test,
-             .x = {.label = "strain [%]", .low = 0.0},
+             .x = {.label = "strain [%]", .low = 100.0 * first},
              .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)}});
   const Stress member = axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral;
   std::set<std::string> named;

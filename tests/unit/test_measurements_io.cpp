@@ -166,6 +166,41 @@ TEST(MacroIo, RoundTripIsExactAndKeepsTheOrder) {
   }
 }
 
+TEST(MacroIo, LaterColumnsAreKeptAndMayBeAbsent) {
+  std::vector<MacroCurve> out(2);
+  for (MacroCurve& c : out) {
+    c.engine = "free";
+    c.test = "shear";
+    c.strain = c.stress_axial = c.stress_lateral = c.stress_axial_contacts = c.coordination = c.residual = {0.0, 0.1};
+  }
+  MacroCurve& full = out[1];
+  full.preload = 0.03;
+  full.stress_x = {1.0, 2.0};
+  full.stress_y = {3.0, 4.0};
+  full.stress_deviator = {5.0, 6.0};
+  full.fabric = {0.1, 0.2};
+  full.fabric_bodies = {0.3, 0.4};
+  full.coordination_bodies = {4.0, 5.0};
+  full.body_forces = {7.0, 8.0, 9.0};
+  const std::string path = temporary("later.h5");
+  save_macro(out, path);
+  const std::vector<MacroCurve> in = load_macro(path);
+  ASSERT_EQ(in.size(), 2U);
+  EXPECT_TRUE(in[0].stress_x.empty());
+  EXPECT_TRUE(in[0].body_forces.empty());
+  EXPECT_EQ(in[1].preload, 0.03);
+  EXPECT_EQ(in[1].stress_x, full.stress_x);
+  EXPECT_EQ(in[1].stress_y, full.stress_y);
+  EXPECT_EQ(in[1].stress_deviator, full.stress_deviator);
+  EXPECT_EQ(in[1].fabric, full.fabric);
+  EXPECT_EQ(in[1].fabric_bodies, full.fabric_bodies);
+  EXPECT_EQ(in[1].coordination_bodies, full.coordination_bodies);
+  EXPECT_EQ(in[1].body_forces, full.body_forces);
+  out[1].fabric.push_back(0.5);
+  save_macro(out, path);
+  EXPECT_THROW((void)load_macro(path), FileTrouble);
+}
+
 TEST(MacroIo, ColumnsOfUnequalLengthAreRefused) {
   std::vector<MacroCurve> curves(1);
   curves[0].strain = {0.0, 0.1};

@@ -1,0 +1,211 @@
+#include "pipelines/compare/macro_scores.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "common/core/error.h"
+#include "pipelines/compare/compare.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double last(const std::vector<double>& values) { return values.empty() ? kNaN : values.back(); }
+
+double ratio(double a, double b) { return b != 0.0 ? a / b : kNaN; }
+
+double lateral_ratio(const MacroCurve& c) { return ratio(last(c.stress_lateral), last(c.stress_axial)); }
+
+/// The part of a shear test after its preload: strain from 0.
+std::pair<std::vector<double>, std::vector<double>> sheared(const MacroCurve& c) {
+  std::pair<std::vector<double>, std::vector<double>> out;
+  for (std::size_t k = 0; k < std::min(c.strain.size(), c.stress_deviator.size()); ++k) {
+    if (c.strain[k] < 0.0) continue;
+    out.first.push_back(c.strain[k]);
+    out.second.push_back(c.stress_deviator[k]);
+  }
+  return out;
+}
+
+/// NaN where curves cannot be compared.
+double difference(const std::vector<double>& xa, const std::vector<double>& a, const std::vector<double>& xb,
+                  const std::vector<double>& b) {
+  try {
+    return relative_difference(xa, a, xb, b);
+  } catch (const BadInput&) {
+    return kNaN;
+  }
+}
+
+double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
+  if (c.test != "shear") return kNaN;
+  const auto [xa, a] = sheared(c);
+  const auto [xb, b] = sheared(twin);
+  return difference(xa, a, xb, b);
+}
+
+std::vector<double> over_mean(std::vector<double> forces) {
+  const double mean = mean_and_variation(forces).first;
+  for (double& f : forces) f /= mean;
+  return forces;
+}
+
+MeanError finite_mean(const std::vector<double>& values) {
+  std::vector<double> finite;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
+  return mean_error(finite);
+}
+
+using Curves = std::vector<const MacroCurve*>;
+
+Curves usable_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
+  Curves out;
+  for (const MacroCurve& c : curves)
+    if (c.usable && c.engine == engine && !c.strain.empty()) out.push_back(&c);
+  return out;
+}
+
+MeanError mean_of(const Curves& curves, const std::function<double(const MacroCurve&)>& value) {
+  std::vector<double> values;
+  for (const MacroCurve* c : curves) values.push_back(value(*c));
+  return finite_mean(values);
+}
+
+/// Pairs of curves of the same sample.
+using Pairs = std::vector<std::pair<const MacroCurve*, const MacroCurve*>>;
+
+Pairs pair_up(const Curves& engine, const Curves& twin) {
+  Pairs out;
+  for (const MacroCurve* c : engine)
+    for (const MacroCurve* t : twin)
+      if (c->sample == t->sample) out.emplace_back(c, t);
+  return out;
+}
+
+MeanError mean_of(const Pairs& pairs, const std::function<double(const MacroCurve&, const MacroCurve&)>& value) {
+  std::vector<double> values;
+  for (const auto& [c, t] : pairs) values.push_back(value(*c, *t));
+  return finite_mean(values);
+}
+
+TwinErrors errors_against(const Pairs& pairs) {
+  using C = const MacroCurve&;
+  TwinErrors e;
+  e.axial = mean_of(pairs, [](C c, C t) { return difference(c.strain, c.stress_axial, t.strain, t.stress_axial); });
+  e.axial_end = mean_of(pairs, [](C c, C t) { return ratio(last(c.stress_axial), last(t.stress_axial)); });
+  e.deviator = mean_of(pairs, deviator_difference);
+  e.lateral_ratio = mean_of(pairs, [](C c, C t) { return lateral_ratio(c) - lateral_ratio(t); });
+  e.coordination = mean_of(pairs, [](C c, C t) { return last(c.coordination_bodies) - last(t.coordination_bodies); });
+  e.fabric = mean_of(pairs, [](C c, C t) { return last(c.fabric_bodies) - last(t.fabric_bodies); });
+  e.force_mean = mean_of(pairs, [](C c, C t) {
+    return ratio(mean_and_variation(c.body_forces).first, mean_and_variation(t.body_forces).first);
+  });
+  e.force_distance =
+      mean_of(pairs, [](C c, C t) { return kolmogorov_smirnov(over_mean(c.body_forces), over_mean(t.body_forces)); });
+  Cost engine;
+  Cost twin;
+  for (const auto& [c, t] : pairs) engine += c->cost, twin += t->cost;
+  e.speedup_seconds = ratio(twin.seconds, engine.seconds);
+  e.speedup_evaluations =
+      ratio(static_cast<double>(twin.contact_evaluations), static_cast<double>(engine.contact_evaluations));
+  return e;
+}
+
+EngineScore score_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
+  using C = const MacroCurve&;
+  const Curves mine = usable_of(curves, engine);
+  EngineScore s;
+  s.engine = engine;
+  s.samples = mine.size();
+  s.axial = mean_of(mine, [](C c) { return last(c.stress_axial); });
+  s.lateral_ratio = mean_of(mine, lateral_ratio);
+  s.coordination = mean_of(mine, [](C c) { return last(c.coordination_bodies); });
+  s.fabric = mean_of(mine, [](C c) { return last(c.fabric_bodies); });
+  s.force_mean = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).first; });
+  s.force_variation = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).second; });
+  s.contact_evaluations = mean_of(mine, [](C c) { return static_cast<double>(c.cost.contact_evaluations); }).mean;
+  s.seconds = mean_of(mine, [](C c) { return c.cost.seconds; }).mean;
+  if (engine != "shelled") s.shelled = errors_against(pair_up(mine, usable_of(curves, "shelled")));
+  if (engine != "free") s.free = errors_against(pair_up(mine, usable_of(curves, "free")));
+  return s;
+}
+
+std::string cell(const MeanError& m, int digits = 4) {
+  if (m.n == 0) return "";
+  if (!std::isfinite(m.error)) return fmt::format("{:.{}g}", m.mean, digits);
+  return fmt::format("{:.{}g} +- {:.2g}", m.mean, digits, m.error);
+}
+
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : ""; }
+
+void add_cells(const TwinErrors& e, std::vector<std::string>& row) {
+  for (const MeanError* m : {&e.axial, &e.axial_end, &e.deviator, &e.lateral_ratio, &e.coordination, &e.fabric,
+                             &e.force_mean, &e.force_distance})
+    row.push_back(cell(*m, 3));
+  row.push_back(e.axial.n > 0 ? cell(e.speedup_evaluations) : "");
+  row.push_back(e.axial.n > 0 ? cell(e.speedup_seconds) : "");
+}
+
+}  // namespace
+
+std::pair<double, double> mean_and_variation(const std::vector<double>& forces) {
+  const MeanError m = mean_error(forces);
+  return {m.mean, ratio(m.deviation, m.mean)};
+}
+
+double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b) {
+  if (a.empty() || b.empty()) return kNaN;
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  double worst = 0.0;
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    const double at = std::min(a[i], b[j]);
+    while (i < a.size() && a[i] <= at) ++i;
+    while (j < b.size() && b[j] <= at) ++j;
+    worst = std::max(worst, std::abs(static_cast<double>(i) / static_cast<double>(a.size()) -
+                                     static_cast<double>(j) / static_cast<double>(b.size())));
+  }
+  return worst;
+}
+
+std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves) {
+  std::vector<EngineScore> scores;
+  for (const MacroCurve& first : curves) {
+    const auto known = [&](const EngineScore& s) { return s.engine == first.engine; };
+    if (std::none_of(scores.begin(), scores.end(), known)) scores.push_back(score_of(curves, first.engine));
+  }
+  return scores;
+}
+
+ScoreTable score_table(const std::vector<EngineScore>& scores) {
+  ScoreTable table;
+  table.header = {"engine", "samples",        "axial stress [Pa]", "lateral/axial",       "coordination",
+                  "fabric", "mean force [N]", "force variation",   "contact evaluations", "seconds"};
+  for (const char* twin : {"shelled", "free"})
+    for (const char* what :
+         {"stress error", "end stress ratio", "deviator error", "lateral/axial difference", "coordination difference",
+          "fabric difference", "mean force ratio", "force KS distance", "fewer evaluations", "faster"})
+      table.header.push_back(fmt::format("{}: {}", twin, what));
+  for (const EngineScore& s : scores) {
+    std::vector<std::string> row{s.engine, std::to_string(s.samples)};
+    for (const MeanError* m :
+         {&s.axial, &s.lateral_ratio, &s.coordination, &s.fabric, &s.force_mean, &s.force_variation})
+      row.push_back(cell(*m));
+    row.push_back(cell(s.contact_evaluations));
+    row.push_back(cell(s.seconds));
+    add_cells(s.shelled, row);
+    add_cells(s.free, row);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace softgrain

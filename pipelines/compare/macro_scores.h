@@ -1,0 +1,59 @@
+// What every engine of one macro scene got right and what it cost, against both resolved twins.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/data/macro_result.h"
+#include "pipelines/compare/statistics.h"
+
+namespace softgrain {
+
+/// Differences of one engine from one twin, over the samples that both ran usably.
+struct TwinErrors {
+  MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference
+  MeanError axial_end;           ///< axial stress over that of the twin, at the end
+  MeanError deviator;            ///< shear: relative L2 difference of axial minus x stress after the preload
+  MeanError lateral_ratio;       ///< lateral over axial stress at the end, minus that of the twin
+  MeanError coordination;        ///< of bodies at the end, minus that of the twin
+  MeanError fabric;              ///< of bodies at the end, minus that of the twin
+  MeanError force_mean;          ///< mean contact force over that of the twin
+  MeanError force_distance;      ///< Kolmogorov-Smirnov distance of the forces, each over its mean
+  double speedup_seconds = 0.0;  ///< twin over engine, summed over samples; NaN when not recorded
+  double speedup_evaluations = 0.0;
+};
+
+struct EngineScore {
+  std::string engine;
+  std::size_t samples = 0;           ///< usable
+  MeanError axial;                   ///< stress at the end [Pa]
+  MeanError lateral_ratio;           ///< lateral over axial stress at the end
+  MeanError coordination;            ///< of bodies at the end
+  MeanError fabric;                  ///< of bodies at the end
+  MeanError force_mean;              ///< of contacts between bodies at the end [N]
+  MeanError force_variation;         ///< their standard deviation over their mean
+  double contact_evaluations = 0.0;  ///< per sample
+  double seconds = 0.0;              ///< per sample
+  TwinErrors shelled;                ///< against the shelled twin; empty means (n = 0) when there is none
+  TwinErrors free;
+};
+
+/// One score per engine, in the order in which engines first appear. Unusable curves count nowhere; differences that
+/// cannot be had (no twin, zero stress) are left out of the means.
+std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves);
+
+/// Mean and coefficient of variation (sample deviation over mean); NaN without forces.
+std::pair<double, double> mean_and_variation(const std::vector<double>& forces);
+
+/// Largest difference of the cumulative distributions of two samples of values; NaN when one is empty.
+double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b);
+
+/// Column names and cells of the score table, the same for Markdown, CSV and the report. Values as plain numbers.
+struct ScoreTable {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+ScoreTable score_table(const std::vector<EngineScore>& scores);
+
+}  // namespace softgrain
