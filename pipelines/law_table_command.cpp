@@ -18,10 +18,12 @@ namespace softgrain {
 
 namespace {
 
+constexpr std::int64_t kVariantPackings = 8;
+
 /// The same measurement on looser or denser packings.
 struct Variant {
   SoftParticleSpec spec;
-  std::int64_t packings_max = 0;
+  std::int64_t packings = 0;
 };
 
 struct LawTableScene {
@@ -35,7 +37,7 @@ Variant read_variant(const SceneTable& t, const CrowdSetup& base) {
   Variant v{base.spec, 0};
   v.spec.beta = t.number("beta", Unit::none, Range::positive(), v.spec.beta);
   v.spec.trials = t.count("trials", 1, 1000000000000, v.spec.trials);
-  v.packings_max = t.count("packings_max", base.packings_min, base.packings_max, base.packings_min);
+  v.packings = t.count("packings", 2, base.packings_max, std::min(base.packings_min, kVariantPackings));
   if (v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
     t.reject("beta", "a variant needs another beta or another number of trials than [packing]");
   return v;
@@ -67,7 +69,7 @@ LawTableScene read_law_table(const Scene& scene) {
 CrowdSetup setup_of(const Variant& variant, const CrowdSetup& base) {
   CrowdSetup setup = base;
   setup.spec = variant.spec;
-  setup.packings_max = variant.packings_max;
+  setup.packings_min = setup.packings_max = variant.packings;
   std::erase_if(setup.configurations, [&](const CrowdConfiguration& c) {
     const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
                                      [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
@@ -97,6 +99,10 @@ nlohmann::json estimate_json(const Estimate& e) {
   return {{"value", e.value}, {"standard_error", e.standard_error}, {"low", e.low}, {"high", e.high}};
 }
 
+nlohmann::json slide_json(const SlideLaw& s) {
+  return {{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
+}
+
 nlohmann::json entry_json(const LawTableEntry& entry) {
   nlohmann::json out{{"solid_fraction", entry.solid_fraction},
                      {"packings", entry.packings},
@@ -104,8 +110,9 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
                      {"volume_max", entry.volume_max},
                      {"overlap_max", entry.overlap_max},
                      {"grain_overlap_max", entry.grain_overlap_max},
-                     {"kt_ratio", estimate_json(entry.kt_ratio)},
-                     {"friction", estimate_json(entry.friction)},
+                     {"slide_plane", slide_json(entry.slide_plane)},
+                     {"slide_solid", slide_json(entry.slide_solid)},
+                     {"slide_soft", slide_json(entry.slide_soft)},
                      {"retreat", estimate_json(entry.retreat)}};
   for (const CrowdLaw& law : entry.laws)
     out["laws"].push_back({{"form", law.form},

@@ -138,7 +138,7 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& form, const
   const CrowdModel model = crowd_model(*entry.find(form));
   const RangeCheck check(entry, form);
   return {form,
-          {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_solid, laws.soft_soft},
+          {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft},
           [=](const System3& s) {
             const std::string note = check.note(s, model.form);
             return remark + (remark.empty() || note.empty() ? "" : "; ") + note;
