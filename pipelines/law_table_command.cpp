@@ -143,7 +143,8 @@ void add_entry(LawTableRun& run, const CrowdMeasurements& data, const LawTableSc
   fit.seed = seed;
   run.table.entries.push_back(fit_crowd_laws(data, fit));
   run.usable = run.usable && all_converged(data);
-  for (const std::string& r : crowd_remarks(data, setup.crowd.target)) run.remarks.push_back(r);
+  for (const std::string& r : crowd_remarks(data, setup.crowd.target))
+    run.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", run.table.entries.back().solid_fraction, r));
   for (const CrowdLaw& law : run.table.entries.back().laws) {
     if (law.status == "good") continue;
     run.usable = run.usable && law.form != run.table.entries.back().best;

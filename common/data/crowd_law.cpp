@@ -13,7 +13,7 @@ namespace softgrain {
 
 namespace {
 
-/// One entry alone serves soft particles whose solid fraction differs from its own by less than this.
+/// An entry serves soft particles whose solid fraction differs from its own by less than this: packings scatter by it.
 constexpr double kSameFraction = 0.02;
 
 /// A parameter of one law along the entries, as a curve over solid fraction.
@@ -113,13 +113,9 @@ const CrowdLaw* LawTableEntry::find(const std::string& form) const {
 
 LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark) {
   if (table.entries.empty()) throw BadInput("law table: it has no entries");
-  double low = table.entries.front().solid_fraction;
-  double high = table.entries.back().solid_fraction;
-  if (low == high) {
-    low -= kSameFraction;
-    high += kSameFraction;
-  }
-  if (solid_fraction < low || solid_fraction > high) {
+  const double low = table.entries.front().solid_fraction;
+  const double high = table.entries.back().solid_fraction;
+  if (solid_fraction < low - kSameFraction || solid_fraction > high + kSameFraction) {
     const std::string problem =
         fmt::format("solid fraction {:.3f} of the soft particles is outside the law table ({:.3f} to {:.3f})",
                     solid_fraction, low, high);

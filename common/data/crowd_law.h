@@ -53,7 +53,7 @@ struct CrowdLaw {
 
 /// How one kind of neighbour slides on a soft particle: a spring up to the Coulomb limit.
 struct SlideLaw {
-  Estimate kt_ratio;  ///< kt/kn, kt the secant at half the limit
+  Estimate kt_ratio;  ///< kt/kn, kt the secant at a slide of pi Rs/180 (1 degree)
   Estimate friction;  ///< mu_soft: largest tangential over normal force of the measured slides
 };
 
@@ -93,8 +93,8 @@ void save_law_table(const LawTable& table, const std::string& toml_path,
 LawTable load_law_table(const std::string& toml_path);
 
 /// The entry at a solid fraction: each parameter along a monotone curve through the entries. Entries must agree in
-/// material (nu, mu) and in the law of sizes. Outside the range: BadInput, or the nearest end with a remark. One entry
-/// serves within 0.02 of its own solid fraction.
+/// material (nu, mu) and in the law of sizes. The ends serve 0.02 beyond themselves; further out: BadInput, or the
+/// nearest end with a remark.
 LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark);
 
 }  // namespace softgrain
