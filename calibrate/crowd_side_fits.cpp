@@ -54,7 +54,8 @@ bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& ou
   if (before == nullptr || first == nullptr) return false;
   const double kn = normal_stiffness(model, *c.configuration, before->overlap);
   if (!(kn > 0.0)) return false;
-  out.kt_ratio = (first->tangential - before->tangential) / first->slide / kn;
+  // Near the onset scatter may turn the sign; a card holds no negative stiffness.
+  out.kt_ratio = std::max((first->tangential - before->tangential) / first->slide / kn, 0.0);
   return true;
 }
 
@@ -105,7 +106,7 @@ void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, 
   std::vector<double> friction;
   std::vector<double> retreat;
   for (const CrowdStates& c : states) {
-    if (c.states.empty() || !c.all_of(PartnerKind::plane)) continue;
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
     SlideResult slide;
     if (slide_result(c, model, slide)) {
       kt.push_back(slide.kt_ratio);

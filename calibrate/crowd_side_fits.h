@@ -10,7 +10,8 @@
 namespace softgrain {
 
 /// kt/kn (initial slope of the sliding force over the law's normal stiffness), mu_soft (largest tangential over normal
-/// force) and s of the unloading branch, as means over the configurations that slide or unload, errors from their
+/// force) and s of the unloading branch, as means over the configurations of planes that slide or unload
+/// and are not held out, errors from their
 /// scatter. Without such configurations: kt/kn 0.3, mu_soft the friction of the grains, s = 1, all with infinite error.
 void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry);
 

@@ -86,8 +86,8 @@ void save_law_table(const LawTable& table, const std::string& toml_path,
 LawTable load_law_table(const std::string& toml_path);
 
 /// The entry at a solid fraction: each parameter along a monotone curve through the entries. Entries must agree in
-/// material (nu, mu) and in the law of sizes. Outside the range: BadInput, or the nearest end with a remark. One entry
-/// serves within 0.02 of its own solid fraction.
+/// material (nu, mu), in the law of sizes and in the neighbours. The ends serve 0.02 beyond their own solid fractions;
+/// outside that: BadInput, or the nearest end with a remark.
 LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark);
 
 }  // namespace softgrain
