@@ -39,24 +39,57 @@ struct SlideResult {
   double friction = 0.0;
 };
 
-/// From the state before the slide and those along it; false when the configuration does not slide.
+/// Tangential over normal force on the first neighbour, net of what was there before the slide.
+double drag(const CrowdState& s, const CrowdState& before) {
+  return s.mean[0] > 0.0 ? (s.tangential - before.tangential) / s.mean[0] : 0.0;
+}
+
+/// The slide at which `wanted` is first reached, linear between recorded states.
+double slide_at(const std::vector<const CrowdState*>& along, const CrowdState& before, double wanted) {
+  double last_slide = 0.0;
+  double last = 0.0;
+  for (const CrowdState* s : along) {
+    const double now = drag(*s, before);
+    if (now >= wanted) return last_slide + (s->slide - last_slide) * (wanted - last) / (now - last);
+    last_slide = s->slide;
+    last = now;
+  }
+  return last_slide;
+}
+
+/// From the state before the slide and those along it; false when the configuration does not slide, or nothing holds it
+/// back.
 bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& out) {
   const CrowdState* before = nullptr;
-  const CrowdState* first = nullptr;
+  std::vector<const CrowdState*> along;
   for (const CrowdState& s : c.states) {
-    if (s.slide == 0.0) {
+    if (s.slide == 0.0)
       before = &s;
-      continue;
-    }
-    if (first == nullptr) first = &s;
-    if (s.mean[0] > 0.0) out.friction = std::max(out.friction, s.tangential / s.mean[0]);
+    else if (before != nullptr)
+      along.push_back(&s);
   }
-  if (before == nullptr || first == nullptr) return false;
+  if (along.empty()) return false;
+  for (const CrowdState* s : along) out.friction = std::max(out.friction, drag(*s, *before));
   const double kn = normal_stiffness(model, *c.configuration, before->overlap);
-  if (!(kn > 0.0)) return false;
-  // Near the onset scatter may turn the sign; a card holds no negative stiffness.
-  out.kt_ratio = std::max((first->tangential - before->tangential) / first->slide / kn, 0.0);
+  const double half = slide_at(along, *before, 0.5 * out.friction);
+  if (!(kn > 0.0) || !(out.friction > 0.0) || !(half > 0.0)) return false;
+  out.kt_ratio = 0.5 * out.friction * before->mean[0] / half / kn;
   return true;
+}
+
+/// Means over all configurations of one kind of neighbour that slide; `fallback` when there is none.
+SlideLaw slide_law(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind,
+                   const SlideLaw& fallback) {
+  std::vector<double> kt;
+  std::vector<double> friction;
+  for (const CrowdStates& c : states) {
+    SlideResult slide;
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(kind) || !slide_result(c, model, slide)) continue;
+    kt.push_back(slide.kt_ratio);
+    friction.push_back(slide.friction);
+  }
+  if (kt.empty()) return fallback;
+  return {mean_of(kt, 0.0), mean_of(friction, 0.0)};
 }
 
 /// States of the retreat that follows the deepest one, every neighbour going back.
@@ -102,21 +135,16 @@ bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
 }  // namespace
 
 void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry) {
-  std::vector<double> kt;
-  std::vector<double> friction;
+  const SlideLaw unknown{mean_of({}, 0.3), mean_of({}, entry.spec.friction)};
+  entry.slide_plane = slide_law(states, model, PartnerKind::plane, unknown);
+  entry.slide_solid = slide_law(states, model, PartnerKind::solid, entry.slide_plane);
+  entry.slide_soft = slide_law(states, model, PartnerKind::soft, entry.slide_solid);
   std::vector<double> retreat;
   for (const CrowdStates& c : states) {
-    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
-    SlideResult slide;
-    if (slide_result(c, model, slide)) {
-      kt.push_back(slide.kt_ratio);
-      friction.push_back(slide.friction);
-    }
     double s = 1.0;
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
     if (retreat_result(c, model, s)) retreat.push_back(s);
   }
-  entry.kt_ratio = mean_of(kt, 0.3);
-  entry.friction = mean_of(friction, entry.spec.friction);
   entry.retreat = mean_of(retreat, 1.0);
 }
 

@@ -203,6 +203,10 @@ std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
   return fmt::format("{} neighbours of ratio {:.3g} to {:.3g}", to_string(kind), rows.front().ratio, rows.back().ratio);
 }
 
+std::string slide_text(const SlideLaw& slide, PartnerKind kind) {
+  return fmt::format("{:.3g} and {:.3g} ({})", slide.friction.value, slide.kt_ratio.value, to_string(kind));
+}
+
 void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
   facts["laws"].push_back({{"form", law.form},
                            {"status", law.status},
@@ -226,9 +230,10 @@ void check_entry(const LawTableEntry& e, Findings& out) {
       "    valid up to a lost volume of {:.3f} and an overlap of {:.3f} Rs with a plane, where grains overlap by "
       "{:.2f} of "
       "the smaller radius\n"
-      "    kt/kn = {:.3g}, mu_soft = {:.3g}, unloading {:.3g} times as steep\n",
+      "    unloading {:.3g} times as steep; friction limit and kt/kn: {}, {}, {}\n",
       e.solid_fraction, e.solid_fraction_error, e.packings, e.relaxation, e.spec.poisson_ratio, e.spec.friction,
-      e.volume_max, e.overlap_max, e.grain_overlap_max, e.kt_ratio.value, e.friction.value, e.retreat.value);
+      e.volume_max, e.overlap_max, e.grain_overlap_max, e.retreat.value, slide_text(e.slide_plane, PartnerKind::plane),
+      slide_text(e.slide_solid, PartnerKind::solid), slide_text(e.slide_soft, PartnerKind::soft));
   for (const CrowdLaw& law : e.laws) check_law(e, law, facts, out.lines);
   out.facts["entries"].push_back(facts);
 }

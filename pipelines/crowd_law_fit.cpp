@@ -35,6 +35,10 @@ nlohmann::json estimate_json(const Estimate& e) {
   return {{"value", e.value}, {"standard_error", e.standard_error}, {"low", e.low}, {"high", e.high}};
 }
 
+nlohmann::json slide_json(const SlideLaw& s) {
+  return {{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
+}
+
 nlohmann::json law_json(const CrowdLaw& law) {
   return {{"form", law.form},
           {"status", law.status},
@@ -57,8 +61,9 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
                      {"volume_max", entry.volume_max},
                      {"overlap_max", entry.overlap_max},
                      {"grain_overlap_max", entry.grain_overlap_max},
-                     {"kt_ratio", estimate_json(entry.kt_ratio)},
-                     {"friction", estimate_json(entry.friction)},
+                     {"slide_plane", slide_json(entry.slide_plane)},
+                     {"slide_solid", slide_json(entry.slide_solid)},
+                     {"slide_soft", slide_json(entry.slide_soft)},
                      {"retreat", estimate_json(entry.retreat)}};
   for (const CrowdLaw& law : entry.laws) out["laws"].push_back(law_json(law));
   return out;

@@ -17,10 +17,12 @@ namespace softgrain {
 
 namespace {
 
+constexpr std::int64_t kVariantPackings = 8;
+
 /// The same measurement on looser or denser packings.
 struct Variant {
   SoftParticleSpec spec;
-  std::int64_t packings_max = 0;
+  std::int64_t packings = 0;
 };
 
 struct LawTableScene {
@@ -34,7 +36,7 @@ Variant read_variant(const SceneTable& t, const CrowdSetup& base) {
   Variant v{base.spec, 0};
   v.spec.beta = t.number("beta", Unit::none, Range::positive(), v.spec.beta);
   v.spec.trials = t.count("trials", 1, 1000000000000, v.spec.trials);
-  v.packings_max = t.count("packings_max", base.packings_min, base.packings_max, base.packings_min);
+  v.packings = t.count("packings", 2, base.packings_max, std::min(base.packings_min, kVariantPackings));
   if (v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
     t.reject("beta", "a variant needs another beta or another number of trials than [packing]");
   return v;
@@ -59,7 +61,7 @@ LawTableScene read_law_table(const Scene& scene) {
 CrowdSetup setup_of(const Variant& variant, const CrowdSetup& base) {
   CrowdSetup setup = base;
   setup.spec = variant.spec;
-  setup.packings_max = variant.packings_max;
+  setup.packings_min = setup.packings_max = variant.packings;
   std::erase_if(setup.configurations, [&](const CrowdConfiguration& c) {
     const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
                                      [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });

@@ -151,7 +151,7 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, con
   const RangeCheck check(entry, form);
   return {form,
           form,
-          {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_solid, laws.soft_soft},
+          {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft},
           [=](const System3& s) {
             const std::string note = check.note(s, model.form);
             return remark + (remark.empty() || note.empty() ? "" : "; ") + note;

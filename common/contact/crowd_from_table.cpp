@@ -26,16 +26,22 @@ CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const Cro
   law.form = model.form;
   law.partner = model.solid;
   law.modulus = choices.modulus;
-  law.friction = choices.friction >= 0.0 ? choices.friction : entry.friction.value;
-  law.kt_ratio = entry.kt_ratio.value;
   law.retreat = entry.retreat.value;
+  const auto slides = [&](const SlideLaw& slide) {
+    law.friction = choices.friction >= 0.0 ? choices.friction : slide.friction.value;
+    law.kt_ratio = slide.kt_ratio.value;
+  };
   CrowdLaws out;
+  slides(entry.slide_plane);
+  out.soft_plane = law;
+  slides(entry.slide_solid);
   out.soft_solid = law;
   law.i_is_soft = false;
   law.j_is_soft = true;
   out.solid_soft = law;
   law.i_is_soft = true;
   law.partner = model.soft;
+  slides(entry.slide_soft);
   out.soft_soft = law;
   return out;
 }

@@ -25,7 +25,8 @@ struct CrowdChoices {
 
 /// The laws of soft particles against solid grains in either order, against planes and shells, and among themselves.
 struct CrowdLaws {
-  AnyLaw soft_solid;  ///< body i is the soft one; also planes and the inside of a parent's shell
+  AnyLaw soft_plane;  ///< body i is the soft one: planes and the inside of a parent's shell
+  AnyLaw soft_solid;  ///< body i is the soft one
   AnyLaw solid_soft;  ///< body j is the soft one
   AnyLaw soft_soft;
 };

@@ -111,8 +111,12 @@ LawTableEntry interpolate(const LawTable& table, double x) {
   });
   LawTableEntry out = *nearest;
   out.solid_fraction = x;
-  out.kt_ratio = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.kt_ratio; });
-  out.friction = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.friction; });
+  for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
+    (out.*slide).kt_ratio =
+        along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).kt_ratio; });
+    (out.*slide).friction =
+        along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).friction; });
+  }
   out.retreat = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.retreat; });
   out.volume_max = along.value([](const LawTableEntry& e) { return e.volume_max; });
   out.overlap_max = along.value([](const LawTableEntry& e) { return e.overlap_max; });

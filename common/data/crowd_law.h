@@ -51,6 +51,12 @@ struct CrowdLaw {
   [[nodiscard]] std::vector<PartnerRow> rows(PartnerKind kind) const;
 };
 
+/// How one kind of neighbour slides on a soft particle: a spring up to the Coulomb limit.
+struct SlideLaw {
+  Estimate kt_ratio;  ///< kt/kn, kt the secant at half the limit
+  Estimate friction;  ///< mu_soft: largest tangential over normal force of the measured slides
+};
+
 /// All laws of one kind of packing.
 struct LawTableEntry {
   SoftParticleSpec spec;
@@ -61,9 +67,10 @@ struct LawTableEntry {
   double volume_max = 0.0;         ///< validity: largest equivalent volume S among the fitted states
   double overlap_max = 0.0;        ///< and overlap with a plane, h/Rs
   double grain_overlap_max = 0.0;  ///< largest overlap of grains over the smaller radius in that range
-  Estimate kt_ratio;               ///< kt/kn
-  Estimate friction;               ///< mu_soft
-  Estimate retreat;                ///< s of the unloading branch
+  SlideLaw slide_plane;
+  SlideLaw slide_solid;
+  SlideLaw slide_soft;
+  Estimate retreat;  ///< s of the unloading branch
   std::vector<CrowdLaw> laws;
   std::string best;  ///< the form that cross-validation prefers
 

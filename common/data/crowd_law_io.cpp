@@ -32,6 +32,14 @@ constexpr std::array<Parameter, 6> kParameters{{{"a", &CrowdLaw::a},
                                                 {"m1", &CrowdLaw::m1},
                                                 {"m2", &CrowdLaw::m2}}};
 
+struct SlideName {
+  const char* key;
+  SlideLaw LawTableEntry::*law;
+};
+constexpr std::array<SlideName, 3> kSlides{{{"slide_plane", &LawTableEntry::slide_plane},
+                                            {"slide_solid", &LawTableEntry::slide_solid},
+                                            {"slide_soft", &LawTableEntry::slide_soft}}};
+
 void write_head(Out out, const LawTable& table, const Provenance& provenance) {
   fmt::format_to(out, "# Laws of soft particles with several contacts: fitted parameters and how well they predict.\n");
   fmt::format_to(out, "# The forces they stand for are tabulated in the .h5 file of the same name.\n");
@@ -86,8 +94,11 @@ void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "overlap_max = {}  # and overlap with a plane, h/Rs\n", real(e.overlap_max));
   fmt::format_to(out, "grain_overlap_max = {}  # of grains over the smaller radius in that range\n",
                  real(e.grain_overlap_max));
-  fmt::format_to(out, "kt_ratio = {}  # kt/kn\nfriction = {}  # mu_soft\nretreat = {}  # s of the unloading branch\n",
-                 estimate_text(e.kt_ratio), estimate_text(e.friction), estimate_text(e.retreat));
+  fmt::format_to(out, "retreat = {}  # s of the unloading branch\n", estimate_text(e.retreat));
+  for (const SlideName& slide : kSlides)
+    fmt::format_to(out,
+                   "\n[entry.{}]  # kt/kn and mu_soft against this kind of neighbour\nkt_ratio = {}\nfriction = {}\n",
+                   slide.key, estimate_text((e.*slide.law).kt_ratio), estimate_text((e.*slide.law).friction));
   fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
   for (const CrowdLaw& law : e.laws) write_law(out, law);
 }
@@ -144,8 +155,11 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
   e.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
   e.grain_overlap_max = t.number("grain_overlap_max", Unit::none, Range::not_negative());
-  e.kt_ratio = read_estimate_text(t.table("kt_ratio"), Range::not_negative());
-  e.friction = read_estimate_text(t.table("friction"), Range::not_negative());
+  for (const SlideName& slide : kSlides) {
+    const SceneTable of_kind = t.table(slide.key);
+    (e.*slide.law).kt_ratio = read_estimate_text(of_kind.table("kt_ratio"), Range::not_negative());
+    (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::not_negative());
+  }
   e.retreat = read_estimate_text(t.table("retreat"), Range{1.0, HUGE_VAL, false, false});
   e.spec = read_spec_text(t.table("measurement"));
   for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));

@@ -124,10 +124,13 @@ std::string parameter_table(const LawTableEntry& entry) {
 std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeasurements>& crowd) {
   std::string body = paragraph(fmt::format(
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Best by cross-validation: the {} law. Measured up to h/Rs = {:.2f} "
-      "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. kt/kn = "
-      "{:.2f}, friction limit {:.2f}, unloading {:.2f} times as stiff as loading.",
+      "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Friction "
+      "limit and kt/kn: {:.2f}, {:.2f} against planes, {:.2f}, {:.2f} against solid spheres, {:.2f}, {:.2f} among soft "
+      "particles. Unloading is {:.2f} times as stiff as loading.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, entry.best, entry.overlap_max, entry.volume_max,
-      entry.grain_overlap_max, entry.kt_ratio.value, entry.friction.value, entry.retreat.value));
+      entry.grain_overlap_max, entry.slide_plane.friction.value, entry.slide_plane.kt_ratio.value,
+      entry.slide_solid.friction.value, entry.slide_solid.kt_ratio.value, entry.slide_soft.friction.value,
+      entry.slide_soft.kt_ratio.value, entry.retreat.value));
   body += parameter_table(entry) + error_table(entry);
   if (!crowd) return body;
   const std::vector<CrowdStates> states = average_states(*crowd);
