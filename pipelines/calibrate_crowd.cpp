@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/contact/crowd_table_file.h"
 #include "common/io/hdf5_file.h"
 #include "pipelines/crowd_law_fit.h"
 #include "pipelines/crowd_summary.h"

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "common/contact/crowd_table_file.h"
 #include "pipelines/crowd_law_fit.h"
 #include "pipelines/crowd_plan.h"
 #include "pipelines/crowd_stage.h"
@@ -47,7 +48,13 @@ LawTableScene read_law_table(const Scene& scene) {
   (void)root.choice("kind", {"law-table"});
   LawTableScene out{
       root.text("title", ""), read_crowd_setup(root), {}, read_crowd_fit(root.table_or_empty("calibrate"))};
-  for (const SceneTable& t : root.tables("variant")) out.variants.push_back(read_variant(t, out.crowd));
+  for (const SceneTable& t : root.tables("variant")) {
+    out.variants.push_back(read_variant(t, out.crowd));
+    if (out.variants.back().packings < out.fit.min_packings)
+      t.reject("packings", "fewer than calibrate.min_packings: there would be no fit");
+  }
+  if (out.crowd.packings_max < out.fit.min_packings)
+    root.table_or_empty("crowd").reject("packings_max", "below calibrate.min_packings: there would be no fit");
   const auto& all = out.crowd.configurations;
   if (std::none_of(all.begin(), all.end(), [](const CrowdConfiguration& c) {
         return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;

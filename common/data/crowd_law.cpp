@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -73,9 +72,6 @@ void require_alike(const LawTable& table) {
   }
 }
 
-constexpr std::array kShapeParameters{&CrowdLaw::a,  &CrowdLaw::b,  &CrowdLaw::delta,
-                                      &CrowdLaw::m0, &CrowdLaw::m1, &CrowdLaw::m2};
-
 /// A law between entries is as good as the worst of them.
 void take_worst_status(const LawTable& table, std::size_t k, CrowdLaw& law) {
   const auto bad = [&](const char* status) {
@@ -90,8 +86,8 @@ void take_worst_status(const LawTable& table, std::size_t k, CrowdLaw& law) {
 }
 
 void interpolate_law(const AlongEntries& along, std::size_t k, CrowdLaw& law) {
-  for (const auto member : kShapeParameters)
-    law.*member = along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].*member; });
+  for (const CrowdParameterName& p : kCrowdParameters)
+    law.*p.estimate = along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].*p.estimate; });
   for (std::size_t r = 0; r < law.partners.size(); ++r) {
     PartnerRow& row = law.partners[r];
     row.weight =
