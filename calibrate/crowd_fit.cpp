@@ -111,14 +111,27 @@ std::vector<std::vector<double>> bootstrap_form(const CrowdMeasurements& data, c
   return columns;
 }
 
-/// A fitted number with covariance error and, where there are replicates, their interval.
+double scatter(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0.0;
+  double square = 0.0;
+  for (const double v : values) sum += v;
+  for (const double v : values) square += (v - sum / n) * (v - sum / n);
+  return std::sqrt(square / (n - 1.0));
+}
+
+/// A fitted number with its error and, where there are replicates, their interval. The covariance of a fit to
+/// neighbours takes the law of planes for exact; replicates, which fit both anew, do not: the larger error holds.
 Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<double>& replicates, bool logarithm) {
+  constexpr std::size_t kEnough = 10;
   const double value = fit.parameters[j];
-  const double sd = fit.standard_deviations.empty() ? 0.0 : fit.standard_deviations[j];
+  double sd = fit.standard_deviations.empty() ? 0.0 : fit.standard_deviations[j];
   auto [low, high] = interval95(replicates);
-  if (replicates.size() < 10) {
+  if (replicates.size() < kEnough) {
     low = value - 1.96 * sd;
     high = value + 1.96 * sd;
+  } else {
+    sd = std::max(sd, scatter(replicates));
   }
   if (!logarithm) return {value, sd, low, high};
   return {std::exp(value), std::exp(value) * sd, std::exp(low), std::exp(high)};
@@ -322,9 +335,10 @@ LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOption
   entry.relaxation = data.relaxation;
   describe_packings(data, entry);
   for (const char* form : kForms) entry.laws.push_back(make_law(data, states, form, options));
-  const auto best = std::min_element(entry.laws.begin(), entry.laws.end(), [](const CrowdLaw& a, const CrowdLaw& b) {
-    return a.error_cross < b.error_cross;
-  });
+  // What the data do not determine is not preferred, however well it follows them.
+  const auto rank = [](const CrowdLaw& law) { return std::pair{law.status != "good", law.error_cross}; };
+  const auto best = std::min_element(entry.laws.begin(), entry.laws.end(),
+                                     [&](const CrowdLaw& a, const CrowdLaw& b) { return rank(a) < rank(b); });
   entry.best = best->form;
   const CrowdModel model = crowd_model(*best);
   describe_range(states, model, entry);

@@ -87,7 +87,7 @@ SlideLaw slide_law(const std::vector<CrowdStates>& states, const CrowdModel& mod
   std::vector<double> friction;
   for (const CrowdStates& c : states) {
     SlideResult slide;
-    if (c.states.empty() || !c.all_of(kind) || !slide_result(c, model, slide)) continue;
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(kind) || !slide_result(c, model, slide)) continue;
     kt.push_back(slide.kt_ratio);
     friction.push_back(slide.friction);
   }
@@ -145,7 +145,8 @@ void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, 
   std::vector<double> retreat;
   for (const CrowdStates& c : states) {
     double s = 1.0;
-    if (!c.states.empty() && c.all_of(PartnerKind::plane) && retreat_result(c, model, s)) retreat.push_back(s);
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
+    if (retreat_result(c, model, s)) retreat.push_back(s);
   }
   entry.retreat = mean_of(retreat, 1.0);
 }

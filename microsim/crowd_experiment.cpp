@@ -421,7 +421,11 @@ CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguratio
                            const InnerLaws* laws) {
   require_configuration(configuration, others.size());
   bool inner = !centre.inner.empty();
-  for (const SoftContent* other : others) inner = inner || !other->inner.empty();
+  for (const SoftContent* other : others) {
+    inner = inner || !other->inner.empty();
+    if (!other->inner_packings.empty())
+      throw BadInput(configuration.name + ": inner soft particles can hold their grains in the centre only");
+  }
   if (inner && laws == nullptr) throw BadInput(configuration.name + ": inner soft particles need laws");
   CrowdExperiment e;
   e.spec = spec;

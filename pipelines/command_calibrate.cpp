@@ -1,4 +1,5 @@
 // softgrain calibrate DATA.h5...: fits the contact laws to measurements; writes law.toml, law.h5 and summary.json.
+// Files of crowd measurements: see calibrate_crowd.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "calibrate/merge_measurements.h"
 #include "calibrate/threshold_fit.h"
+#include "pipelines/calibrate_crowd.h"
 #include "pipelines/law_json.h"
 #include "pipelines/run_context.h"
 
@@ -90,6 +92,7 @@ std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
 }  // namespace
 
 ExitStatus command_calibrate(const CommonOptions& options) {
+  if (are_crowd_files(options.inputs)) return calibrate_crowd(options);
   const Scene settings = Scene::parse("", "calibrate", options.overrides);
   FitOptions fit = read_options(settings.root());
   const Measurements data = load_all(options.inputs);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iostream>
 
+#include "common/data/crowd_law.h"
 #include "common/data/crowd_measurements.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
@@ -20,6 +21,7 @@
 #include "pipelines/hierarchy_command.h"
 #include "pipelines/law_table_command.h"
 #include "pipelines/macro_comparison.h"
+#include "pipelines/named_laws.h"
 #include "pipelines/particles_check.h"
 #include "pipelines/pipeline_setup.h"
 #include "pipelines/run_context.h"
@@ -154,6 +156,8 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   } else if (kind == "macro") {
     (void)root.text("title", "");
     (void)root.text("law", "");
+    LawSources choices;
+    read_law_choices(root, choices);
     (void)root.count("seed", 0, 1000000000000, 1);
     (void)root.count("contents", 1, 100000, 7);
     const MacroSetup macro = read_macro_setup(root.table("macro"), SoftParticleSpec{});
@@ -186,6 +190,68 @@ void check_card(const std::string& path, Findings& out) {
                         to_string(law.kind), law.status, law.delta_min, law.delta_max, law.packings, law.max_overlap));
 }
 
+/// "0.712 to 0.745", or one number.
+std::string fractions_text(const LawTable& table) {
+  const double low = table.entries.front().solid_fraction;
+  const double high = table.entries.back().solid_fraction;
+  return low == high ? fmt::format("{:.3f}", low) : fmt::format("{:.3f} to {:.3f}", low, high);
+}
+
+std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
+  const std::vector<PartnerRow> rows = law.rows(kind);
+  if (rows.empty()) return fmt::format("no {} neighbours", to_string(kind));
+  return fmt::format("{} neighbours of ratio {:.3g} to {:.3g}", to_string(kind), rows.front().ratio, rows.back().ratio);
+}
+
+std::string slide_text(const SlideLaw& slide, PartnerKind kind) {
+  return fmt::format("{:.3g} and {:.3g} ({})", slide.friction.value, slide.kt_ratio.value, to_string(kind));
+}
+
+void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
+  facts["laws"].push_back({{"form", law.form},
+                           {"status", law.status},
+                           {"error_fitted", law.error_fitted},
+                           {"error_held_out", law.error_held_out},
+                           {"error_cross", law.error_cross}});
+  lines += fmt::format(
+      "    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {:.1f} % held out, {:.1f} % leaving "
+      "one out; {}, {}\n",
+      law.form, law.form == entry.best ? " (best)" : "", law.status, law.reason.empty() ? "" : " (" + law.reason + ")",
+      100.0 * law.error_fitted, 100.0 * law.error_held_out, 100.0 * law.error_cross,
+      partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
+}
+
+void check_entry(const LawTableEntry& e, Findings& out) {
+  json facts{
+      {"solid_fraction", e.solid_fraction}, {"packings", e.packings},       {"best", e.best},
+      {"volume_max", e.volume_max},         {"overlap_max", e.overlap_max}, {"grain_overlap_max", e.grain_overlap_max}};
+  out.lines += fmt::format(
+      "  solid fraction {:.4f} +- {:.4f}: {} packings, {} relaxation, grains of nu = {}, mu = {}\n"
+      "    valid up to a lost volume of {:.3f} and an overlap of {:.3f} Rs with a plane, where grains overlap by "
+      "{:.2f} of "
+      "the smaller radius\n"
+      "    unloading {:.3g} times as steep; friction limit and kt/kn: {}, {}, {}\n",
+      e.solid_fraction, e.solid_fraction_error, e.packings, e.relaxation, e.spec.poisson_ratio, e.spec.friction,
+      e.volume_max, e.overlap_max, e.grain_overlap_max, e.retreat.value, slide_text(e.slide_plane, PartnerKind::plane),
+      slide_text(e.slide_solid, PartnerKind::solid), slide_text(e.slide_soft, PartnerKind::soft));
+  for (const CrowdLaw& law : e.laws) check_law(e, law, facts, out.lines);
+  out.facts["entries"].push_back(facts);
+}
+
+void check_table(const std::string& path, Findings& out) {
+  const LawTable table = load_law_table(path);
+  out.add("kind", "law table",
+          fmt::format("law table: {} entries, solid fraction {}", table.entries.size(), fractions_text(table)));
+  for (const LawTableEntry& e : table.entries) check_entry(e, out);
+}
+
+void check_laws(const std::string& path, Findings& out) {
+  if (law_file_kind(path) == LawFileKind::table)
+    check_table(path, out);
+  else
+    check_card(path, out);
+}
+
 void check_data(const std::string& path, Findings& out) {
   const h5::Group root = h5::open_file(path);
   if (root.has("configurations")) {
@@ -216,8 +282,8 @@ void check_data(const std::string& path, Findings& out) {
   out.add("kind", "HDF5", "readable HDF5 file with " + names);
 }
 
-/// Law cards and scenes are both TOML; cards have a schema at the top.
-bool is_card(const std::string& path) { return Scene::load(path).root().has("schema"); }
+/// Laws and scenes are both TOML; cards and tables of laws have a schema at the top.
+bool holds_laws(const std::string& path) { return Scene::load(path).root().has("schema"); }
 
 }  // namespace
 
@@ -227,8 +293,8 @@ ExitStatus command_check(const CommonOptions& options) {
   Findings out;
   if (std::filesystem::path(path).extension() == ".h5")
     check_data(path, out);
-  else if (is_card(path))
-    check_card(path, out);
+  else if (holds_laws(path))
+    check_laws(path, out);
   else
     check_scene(path, options, out);
   out.facts["status"] = "good";

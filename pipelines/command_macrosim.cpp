@@ -1,6 +1,7 @@
-// softgrain macrosim: one macro scene with a law card, and its resolved twin when the scene asks for it.
+// softgrain macrosim: one macro scene with a law card or a law table, and its resolved twin when the scene asks for it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "pipelines/compare/compare.h"
@@ -16,7 +17,9 @@ namespace {
 std::string law_path(const Scene& scene, const SceneTable& root, const CommonOptions& options) {
   const std::string written = root.text("law", "");
   if (!options.law.empty()) return options.law;
-  if (written.empty()) root.reject("law", "no law card: give --law law.toml, or the key law in the scene");
+  if (written.empty())
+    root.reject("law",
+                "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
   return scene.resolve(written);
 }
 
@@ -30,37 +33,53 @@ std::string people_text(const std::vector<MacroCurve>& curves, const RunContext&
   return text + "report: " + context.path("report.html");
 }
 
-}  // namespace
+struct MacroScene {
+  std::string title;
+  std::uint64_t seed = 1;
+  std::string law_file;
+  LawSources law;
+  MacroSetup setup;
+  SoftParticleSpec spec;      ///< that the law was measured on, and of the contents of twins
+  std::int64_t contents = 7;  ///< number of different ones
+};
 
-ExitStatus command_macrosim(const CommonOptions& options) {
-  if (options.inputs.size() != 1) throw BadInput("macrosim: give one scene file");
-  const Scene scene = Scene::load(options.inputs[0], options.overrides);
+/// What the laws were measured on; of a table its first entry.
+const SoftParticleSpec& measured_spec(const LawSources& law) {
+  return law.card ? law.card->spec : law.table->entries.front().spec;
+}
+
+MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   const SceneTable root = scene.root();
   (void)root.choice("kind", {"macro"});
-  const std::string title = root.text("title", "");
-  const auto scene_seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-  const LawCard card = load_card(law_path(scene, root, options));
-  const MacroSetup setup = read_macro_setup(root.table("macro"), card.spec);
-  const std::int64_t contents_count = root.count("contents", 1, 100000, 7);
+  MacroScene out;
+  out.title = root.text("title", "");
+  out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  out.law_file = law_path(scene, root, options);
+  out.law = read_scene_law(root, out.law_file);
+  out.spec = measured_spec(out.law);
+  out.setup = read_macro_setup(root.table("macro"), out.spec);
+  out.contents = root.count("contents", 1, 100000, out.contents);
   root.finish();
-  const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(scene_seed);
-  const TaskStore store(context, scene, seed);
-  const auto contents =
-      !setup.twins.empty() ? make_contents(card.spec, contents_count, seed) : std::vector<ShellPacking>{};
-  std::vector<MacroCurve> curves;
-  context.guard(
-      [&] { curves = run_macro_stage(setup, card, contents, seed, store, context, context.provenance(scene, seed)); });
+  return out;
+}
 
+/// At the solid fraction of the contents, when there are any.
+NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& contents) {
+  double fraction = mean_solid_fraction(contents);
+  if (contents.empty() && scene.law.table) fraction = scene.law.table->entries.front().solid_fraction;
+  return scene_law(scene.law, scene.setup.spec, fraction, "law");
+}
+
+nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
+                         bool usable) {
   nlohmann::json summary;
-  const bool resolved = has_twin(setup, "shelled");
-  bool usable = true;
-  for (const MacroCurve& c : curves) usable = usable && c.usable;
+  const bool resolved = has_twin(scene.setup, "shelled");
   summary["status"] = usable ? "good" : "not usable";
-  summary["title"] = title;
+  summary["title"] = scene.title;
+  summary["law"] = {{"file", scene.law_file}, {"form", law.form}};
   summary["macro"] = macro_json(curves, "law");
   if (resolved) summary["resolved"] = macro_json(curves, "shelled");
-  if (has_twin(setup, "free")) summary["free"] = macro_json(curves, "free");
+  if (has_twin(scene.setup, "free")) summary["free"] = macro_json(curves, "free");
   if (resolved && usable) {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
     summary["comparison"] = {{"stress_error", c.axial_difference.mean},
@@ -68,10 +87,31 @@ ExitStatus command_macrosim(const CommonOptions& options) {
                              {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
   }
   summary["remarks"] = macro_remarks(curves);
+  return summary;
+}
+
+}  // namespace
+
+ExitStatus command_macrosim(const CommonOptions& options) {
+  if (options.inputs.size() != 1) throw BadInput("macrosim: give one scene file");
+  const Scene scene = Scene::load(options.inputs[0], options.overrides);
+  const MacroScene macro = read_macro_scene(scene, options);
+  const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(macro.seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  const TaskStore store(context, scene, seed);
+  const auto contents =
+      macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, seed);
+  const NamedLaws law = law_of(macro, contents);
+  std::vector<MacroCurve> curves;
+  context.guard([&] { curves = run_macro_stage(macro.setup, law, contents, seed, store, context, provenance); });
+
+  const bool usable = std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
+  nlohmann::json summary = summarise(macro, law, curves, usable);
   summary["files"] = {{"macro", context.path("macro.h5")},
                       {"initial", context.path("macro_initial.h5")},
                       {"report", context.path("report.html")}};
-  summary["provenance"] = provenance_json(context.provenance(scene, seed));
+  summary["provenance"] = provenance_json(provenance);
   context.finish(summary, people_text(curves, context));
   write_report(context.directory());
   store.clear();

@@ -80,8 +80,9 @@ bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const
                        const Provenance& provenance, PipelineResult& result) {
   std::string why;
   try {
-    result.curves = run_macro_stage(*setup.macro, result.card, result.measured.packings,
-                                    context.seed(setup.measure.seed), store, context, provenance);
+    const NamedLaws law = pair_law_of(result.card, setup.macro->spec, "law");
+    result.curves = run_macro_stage(*setup.macro, law, result.measured.packings, context.seed(setup.measure.seed),
+                                    store, context, provenance);
     return true;
   } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/contact/crowd_from_table.h"
+#include "common/contact/crowd_table_file.h"
 #include "pipelines/crowd_summary.h"
 #include "pipelines/hierarchy_check.h"
 #include "pipelines/hierarchy_level.h"

@@ -140,13 +140,12 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
   return curves;
 }
 
-std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card,
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
                                         const std::vector<ShellPacking>& contents, std::uint64_t seed,
                                         const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance) {
-  const std::vector<NamedLaws> laws{pair_law_of(card, setup.spec, "law")};
   const auto packings = make_macro_packings(setup, seed, context, provenance, "macro_initial.h5");
-  const auto curves = run_engines({setup, packings, contents, seed, "macro"}, laws, store, context);
+  const auto curves = run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context);
   save_macro(curves, context.path("macro.h5"), provenance);
   return curves;
 }

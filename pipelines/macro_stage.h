@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/shell_packing.h"
 #include "common/io/scene.h"
@@ -56,10 +55,9 @@ struct MacroRuns {
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
                                     const RunContext& context);
 
-/// Runs all samples with the laws of `card` (engine "law") and the twins asked for, filled with `contents`; saves
-/// DIR/macro.h5 and DIR/macro_initial.h5 (the common starting states). Throws BadInput when the card has no usable law
-/// for the scene.
-std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const LawCard& card,
+/// Runs all samples with `law` and the twins asked for, filled with `contents`; saves DIR/macro.h5 and
+/// DIR/macro_initial.h5 (the common starting states).
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
                                         const std::vector<ShellPacking>& contents, std::uint64_t seed,
                                         const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance);

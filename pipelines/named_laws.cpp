@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
@@ -135,13 +137,23 @@ void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
                     measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
 }
 
+/// Keys that choose among what a table offers.
+constexpr std::array kTableKeys{"form", "range", "mu", "unloading"};
+
+void read_table_choices(const SceneTable& t, LawSources& out) {
+  out.range = t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
+  if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
+  out.unloading = t.flag("unloading", false);
+}
+
 }  // namespace
 
-NamedLaws table_law_of(const LawSources& sources, const std::string& form, const MacroSpec& spec,
+NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, const MacroSpec& spec,
                        double solid_fraction) {
   std::string remark;
   const LawTableEntry entry = entry_at(*sources.table, solid_fraction, sources.range, remark);
   require_same_material(entry, spec);
+  const std::string form = wanted == "best" ? entry.best : wanted;
   CrowdChoices choices;
   choices.form = form;
   choices.modulus = spec.youngs_modulus;
@@ -152,6 +164,7 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& form, const
   const CrowdModel model = crowd_model(*entry.find(form));
   const RangeCheck check(entry, form);
   return {form,
+          form,
           {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft},
           tag_of(entry, sources, form),
           [=](const System3& s) {
@@ -164,8 +177,8 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
   const auto contact = [&](PairKind kind) {
     return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant);
   };
-  return {name, pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction), "",
-          [card](const System3& s) { return extrapolation_note(s, card); }};
+  return {name, "pair", pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction),
+          "", [card](const System3& s) { return extrapolation_note(s, card); }};
 }
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
@@ -181,10 +194,41 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
       law.reject("forms", "the " + form + " law needs a law table (key table)");
   }
   if (!out.table) out.forms = {"pair"};
-  out.range = law.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
-  if (law.has("mu")) out.friction = law.number("mu", Unit::none, Range::not_negative());
-  out.unloading = law.flag("unloading", false);
+  read_table_choices(law, out);
   return out;
+}
+
+LawFileKind law_file_kind(const std::string& path) {
+  const Scene file = Scene::load(path);
+  if (file.root().has("pair")) return LawFileKind::card;
+  if (file.root().has("entry")) return LawFileKind::table;
+  throw BadInput(path + ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]])");
+}
+
+void read_law_choices(const SceneTable& root, LawSources& out) {
+  out.forms = {root.choice("form", {"pair", "bag", "directional", "best"}, "best")};
+  read_table_choices(root, out);
+}
+
+LawSources read_scene_law(const SceneTable& root, const std::string& path) {
+  LawSources out;
+  read_law_choices(root, out);
+  if (law_file_kind(path) == LawFileKind::table) {
+    out.table = load_law_table(path);
+    return out;
+  }
+  out.card = load_card(path);
+  for (const char* key : kTableKeys)
+    if (root.has(key) && !(std::string(key) == "form" && out.forms.front() == "pair"))
+      root.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+  return out;
+}
+
+NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double solid_fraction, const std::string& name) {
+  if (sources.card) return pair_law_of(*sources.card, spec, name);
+  NamedLaws law = table_law_of(sources, sources.forms.front(), spec, solid_fraction);
+  law.name = name;
+  return law;
 }
 
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double solid_fraction) {

@@ -16,6 +16,7 @@ namespace softgrain {
 
 struct NamedLaws {
   std::string name;  ///< engine of the curves: "law" or "pair", "bag", "directional"
+  std::string form;  ///< "pair", "bag" or "directional"
   SoftLaws laws;
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
   /// What to say about the end of a run (left the range of the fit); empty text when nothing.
@@ -25,20 +26,38 @@ struct NamedLaws {
 /// The pair law of a card. Throws BadInput when the card has no usable law.
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name);
 
-/// Where a comparison takes its laws from: table [law] of the scene.
+/// Where a scene takes its laws from: table [law] of a comparison, keys of a macro scene.
 struct LawSources {
   std::optional<LawCard> card;    ///< pair law, as published
   std::optional<LawTable> table;  ///< bag and directional law, and the pair law when there is no card
-  std::vector<std::string> forms{"pair", "bag", "directional"};
-  RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
-  std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
-  bool unloading = false;                   ///< with the measured unloading branch
+  std::vector<std::string> forms{"pair", "bag", "directional"};  ///< one of them, or "best", for a macro scene
+  RangePolicy range = RangePolicy::reject;                       ///< of solid fractions outside the table
+  std::optional<double> friction;                                ///< mu_soft of the table's laws; empty: as measured
+  bool unloading = false;                                        ///< with the measured unloading branch
 };
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
-/// A law of a table at the solid fraction of the contents. Throws BadInput when the table has no such law, was measured
+/// What a file with laws holds.
+enum class LawFileKind { card, table };
+
+/// Tells them apart by content: a card has [[pair]], a table [[entry]]. Throws BadInput for anything else, FileTrouble.
+LawFileKind law_file_kind(const std::string& path);
+
+/// The one law of a macro scene: keys `form` (default the best of the table; a card has the pair law only), `range`,
+/// `mu` and `unloading` of `root`, which go with tables, and the card or table at `path`. Throws BadInput, FileTrouble.
+LawSources read_scene_law(const SceneTable& root, const std::string& path);
+
+/// The keys of read_scene_law() alone, for scenes that are read without their law. Throws BadInput.
+void read_law_choices(const SceneTable& root, LawSources& out);
+
+/// The law that read_scene_law() chose, under the name `name`. `solid_fraction` is that of the contents. Throws
+/// BadInput.
+NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double solid_fraction, const std::string& name);
+
+/// A law of a table at the solid fraction of the contents; `form` "best" is the one that the entry prefers. Throws
+/// BadInput when the table has no such law, was measured
 /// with grains of another nu or mu, or does not reach this solid fraction (policy reject).
 NamedLaws table_law_of(const LawSources& sources, const std::string& form, const MacroSpec& spec,
                        double solid_fraction);

@@ -97,7 +97,7 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
                    "Keeps finished measurements of law tables here and takes from here what is known already")
         ->option_text("DIR");
   if (command.function == command_macrosim)
-    app.add_option("--law", o.law, "Law card of the soft particles; default that of the scene")
+    app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -13,7 +12,8 @@ namespace softgrain {
 
 namespace {
 
-/// An entry serves soft particles whose solid fraction differs from its own by less than this: packings scatter by it.
+/// The ends of a table serve soft particles whose solid fraction lies beyond by less than this: the mean over some
+/// packings never is that of those that were measured.
 constexpr double kSameFraction = 0.02;
 
 /// A parameter of one law along the entries, as a curve over solid fraction.
@@ -45,26 +45,49 @@ class AlongEntries {
   std::vector<double> fractions_;
 };
 
-void require_same_forms(const LawTable& table) {
+bool same_neighbours(const CrowdLaw& a, const CrowdLaw& b) {
+  return a.form == b.form &&
+         std::equal(a.partners.begin(), a.partners.end(), b.partners.begin(), b.partners.end(),
+                    [](const PartnerRow& x, const PartnerRow& y) { return x.kind == y.kind && x.ratio == y.ratio; });
+}
+
+bool same_grains(const SoftParticleSpec& a, const SoftParticleSpec& b) {
+  return a.poisson_ratio == b.poisson_ratio && a.friction == b.friction && a.exponent == b.exponent &&
+         a.polydispersity == b.polydispersity && a.rmax_over_shell == b.rmax_over_shell;
+}
+
+/// Only what was measured alike can be interpolated.
+void require_alike(const LawTable& table) {
   const LawTableEntry& first = table.entries.front();
+  const auto refuse = [&](const LawTableEntry& e, const char* what) {
+    throw BadInput(
+        fmt::format("law table: the entries at solid fraction {:.3f} and {:.3f} were not measured with the same {} and "
+                    "cannot be interpolated",
+                    first.solid_fraction, e.solid_fraction, what));
+  };
   for (const LawTableEntry& e : table.entries) {
-    bool same = e.laws.size() == first.laws.size();
-    for (std::size_t k = 0; same && k < e.laws.size(); ++k)
-      same = e.laws[k].form == first.laws[k].form && e.laws[k].partners.size() == first.laws[k].partners.size();
-    if (!same)
-      throw BadInput(fmt::format(
-          "law table: the entries at solid fraction {:.3f} and {:.3f} were not measured with the same neighbours and "
-          "cannot be interpolated",
-          first.solid_fraction, e.solid_fraction));
+    if (!same_grains(e.spec, first.spec)) refuse(e, "grains (nu, mu, law of sizes)");
+    if (!std::equal(e.laws.begin(), e.laws.end(), first.laws.begin(), first.laws.end(), same_neighbours))
+      refuse(e, "neighbours");
   }
 }
 
-constexpr std::array kShapeParameters{&CrowdLaw::a,  &CrowdLaw::b,  &CrowdLaw::delta,
-                                      &CrowdLaw::m0, &CrowdLaw::m1, &CrowdLaw::m2};
+/// A law between entries is as good as the worst of them.
+void take_worst_status(const LawTable& table, std::size_t k, CrowdLaw& law) {
+  const auto bad = [&](const char* status) {
+    const auto at = std::find_if(table.entries.begin(), table.entries.end(),
+                                 [&](const LawTableEntry& e) { return e.laws[k].status == status; });
+    if (at == table.entries.end()) return false;
+    law.status = at->laws[k].status;
+    law.reason = at->laws[k].reason;
+    return true;
+  };
+  if (!bad("no threshold crossing")) bad("underdetermined");
+}
 
 void interpolate_law(const AlongEntries& along, std::size_t k, CrowdLaw& law) {
-  for (const auto member : kShapeParameters)
-    law.*member = along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].*member; });
+  for (const CrowdParameterName& p : kCrowdParameters)
+    law.*p.estimate = along.estimate([&](const LawTableEntry& e) -> const Estimate& { return e.laws[k].*p.estimate; });
   for (std::size_t r = 0; r < law.partners.size(); ++r) {
     PartnerRow& row = law.partners[r];
     row.weight =
@@ -77,7 +100,7 @@ void interpolate_law(const AlongEntries& along, std::size_t k, CrowdLaw& law) {
 }
 
 LawTableEntry interpolate(const LawTable& table, double x) {
-  require_same_forms(table);
+  require_alike(table);
   const AlongEntries along(table, x);
   const auto nearest = std::min_element(table.entries.begin(), table.entries.end(), [x](const auto& a, const auto& b) {
     return std::abs(a.solid_fraction - x) < std::abs(b.solid_fraction - x);
@@ -93,7 +116,10 @@ LawTableEntry interpolate(const LawTable& table, double x) {
   out.retreat = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.retreat; });
   out.volume_max = along.value([](const LawTableEntry& e) { return e.volume_max; });
   out.overlap_max = along.value([](const LawTableEntry& e) { return e.overlap_max; });
-  for (std::size_t k = 0; k < out.laws.size(); ++k) interpolate_law(along, k, out.laws[k]);
+  for (std::size_t k = 0; k < out.laws.size(); ++k) {
+    interpolate_law(along, k, out.laws[k]);
+    take_worst_status(table, k, out.laws[k]);
+  }
   return out;
 }
 
@@ -113,9 +139,11 @@ const CrowdLaw* LawTableEntry::find(const std::string& form) const {
 
 LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark) {
   if (table.entries.empty()) throw BadInput("law table: it has no entries");
-  const double low = table.entries.front().solid_fraction;
-  const double high = table.entries.back().solid_fraction;
-  if (solid_fraction < low - kSameFraction || solid_fraction > high + kSameFraction) {
+  const double first = table.entries.front().solid_fraction;
+  const double last = table.entries.back().solid_fraction;
+  const double low = first - kSameFraction;
+  const double high = last + kSameFraction;
+  if (solid_fraction < low || solid_fraction > high) {
     const std::string problem =
         fmt::format("solid fraction {:.3f} of the soft particles is outside the law table ({:.3f} to {:.3f})",
                     solid_fraction, low, high);
@@ -124,7 +152,7 @@ LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy
     remark = problem + "; the nearest entry was used";
   }
   if (table.entries.size() == 1) return table.entries.front();
-  return interpolate(table, std::clamp(solid_fraction, low, high));
+  return interpolate(table, std::clamp(solid_fraction, first, last));
 }
 
 }  // namespace softgrain

@@ -1,7 +1,8 @@
-// Laws of soft particles with several contacts, as fitted, over size ratio and solid fraction: a card for people (TOML)
-// and a table for programs (HDF5). Dimensionless inside [SP 1.6].
+// Laws of soft particles with several contacts, as fitted, over size ratio and solid fraction. Dimensionless inside
+// [SP 1.6].
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,18 @@ struct CrowdLaw {
   [[nodiscard]] std::vector<PartnerRow> rows(PartnerKind kind) const;
 };
 
+/// Fitted numbers of a law of planes and their names in files.
+struct CrowdParameterName {
+  const char* key;
+  Estimate CrowdLaw::*estimate;
+};
+inline constexpr std::array<CrowdParameterName, 6> kCrowdParameters{{{"a", &CrowdLaw::a},
+                                                                     {"b", &CrowdLaw::b},
+                                                                     {"delta", &CrowdLaw::delta},
+                                                                     {"m0", &CrowdLaw::m0},
+                                                                     {"m1", &CrowdLaw::m1},
+                                                                     {"m2", &CrowdLaw::m2}}};
+
 /// How one kind of neighbour slides on a soft particle: a spring up to the Coulomb limit.
 struct SlideLaw {
   Estimate kt_ratio;  ///< kt/kn, kt the secant at a slide of pi Rs/180 (1 degree)
@@ -72,7 +85,7 @@ struct LawTableEntry {
   SlideLaw slide_soft;
   Estimate retreat;  ///< s of the unloading branch
   std::vector<CrowdLaw> laws;
-  std::string best;  ///< the form that cross-validation prefers
+  std::string best;  ///< the form that cross-validation prefers among good ones
 
   [[nodiscard]] const CrowdLaw* find(const std::string& form) const;
 };
@@ -85,16 +98,16 @@ struct LawTable {
   std::vector<LawTableEntry> entries;  ///< by solid fraction, ascending
 };
 
-/// Writes `table.toml` and, beside it with extension .h5, the measured means behind it. Atomic. Throws FileTrouble.
-void save_law_table(const LawTable& table, const std::string& toml_path,
-                    const Provenance& provenance = build_provenance());
+/// The card as TOML; save_law_table() of common/contact/crowd_table_file.h writes it with the forces that it stands
+/// for.
+std::string law_table_text(const LawTable& table, const Provenance& provenance);
 
 /// Reads the card. Throws BadInput with file:line for wrong content, FileTrouble for files.
 LawTable load_law_table(const std::string& toml_path);
 
 /// The entry at a solid fraction: each parameter along a monotone curve through the entries. Entries must agree in
-/// material (nu, mu) and in the law of sizes. The ends serve 0.02 beyond themselves; further out: BadInput, or the
-/// nearest end with a remark.
+/// material (nu, mu), in the law of sizes and in the neighbours. The ends serve 0.02 beyond their own solid fractions;
+/// outside that: BadInput, or the nearest end with a remark.
 LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark);
 
 }  // namespace softgrain

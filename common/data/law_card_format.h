@@ -1,4 +1,4 @@
-// Inner side of law_card.h: text and table of a card. For the sources of common/data only.
+// Inner side of law_card.h: text and table of a card. For sources that write or read cards.
 #pragma once
 
 #include <array>

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 class LawTable : public ::testing::Test {
  protected:
-  LawTable() { write_text_atomic(scene(), kTinyLawTable); }
+  LawTable() { write_text_atomic(scene(), std::string(kTinyLawTable) + kTinyLawFit); }
 
   [[nodiscard]] std::string scene() const { return directory_.file("scene.toml"); }
   CrowdMeasurements run(const std::string& name, const std::string& more, int status = 0) {

@@ -22,7 +22,7 @@ inline SoftParticleSpec coarse_spec() {
 }
 
 inline SoftContent content_of(const SoftParticleSpec& spec, std::uint64_t index) {
-  return {generate_shell_packing(spec, 1, index), {}};
+  return {generate_shell_packing(spec, 1, index), {}, {}};
 }
 
 inline CrowdConfiguration crowd_of(PartnerKind kind, double ratio, const std::vector<Vec3>& directions,

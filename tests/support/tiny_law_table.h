@@ -34,4 +34,10 @@ overlap = 0.4
 held_out = true
 )";
 
+/// Goes at its end, for runs that fit: three packings and no replicates are enough here.
+inline constexpr const char* kTinyLawFit = R"([calibrate]
+min_packings = 2
+replicates = 0
+)";
+
 }  // namespace softgrain::test

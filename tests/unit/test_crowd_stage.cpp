@@ -28,7 +28,7 @@ SoftContent with_one_inner(const ShellPacking& packing) {
     const Vec3 x{{(k % 9 - 4) * 0.2, (k / 9 % 9 - 4) * 0.2, (k / 81 - 4) * 0.2}};
     if (const double room = room_at(packing, x); room > best.r) best = {x, room};
   }
-  return {packing, {best}};
+  return {packing, {best}, {}};
 }
 
 CrowdLevel stiff_level(const SoftParticleSpec& spec, const std::string& tag) {

@@ -1,0 +1,78 @@
+#include "common/contact/crowd_table_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/data/law_card_format.h"
+#include "common/data/spec_io.h"
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr const char* kFormat = "crowd law table";
+
+/// Force of one contact over E Rs^2 on a grid of overlaps, one row per neighbour.
+void write_grid(const h5::Group& group, const CrowdLaw& law, double overlap_max) {
+  constexpr std::size_t kPoints = 101;
+  const CrowdModel model = crowd_model(law);
+  std::vector<CrowdPartner> partners{{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
+  std::vector<double> reach{overlap_max};
+  for (const PartnerRow& row : law.partners) {
+    partners.push_back({row.kind, row.ratio, {{1.0, 0.0, 0.0}}});
+    reach.push_back(row.overlap_max * std::min(1.0, row.ratio));
+  }
+  std::vector<double> overlap;
+  std::vector<double> force;
+  std::vector<double> ratio;
+  std::vector<std::int64_t> kind;
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    ratio.push_back(partners[k].ratio);
+    kind.push_back(static_cast<std::int64_t>(partners[k].kind));
+    for (std::size_t n = 0; n < kPoints; ++n) {
+      overlap.push_back(reach[k] * static_cast<double>(n) / static_cast<double>(kPoints - 1));
+      force.push_back(crowd_forces(model, {partners[k]}, {overlap.back()}).front());
+    }
+  }
+  group.attribute("rows", "neighbours: kind 0 plane, 1 solid, 2 soft; ratio of radii, 0 for planes");
+  group.attribute("units", "overlap h/Rs, force F/(E Rs^2) of one contact alone");
+  group.write("kind", kind);
+  group.write("ratio", ratio);
+  group.write("overlap", overlap, {partners.size(), kPoints});
+  group.write("force", force, {partners.size(), kPoints});
+}
+
+void write_table_file(const LawTable& table, const std::string& path, const Provenance& provenance) {
+  h5::AtomicFile file(path);
+  write_format(file.root(), kFormat);
+  write_provenance(file.root(), provenance);
+  for (std::size_t k = 0; k < table.entries.size(); ++k) {
+    const LawTableEntry& e = table.entries[k];
+    const h5::Group group = file.root().create(fmt::format("entry_{}", k));
+    group.attribute("solid_fraction", e.solid_fraction);
+    group.attribute("best", e.best);
+    write_spec(group, e.spec);
+    for (const CrowdLaw& law : e.laws) {
+      const h5::Group of_law = group.create(law.form);
+      for (const CrowdParameterName& p : kCrowdParameters) {
+        const Estimate& v = law.*p.estimate;
+        of_law.write(p.key, std::array<double, 4>{v.value, v.standard_error, v.low, v.high});
+      }
+      write_grid(of_law, law, e.overlap_max);
+    }
+  }
+  file.commit();
+}
+
+}  // namespace
+
+void save_law_table(const LawTable& table, const std::string& toml_path, const Provenance& provenance) {
+  write_table_file(table, table_path(toml_path), provenance);
+  write_text_atomic(toml_path, law_table_text(table, provenance));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,35 @@
+// Law tables out of crowd measurements: what a scene of kind law-table and softgrain calibrate do once the measurements
+// are there.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "calibrate/crowd_fit.h"
+#include "common/data/crowd_law.h"
+#include "common/io/scene.h"
+
+namespace softgrain {
+
+struct CrowdLawFit {
+  LawTable table;
+  std::vector<std::string> remarks;
+  bool usable = true;  ///< every recorded point came to rest, and the best law of every entry is good
+};
+
+/// Reads `discrepancy`, `replicates` and `min_packings`. Throws BadInput.
+CrowdFitOptions read_crowd_fit(const SceneTable& t);
+
+/// Fits `data` and adds an entry at the solid fraction of its packings, between those that are there. `target`: wanted
+/// standard error of mean forces, for the remarks. Throws BadInput when the table has an entry at this solid fraction,
+/// and what fit_crowd_laws() throws.
+void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOptions& options, double target);
+
+/// All entries with forms, parameters and errors.
+nlohmann::json entries_json(const LawTable& table);
+
+/// A few lines per entry.
+std::string entries_text(const LawTable& table);
+
+}  // namespace softgrain

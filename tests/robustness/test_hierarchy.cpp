@@ -1,0 +1,120 @@
+// softgrain run of kind "hierarchy": what it writes, other threads, a stop on the way, wrong scenes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "common/data/crowd_law.h"
+#include "common/io/text_file.h"
+#include "tests/support/markup_check.h"
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_hierarchy.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+class Hierarchy : public ::testing::Test {
+ protected:
+  Hierarchy() { write_text_atomic(scene(), kTinyHierarchy); }
+
+  [[nodiscard]] std::string scene() const { return directory_.file("scene.toml"); }
+  [[nodiscard]] std::string out(const std::string& name) const { return directory_.file(name); }
+  /// What a run found: its summary without times and places.
+  json run(const std::string& name, const std::string& more) {
+    const ProgramOutcome outcome = run_the_program("run '" + scene() + "' --quiet --out '" + out(name) + "' " + more);
+    EXPECT_EQ(outcome.status, 3) << outcome.output;
+    json s = json::parse(read_text(out(name) + "/summary.json"));
+    s.erase("seconds");
+    s.erase("files");
+    s.erase("provenance");
+    s.erase("command");
+    for (json& level : s["levels"]) level.erase("seconds");
+    s["check"].erase("law_seconds");
+    s["check"].erase("resolved_seconds");
+    return s;
+  }
+  void expect_refused(const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+    std::string text = kTinyHierarchy;
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    write_text_atomic(scene(), text.replace(at, from.size(), to));
+    const ProgramOutcome outcome = run_the_program("run '" + scene() + "' --out '" + out("bad") + "'");
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_TRUE(!fs::exists(out("bad")) || fs::is_empty(out("bad")));
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in " << outcome.output;
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Hierarchy, LevelsOnTopOfLevels) {
+  const json s = run("out", "");
+  ASSERT_EQ(s["levels"].size(), 2U);
+  EXPECT_FALSE(s["levels"][0].contains("inner"));
+  EXPECT_EQ(s["levels"][1]["inner"]["mean"], 4.0);
+  EXPECT_LE(s["levels"][1]["inner"]["radius_high"], 0.2 + 1e-12);
+  EXPECT_GE(s["levels"][1]["inner"]["radius_low"], 0.1 - 1e-12);
+  EXPECT_EQ(s["levels"][1]["changes"].size(), 3U);
+  // What is inside carries force too.
+  EXPECT_GE(s["levels"][1]["changes"][0]["ratio"].get<double>(), 1.0);
+  const double grains = s["levels"][0]["resolved_grains"];
+  EXPECT_NEAR(s["levels"][1]["resolved_grains"].get<double>(), grains + 4.0 * grains, 1e-9);
+  EXPECT_TRUE(s["fixed_point"]["reached"].get<bool>());
+  EXPECT_EQ(s["check"]["points"].size(), 2U);
+  EXPECT_EQ(s["check"]["inner"], 1.0);
+  EXPECT_GT(s["check"]["grains"].get<double>(), grains);
+  EXPECT_GT(s["check"]["resolved_contact_evaluations"], s["check"]["law_contact_evaluations"]);
+  for (const char* file : {"law_table_level_0.toml", "law_table_level_1.toml", "law_table.toml"}) {
+    const LawTable table = load_law_table(out("out") + "/" + file);
+    ASSERT_EQ(table.entries.size(), 1U);
+    EXPECT_NE(table.entries[0].find("bag"), nullptr);
+  }
+  EXPECT_TRUE(fs::exists(out("out") + "/crowd_level_1.h5"));
+  EXPECT_EQ(unbalanced_tags(read_text(out("out") + "/report.html")), "");
+  EXPECT_FALSE(fs::exists(out("out") + "/work"));
+}
+
+TEST_F(Hierarchy, ThreadsDoNotMatter) { EXPECT_EQ(run("one", "--threads 1"), run("two", "--threads 2")); }
+
+TEST_F(Hierarchy, AStoppedRunGoesOnWithTheSameBits) {
+  const auto begun = [&] { return fs::exists(out("stopped") + "/law_table_level_0.toml"); };
+  const pid_t child = start_program({"run", scene(), "--out", out("stopped"), "--threads", "1", "--quiet"});
+  if (!ended_with(signal_when(child, begun, SIGINT), 130)) GTEST_SKIP() << "the run ended before the signal came";
+  EXPECT_FALSE(fs::exists(out("stopped") + "/law_table.toml"));
+  const json resumed = run("stopped", "--resume");
+  EXPECT_EQ(run("whole", "--threads 1"), resumed);
+}
+
+TEST_F(Hierarchy, CheckSaysWhatFollows) {
+  const ProgramOutcome outcome = run_the_program("check '" + scene() + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("2 levels, up to 2"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Hierarchy, WrongScenesAreRefused) {
+  expect_refused("levels = 2", "levels = 1", {"levels = 1", "2"});
+  expect_refused("inner_radius_min = 0.1", "inner_radius_min = 0.3", {"inner_radius_min = 0.3", "0.2"});
+  expect_refused("inner_radius_max = 0.2", "inner_radius_max = 1.5", {"inner_radius_max = 1.5"});
+  expect_refused("form = \"bag\"", "form = \"bog\"", {"form", "bag"});
+  expect_refused("iterations = 2", "iterations = 1", {"iterations = 1"});
+  expect_refused("overlaps = [0.2, 0.3]", "overlaps = [0.3, 0.2]", {"overlaps", "must ascend"});
+  expect_refused("inner_count = 4", "inner_cuont = 4", {"'inner_cuont'", "'inner_count'"});
+  expect_refused("packings = 2", "packings = 20", {"packings = 20"});
+  expect_refused("packings_max = 4", "packings_max = 3", {"packings_max"});
+}
+
+TEST_F(Hierarchy, EveryKindOfNeighbourIsNeeded) {
+  expect_refused("partner = \"plane\"", "partner = \"plane\"\nheld_out = true", {"configuration", "plane partner"});
+  expect_refused("partner = \"solid\"\nratio = 1.0", "partner = \"soft\"\nratio = 2.0",
+                 {"configuration", "solid partner"});
+  expect_refused("arrangement = \"one\"\npartner = \"soft\"", "arrangement = \"opposite\"\npartner = \"soft\"",
+                 {"configuration", "soft partner"});
+}
+
+}  // namespace

@@ -1,0 +1,230 @@
+// Law tables as other commands use them: macro scenes, calibrate, check; what is wrong is refused with exit status 2.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/contact/crowd_table_file.h"
+#include "common/data/macro_result.h"
+#include "common/io/text_file.h"
+#include "tests/support/markup_check.h"
+#include "tests/support/program.h"
+#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_run.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_comparison.h"
+#include "tests/support/tiny_law_table.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+using nlohmann::json;
+using synthetic::law_entry;
+namespace fs = std::filesystem;
+
+constexpr const char* kMacro = R"(kind = "macro"
+title = "tiny"
+law = "law_table.toml"
+[macro]
+bodies = 12
+steps = 3
+strain = 0.2
+resolved = false
+)";
+
+class LawTableUse : public ::testing::Test {
+ protected:
+  LawTableUse() {
+    save_card(synthetic::card(), file("law.toml"));
+    save_law_table({1, {law_entry(0.70)}}, file("law_table.toml"));
+    write_text_atomic(file("scene.toml"), kMacro);
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
+  [[nodiscard]] json summary(const std::string& name) const {
+    return json::parse(read_text(file(name) + "/summary.json"));
+  }
+  /// macrosim of the scene with these top-level lines.
+  ProgramOutcome macro(const std::string& name, const std::string& lines, const std::string& more = "") {
+    std::string text = kMacro;
+    text.insert(text.find("[macro]"), lines);
+    write_text_atomic(file("scene.toml"), text);
+    return run_the_program("macrosim '" + file("scene.toml") + "' --quiet --out '" + file(name) + "' " + more);
+  }
+  double end_stress(const std::string& name) { return load_macro(file(name) + "/macro.h5").at(0).stress_axial.back(); }
+
+  static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words) {
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in " << outcome.output;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(LawTableUse, MacroScenesTakeTablesAndCards) {
+  expect(macro("best", ""), 0, {});
+  EXPECT_EQ(summary("best")["law"]["form"], "directional");
+  expect(macro("directional", "form = \"directional\"\n"), 0, {});
+  expect(macro("bag", "form = \"bag\"\n"), 0, {});
+  expect(macro("pair", "form = \"pair\"\n"), 0, {});
+  EXPECT_EQ(summary("pair")["law"]["form"], "pair");
+  EXPECT_EQ(end_stress("best"), end_stress("directional"));
+  EXPECT_NE(end_stress("bag"), end_stress("directional"));
+  EXPECT_LT(end_stress("pair"), end_stress("bag")) << "a pair law knows nothing of the other contacts";
+  const auto curves = load_macro(file("bag") + "/macro.h5");
+  EXPECT_EQ(curves.at(0).engine, "law");
+  EXPECT_EQ(unbalanced_tags(read_text(file("bag") + "/report.html")), "");
+  expect(macro("card", "", "--law '" + file("law.toml") + "'"), 0, {});
+  EXPECT_EQ(summary("card")["law"]["form"], "pair");
+  expect(macro("card2", "form = \"pair\"\n", "--law '" + file("law.toml") + "'"), 0, {});
+  EXPECT_EQ(end_stress("card"), end_stress("card2"));
+}
+
+TEST_F(LawTableUse, TheFrictionAndTheUnloadingBranchOfAScene) {
+  expect(macro("measured", ""), 0, {});
+  expect(macro("smooth", "mu = 0.0\n"), 0, {});
+  EXPECT_NE(end_stress("measured"), end_stress("smooth"));
+  expect(macro("unloading", "unloading = true\n"), 0, {});
+  EXPECT_GT(end_stress("unloading"), 0.0);
+}
+
+TEST_F(LawTableUse, TwinsSayWhichSolidFractionIsMeant) {
+  // Contents of three coarse grains are far looser than the table.
+  LawTableEntry coarse = law_entry(0.70);
+  coarse.spec.trials = 50;
+  coarse.spec.polydispersity = 3.0;
+  coarse.spec.rmax_over_shell = 0.5;
+  save_law_table({1, {coarse}}, file("law_table.toml"));
+  const std::string twin = "--set macro.resolved=true --set macro.bodies=6 --set macro.steps=1 --set macro.strain=0.05";
+  expect(macro("out", "contents = 2\n", twin), 2,
+         {"solid fraction", "outside the law table (0.680 to 0.720)", "clamp"});
+  expect(macro("clamped", "contents = 2\nrange = \"clamp\"\n", twin), 0, {});
+  EXPECT_NE(summary("clamped")["remarks"].dump().find("nearest entry was used"), std::string::npos);
+}
+
+TEST_F(LawTableUse, WrongMacroScenesAreRefused) {
+  expect(macro("out", "form = \"sack\"\n"), 2, {"form", "directional"});
+  expect(macro("out", "range = \"guess\"\n"), 2, {"range", "clamp"});
+  expect(macro("out", "mu = -0.1\n"), 2, {"mu = -0.1"});
+  expect(macro("out", "", "--set macro.mu=0.5"), 2, {"mu = 0.3", "mu = 0.5", "measure a table"});
+  const std::string card = "--law '" + file("law.toml") + "'";
+  expect(macro("out", "form = \"bag\"\n", card), 2, {"form", "goes with a law table", "law.toml is a law card"});
+  expect(macro("out", "mu = 0.1\n", card), 2, {"mu", "goes with a law table"});
+  expect(macro("out", "unloading = true\n", card), 2, {"unloading", "goes with a law table"});
+  expect(macro("out", "", "--law '" + file("scene.toml") + "'"), 2,
+         {"scene.toml", "neither a law card", "[[pair]]", "[[entry]]"});
+  expect(macro("out", "", "--law '" + file("absent.toml") + "'"), 4, {"absent.toml"});
+  LawTableEntry other = law_entry(0.70);
+  other.spec.poisson_ratio = 0.25;
+  save_law_table({1, {other}}, file("other.toml"));
+  // The scene takes nu from the table it is given, so another nu comes only with a comparison (below).
+  expect(macro("good", "", "--law '" + file("other.toml") + "'"), 0, {});
+  LawTableEntry shallow = law_entry(0.70);
+  shallow.laws[2].status = "no threshold crossing";
+  shallow.laws[2].reason = "too shallow";
+  save_law_table({1, {shallow}}, file("shallow.toml"));
+  expect(macro("out", "", "--law '" + file("shallow.toml") + "'"), 2, {"not usable", "too shallow"});
+}
+
+TEST_F(LawTableUse, ComparisonsRefuseTablesOfOtherGrains) {
+  const auto compare = [&](const std::string& law, const std::string& more) {
+    std::string text = kTinyComparison;
+    const std::string card = "card = \"law.toml\"\n";
+    text.replace(text.find(card), card.size(), law);
+    write_text_atomic(file("comparison.toml"), text);
+    return run_the_program("run '" + file("comparison.toml") + "' --quiet --out '" + file("out") + "' " + more);
+  };
+  const std::string table = "table = \"law_table.toml\"\n";
+  expect(compare(table + "range = \"clamp\"\n", "--set material.nu=0.2"), 2, {"nu = 0.3", "nu = 0.2"});
+  expect(compare(table + "range = \"clamp\"\n", "--set material.mu=0.5"), 2, {"mu = 0.3", "mu = 0.5"});
+  expect(compare(table, ""), 2, {"solid fraction", "outside the law table"});
+  expect(compare(table + "forms = [\"sack\"]\n", ""), 2, {"sack", "pair, bag, directional"});
+  expect(compare("card = \"law.toml\"\nforms = [\"bag\"]\n", ""), 2, {"bag", "needs a law table"});
+  expect(compare("", ""), 2, {"law table, a law card, or both"});
+}
+
+TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
+  LawTableEntry second = law_entry(0.75, 0.01);
+  second.laws[1].status = "underdetermined";
+  second.laws[1].reason = "planes: 3 of 6";
+  save_law_table({1, {law_entry(0.70), second}}, file("law_table.toml"));
+  expect(run_the_program("check '" + file("law_table.toml") + "'"), 0,
+         {"law table: 2 entries, solid fraction 0.700 to 0.750", "directional (best): good", "12 packings",
+          "underdetermined (planes: 3 of 6)", "overlap of 0.280 Rs", "soft neighbours of ratio 1 to 2"});
+  const ProgramOutcome outcome = run_the_program("check --json '" + file("law_table.toml") + "'");
+  const json facts = json::parse(outcome.output);
+  EXPECT_EQ(facts["entries"][1]["laws"][1]["status"], "underdetermined");
+  expect(run_the_program("check '" + file("law.toml") + "'"), 0, {"law card"});
+  write_text_atomic(file("odd.toml"), "schema = 1\n");
+  expect(run_the_program("check '" + file("odd.toml") + "'"), 2, {"odd.toml", "neither a law card"});
+  expect(run_the_program("check '" + file("scene.toml") + "' --set form=sack"), 2, {"form", "sack"});
+}
+
+CrowdModel known() { return crowd_model(synthetic::crowd_law("directional")); }
+
+std::vector<CrowdConfiguration> arrangements() {
+  using synthetic::crowd_configuration;
+  return {crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
+          crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25),
+          crowd_configuration("orthogonal", PartnerKind::plane, 0.0, 0.25),
+          crowd_configuration("cube", PartnerKind::plane, 0.0, 0.18),
+          crowd_configuration("one", PartnerKind::solid, 1.0, 0.35),
+          crowd_configuration("one", PartnerKind::soft, 1.0, 0.4)};
+}
+
+TEST_F(LawTableUse, CalibrateFitsOneEntryPerFile) {
+  synthetic::CrowdOptionsKnown o;
+  o.noise = 0.02;
+  o.packings = 6;
+  CrowdMeasurements data = synthetic::crowd_measurements(known(), arrangements(), o);
+  save_crowd(data, file("dense.h5"));
+  for (PackingInfo& p : data.packings) p.solid_fraction -= 0.05;
+  save_crowd(data, file("loose.h5"));
+  const std::string out = " --quiet --set replicates=0 --out '" + file("out") + "'";
+  const std::string both = "calibrate '" + file("dense.h5") + "' '" + file("loose.h5") + "'";
+  expect(run_the_program(both + out), 0, {"laws at solid fraction 0.65", "laws at solid fraction 0.70", "(best)"});
+  const LawTable table = load_law_table(file("out") + "/law_table.toml");
+  ASSERT_EQ(table.entries.size(), 2U);
+  EXPECT_NEAR(table.entries[0].solid_fraction, 0.6525, 1e-12);
+  EXPECT_NEAR(table.entries[1].find("directional")->a.value, 0.7, 0.05);
+  EXPECT_EQ(table.entries[0].find("bag")->a.value, table.entries[1].find("bag")->a.value);
+  EXPECT_TRUE(fs::exists(file("out") + "/law_table.h5"));
+  EXPECT_EQ(summary("out")["entries"].size(), 2U);
+  EXPECT_EQ(summary("out")["status"], "good");
+  EXPECT_EQ(unbalanced_tags(read_text(file("out") + "/report.html")), "");
+  expect(macro("macro", "", "--law '" + file("out") + "/law_table.toml'"), 0, {});
+}
+
+TEST_F(LawTableUse, WrongInputsOfCalibrateAreRefused) {
+  synthetic::CrowdOptionsKnown o;
+  o.packings = 3;
+  const CrowdMeasurements data = synthetic::crowd_measurements(known(), arrangements(), o);
+  save_crowd(data, file("crowd.h5"));
+  save_measurements(synthetic::measurements(4), file("measurements.h5"));
+  const std::string crowd = "calibrate '" + file("crowd.h5") + "' ";
+  const std::string out = " --quiet --set replicates=0 --out '" + file("out") + "'";
+  expect(run_the_program(crowd + out), 2, {"3 packings are too few"});
+  expect(run_the_program(crowd + "'" + file("crowd.h5") + "' --set min_packings=2" + out), 2, {"same solid fraction"});
+  expect(run_the_program(crowd + "'" + file("measurements.h5") + "'" + out), 2, {"a run each"});
+  expect(run_the_program(crowd + "--set replicats=1" + out), 2, {"replicats", "replicates"});
+  expect(run_the_program(crowd + "--set discrepancy=0" + out), 2, {"discrepancy"});
+}
+
+TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {
+  const auto refused = [&](const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+    std::string text = std::string(kTinyLawTable) + kTinyLawFit;
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    write_text_atomic(file("table.toml"), text.replace(at, from.size(), to));
+    expect(run_the_program("run '" + file("table.toml") + "' --quiet --out '" + file("out") + "'"), 2, words);
+  };
+  refused("arrangement = \"one\"\npartner = \"plane\"", "arrangement = \"orthogonal\"\npartner = \"plane\"",
+          {"configuration", "needs one plane alone"});
+  refused("min_packings = 2", "min_packings = 5", {"packings_max", "min_packings"});
+  refused("replicates = 0", "replicates = 0\n[[variant]]\npackings = 2", {"beta", "a variant needs another"});
+  refused("replicates = 0", "replicates = 0\n[[variant]]\nbeta = -1", {"beta = -1"});
+  refused("min_packings = 2", "min_packings = 3\n[[variant]]\nbeta = 4\npackings = 2", {"packings", "min_packings"});
+}
+
+}  // namespace

@@ -1,0 +1,138 @@
+// Law tables and crowd measurements made from known numbers.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "common/contact/crowd_prediction.h"
+#include "common/core/random.h"
+#include "common/data/crowd_law.h"
+#include "common/data/crowd_measurements.h"
+#include "common/data/slide_direction.h"
+#include "microsim/crowd_arrangements.h"
+#include "tests/support/synthetic_law.h"
+
+namespace softgrain::synthetic {
+
+inline Estimate near(double value) { return {value, 0.1 * value / 3.0, 0.9 * value, 1.1 * value}; }
+inline Estimate unknown(double value) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {value, kInfinity, -kInfinity, kInfinity};
+}
+
+/// One form; `shift` moves every number a little.
+inline CrowdLaw crowd_law(const std::string& form, double shift = 0.0) {
+  CrowdLaw law;
+  law.form = form;
+  law.a = near(0.7 + shift);
+  law.b = near(2.8 + shift / 3.0);
+  law.delta = near(0.08 + shift / 7.0);
+  law.m0.value = 1.0;
+  if (form == "directional") {
+    law.m0 = near(0.6 + shift);
+    law.m1 = near(0.5 + shift / 3.0);
+    law.m2 = near(0.1 + shift / 7.0);
+  }
+  law.partners = {{PartnerKind::solid, 0.5, near(0.7 + shift), near(1.1), 0.4, 0.1 / 3.0},
+                  {PartnerKind::solid, 2.0, near(0.8 + shift), near(1.1), 0.3, 0.2 / 3.0},
+                  {PartnerKind::soft, 1.0, near(0.4 + shift), near(1.3), 0.35, 0.1 / 7.0},
+                  {PartnerKind::soft, 2.0, near(0.5 + shift), near(1.3), 0.25, 0.2 / 7.0}};
+  law.errors = {{"one-plane", false, 0.05 / 3.0, 1.01, 0.02}, {"cube-plane", true, 0.1 / 3.0, 0.97, 0.03}};
+  law.error_fitted = 0.05 / 3.0;
+  law.error_held_out = 0.1 / 3.0;
+  law.error_cross = 0.07 / 3.0;
+  law.criterion = -100.0 / 3.0;
+  law.parameters = form == "directional" ? 6 : 3;
+  return law;
+}
+
+inline LawTableEntry law_entry(double solid_fraction = 0.7, double shift = 0.0) {
+  LawTableEntry e;
+  e.spec.shell_radius = 0.1 / 7.0;
+  e.solid_fraction = solid_fraction;
+  e.solid_fraction_error = 0.001 / 3.0;
+  e.packings = 12;
+  e.relaxation = "damped, increment 0.005";
+  e.volume_max = 0.2 / 3.0 + shift;
+  e.overlap_max = 0.28 + shift;
+  e.grain_overlap_max = 1.0 / 3.0;
+  e.slide_plane = {near(0.3 + shift), near(0.25 + shift)};
+  e.slide_solid = {near(0.2 + shift), near(0.35 + shift)};
+  e.slide_soft = {near(0.1 + shift), near(0.45 + shift)};
+  e.retreat = near(1.5 + shift);
+  e.laws = {crowd_law("pair", shift), crowd_law("bag", shift), crowd_law("directional", shift)};
+  e.best = "directional";
+  return e;
+}
+
+/// A configuration that is loaded to `overlap` and, when `path` says so, unloaded ("unload") or slid ("slide").
+inline CrowdConfiguration crowd_configuration(const std::string& arranged, PartnerKind kind, double ratio,
+                                              double overlap, const std::string& path = "") {
+  CrowdConfiguration c;
+  c.name = arranged + "-" + to_string(kind) + "-" + std::to_string(ratio) + path;
+  for (const Vec3& d : arrangement(arranged)) c.partners.push_back({kind, kind == PartnerKind::plane ? 0.0 : ratio, d});
+  c.stages = {{"load", std::vector<double>(c.partners.size(), overlap), 0.0}};
+  if (path == "unload") c.stages.push_back({"unload", std::vector<double>(c.partners.size(), 0.0), 0.0});
+  if (path == "slide") c.stages.push_back({"slide", c.stages[0].overlap, 0.4});
+  return c;
+}
+
+/// What the packings of a made-up measurement do besides following the law.
+struct CrowdOptionsKnown {
+  int packings = 12;
+  double noise = 0.0;    ///< relative, of every force by itself
+  int points = 12;       ///< per stage
+  double retreat = 1.5;  ///< unloading: x_max - s (x_max - x) is felt
+  double kt = 0.5;       ///< slide: drag grows by this per slide, over E Rs
+  double limit = 0.2;    ///< up to this share of the normal force
+  std::uint64_t seed = 1;
+};
+
+/// A state of the path: share of the stage.
+inline CrowdPoint crowd_point(const CrowdModel& model, const CrowdConfiguration& c, std::size_t stage, double share,
+                              const CrowdOptionsKnown& o) {
+  CrowdPoint p;
+  p.stage = static_cast<std::int64_t>(stage);
+  p.converged = true;
+  p.max_overlap = 0.1 + share;
+  std::vector<double> felt;
+  for (const double deepest : c.stages[0].overlap) {
+    const double x = stage == 0 ? share * deepest : c.stages[stage].slide > 0.0 ? deepest : (1.0 - share) * deepest;
+    p.overlap.push_back(x);
+    felt.push_back(stage == 0 ? x : std::max(deepest - o.retreat * (deepest - x), 0.0));
+  }
+  p.normal = crowd_forces(model, c.partners, felt);
+  p.tangential.resize(p.normal.size());
+  p.slide = c.stages[stage].slide * share;
+  if (p.slide > 0.0)
+    p.tangential[0] = slide_direction(c.partners[0].direction) * -std::min(o.kt * p.slide, o.limit * p.normal[0]);
+  return p;
+}
+
+/// Forces of `model` with noise; packing after packing.
+inline CrowdMeasurements crowd_measurements(const CrowdModel& model, const std::vector<CrowdConfiguration>& list,
+                                            const CrowdOptionsKnown& o) {
+  CrowdMeasurements data;
+  data.relaxation = "made up";
+  data.configurations = list;
+  for (int i = 0; i < o.packings; ++i) {
+    RandomStream random(o.seed, RandomPurpose::test, static_cast<std::uint64_t>(i));
+    data.packings.push_back({static_cast<std::uint64_t>(i), 400, 0.70 + 0.001 * i, 0.8, 3.5, 0.1, {}});
+    for (std::size_t c = 0; c < list.size(); ++c) {
+      CrowdRun run;
+      run.configuration = static_cast<std::int64_t>(c);
+      run.packing = i;
+      for (std::size_t stage = 0; stage < list[c].stages.size(); ++stage)
+        for (int k = 1; k <= o.points; ++k)
+          run.points.push_back(crowd_point(model, list[c], stage, static_cast<double>(k) / o.points, o));
+      for (CrowdPoint& p : run.points)
+        for (double& f : p.normal) f *= 1.0 + o.noise * test::normal_number(random);
+      data.runs.push_back(run);
+    }
+  }
+  return data;
+}
+
+}  // namespace softgrain::synthetic

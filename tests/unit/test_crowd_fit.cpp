@@ -1,0 +1,227 @@
+// Fits of crowd laws to measurements made from a known law.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibrate/crowd_fit.h"
+#include "calibrate/crowd_states.h"
+#include "common/contact/crowd_from_table.h"
+#include "common/core/error.h"
+#include "tests/support/synthetic_crowd.h"
+
+namespace softgrain {
+namespace {
+
+using synthetic::crowd_configuration;
+using synthetic::crowd_measurements;
+using synthetic::CrowdOptionsKnown;
+
+CrowdModel known(Crowd crowd) {
+  CrowdModel model;
+  model.crowd = crowd;
+  model.form.pressure = {0.62, 2.7, 0.07};
+  if (crowd == Crowd::directional) model.form.coupling = {0.65, 0.55, 0.15};
+  set_partners(model, PartnerKind::solid, {0.5, 2.0}, {std::log(0.7), std::log(0.85)}, 1.1);
+  set_partners(model, PartnerKind::soft, {1.0, 2.0}, {std::log(0.4), std::log(0.5)}, 1.25);
+  return model;
+}
+
+std::vector<CrowdConfiguration> arrangements() {
+  std::vector<CrowdConfiguration> list{crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
+                                       crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25),
+                                       crowd_configuration("orthogonal", PartnerKind::plane, 0.0, 0.25),
+                                       crowd_configuration("tetrahedron", PartnerKind::plane, 0.0, 0.2),
+                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.18),
+                                       crowd_configuration("icosahedron", PartnerKind::plane, 0.0, 0.13),
+                                       crowd_configuration("one", PartnerKind::solid, 0.5, 0.35),
+                                       crowd_configuration("one", PartnerKind::solid, 2.0, 0.3),
+                                       crowd_configuration("one", PartnerKind::soft, 1.0, 0.35),
+                                       crowd_configuration("opposite", PartnerKind::soft, 2.0, 0.35)};
+  list[5].held_out = true;
+  return list;
+}
+
+CrowdFitOptions quick(double discrepancy = 0.01) {
+  CrowdFitOptions o;
+  o.discrepancy = discrepancy;
+  o.replicates = 0;
+  return o;
+}
+
+void expect_within(const Estimate& e, double value, const std::string& what) {
+  EXPECT_GT(e.standard_error, 0.0) << what;
+  EXPECT_NEAR(e.value, value, 3.0 * e.standard_error) << what;
+}
+
+TEST(CrowdFit, RecoversAKnownLawWithinItsErrors) {
+  CrowdOptionsKnown o;
+  o.noise = 0.05;
+  const CrowdModel model = known(Crowd::directional);
+  CrowdFitOptions options = quick();
+  options.replicates = 30;  // errors of neighbours come from them
+  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, arrangements(), o), options);
+  EXPECT_EQ(entry.best, "directional");
+  const CrowdLaw& law = *entry.find("directional");
+  EXPECT_EQ(law.status, "good") << law.reason;
+  EXPECT_EQ(law.parameters, 6);
+  expect_within(law.a, model.form.pressure.a, "a");
+  expect_within(law.b, model.form.pressure.b, "b");
+  expect_within(law.delta, model.form.pressure.delta, "delta");
+  expect_within(law.m0, model.form.coupling.m0, "m0");
+  expect_within(law.m1, model.form.coupling.m1, "m1");
+  expect_within(law.m2, model.form.coupling.m2, "m2");
+  ASSERT_EQ(law.partners.size(), 4U);
+  const double weights[] = {0.7, 0.85, 0.4, 0.5};
+  const double exponents[] = {1.1, 1.1, 1.25, 1.25};
+  for (std::size_t k = 0; k < 4; ++k) {
+    expect_within(law.partners[k].weight, weights[k], "w " + std::to_string(k));
+    expect_within(law.partners[k].exponent, exponents[k], "m " + std::to_string(k));
+  }
+  EXPECT_LT(law.error_held_out, 0.05);
+  EXPECT_LT(law.error_cross, entry.find("bag")->error_cross);
+  EXPECT_LT(law.criterion, entry.find("bag")->criterion);
+  EXPECT_NEAR(entry.solid_fraction, 0.7055, 1e-12);
+  EXPECT_NEAR(entry.overlap_max, 0.3, 1e-12);
+}
+
+TEST(CrowdFit, ExactDataOfABagGiveTheBag) {
+  const CrowdModel model = known(Crowd::bag);
+  CrowdOptionsKnown o;
+  o.packings = 4;
+  o.points = 6;
+  auto list = arrangements();
+  list.resize(6);  // planes
+  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, list, o), quick());
+  const CrowdLaw& bag = *entry.find("bag");
+  EXPECT_EQ(bag.status, "good") << bag.reason;
+  EXPECT_NEAR(bag.a.value, 0.62, 1e-4);
+  EXPECT_NEAR(bag.b.value, 2.7, 1e-4);
+  EXPECT_NEAR(bag.delta.value, 0.07, 1e-4);
+  EXPECT_EQ(bag.m0.value, 1.0);
+  EXPECT_LT(bag.error_held_out, 1e-4);
+  EXPECT_LT(bag.error_cross, 1e-4);
+  const CrowdLaw& directional = *entry.find("directional");
+  EXPECT_NEAR(directional.m0.value, 1.0, 1e-3);
+  EXPECT_NEAR(directional.m1.value, 0.0, 1e-3);
+  EXPECT_NEAR(directional.m2.value, 0.0, 1e-3);
+  EXPECT_GT(entry.find("pair")->error_cross, 0.3);
+}
+
+TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
+  CrowdOptionsKnown o;
+  o.noise = 0.05;
+  auto list = arrangements();
+  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"));
+  list.push_back(crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25, "slide"));
+  for (std::size_t c = list.size() - 2; c < list.size(); ++c) list[c].held_out = true;
+  CrowdMeasurements data = crowd_measurements(known(Crowd::directional), list, o);
+  CrowdFitOptions options = quick();
+  options.replicates = 3;
+  const LawTableEntry a = fit_crowd_laws(data, options);
+  for (CrowdRun& run : data.runs)
+    if (list[static_cast<std::size_t>(run.configuration)].held_out)
+      for (CrowdPoint& p : run.points)
+        for (double& f : p.normal) f *= 1.2;
+  const LawTableEntry b = fit_crowd_laws(data, options);
+  for (std::size_t k = 0; k < a.laws.size(); ++k) {
+    for (const CrowdParameterName& p : kCrowdParameters) {
+      EXPECT_EQ((a.laws[k].*p.estimate).value, (b.laws[k].*p.estimate).value) << p.key;
+      EXPECT_EQ((a.laws[k].*p.estimate).low, (b.laws[k].*p.estimate).low) << p.key;
+    }
+    for (std::size_t r = 0; r < a.laws[k].partners.size(); ++r)
+      EXPECT_EQ(a.laws[k].partners[r].weight.value, b.laws[k].partners[r].weight.value);
+    EXPECT_NE(a.laws[k].error_held_out, b.laws[k].error_held_out);
+    EXPECT_EQ(a.laws[k].error_fitted, b.laws[k].error_fitted);
+  }
+  EXPECT_EQ(a.retreat.value, b.retreat.value);
+  EXPECT_EQ(a.slide_plane.kt_ratio.value, b.slide_plane.kt_ratio.value);
+  EXPECT_TRUE(std::isinf(a.slide_plane.friction.standard_error)) << "held-out slides teach nothing";
+}
+
+TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
+  const CrowdModel model = known(Crowd::directional);
+  auto list = arrangements();
+  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"));
+  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "slide"));
+  CrowdOptionsKnown o;
+  o.retreat = 1.6;
+  o.kt = 0.06;
+  o.limit = 0.21;
+  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, list, o), quick());
+  EXPECT_NEAR(entry.retreat.value, 1.6, 1e-3);
+  EXPECT_NEAR(entry.slide_plane.friction.value, 0.21, 1e-9);
+  const CrowdPartner plane{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}};
+  const double kn =
+      (crowd_forces(model, {plane}, {0.25 + 1e-5})[0] - crowd_forces(model, {plane}, {0.25 - 1e-5})[0]) / 2e-5;
+  EXPECT_NEAR(entry.slide_plane.kt_ratio.value, 0.06 / kn, 1e-3 * 0.06 / kn);
+  EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
+}
+
+TEST(CrowdFit, BelowTheThresholdThereIsNoLaw) {
+  std::vector<CrowdConfiguration> list{crowd_configuration("one", PartnerKind::plane, 0.0, 0.06)};
+  EXPECT_THROW((void)fit_crowd_laws(crowd_measurements(known(Crowd::bag), list, {}), quick()), NotUsable);
+  list[0] = crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.2);  // not one plane alone
+  EXPECT_THROW((void)fit_crowd_laws(crowd_measurements(known(Crowd::bag), list, {}), quick()), NotUsable);
+}
+
+TEST(CrowdFit, TooFewPackingsAreBadInput) {
+  CrowdOptionsKnown o;
+  o.packings = 3;
+  EXPECT_THROW((void)fit_crowd_laws(crowd_measurements(known(Crowd::bag), arrangements(), o), quick()), BadInput);
+}
+
+TEST(CrowdFit, TheSeedDecidesTheReplicates) {
+  CrowdOptionsKnown o;
+  o.noise = 0.1;
+  auto list = arrangements();
+  list.resize(5);
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, o);
+  CrowdFitOptions options = quick();
+  options.replicates = 12;
+  const LawTableEntry a = fit_crowd_laws(data, options);
+  const LawTableEntry b = fit_crowd_laws(data, options);
+  EXPECT_EQ(a.laws[1].a.low, b.laws[1].a.low);
+  EXPECT_LT(a.laws[1].a.low, a.laws[1].a.value);
+  EXPECT_GT(a.laws[1].a.high, a.laws[1].a.value);
+  options.seed = 2;
+  EXPECT_NE(fit_crowd_laws(data, options).laws[1].a.low, a.laws[1].a.low);
+}
+
+TEST(CrowdStates, WeightsAreRepetitions) {
+  CrowdOptionsKnown o;
+  o.noise = 0.1;
+  o.packings = 4;
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), arrangements(), o);
+  CrowdMeasurements repeated = data;
+  repeated.runs.clear();
+  for (const CrowdRun& run : data.runs)
+    for (int k = 0; k < (run.packing == 0 ? 2 : run.packing == 1 ? 0 : 1); ++k) repeated.runs.push_back(run);
+  const auto weighted = average_states(data, {2.0, 0.0, 1.0, 1.0});
+  const auto plain = average_states(repeated);
+  ASSERT_EQ(weighted.size(), plain.size());
+  for (std::size_t c = 0; c < plain.size(); ++c) {
+    ASSERT_EQ(weighted[c].states.size(), plain[c].states.size());
+    for (std::size_t s = 0; s < plain[c].states.size(); ++s)
+      for (std::size_t k = 0; k < plain[c].states[s].mean.size(); ++k) {
+        EXPECT_DOUBLE_EQ(weighted[c].states[s].mean[k], plain[c].states[s].mean[k]);
+        EXPECT_NEAR(weighted[c].states[s].error[k], plain[c].states[s].error[k], 1e-9 * plain[c].states[s].error[k]);
+      }
+  }
+}
+
+TEST(CrowdStates, WhatDidNotConvergeDoesNotCount) {
+  CrowdOptionsKnown o;
+  o.packings = 3;
+  CrowdMeasurements data = crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o);
+  const auto all = average_states(data);
+  data.runs[0].points[4].converged = false;
+  data.runs[0].points[4].normal[0] = 1e9;
+  for (CrowdRun& run : data.runs) run.points[5].converged = run.packing == 2;  // one alone is no mean
+  const auto states = average_states(data);
+  ASSERT_EQ(states[0].states.size(), all[0].states.size() - 1);
+  EXPECT_EQ(states[0].states[4].packings, 2);
+  EXPECT_DOUBLE_EQ(states[0].states[4].mean[0], all[0].states[4].mean[0]);
+}
+
+}  // namespace
+}  // namespace softgrain

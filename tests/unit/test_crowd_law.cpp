@@ -1,0 +1,301 @@
+// Law tables: what is written is read to the last bit, damage is refused where it stands, entries are interpolated.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/contact/crowd_table_file.h"
+#include "common/core/error.h"
+#include "common/core/monotone_curve.h"
+#include "common/io/text_file.h"
+#include "tests/support/synthetic_crowd.h"
+#include "tests/support/temporary_directory.h"
+
+namespace softgrain {
+namespace {
+
+using synthetic::law_entry;
+using synthetic::unknown;
+
+void expect_same(const Estimate& a, const Estimate& b) {
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_EQ(a.standard_error, b.standard_error);
+  EXPECT_EQ(a.low, b.low);
+  EXPECT_EQ(a.high, b.high);
+}
+
+void expect_same(const PartnerRow& a, const PartnerRow& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.ratio, b.ratio);
+  expect_same(a.weight, b.weight);
+  expect_same(a.exponent, b.exponent);
+  EXPECT_EQ(a.overlap_max, b.overlap_max);
+  EXPECT_EQ(a.error, b.error);
+}
+
+void expect_same(const ConfigurationError& a, const ConfigurationError& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.held_out, b.held_out);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.end_ratio, b.end_ratio);
+  EXPECT_EQ(a.noise, b.noise);
+}
+
+void expect_same(const CrowdLaw& a, const CrowdLaw& b) {
+  EXPECT_EQ(a.form, b.form);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.reason, b.reason);
+  for (const CrowdParameterName& p : kCrowdParameters) expect_same(a.*p.estimate, b.*p.estimate);
+  ASSERT_EQ(a.partners.size(), b.partners.size());
+  for (std::size_t k = 0; k < a.partners.size(); ++k) expect_same(a.partners[k], b.partners[k]);
+  ASSERT_EQ(a.errors.size(), b.errors.size());
+  for (std::size_t k = 0; k < a.errors.size(); ++k) expect_same(a.errors[k], b.errors[k]);
+  EXPECT_EQ(a.error_fitted, b.error_fitted);
+  EXPECT_EQ(a.error_held_out, b.error_held_out);
+  EXPECT_EQ(a.error_cross, b.error_cross);
+  EXPECT_EQ(a.criterion, b.criterion);
+  EXPECT_EQ(a.parameters, b.parameters);
+}
+
+void expect_same(const SoftParticleSpec& a, const SoftParticleSpec& b) {
+  EXPECT_EQ(a.shell_radius, b.shell_radius);
+  EXPECT_EQ(a.youngs_modulus, b.youngs_modulus);
+  EXPECT_EQ(a.poisson_ratio, b.poisson_ratio);
+  EXPECT_EQ(a.friction, b.friction);
+  EXPECT_EQ(a.density, b.density);
+  EXPECT_EQ(a.restitution, b.restitution);
+  EXPECT_EQ(a.exponent, b.exponent);
+  EXPECT_EQ(a.polydispersity, b.polydispersity);
+  EXPECT_EQ(a.rmax_over_shell, b.rmax_over_shell);
+  EXPECT_EQ(a.beta, b.beta);
+  EXPECT_EQ(a.trials, b.trials);
+  EXPECT_EQ(a.placement, b.placement);
+}
+
+void expect_same(const LawTableEntry& a, const LawTableEntry& b) {
+  expect_same(a.spec, b.spec);
+  EXPECT_EQ(a.solid_fraction, b.solid_fraction);
+  EXPECT_EQ(a.solid_fraction_error, b.solid_fraction_error);
+  EXPECT_EQ(a.packings, b.packings);
+  EXPECT_EQ(a.relaxation, b.relaxation);
+  EXPECT_EQ(a.volume_max, b.volume_max);
+  EXPECT_EQ(a.overlap_max, b.overlap_max);
+  EXPECT_EQ(a.grain_overlap_max, b.grain_overlap_max);
+  for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
+    expect_same((a.*slide).kt_ratio, (b.*slide).kt_ratio);
+    expect_same((a.*slide).friction, (b.*slide).friction);
+  }
+  expect_same(a.retreat, b.retreat);
+  EXPECT_EQ(a.best, b.best);
+  ASSERT_EQ(a.laws.size(), b.laws.size());
+  for (std::size_t k = 0; k < a.laws.size(); ++k) expect_same(a.laws[k], b.laws[k]);
+}
+
+class CrowdLawIo : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string path() const { return directory_.file("law_table.toml"); }
+
+  /// The text of a good table of two entries with the first `from` after `after` replaced is refused with these words.
+  void expect_refused(const std::string& after, const std::string& from, const std::string& to,
+                      const std::vector<std::string>& words) {
+    std::string text = law_table_text({1, {law_entry(0.7), law_entry(0.75, 0.01)}}, build_provenance());
+    const auto start = text.find(after);
+    ASSERT_NE(start, std::string::npos) << after;
+    const auto at = text.find(from, start);
+    ASSERT_NE(at, std::string::npos) << from;
+    refused(text.replace(at, from.size(), to), words);
+  }
+  void refused(const std::string& text, const std::vector<std::string>& words) {
+    write_text_atomic(path(), text);
+    try {
+      (void)load_law_table(path());
+      ADD_FAILURE() << "accepted, " << words.front();
+    } catch (const BadInput& e) {
+      EXPECT_NE(std::string(e.what()).find("law_table.toml"), std::string::npos) << e.what();
+      for (const std::string& word : words)
+        EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << word << " not in: " << e.what();
+    }
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(CrowdLawIo, RoundTripIsExact) {
+  LawTable table{1, {law_entry(0.7), law_entry(0.1 * 7.5, 1e-3 / 3.0)}};
+  table.entries[0].slide_soft = {unknown(0.3), unknown(0.25)};
+  table.entries[0].laws[1].status = "underdetermined";
+  table.entries[0].laws[1].reason = "planes: \"3 of 6\" \\ more";
+  table.entries[0].laws[1].criterion = HUGE_VAL;
+  table.entries[1].laws[2].partners.pop_back();
+  table.entries[1].laws[2].errors.clear();
+  save_law_table(table, path());
+  const LawTable read = load_law_table(path());
+  EXPECT_EQ(read.schema, 1);
+  ASSERT_EQ(read.entries.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) expect_same(table.entries[k], read.entries[k]);
+}
+
+TEST_F(CrowdLawIo, TheGridHoldsTheForcesOfTheLaw) {
+  const LawTableEntry entry = law_entry();
+  save_law_table({1, {entry}}, path());
+  const h5::Group group = h5::open_file(directory_.file("law_table.h5")).open("entry_0").open("bag");
+  const auto overlap = group.doubles("overlap");
+  const auto force = group.doubles("force");
+  ASSERT_EQ(overlap.size(), 5U * 101U);  // one plane, two solid, two soft
+  const CrowdModel model = crowd_model(*entry.find("bag"));
+  const CrowdPartner soft{PartnerKind::soft, 1.0, {{1.0, 0.0, 0.0}}};
+  EXPECT_EQ(overlap[100], entry.overlap_max);
+  EXPECT_EQ(force[3 * 101 + 77], crowd_forces(model, {soft}, {overlap[3 * 101 + 77]})[0]);
+  EXPECT_GT(force[3 * 101 + 100], 0.0);
+}
+
+TEST_F(CrowdLawIo, MissingAndUnknownKeysAreNamed) {
+  expect_refused("[[entry]]", "packings = 12\n", "", {"packings"});
+  expect_refused("[[entry]]", "overlap_max = ", "overlap_mix = 0.1\noverlap_max = ", {"overlap_mix", "overlap_max"});
+  expect_refused("[[entry.law]]", "delta = ", "# delta = ", {"delta"});
+  expect_refused("[entry.slide_solid]", "[entry.slide_solid]", "[entry.slide_stone]", {"slide_solid"});
+  expect_refused("[[entry.law.partner]]", "error = ", "eror = ", {"error"});
+}
+
+TEST_F(CrowdLawIo, NumbersOutOfRangeAreRefusedWhereTheyStand) {
+  expect_refused("[[entry.law]]", "delta = { value = 0.08", "delta = { value = 1.0", {"value = 1", "below 1"});
+  expect_refused("[[entry.law]]", "b = { value = 2.8", "b = { value = -2.8", {"value = -2.8"});
+  expect_refused("[[entry.law.partner]]", "weight = { value = 0.7", "weight = { value = 0", {"value = 0"});
+  expect_refused("retreat", "value = 1.5", "value = 0.5", {"value = 0.5"});
+  expect_refused("[[entry]]", "solid_fraction = 0.7", "solid_fraction = 1.7", {"solid_fraction = 1.7"});
+}
+
+TEST_F(CrowdLawIo, RatiosAreOrdered) {
+  expect_refused("[[entry.law.partner]]", "ratio = 2.0", "ratio = 0.4", {"ratios of one kind must ascend"});
+  expect_refused("[[entry.law.partner]]", "ratio = 2.0", "ratio = 0.5", {"ratios of one kind must ascend"});
+  expect_refused("kind = \"soft\"", "ratio = 1.0", "ratio = 0.9", {"larger over smaller"});
+}
+
+TEST_F(CrowdLawIo, EntriesMustMakeSense) {
+  LawTableEntry entry = law_entry();
+  entry.laws.erase(entry.laws.begin() + 1);
+  entry.best = "bag";
+  refused(law_table_text({1, {entry}}, build_provenance()), {"best", "no form"});
+  refused(law_table_text({1, {law_entry(0.7), law_entry(0.7)}}, build_provenance()), {"must ascend"});
+  refused(law_table_text({1, {law_entry(0.75), law_entry(0.7)}}, build_provenance()), {"must ascend"});
+  refused(law_table_text({1, {}}, build_provenance()), {"[[entry]]"});
+  expect_refused("schema", "schema = 1", "schema = 2", {"schema"});
+  expect_refused("[[entry.law]]", "\"pair\"", "\"pear\"", {"pear", "pair"});
+}
+
+TEST(LawTableEntryAt, TheEntriesThemselvesAreExact) {
+  const LawTable table{1, {law_entry(0.68, -0.01), law_entry(0.7), law_entry(0.75, 0.02)}};
+  for (const LawTableEntry& e : table.entries) {
+    std::string remark;
+    const LawTableEntry at = entry_at(table, e.solid_fraction, RangePolicy::reject, remark);
+    for (std::size_t k = 0; k < e.laws.size(); ++k)
+      for (const CrowdParameterName& p : kCrowdParameters)
+        EXPECT_DOUBLE_EQ((at.laws[k].*p.estimate).value, (e.laws[k].*p.estimate).value);
+    EXPECT_DOUBLE_EQ(at.laws[2].partners[3].weight.value, e.laws[2].partners[3].weight.value);
+    EXPECT_DOUBLE_EQ(at.slide_soft.friction.value, e.slide_soft.friction.value);
+    EXPECT_DOUBLE_EQ(at.retreat.value, e.retreat.value);
+    EXPECT_DOUBLE_EQ(at.volume_max, e.volume_max);
+    EXPECT_EQ(remark, "");
+  }
+}
+
+TEST(LawTableEntryAt, BetweenEntriesEveryParameterIsMonotone) {
+  const LawTable table{1, {law_entry(0.68, -0.02), law_entry(0.69, -0.019), law_entry(0.75, 0.02)}};
+  double a = 0.0;
+  double w = 0.0;
+  for (int k = 0; k <= 70; ++k) {
+    std::string remark;
+    const LawTableEntry e = entry_at(table, 0.68 + 0.001 * k, RangePolicy::reject, remark);
+    EXPECT_GE(e.laws[2].a.value, a);
+    EXPECT_GE(e.laws[1].partners[0].weight.value, w);
+    a = e.laws[2].a.value;
+    w = e.laws[1].partners[0].weight.value;
+    EXPECT_GE(a, 0.68 - 1e-12);
+    EXPECT_LE(a, 0.72 + 1e-12);
+  }
+  EXPECT_NEAR(a, 0.72, 1e-12);
+}
+
+TEST(LawTableEntryAt, OutsideTheTable) {
+  const LawTable one{1, {law_entry(0.7)}};
+  std::string remark;
+  EXPECT_EQ(entry_at(one, 0.719, RangePolicy::reject, remark).solid_fraction, 0.7);
+  EXPECT_EQ(remark, "");
+  EXPECT_THROW((void)entry_at(one, 0.721, RangePolicy::reject, remark), BadInput);
+  EXPECT_EQ(entry_at(one, 0.8, RangePolicy::clamp, remark).solid_fraction, 0.7);
+  EXPECT_NE(remark.find("0.800"), std::string::npos) << remark;
+  EXPECT_NE(remark.find("nearest entry"), std::string::npos) << remark;
+  const LawTable two{1, {law_entry(0.7), law_entry(0.75, 0.02)}};
+  remark.clear();
+  EXPECT_DOUBLE_EQ(entry_at(two, 0.76, RangePolicy::reject, remark).laws[0].a.value, 0.72);  // means scatter
+  EXPECT_EQ(remark, "");
+  EXPECT_THROW((void)entry_at(two, 0.6, RangePolicy::reject, remark), BadInput);
+  EXPECT_DOUBLE_EQ(entry_at(two, 0.6, RangePolicy::clamp, remark).laws[0].a.value, 0.7);
+  EXPECT_NE(remark, "");
+  EXPECT_THROW((void)entry_at({1, {}}, 0.6, RangePolicy::clamp, remark), BadInput);
+}
+
+TEST(LawTableEntryAt, UnlikeEntriesAreRefused) {
+  const auto refused = [](const LawTableEntry& second, const std::string& word) {
+    std::string remark;
+    try {
+      (void)entry_at({1, {law_entry(0.7), second}}, 0.72, RangePolicy::reject, remark);
+      ADD_FAILURE() << word;
+    } catch (const BadInput& e) {
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    }
+  };
+  LawTableEntry fewer = law_entry(0.75);
+  fewer.laws[1].partners.pop_back();
+  refused(fewer, "neighbours");
+  LawTableEntry others = law_entry(0.75);
+  others.laws[2].partners[1].ratio = 3.0;
+  refused(others, "neighbours");
+  LawTableEntry forms = law_entry(0.75);
+  forms.laws.pop_back();
+  refused(forms, "neighbours");
+  LawTableEntry grains = law_entry(0.75);
+  grains.spec.friction = 0.5;
+  refused(grains, "grains");
+}
+
+TEST(LawTableEntryAt, ALawIsAsGoodAsTheWorstEntry) {
+  LawTable table{1, {law_entry(0.7), law_entry(0.75)}};
+  table.entries[1].laws[0].status = "no threshold crossing";
+  table.entries[1].laws[0].reason = "too shallow";
+  std::string remark;
+  const LawTableEntry e = entry_at(table, 0.71, RangePolicy::reject, remark);
+  EXPECT_EQ(e.laws[0].status, "no threshold crossing");
+  EXPECT_EQ(e.laws[0].reason, "too shallow");
+  EXPECT_EQ(e.laws[1].status, "good");
+}
+
+TEST(MonotoneCurve, GoesThroughItsPointsAndNeverBeyond) {
+  const std::vector<double> x{0.0, 1.0, 1.5, 4.0, 5.0};
+  const std::vector<double> y{0.0, 0.1, 2.0, 2.0, 7.0};
+  const MonotoneCurve curve(x, y);
+  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_DOUBLE_EQ(curve.value(x[k]), y[k]);
+  double last = 0.0;
+  for (int k = 0; k <= 500; ++k) {
+    EXPECT_GE(curve.value(0.01 * k), last - 1e-14);
+    last = curve.value(0.01 * k);
+  }
+  EXPECT_EQ(curve.value(2.5), 2.0);  // flat between equal points
+  EXPECT_EQ(curve.value(-3.0), 0.0);
+  EXPECT_EQ(curve.value(30.0), 7.0);
+  EXPECT_EQ(curve.low(), 0.0);
+  EXPECT_EQ(curve.high(), 5.0);
+}
+
+TEST(MonotoneCurve, OneAndTwoPoints) {
+  EXPECT_TRUE(MonotoneCurve().empty());
+  EXPECT_EQ(MonotoneCurve({1.0}, {3.0}).value(-7.0), 3.0);
+  const MonotoneCurve line({1.0, 3.0}, {2.0, 6.0});
+  EXPECT_DOUBLE_EQ(line.value(1.5), 3.0);
+  EXPECT_EQ(line.value(0.0), 2.0);
+  EXPECT_THROW(MonotoneCurve({1.0, 1.0}, {2.0, 3.0}), std::invalid_argument);
+  EXPECT_THROW(MonotoneCurve({1.0, 2.0}, {2.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace softgrain
