@@ -89,7 +89,7 @@ void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOp
   const LawTableEntry entry = fit_crowd_laws(data, options);
   fit.usable = fit.usable && all_converged(data);
   for (const std::string& r : crowd_remarks(data, target))
-    fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", fit.entry.solid_fraction, r));
+    fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", entry.solid_fraction, r));
   for (const CrowdLaw& law : entry.laws) {
     if (law.status == "good") continue;
     fit.usable = fit.usable && law.form != entry.best;
