@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "common/data/slide_direction.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
@@ -358,16 +359,6 @@ void require_plan(const CrowdConfiguration& c, const CrowdPlan& plan) {
 }
 
 }  // namespace
-
-Vec3 slide_direction(const Vec3& direction) {
-  int axis = 0;
-  for (int k = 1; k < 3; ++k)
-    if (std::abs(direction[k]) < std::abs(direction[axis])) axis = k;
-  Vec3 along{};
-  along[axis] = 1.0;
-  along -= direction * dot(along, direction);
-  return along * (1.0 / norm(along));
-}
 
 Vec3 CrowdExperiment::direction(std::size_t k) const {
   const CrowdPartner& p = configuration.partners[k];

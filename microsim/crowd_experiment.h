@@ -8,6 +8,7 @@
 #include "common/contact/law_set.h"
 #include "common/data/crowd_measurements.h"
 #include "common/data/shell_packing.h"
+#include "common/data/slide_direction.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -78,10 +79,6 @@ struct CrowdExperiment {
   /// Forces, overlaps, residual of the state as it is; `stage` and `converged` are left to the caller.
   [[nodiscard]] CrowdPoint observe() const;
 };
-
-/// The unit vector along which the first neighbour slides: the coordinate axis least aligned with `direction` (the
-/// first of equals), made perpendicular to it. +x slides along +y.
-Vec3 slide_direction(const Vec3& direction);
 
 /// All neighbours touch and none overlaps. `others`: content of the soft neighbours in their order. `laws` are needed
 /// when some content has inner soft particles. Neighbours never interact with each other.

@@ -13,16 +13,8 @@ namespace softgrain {
 namespace {
 
 std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
-  const CrowdLaw& law = *below.find(setup.form);
-  std::string tag = fmt::format("{} {} voids {:a} {:a} {}", setup.form, setup.unloading, setup.voids.r_max,
-                                setup.voids.r_min, setup.voids.count);
-  for (const Estimate* e :
-       {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2, &below.slide_solid.kt_ratio, &below.slide_solid.friction,
-        &below.slide_soft.kt_ratio, &below.slide_soft.friction, &below.retreat})
-    tag += fmt::format(" {:a}", e->value);
-  for (const PartnerRow& row : law.partners)
-    tag += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);
-  return tag;
+  return fmt::format("{} {} voids {:a} {:a} {} {}", setup.form, setup.unloading, setup.voids.r_max, setup.voids.r_min,
+                     setup.voids.count, numbers_of(below, setup.form));
 }
 
 /// Facts about the inner soft particles, over the packings of the pool.

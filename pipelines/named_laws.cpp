@@ -115,15 +115,8 @@ class RangeCheck {
 
 /// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
 std::string tag_of(const LawTableEntry& entry, const LawSources& sources, const std::string& form) {
-  const CrowdLaw& law = *entry.find(form);
-  std::string text = fmt::format("{} {}", sources.friction.value_or(-1.0), sources.unloading);
-  for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2, &entry.retreat,
-                            &entry.slide_plane.kt_ratio, &entry.slide_plane.friction, &entry.slide_solid.kt_ratio,
-                            &entry.slide_solid.friction, &entry.slide_soft.kt_ratio, &entry.slide_soft.friction})
-    text += fmt::format(" {:a}", e->value);
-  for (const PartnerRow& row : law.partners)
-    text += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);
-  return short_hash(text);
+  return short_hash(
+      fmt::format("{} {} {}", sources.friction.value_or(-1.0), sources.unloading, numbers_of(entry, form)));
 }
 
 /// E scales; nu and mu do not.

@@ -137,6 +137,18 @@ const CrowdLaw* LawTableEntry::find(const std::string& form) const {
   return at == laws.end() ? nullptr : &*at;
 }
 
+std::string numbers_of(const LawTableEntry& entry, const std::string& form) {
+  const CrowdLaw& law = *entry.find(form);
+  std::string text = form;
+  for (const auto& parameter : kCrowdParameters) text += fmt::format(" {:a}", (law.*parameter.estimate).value);
+  for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
+    text += fmt::format(" {:a} {:a}", (entry.*slide).kt_ratio.value, (entry.*slide).friction.value);
+  text += fmt::format(" {:a}", entry.retreat.value);
+  for (const PartnerRow& row : law.partners)
+    text += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);
+  return text;
+}
+
 LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark) {
   if (table.entries.empty()) throw BadInput("law table: it has no entries");
   const double first = table.entries.front().solid_fraction;

@@ -91,6 +91,9 @@ struct LawTableEntry {
   [[nodiscard]] const CrowdLaw* find(const std::string& form) const;
 };
 
+/// Every number of one law that forces depend on, exactly, as text: the same text, the same forces.
+std::string numbers_of(const LawTableEntry& entry, const std::string& form);
+
 /// What to do when a law is asked outside what was measured.
 enum class RangePolicy { reject, clamp };
 
