@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "calibrate/least_squares.h"
 
@@ -34,6 +35,9 @@ double normal_stiffness(const CrowdModel& model, const CrowdConfiguration& c, st
   return (up - crowd_forces(model, c.partners, overlap)[0]) / (2.0 * kStep);
 }
 
+/// The stiffness is the secant at 1 degree of rotation, ht = pi Rs/180, as in the law card.
+constexpr double kSecantSlide = std::numbers::pi / 180.0;
+
 struct SlideResult {
   double kt_ratio = 0.0;
   double friction = 0.0;
@@ -44,17 +48,17 @@ double drag(const CrowdState& s, const CrowdState& before) {
   return s.mean[0] > 0.0 ? (s.tangential - before.tangential) / s.mean[0] : 0.0;
 }
 
-/// The slide at which `wanted` is first reached, linear between recorded states.
-double slide_at(const std::vector<const CrowdState*>& along, const CrowdState& before, double wanted) {
+/// Drag at a slide, linear between recorded states and from nothing at rest.
+double drag_at(const std::vector<const CrowdState*>& along, const CrowdState& before, double slide) {
   double last_slide = 0.0;
   double last = 0.0;
   for (const CrowdState* s : along) {
     const double now = drag(*s, before);
-    if (now >= wanted) return last_slide + (s->slide - last_slide) * (wanted - last) / (now - last);
+    if (s->slide >= slide) return last + (now - last) * (slide - last_slide) / (s->slide - last_slide);
     last_slide = s->slide;
     last = now;
   }
-  return last_slide;
+  return last * slide / last_slide;
 }
 
 /// From the state before the slide and those along it; false when the configuration does not slide, or nothing holds it
@@ -71,9 +75,8 @@ bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& ou
   if (along.empty()) return false;
   for (const CrowdState* s : along) out.friction = std::max(out.friction, drag(*s, *before));
   const double kn = normal_stiffness(model, *c.configuration, before->overlap);
-  const double half = slide_at(along, *before, 0.5 * out.friction);
-  if (!(kn > 0.0) || !(out.friction > 0.0) || !(half > 0.0)) return false;
-  out.kt_ratio = 0.5 * out.friction * before->mean[0] / half / kn;
+  if (!(kn > 0.0) || !(out.friction > 0.0)) return false;
+  out.kt_ratio = std::max(drag_at(along, *before, kSecantSlide), 0.0) * before->mean[0] / kSecantSlide / kn;
   return true;
 }
 

@@ -9,8 +9,8 @@
 
 namespace softgrain {
 
-/// Per kind of neighbour kt/kn (secant of the drag at half its largest value over the law's normal stiffness) and
-/// mu_soft (largest drag over the normal force), and s of the unloading branch: means over the configurations that
+/// Per kind of neighbour kt/kn (secant of the drag at a slide of pi Rs/180, 1 degree, over the law's normal stiffness)
+/// and mu_soft (largest drag over the normal force), and s of the unloading branch: means over the configurations that
 /// slide or unload and are not held out, errors from their scatter. Without such configurations: solid spheres slide
 /// like planes, soft neighbours like solid spheres; without any, kt/kn 0.3, mu_soft the friction of the grains; s = 1;
 /// all with infinite error.

@@ -1,5 +1,7 @@
 #include "pipelines/crowd_cache.h"
 
+#include "common/io/short_hash.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -60,14 +62,7 @@ std::string crowd_run_key(const SoftParticleSpec& spec, const CrowdConfiguration
          exact(options.least_stiffness) + fmt::format(" {}\n", options.max_passes) + contents + "\n";
 }
 
-std::string crowd_run_name(const std::string& key) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : key) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001b3U;
-  }
-  return fmt::format("crowd-{:016x}", hash);
-}
+std::string crowd_run_name(const std::string& key) { return "crowd-" + short_hash(key); }
 
 std::optional<CrowdRun> CrowdCache::find(const std::string& key) const {
   const std::string path = directory_.empty() ? "" : file(key);

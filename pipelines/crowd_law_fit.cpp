@@ -88,7 +88,8 @@ CrowdFitOptions read_crowd_fit(const SceneTable& t) {
 void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOptions& options, double target) {
   const LawTableEntry entry = fit_crowd_laws(data, options);
   fit.usable = fit.usable && all_converged(data);
-  for (const std::string& r : crowd_remarks(data, target)) fit.remarks.push_back(r);
+  for (const std::string& r : crowd_remarks(data, target))
+    fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", entry.solid_fraction, r));
   for (const CrowdLaw& law : entry.laws) {
     if (law.status == "good") continue;
     fit.usable = fit.usable && law.form != entry.best;

@@ -246,9 +246,11 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& stor
                                   const Provenance& provenance, std::vector<ShellPacking>* contents,
                                   const CrowdLevel* level) {
   const std::vector<ShellPacking> pool = generate_pool(setup, context);
-  std::vector<SoftContent> filled;
-  for (std::size_t k = 0; k < pool.size(); ++k)
-    filled.push_back(level != nullptr ? level->fill(pool[k], static_cast<std::int64_t>(k)) : SoftContent{pool[k], {}, {}});
+  std::vector<SoftContent> filled(pool.size());
+  parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
+    const ShellPacking& packing = pool[static_cast<std::size_t>(k)];
+    filled[static_cast<std::size_t>(k)] = level != nullptr ? level->fill(packing, k) : SoftContent{packing, {}, {}};
+  });
   CrowdMeasurements data;
   data.spec = setup.spec;
   data.relaxation = fmt::format("damped, increments of {} Rs, residual {} ({} between)", setup.options.increment,

@@ -143,19 +143,27 @@ json crowd_json(const CrowdMeasurements& data, double target) {
 }
 
 std::vector<std::string> crowd_remarks(const CrowdMeasurements& data, double target) {
+  constexpr std::size_t kNamed = 3;  // more than these are counted
   std::vector<std::string> remarks;
+  std::vector<std::string> missed;
   for (std::size_t k = 0; k < data.configurations.size(); ++k) {
     const std::vector<CrowdRun> runs = runs_of(data, k);
     const std::string& name = data.configurations[k].name;
     const MeanForce force = end_force(data.configurations[k], runs);
     if (!met(force, target))
-      remarks.push_back(
+      missed.push_back(
           fmt::format("{}: standard error {:.1f} % of the mean force after {} packings, {:.1f} % was wanted", name,
                       100.0 * force.standard_error / force.mean, force.runs, 100.0 * target));
     const Convergence c = convergence(runs);
     if (c.converged < c.points)
       remarks.push_back(fmt::format("{}: {} of {} points did not converge", name, c.points - c.converged, c.points));
   }
+  if (missed.size() > kNamed)
+    missed = {
+        fmt::format("{} of {} configurations are known less well than wanted ({:.1f} % of the mean force); see the "
+                    "table",
+                    missed.size(), data.configurations.size(), 100.0 * target)};
+  remarks.insert(remarks.begin(), missed.begin(), missed.end());
   return remarks;
 }
 

@@ -37,12 +37,13 @@ bool at_rest(const HierarchySetup& setup, const HierarchyLevel& level) {
 void run_levels(const HierarchySetup& setup, const TaskStore& store, const RunContext& context,
                 const Provenance& provenance, HierarchyRun& run) {
   CrowdMeasurements below;
+  LevelContents contents(setup);
   for (std::int64_t k = 0; k < setup.iterations; ++k) {
     if (k >= setup.levels && run.fixed) break;
     context.say(k == 0 ? "level 0: grains only" : fmt::format("level {}: on top of the law of level {}", k, k - 1));
     CrowdMeasurements data;
     const HierarchyLevel* last = run.levels.empty() ? nullptr : &run.levels.back();
-    HierarchyLevel level = run_level(setup, k, last, &below, data, store, context, provenance);
+    HierarchyLevel level = run_level(setup, contents, k, last, &below, data, store, context, provenance);
     for (const std::string& r : crowd_remarks(data, setup.crowd.target))
       run.remarks.push_back(fmt::format("level {}: {}", k, r));
     const CrowdLaw& law = *level.entry.find(setup.form);

@@ -26,10 +26,10 @@ std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
 }
 
 /// Facts about the inner soft particles, over the packings of the pool.
-void describe_inner(const HierarchySetup& setup, const std::vector<ShellPacking>& pool, HierarchyLevel& level) {
+void describe_inner(LevelContents& contents, const std::vector<ShellPacking>& pool, HierarchyLevel& level) {
   level.inner_low = 1.0;
-  for (const ShellPacking& packing : pool) {
-    const SoftContent content = fill_level(setup, packing);
+  for (std::size_t k = 0; k < pool.size(); ++k) {
+    const SoftContent content = contents.of(pool[k], static_cast<std::int64_t>(k));
     for (const InnerSoft& inner : content.inner) {
       level.inner_volume += inner.r * inner.r * inner.r / static_cast<double>(pool.size());
       level.inner_low = std::min(level.inner_low, inner.r);
@@ -94,6 +94,17 @@ SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing)
   return content;
 }
 
+SoftContent LevelContents::of(const ShellPacking& packing, std::int64_t number) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = known_.find(number);
+    if (found != known_.end()) return found->second;
+  }
+  SoftContent content = fill_level(setup_, packing);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return known_.emplace(number, std::move(content)).first->second;
+}
+
 InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
   CrowdChoices choices;
   choices.form = setup.form;
@@ -130,9 +141,9 @@ double law_distance(const LawTableEntry& law, const LawTableEntry& below, const 
   return count > 0 ? std::sqrt(square / count) : 0.0;
 }
 
-HierarchyLevel run_level(const HierarchySetup& setup, std::int64_t number, const HierarchyLevel* below,
-                         const CrowdMeasurements* data_below, CrowdMeasurements& data, const TaskStore& store,
-                         const RunContext& context, const Provenance& provenance) {
+HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
+                         const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
+                         const TaskStore& store, const RunContext& context, const Provenance& provenance) {
   const auto start = std::chrono::steady_clock::now();
   HierarchyLevel level;
   level.number = number;
@@ -141,12 +152,12 @@ HierarchyLevel run_level(const HierarchySetup& setup, std::int64_t number, const
     data = run_crowd_stage(setup.crowd, store, context, provenance, &pool);
   } else {
     CrowdLevel crowd;
-    crowd.fill = [&setup](const ShellPacking& packing, std::int64_t) { return fill_level(setup, packing); };
+    crowd.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
     crowd.laws = inner_laws(setup, below->entry);
     crowd.tag = tag_of(setup, below->entry);
     crowd.file = fmt::format("crowd_level_{}.h5", number);
     data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &crowd);
-    describe_inner(setup, pool, level);
+    describe_inner(contents, pool, level);
   }
   CrowdFitOptions fit;
   fit.seed = context.seed(setup.crowd.seed);

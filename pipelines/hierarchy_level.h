@@ -1,6 +1,8 @@
 // One level of a hierarchy: its content, its measurement, its law, and how far it is from the level below.
 #pragma once
 
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,16 +34,29 @@ struct HierarchyLevel {
   double grains = 0.0;  ///< that a resolved soft particle of this level would hold
 };
 
-/// Soft particles in the voids of packing `packing`; deterministic.
+/// Soft particles in the voids of a packing; deterministic.
 SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing);
+
+/// The same content at every level: packings are filled once.
+class LevelContents {
+ public:
+  explicit LevelContents(const HierarchySetup& setup) : setup_(setup) {}
+  /// Of the packing with this number in the pool; safe from several threads.
+  SoftContent of(const ShellPacking& packing, std::int64_t number);
+
+ private:
+  const HierarchySetup& setup_;
+  std::mutex mutex_;
+  std::map<std::int64_t, SoftContent> known_;
+};
 
 /// Laws of inner soft particles from the entry of the level below. E is that of the grains.
 InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below);
 
 /// Measures and fits level `number` on top of `below` (none for the finest).
-HierarchyLevel run_level(const HierarchySetup& setup, std::int64_t number, const HierarchyLevel* below,
-                         const CrowdMeasurements* data_below, CrowdMeasurements& data, const TaskStore& store,
-                         const RunContext& context, const Provenance& provenance);
+HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
+                         const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
+                         const TaskStore& store, const RunContext& context, const Provenance& provenance);
 
 /// Root mean square of the relative difference of two laws over one plane and six planes at overlaps where the law
 /// below is above a hundredth of its end value.

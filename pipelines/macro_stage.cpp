@@ -59,7 +59,8 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& e
   CompressionState state;
   state.macro = make_system(stage, sample, engine, laws);
   state.curve = begin_curve(spec, stage.runs.packings[static_cast<std::size_t>(sample)], state.macro, engine, sample);
-  const std::string task = stage.runs.name + "-" + engine + "-" + std::to_string(sample);
+  const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
+  const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
   double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
   progress.advance(done);

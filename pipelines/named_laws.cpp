@@ -8,6 +8,7 @@
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
+#include "common/io/short_hash.h"
 
 namespace softgrain {
 
@@ -112,6 +113,19 @@ class RangeCheck {
   CrowdLaw law_;
 };
 
+/// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
+std::string tag_of(const LawTableEntry& entry, const LawSources& sources, const std::string& form) {
+  const CrowdLaw& law = *entry.find(form);
+  std::string text = fmt::format("{} {}", sources.friction.value_or(-1.0), sources.unloading);
+  for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2, &entry.retreat,
+                            &entry.slide_plane.kt_ratio, &entry.slide_plane.friction, &entry.slide_solid.kt_ratio,
+                            &entry.slide_solid.friction, &entry.slide_soft.kt_ratio, &entry.slide_soft.friction})
+    text += fmt::format(" {:a}", e->value);
+  for (const PartnerRow& row : law.partners)
+    text += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);
+  return short_hash(text);
+}
+
 /// E scales; nu and mu do not.
 void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
   const SoftParticleSpec& measured = entry.spec;
@@ -152,6 +166,7 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, con
   return {form,
           form,
           {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft},
+          tag_of(entry, sources, form),
           [=](const System3& s) {
             const std::string note = check.note(s, model.form);
             return remark + (remark.empty() || note.empty() ? "" : "; ") + note;
@@ -163,7 +178,7 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
     return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant);
   };
   return {name, "pair", pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction),
-          [card](const System3& s) { return extrapolation_note(s, card); }};
+          "", [card](const System3& s) { return extrapolation_note(s, card); }};
 }
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {

@@ -18,6 +18,7 @@ struct NamedLaws {
   std::string name;  ///< engine of the curves: "law" or "pair", "bag", "directional"
   std::string form;  ///< "pair", "bag" or "directional"
   SoftLaws laws;
+  std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
   /// What to say about the end of a run (left the range of the fit); empty text when nothing.
   std::function<std::string(const System3&)> note;
 };

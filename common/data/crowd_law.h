@@ -66,7 +66,7 @@ inline constexpr std::array<CrowdParameterName, 6> kCrowdParameters{{{"a", &Crow
 
 /// How one kind of neighbour slides on a soft particle: a spring up to the Coulomb limit.
 struct SlideLaw {
-  Estimate kt_ratio;  ///< kt/kn, kt the secant at half the limit
+  Estimate kt_ratio;  ///< kt/kn, kt the secant at a slide of pi Rs/180 (1 degree)
   Estimate friction;  ///< mu_soft: largest tangential over normal force of the measured slides
 };
 
