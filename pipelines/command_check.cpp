@@ -17,6 +17,7 @@
 #include "microsim/grain_box/record.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/crowd_law_fit.h"
 #include "pipelines/grain_box_check.h"
 #include "pipelines/hierarchy_command.h"
 #include "pipelines/law_table_command.h"
@@ -214,11 +215,11 @@ void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std
                            {"error_held_out", law.error_held_out},
                            {"error_cross", law.error_cross}});
   lines += fmt::format(
-      "    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {:.1f} % held out, {:.1f} % leaving "
+      "    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {:.1f} % leaving "
       "one out; {}, {}\n",
       law.form, law.form == entry.best ? " (best)" : "", law.status, law.reason.empty() ? "" : " (" + law.reason + ")",
-      100.0 * law.error_fitted, 100.0 * law.error_held_out, 100.0 * law.error_cross,
-      partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
+      100.0 * law.error_fitted, held_out_text(law), 100.0 * law.error_cross, partners_text(law, PartnerKind::solid),
+      partners_text(law, PartnerKind::soft));
 }
 
 void check_entry(const LawTableEntry& e, Findings& out) {

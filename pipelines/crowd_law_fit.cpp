@@ -70,12 +70,16 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
 }
 
 std::string law_line(const CrowdLaw& law, bool best) {
-  return fmt::format(
-      "  {}{}: off by {:.1f} % on what it was fitted to, {:.1f} % on what was held out, {:.1f} % leaving one out\n",
-      law.form, best ? " (best)" : "", 100.0 * law.error_fitted, 100.0 * law.error_held_out, 100.0 * law.error_cross);
+  return fmt::format("  {}{}: off by {:.1f} % on what it was fitted to, {}, {:.1f} % leaving one out\n", law.form,
+                     best ? " (best)" : "", 100.0 * law.error_fitted, held_out_text(law), 100.0 * law.error_cross);
 }
 
 }  // namespace
+
+std::string held_out_text(const CrowdLaw& law) {
+  if (std::isnan(law.error_held_out)) return "nothing held out";
+  return fmt::format("{:.1f} % on what was held out", 100.0 * law.error_held_out);
+}
 
 CrowdFitOptions read_crowd_fit(const SceneTable& t) {
   CrowdFitOptions o;

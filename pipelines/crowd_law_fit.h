@@ -18,6 +18,9 @@ struct CrowdLawFit {
   bool usable = true;  ///< every recorded point came to rest, and the best law of every entry is good
 };
 
+/// "12.1 % on what was held out", or that nothing was.
+std::string held_out_text(const CrowdLaw& law);
+
 /// Reads `discrepancy`, `replicates` and `min_packings`. Throws BadInput.
 CrowdFitOptions read_crowd_fit(const SceneTable& t);
 

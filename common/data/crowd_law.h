@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -43,10 +44,10 @@ struct CrowdLaw {
   Estimate m2;
   std::vector<PartnerRow> partners;  ///< solid, then soft, by ratio
   std::vector<ConfigurationError> errors;
-  double error_fitted = 0.0;    ///< mean over the configurations of the fit
-  double error_held_out = 0.0;  ///< over those left out of it
-  double error_cross = 0.0;     ///< leave one configuration out, mean over configurations
-  double criterion = 0.0;       ///< corrected Akaike information criterion: smaller is better
+  double error_fitted = 0.0;                                         ///< mean over the configurations of the fit
+  double error_held_out = std::numeric_limits<double>::quiet_NaN();  ///< over those left out of it; NaN: none was
+  double error_cross = 0.0;  ///< leave one configuration out, mean over configurations
+  double criterion = 0.0;    ///< corrected Akaike information criterion: smaller is better
   int parameters = 0;
 
   [[nodiscard]] std::vector<PartnerRow> rows(PartnerKind kind) const;

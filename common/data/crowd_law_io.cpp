@@ -112,7 +112,7 @@ CrowdLaw read_law(const SceneTable& t) {
   }
   law.parameters = static_cast<int>(t.count("parameters", 1, 1000));
   law.error_fitted = t.number("error_fitted", Unit::none, Range::not_negative());
-  law.error_held_out = t.number("error_held_out", Unit::none, Range::not_negative());
+  law.error_held_out = read_real(t, "error_held_out", Range::not_negative());
   law.error_cross = t.number("error_cross", Unit::none, Range::not_negative());
   law.criterion = read_real(t, "criterion", Range::any());
   for (const SceneTable& p : t.tables("partner")) law.partners.push_back(read_partner(p));
