@@ -1,6 +1,7 @@
 // Law tables as other commands use them: macro scenes, calibrate, check; what is wrong is refused with exit status 2.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "common/contact/crowd_from_table.h"
@@ -148,10 +149,12 @@ TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
   LawTableEntry second = law_entry(0.75, 0.01);
   second.laws[1].status = "underdetermined";
   second.laws[1].reason = "planes: 3 of 6";
+  second.laws[1].error_held_out = std::nan("");
   save_law_table({1, {law_entry(0.70), second}}, file("law_table.toml"));
   expect(run_the_program("check '" + file("law_table.toml") + "'"), 0,
          {"law table: 2 entries, solid fraction 0.700 to 0.750", "directional (best): good", "12 packings",
-          "underdetermined (planes: 3 of 6)", "overlap of 0.280 Rs", "soft neighbours of ratio 1 to 2"});
+          "underdetermined (planes: 3 of 6)", "overlap of 0.280 Rs", "3.3 % on what was held out", "nothing held out",
+          "soft neighbours of ratio 1 to 2"});
   const ProgramOutcome outcome = run_the_program("check --json '" + file("law_table.toml") + "'");
   const json facts = json::parse(outcome.output);
   EXPECT_EQ(facts["entries"][1]["laws"][1]["status"], "underdetermined");
