@@ -70,6 +70,18 @@ NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& conte
   return scene_law(scene.law, scene.setup.spec, fraction, "law");
 }
 
+/// What the law does beside the shelled twin; nothing to compare is a remark, as all that was computed is kept.
+void compare_with_twin(const std::vector<MacroCurve>& curves, nlohmann::json& summary) {
+  try {
+    const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
+    summary["comparison"] = {{"stress_error", c.axial_difference.mean},
+                             {"speedup_seconds", c.speedup_seconds},
+                             {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
+  } catch (const BadInput& e) {
+    summary["remarks"].push_back(std::string("law and twin cannot be compared: ") + e.what());
+  }
+}
+
 nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
                          bool usable) {
   nlohmann::json summary;
@@ -80,13 +92,8 @@ nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const st
   summary["macro"] = macro_json(curves, "law");
   if (resolved) summary["resolved"] = macro_json(curves, "shelled");
   if (has_twin(scene.setup, "free")) summary["free"] = macro_json(curves, "free");
-  if (resolved && usable) {
-    const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
-    summary["comparison"] = {{"stress_error", c.axial_difference.mean},
-                             {"speedup_seconds", c.speedup_seconds},
-                             {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
-  }
   summary["remarks"] = macro_remarks(curves);
+  if (resolved && usable) compare_with_twin(curves, summary);
   return summary;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibrate/crowd_fit.h"
+#include "calibrate/crowd_problem.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
@@ -85,25 +86,39 @@ TEST(CrowdFit, RecoversAKnownLawWithinItsErrors) {
 }
 
 TEST(CrowdFit, ExactDataOfABagGiveTheBag) {
-  const CrowdModel model = known(Crowd::bag);
+  const auto list = arrangements();
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
+  const auto states = average_states(data);
+  StateSelection planes;
+  for (std::size_t c = 0; c < 5; ++c) planes.push_back(&states[c]);
+  CrowdModel model;
+  model.crowd = Crowd::bag;
+  model.form.pressure = {0.7, 2.9, 0.08};
+  (void)fit_planes(model, planes, 0.01, false);
+  EXPECT_NEAR(model.form.pressure.a, 0.62, 1e-6);
+  EXPECT_NEAR(model.form.pressure.b, 2.7, 1e-6);
+  EXPECT_NEAR(model.form.pressure.delta, 0.07, 1e-6);
+  EXPECT_LT(crowd_error(model, states[5]), 1e-6) << "held out";
+}
+
+TEST(CrowdFit, DataOfABagGiveTheBag) {
   CrowdOptionsKnown o;
-  o.packings = 4;
-  o.points = 6;
+  o.noise = 1e-3;
   auto list = arrangements();
   list.resize(6);  // planes
-  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, list, o), quick());
+  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(known(Crowd::bag), list, o), quick());
   const CrowdLaw& bag = *entry.find("bag");
   EXPECT_EQ(bag.status, "good") << bag.reason;
-  EXPECT_NEAR(bag.a.value, 0.62, 1e-4);
-  EXPECT_NEAR(bag.b.value, 2.7, 1e-4);
-  EXPECT_NEAR(bag.delta.value, 0.07, 1e-4);
+  expect_within(bag.a, 0.62, "a");
+  expect_within(bag.b, 2.7, "b");
+  expect_within(bag.delta, 0.07, "delta");
   EXPECT_EQ(bag.m0.value, 1.0);
-  EXPECT_LT(bag.error_held_out, 1e-4);
-  EXPECT_LT(bag.error_cross, 1e-4);
+  EXPECT_LT(bag.error_held_out, 1e-3);
+  EXPECT_LT(bag.error_cross, 1e-3);
   const CrowdLaw& directional = *entry.find("directional");
-  EXPECT_NEAR(directional.m0.value, 1.0, 1e-3);
-  EXPECT_NEAR(directional.m1.value, 0.0, 1e-3);
-  EXPECT_NEAR(directional.m2.value, 0.0, 1e-3);
+  EXPECT_NEAR(directional.m0.value, 1.0, 1e-2);
+  EXPECT_NEAR(directional.m1.value, 0.0, 1e-2);
+  EXPECT_NEAR(directional.m2.value, 0.0, 1e-2);
   EXPECT_GT(entry.find("pair")->error_cross, 0.3);
 }
 
