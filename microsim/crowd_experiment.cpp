@@ -32,6 +32,7 @@ class LawTable {
   LawTable(std::int32_t materials, const AnyLaw& hertz, const InnerLaws* inner) : laws_(materials) {
     hertz_ = laws_.add(hertz);
     if (inner == nullptr) return;
+    soft_plane_ = laws_.add(inner->soft_plane);
     soft_solid_ = laws_.add(inner->soft_solid);
     solid_soft_ = laws_.add(inner->solid_soft);
     soft_soft_ = laws_.add(inner->soft_soft);
@@ -52,16 +53,22 @@ class LawTable {
     soft_with_solid(grain2 + 1, grain1);
     softs(grain1 + 1, grain2 + 1);
   }
-  /// A content meets something solid.
+  /// A content meets a solid sphere.
   void content_with(std::int32_t grain, std::int32_t solid) {
     solids(grain, solid);
     soft_with_solid(grain + 1, solid);
+  }
+  /// A content meets a plane or the inside of a shell.
+  void content_with_plane(std::int32_t grain, std::int32_t plane) {
+    solids(grain, plane);
+    if (soft_plane_ != LawSet::kNoContact) laws_.use(grain + 1, plane, soft_plane_);
   }
   [[nodiscard]] const LawSet& laws() const { return laws_; }
 
  private:
   LawSet laws_;
   std::int32_t hertz_ = LawSet::kNoContact;
+  std::int32_t soft_plane_ = LawSet::kNoContact;
   std::int32_t soft_solid_ = LawSet::kNoContact;
   std::int32_t solid_soft_ = LawSet::kNoContact;
   std::int32_t soft_soft_ = LawSet::kNoContact;
@@ -73,12 +80,13 @@ LawSet crowd_laws(const SoftParticleSpec& spec, const Material& grain, std::size
   const AnyLaw hertz = hertz_law(HertzCoefficients::of(grain, grain, spec.friction, 1.0), false);
   LawTable table(other_material(softs), hertz, inner);
   table.contents(kGrain, kGrain);
-  for (const std::int32_t wall : {kSolid, kWall, kPlane}) table.content_with(kGrain, wall);
+  table.content_with(kGrain, kSolid);
+  for (const std::int32_t wall : {kWall, kPlane}) table.content_with_plane(kGrain, wall);
   for (std::size_t k = 0; k < softs; ++k) {
     const std::int32_t other = other_material(k);
     table.contents(other, other);
     table.contents(kGrain, other);
-    table.content_with(other, kWall);
+    table.content_with_plane(other, kWall);
   }
   return table.laws();
 }

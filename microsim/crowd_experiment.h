@@ -29,7 +29,8 @@ struct SoftContent {
 
 /// How soft particles inside soft particles interact. Laws must be without damping.
 struct InnerLaws {
-  AnyLaw soft_solid;            ///< body i is the soft one: against grains, solid spheres, planes and shells
+  AnyLaw soft_plane;            ///< body i is the soft one: against planes and the insides of shells
+  AnyLaw soft_solid;            ///< body i is the soft one: against grains and solid spheres
   AnyLaw solid_soft;            ///< the same law with body j soft
   AnyLaw soft_soft;             ///< two soft particles, also of different parents
   double solid_fraction = 1.0;  ///< of an inner soft particle, for its mass (no effect on states of rest)

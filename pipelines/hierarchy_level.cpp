@@ -103,7 +103,7 @@ InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
   choices.modulus = setup.crowd.spec.youngs_modulus;
   choices.unloading = setup.unloading;
   const CrowdLaws laws = make_crowd_laws(below, choices);
-  return {laws.soft_solid, laws.solid_soft, laws.soft_soft, below.solid_fraction};
+  return {laws.soft_plane, laws.soft_solid, laws.solid_soft, laws.soft_soft, below.solid_fraction};
 }
 
 double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form) {

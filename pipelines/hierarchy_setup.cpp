@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "calibrate/crowd_fit.h"
+
 namespace softgrain {
 
 namespace {
@@ -52,6 +54,8 @@ HierarchySetup read_hierarchy_setup(const SceneTable& root) {
     if (!has_one(out.crowd, kind))
       root.reject("configuration", "a hierarchy needs a configuration \"one\" with a " + to_string(kind) +
                                        " partner: inner soft particles meet all three kinds");
+  if (out.crowd.packings_max < CrowdFitOptions{}.min_packings)
+    root.table_or_empty("crowd").reject("packings_max", "fewer than 4: there would be no fit");
   root.finish();
   return out;
 }

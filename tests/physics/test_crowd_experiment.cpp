@@ -260,7 +260,8 @@ SoftContact inner_law(const SoftParticleSpec& spec, bool i_is_soft, bool partner
 }
 
 InnerLaws inner_laws(const SoftParticleSpec& spec) {
-  return {inner_law(spec, true, false), inner_law(spec, false, false), inner_law(spec, true, true), 0.7};
+  return {inner_law(spec, true, false), inner_law(spec, true, false), inner_law(spec, false, false),
+          inner_law(spec, true, true), 0.7};
 }
 
 /// One inner soft particle in the middle and one small grain.
