@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/parallel_tasks.h"
@@ -110,7 +111,10 @@ CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& 
       known = true;
     });
     if (!known) {
-      runs[u] = run_crowd(e, plan, setup.crowd.options);
+      runs[u] = run_crowd(e, plan, setup.crowd.options, [](const CrowdPoint&) {
+        if (interrupt_requested())
+          throw Interrupted("stopped by a signal; finished runs are saved, go on with --resume");
+      });
       store.save(task, [&](const h5::Group& g) { write_crowd_runs(g, {runs[u]}); });
     }
     progress.advance();
