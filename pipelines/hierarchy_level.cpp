@@ -115,22 +115,22 @@ double law_distance(const LawTableEntry& law, const LawTableEntry& below, const 
     plane.direction[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
     cube.push_back(plane);
   }
-  double square = 0.0;
-  int count = 0;
+  double total = 0.0;
   for (const std::size_t planes : {std::size_t{1}, cube.size()}) {
     const std::vector<CrowdPartner> partners(cube.begin(), cube.begin() + static_cast<std::ptrdiff_t>(planes));
     const double end = planes == 1 ? below.overlap_max : 2.0 / 3.0 * below.overlap_max;
-    const double largest = crowd_forces(there, partners, std::vector<double>(planes, end))[0];
+    double miss = 0.0;
+    double all = 0.0;
     for (int k = 1; k <= 30; ++k) {
       const std::vector<double> overlap(planes, end * k / 30.0);
       const double b = crowd_forces(there, partners, overlap)[0];
-      if (b < 0.01 * largest) continue;
-      const double d = crowd_forces(here, partners, overlap)[0] / b - 1.0;
-      square += d * d;
-      ++count;
+      const double d = crowd_forces(here, partners, overlap)[0] - b;
+      miss += d * d;
+      all += b * b;
     }
+    total += all > 0.0 ? miss / all : 0.0;
   }
-  return count > 0 ? std::sqrt(square / count) : 0.0;
+  return std::sqrt(0.5 * total);
 }
 
 HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,

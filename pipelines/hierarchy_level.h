@@ -27,7 +27,7 @@ struct HierarchyLevel {
   double inner_low = 0.0;     ///< radii over Rs
   double inner_high = 0.0;
   std::vector<LevelChange> changes;  ///< against the level below; empty for the finest
-  double distance = 0.0;             ///< root mean square relative difference of the two laws (form of the hierarchy)
+  double distance = 0.0;             ///< of the two laws, see law_distance() (form of the hierarchy)
   double distance_noise = 0.0;       ///< what packings alone would make of it, from the standard errors of the changes
   Cost cost;
   double seconds = 0.0;
@@ -58,8 +58,7 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
                          const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
                          const TaskStore& store, const RunContext& context, const Provenance& provenance);
 
-/// Root mean square of the relative difference of two laws over one plane and six planes at overlaps where the law
-/// below is above a hundredth of its end value.
+/// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
 double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form);
 
 }  // namespace softgrain
