@@ -42,7 +42,7 @@ CrowdLevel stiff_level(const SoftParticleSpec& spec, const std::string& tag) {
   SoftContact both = law;
   both.partner_is_soft = true;
   return {[](const ShellPacking& p, std::int64_t) { return with_one_inner(p); },
-          {law, reverse, both, 0.7},
+          {law, law, reverse, both, 0.7},
           tag,
           "level.h5"};
 }
