@@ -189,7 +189,7 @@ json summarise(const HierarchySetup& setup, const HierarchyRun& run, const RunCo
   if (run.fixed) s["fixed_point"]["level"] = *run.fixed;
   if (run.check) s["check"] = check_json(*run.check);
   s["remarks"] = run.remarks;
-  for (const char* file : {"crowd.h5", "law_table.toml", "report.html"}) s["files"][file] = context.path(file);
+  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s["files"][file] = context.path(file);
   s["provenance"] = provenance_json(provenance);
   return s;
 }

@@ -141,7 +141,10 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   level.number = number;
   std::vector<ShellPacking> pool;
   if (below == nullptr) {
-    data = run_crowd_stage(setup.crowd, store, context, provenance, &pool);
+    CrowdLevel grains;  // nothing inside, but a file of its own
+    grains.fill = [](const ShellPacking& packing, std::int64_t) { return SoftContent{packing, {}, {}}; };
+    grains.file = "crowd_level_0.h5";
+    data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &grains);
   } else {
     CrowdLevel crowd;
     crowd.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
