@@ -20,6 +20,7 @@ struct ContactState {
   Vec<D> normal{};
   double normal_speed = 0.0;  ///< of i relative to j along the normal, separation positive [m/s]
   Vec<D> sliding{};           ///< tangential velocity of i relative to j at the contact point [m/s]
+  Rot<D> turning{};           ///< spin of i relative to j, for laws with rolling resistance [rad/s]
   double dt = 0.0;            ///< time since the history was committed [s]
   PairConstants constants{};
   Vec<D> spring{};      ///< history: tangential spring [m]
@@ -41,6 +42,7 @@ struct ContactResponse {
   bool sliding = false;               ///< at the Coulomb limit
   Vec<D> spring{};                    ///< new history
   double memory = 0.0;                ///< new history
+  Rot<D> rolling_moment{};            ///< on i, the opposite on j; of laws with rolling resistance [N m]
 };
 
 /// What a law is asked for when a pair enters the list.
@@ -61,6 +63,20 @@ struct PairBodies {
     return sum > 0.0 ? 1.0 / sum : 0.0;
   }
 };
+
+/// Gap up to which pairs of a law interact; nothing but contact for all laws that do not say.
+template <class Law>
+double reach_of(const Law& law) {
+  if constexpr (requires { law.reach(); }) return law.reach();
+  return 0.0;
+}
+
+/// Whether bodies resist turning against each other.
+template <class Law>
+constexpr bool resists_rolling() {
+  if constexpr (requires { Law::has_rolling; }) return Law::has_rolling;
+  return false;
+}
 
 /// Keeps a spring in the tangent plane as the normal turns: projects, keeps the magnitude.
 template <int D>

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/contact/cohesive_disk.h"
 #include "common/contact/hertz_mindlin.h"
 #include "common/contact/linear_spring.h"
 #include "common/contact/soft_contact.h"
@@ -15,12 +16,13 @@
 namespace softgrain {
 
 /// Every contact law that the loop is compiled for.
-using AnyLaw = std::variant<HertzMindlin<Tangential::none, false>, HertzMindlin<Tangential::none, true>,
-                            HertzMindlin<Tangential::mindlin, false>, HertzMindlin<Tangential::mindlin, true>,
-                            HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>,
-                            LinearSpring, SoftContact, SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::pair, true>,
-                            SoftCrowd<Crowd::bag, false>, SoftCrowd<Crowd::bag, true>,
-                            SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>>;
+using AnyLaw =
+    std::variant<HertzMindlin<Tangential::none, false>, HertzMindlin<Tangential::none, true>,
+                 HertzMindlin<Tangential::mindlin, false>, HertzMindlin<Tangential::mindlin, true>,
+                 HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>, LinearSpring,
+                 SoftContact, SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::pair, true>, SoftCrowd<Crowd::bag, false>,
+                 SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>,
+                 CohesiveDisk<false>, CohesiveDisk<true>>;
 
 /// Whether a law knows this number of dimensions; all do but those that name one.
 template <class Law, int D>

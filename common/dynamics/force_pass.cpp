@@ -36,6 +36,7 @@ struct StiffnessSink {
     out.rotation[i] += r.tangential_stiffness * g.arm_i * g.arm_i;
     out.rotation[j] += r.tangential_stiffness * g.arm_j * g.arm_j;
   }
+  void roll(std::size_t i, std::size_t j, const Rot<D>& moment) { scatter.roll(i, j, moment); }
 };
 
 template <int D>

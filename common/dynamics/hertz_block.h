@@ -15,7 +15,7 @@ bool has_fast_loop(const LawSet& laws, const ContactSection& section);
 struct alignas(64) ContactLoad {
   double force[3];   ///< on i [N]
   double arm_i;      ///< [m]
-  double moment[3];  ///< of a unit arm along the normal [N]
+  double moment[3];  ///< of a unit arm along the normal [N]; in 2D the first, and [1] is that of rolling [N m]
   double arm_j;      ///< [m]
 };
 

@@ -24,9 +24,11 @@ struct ContactGeometry {
 
 namespace detail {
 
-/// False when the bodies do not overlap. Coincident centres of spheres get an arbitrary, fixed normal.
+/// False when the bodies do not overlap, spheres: not within `reach` of each other (overlap is then minus the gap).
+/// Coincident centres of spheres get an arbitrary, fixed normal.
 template <int D, Geometry kGeometry>
-inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<D>& shift, ContactGeometry<D>& g) {
+inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<D>& shift, ContactGeometry<D>& g,
+                 double reach = 0.0) {
   const Sphere<D>& a = p.sphere[i];
   const Sphere<D>& b = p.sphere[j];
   const Vec<D> d = a.x - b.x - shift;
@@ -42,10 +44,10 @@ inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<
   } else {
     const double distance2 = norm2(d);
     if constexpr (kGeometry == Geometry::sphere_sphere) {
-      const double reach = a.r + b.r;
-      if (distance2 >= reach * reach) return false;
+      const double touch = a.r + b.r;
+      if (distance2 >= (touch + reach) * (touch + reach)) return false;
       const double distance = std::sqrt(distance2);
-      g.overlap = reach - distance;
+      g.overlap = touch - distance;
       if (distance > 0.0)
         g.normal = d * (1.0 / distance);
       else
@@ -114,7 +116,7 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
       image_velocity = s.cell.velocity_gradient * shift;
     }
     ContactGeometry<D> g;
-    if (!meet<D, kGeometry>(s.particles, i, j, shift, g)) {
+    if (!meet<D, kGeometry>(s.particles, i, j, shift, g, reach_of(law))) {
       keep(c, {}, 0.0);
       sink.apart(c);
       continue;
@@ -123,6 +125,7 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
     state.dt = dt;
     if constexpr (Law::needs_velocity)
       relative_motion<D, Law::has_tangential>(s.particles, i, j, g, image_velocity, state);
+    if constexpr (resists_rolling<Law>()) state.turning = s.particles.spin[i] - s.particles.spin[j];
     if constexpr (Law::has_tangential) state.spring = list.spring[c];
     if constexpr (Law::has_memory) state.memory = list.memory[c];
     if constexpr (Law::needs_particle_pass) {
@@ -132,6 +135,8 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
     const ContactResponse<D> response = law.evaluate(state);
     keep(c, response.spring, response.memory);
     sink.template touch<Law::has_tangential>(c, i, j, g, response);
+    if constexpr (resists_rolling<Law>() && requires { sink.roll(i, j, response.rolling_moment); })
+      sink.roll(i, j, response.rolling_moment);
   }
 }
 

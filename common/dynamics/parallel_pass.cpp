@@ -33,6 +33,7 @@ struct Share {
 struct Plan {
   std::uint64_t build = 0;
   int threads = 0;
+  bool rolls = false;                      ///< some law of the scene has rolling resistance
   std::vector<std::vector<Share>> shares;  ///< [thread][section]
 };
 
@@ -99,6 +100,9 @@ void make_plan(const System<D>& s, int threads, Plan& plan) {
   const std::vector<std::uint8_t> owner = owners_of(s, threads);
   plan.build = s.contacts.build;
   plan.threads = threads;
+  plan.rolls = false;
+  for (std::int32_t l = 0; l < s.laws.size(); ++l)
+    plan.rolls = plan.rolls || std::visit([]<class Law>(const Law&) { return resists_rolling<Law>(); }, s.laws.law(l));
   plan.shares.assign(static_cast<std::size_t>(threads), std::vector<Share>(s.contacts.sections.size()));
   for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, owner, plan);
 }
@@ -132,6 +136,8 @@ class Waiters : public WaitingLoads {
     const double arm = w.first ? load.arm_i : load.arm_j;
     for (int k = 0; k < D; ++k) s_.particles.force[body][k] += sign * load.force[k];
     for (int k = 0; k < (D == 3 ? 3 : 1); ++k) s_.particles.torque[body][k] -= load.moment[k] * arm;
+    if constexpr (D == 2)
+      if (plan_.rolls) s_.particles.torque[body][0] += sign * load.moment[1];
   }
 
   System<D>& s_;
@@ -153,6 +159,7 @@ struct MergingSink {
     waiting.add_before(static_cast<std::int32_t>(c));
     scatter.template touch<kTorque>(c, i, j, g, r);
   }
+  void roll(std::size_t i, std::size_t j, const Rot<D>& moment) { scatter.roll(i, j, moment); }
 };
 
 template <int D>

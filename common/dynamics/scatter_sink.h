@@ -27,6 +27,10 @@ struct ScatterSink {
       p.force[j] -= f;
     }
   }
+  void roll(std::size_t i, std::size_t j, const Rot<D>& moment) {
+    p.torque[i] += moment;
+    p.torque[j] -= moment;
+  }
 };
 
 /// Puts the loads down one after the other.
@@ -54,6 +58,8 @@ struct PutDownSink {
     *touches++ = 1;
     ++load;
   }
+  /// In two dimensions, where a moment is one number and leaves room beside it.
+  void roll(std::size_t, std::size_t, const Rot<D>& moment) requires(D == 2) { (load - 1)->moment[1] = moment[0]; }
 };
 
 }  // namespace softgrain

@@ -42,12 +42,30 @@ bool has_onset(const AnyLaw& any) {
   return std::visit([]<class Law>(const Law&) { return Law::has_onset; }, any);
 }
 
+/// Half the largest gap at which a pair of grains interacts; 0 for laws of contact alone.
+double half_reach(const LawSet& laws) {
+  double reach = 0.0;
+  for (std::int32_t l = 0; l < laws.size(); ++l)
+    reach = std::max(reach, std::visit([](const auto& law) { return reach_of(law); }, laws.law(l)));
+  return 0.5 * reach;
+}
+
+/// Margins of the search: a pair's is the sum of both, so that whatever may come within reach is found.
+template <int D>
+std::vector<double> search_margins(const System<D>& s) {
+  std::vector<double> margin = s.neighbours.skin;
+  const double more = half_reach(s.laws);
+  if (more > 0.0)
+    for (double& m : margin) m += more;
+  return margin;
+}
+
 template <int D>
 std::vector<FoundPair> grain_pairs(const System<D>& s) {
   const auto& p = s.particles;
   std::vector<bool> late;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) late.push_back(has_onset(s.laws.law(l)));
-  const auto candidates = candidate_pairs(p, s.cell, s.neighbours.skin);
+  const auto candidates = candidate_pairs(p, s.cell, search_margins(s));
   std::vector<FoundPair> out;
   out.reserve(candidates.size());
   for (const CandidatePair& c : candidates) {
