@@ -20,7 +20,10 @@ enum class RandomPurpose : std::uint64_t {
   directions = 8,
   grain_box_radii = 20,
   grain_box_elasticity = 21,
-  grain_box_positions = 22
+  grain_box_positions = 22,
+  powder_diameters = 30,
+  powder_positions = 31,
+  powder_velocities = 32
 };
 
 /// A sequence of independent numbers keyed by (seed, purpose, index).

@@ -1,0 +1,106 @@
+#include "microsim/powder/powder_contacts.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "common/dynamics/force_pass.h"
+#include "microsim/powder/powder_start.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Disks with fewer than two contacts, taken away until every one left has two.
+std::int64_t count_rattlers(std::size_t disks, const std::vector<ContactRecord<2>>& records) {
+  std::vector<int> degree(disks, 0);
+  std::vector<bool> gone(disks, false);
+  for (const auto& c : records) {
+    ++degree[static_cast<std::size_t>(c.i)];
+    ++degree[static_cast<std::size_t>(c.j)];
+  }
+  std::vector<bool> cut(records.size(), false);
+  std::int64_t count = 0;
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t k = 0; k < disks; ++k)
+      if (!gone[k] && degree[k] < 2) {
+        gone[k] = again = true;
+        ++count;
+      }
+    for (std::size_t c = 0; c < records.size(); ++c) {
+      const auto i = static_cast<std::size_t>(records[c].i);
+      const auto j = static_cast<std::size_t>(records[c].j);
+      if (cut[c] || (!gone[i] && !gone[j])) continue;
+      cut[c] = true;
+      --degree[i];
+      --degree[j];
+    }
+  }
+  return count;
+}
+
+std::vector<double> shares_of(std::size_t disks, const std::vector<ContactRecord<2>>& records) {
+  std::vector<std::size_t> neighbours(disks, 0);
+  for (const auto& c : records) {
+    ++neighbours[static_cast<std::size_t>(c.i)];
+    ++neighbours[static_cast<std::size_t>(c.j)];
+  }
+  std::vector<double> shares;
+  for (const std::size_t k : neighbours) {
+    if (k >= shares.size()) shares.resize(k + 1, 0.0);
+    shares[k] += 1.0 / static_cast<double>(disks);
+  }
+  return shares;
+}
+
+double rumpf(const System<2>& s, const PowderContacts& c) {
+  double d = 0.0;
+  double d2 = 0.0;
+  for (const auto& b : s.particles.sphere) {
+    d += 2.0 * b.r;
+    d2 += 4.0 * b.r * b.r;
+  }
+  return c.coordination * powder_fraction(s) * c.mean_normal * d / (std::numbers::pi * d2);
+}
+
+}  // namespace
+
+PowderContacts powder_contacts(const System<2>& s, double zero, bool cohesive) {
+  PowderContacts out;
+  const std::vector<ContactRecord<2>> records = contact_records(s);
+  const auto disks = static_cast<std::size_t>(s.particles.grains);
+  double sum = 0.0;
+  double square = 0.0;
+  double repulsive = 0.0;
+  double tensile = 0.0;
+  for (const auto& c : records) {
+    ++(c.overlap > 0.0 ? out.contacts : out.distant);
+    sum += c.normal_force;
+    square += c.normal_force * c.normal_force;
+    if (std::abs(c.normal_force) < zero) {
+      ++out.unstressed;
+    } else if (c.normal_force > 0.0) {
+      ++out.repulsive;
+      repulsive += c.normal_force;
+    } else {
+      ++out.tensile;
+      tensile += c.normal_force;
+    }
+  }
+  const auto n = static_cast<double>(records.size());
+  out.coordination = 2.0 * n / static_cast<double>(disks);
+  out.shares = shares_of(disks, records);
+  if (!cohesive) out.rattlers = count_rattlers(disks, records);
+  const double idle = cohesive ? (out.shares.empty() ? 0.0 : out.shares[0])
+                               : static_cast<double>(out.rattlers) / static_cast<double>(disks);
+  out.coordination_backbone = idle < 1.0 ? out.coordination / (1.0 - idle) : 0.0;
+  if (records.empty()) return out;
+  out.mean_normal = sum / n;
+  out.square_mean_normal = std::sqrt(square / n);
+  if (out.repulsive > 0) out.mean_repulsive = repulsive / static_cast<double>(out.repulsive);
+  if (out.tensile > 0) out.mean_tensile = tensile / static_cast<double>(out.tensile);
+  out.rumpf_pressure = rumpf(s, out);
+  return out;
+}
+
+}  // namespace softgrain

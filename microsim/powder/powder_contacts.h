@@ -1,0 +1,33 @@
+// Who touches whom in a powder, and with what forces [CP 3.5].
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/system.h"
+
+namespace softgrain {
+
+/// Counts and mean forces of one state, in the units of the sample (F0, or P a without cohesion).
+struct PowderContacts {
+  std::int64_t contacts = 0;   ///< N_c, h < 0 in the notation of the publication
+  std::int64_t distant = 0;    ///< N_d, attracting across a gap
+  double coordination = 0.0;   ///< z = 2 (N_c + N_d)/N
+  std::vector<double> shares;  ///< x_k, share of disks with k interactions
+  std::int64_t rattlers = 0;   ///< disks without force-carrying backbone, removed one after another; 0 with cohesion
+  double coordination_backbone = 0.0;  ///< z* = z/(1 - x0), rattlers counting as x0 without cohesion
+  std::int64_t repulsive = 0;
+  std::int64_t tensile = 0;
+  std::int64_t unstressed = 0;  ///< |N| below `zero`
+  double mean_normal = 0.0;     ///< <N> over all interactions
+  double mean_repulsive = 0.0;
+  double mean_tensile = 0.0;        ///< negative
+  double square_mean_normal = 0.0;  ///< sqrt(<N^2>)
+  double rumpf_pressure = 0.0;      ///< z Phi <N> <d>/(pi <d^2>)
+};
+
+/// `zero`: forces below it count as none (published: 1e-4 F0 without rolling resistance, 1e-2 F0 with). `cohesive`:
+/// whether disks are held by tension, so that none is a rattler.
+PowderContacts powder_contacts(const System<2>& system, double zero, bool cohesive);
+
+}  // namespace softgrain
