@@ -25,6 +25,7 @@
 #include "pipelines/named_laws.h"
 #include "pipelines/particles_check.h"
 #include "pipelines/pipeline_setup.h"
+#include "pipelines/powder_command.h"
 #include "pipelines/run_context.h"
 
 namespace softgrain {
@@ -144,7 +145,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const Scene scene = Scene::load(path, options.overrides);
   const SceneTable root = scene.root();
   const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "macro-comparison", "particles",
-                                                "grain-box", "law-table", "hierarchy"});
+                                                "grain-box", "law-table", "cohesive-powder", "hierarchy"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
     check_particles(read_particles_scene(scene), out.facts, out.lines);
@@ -152,6 +153,8 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
     check_grain_box(read_grain_box(scene), out.facts, out.lines);
   } else if (kind == "law-table") {
     check_law_table(scene, out.facts, out.lines);
+  } else if (kind == "cohesive-powder") {
+    check_powder(scene, out.facts, out.lines);
   } else if (kind == "hierarchy") {
     check_hierarchy(scene, out.facts, out.lines);
   } else if (kind == "macro") {

@@ -139,6 +139,8 @@ PowderResidual<D> powder_residual(const System<D>& s, const Vec<D>& imposed, con
     const auto u = static_cast<std::size_t>(i);
     out.force = std::max(out.force, norm(static_cast<Vec<D>>(p.force[u])));
     out.moment = std::max(out.moment, std::sqrt(norm2(static_cast<Rot<D>>(p.torque[u]))));
+    // Nothing slows a disk in free flight, nor its spin: it is a rattler, and the pack may rest without it.
+    if (static_cast<Vec<D>>(p.force[u]) == Vec<D>{} && static_cast<Rot<D>>(p.torque[u]) == Rot<D>{}) continue;
     Vec<D> v = p.velocity[u];
     for (int k = 0; k < D; ++k) v[k] -= s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
     kinetic += 0.5 * norm2(v) / p.inverse_mass[u] + 0.5 * norm2(static_cast<Rot<D>>(p.spin[u])) / p.inverse_inertia[u];

@@ -58,7 +58,7 @@ struct PowderResidual {
   double force = 0.0;     ///< largest net force over 1e-4 F1
   double moment = 0.0;    ///< largest net moment over 1e-4 F1 a
   double pressure = 0.0;  ///< largest |imposed - measured| over 1e-4 F1/a (a: largest diameter)
-  double kinetic = 0.0;   ///< kinetic energy per body over 5e-8 F1 a
+  double kinetic = 0.0;   ///< kinetic energy per body over 5e-8 F1 a, without bodies in free flight (rattlers)
 
   [[nodiscard]] bool equilibrium() const { return force < 1.0 && moment < 1.0 && pressure < 1.0 && kinetic < 1.0; }
 };

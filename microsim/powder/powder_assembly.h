@@ -1,0 +1,73 @@
+// Bringing a powder together: phases of imposed pressure or fixed cell, each until the published equilibrium
+// [CP 3.2, 3.3].
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/dynamics/stress_cell.h"
+#include "microsim/powder/powder_contacts.h"
+#include "microsim/powder/powder_start.h"
+
+namespace softgrain {
+
+/// A stretch of an assembly.
+struct PowderPhase {
+  std::string name;              ///< "compaction", "aggregation", "free", "load"
+  bool fixed_cell = false;       ///< the cell keeps its lengths; pressure is no criterion
+  bool one_aggregate = false;    ///< also wait until all disks hang together
+  double pressure = 0.0;         ///< imposed, in the units of the sample
+  double strain_rate_cap = 0.0;  ///< per T0; 0: none
+};
+
+/// Method 1: at rest, the pressure at once, no cap. Method 2: the disks aggregate in a fixed cell, then the cell is
+/// freed at P = 0, then the pressure.
+std::vector<PowderPhase> powder_phases(const PowderSpec& spec, int method, double strain_rate_cap);
+
+struct PowderOptions {
+  double step = 0.1;              ///< dt over sqrt(m_min/K_N)
+  double cell_mass = 0.3;         ///< of the sum of all masses, divided by L/a
+  double time_max = 20000.0;      ///< per phase [T0]
+  double record_every = 10.0;     ///< [T0]
+  std::int64_t test_every = 200;  ///< steps between two looks at the criteria
+};
+
+/// One recorded moment.
+struct PowderPoint {
+  std::int64_t phase = 0;
+  double time = 0.0;      ///< [T0]
+  double fraction = 0.0;  ///< Phi
+  double coordination = 0.0;
+  double kinetic = 0.0;  ///< energy per disk, relative to the moving cell
+  Vec<2> stress{};
+};
+
+/// Everything a sample needs to go on.
+struct PowderState {
+  System<2> system;
+  std::int64_t phase = 0;
+  double phase_start = 0.0;  ///< time at which the phase began
+  Vec<2> phase_edge{};       ///< lengths of the cell then: the reference of the strain
+  std::vector<PowderPoint> points;
+};
+
+struct PowderResult {
+  bool usable = false;
+  std::string reason;  ///< which criterion was unmet when the time ran out
+  double fraction = 0.0;
+  Vec<2> stress{};
+  PowderResidual<2> residual;
+  PowderContacts contacts;
+};
+
+PowderState start_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);
+
+/// Whether contacts and attracting pairs join all disks into one.
+bool one_aggregate(const System<2>& system);
+
+/// Goes through the phases from where the state stands; `observer` after each recorded point (to save; may throw).
+PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::vector<PowderPhase>& phases,
+                        const PowderOptions& options, const std::function<void(const PowderState&)>& observer);
+
+}  // namespace softgrain

@@ -1,0 +1,191 @@
+#include "pipelines/powder_command.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/io/interrupt.h"
+#include "common/io/progress.h"
+#include "common/state/system_io.h"
+#include "pipelines/parallel_tasks.h"
+#include "pipelines/powder_setup.h"
+#include "pipelines/run_summary.h"
+#include "pipelines/task_store.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+constexpr std::size_t kColumns = 7;
+
+void write_state(const h5::Group& group, const PowderState& state) {
+  std::vector<double> rows;
+  for (const PowderPoint& p : state.points)
+    rows.insert(rows.end(), {static_cast<double>(p.phase), p.time, p.fraction, p.coordination, p.kinetic, p.stress[0],
+                             p.stress[1]});
+  group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
+  group.write("course", rows, {state.points.size(), kColumns});
+  group.write("phase", std::vector<double>{static_cast<double>(state.phase), state.phase_start, state.phase_edge[0],
+                                           state.phase_edge[1]});
+  write_system(group.create("system"), state.system);
+}
+
+void read_state(const h5::Group& group, PowderState& state) {
+  const auto rows = group.doubles("course");
+  const auto phase = group.doubles("phase");
+  state.points.clear();
+  for (std::size_t k = 0; k + kColumns <= rows.size(); k += kColumns)
+    state.points.push_back({static_cast<std::int64_t>(rows[k]),
+                            rows[k + 1],
+                            rows[k + 2],
+                            rows[k + 3],
+                            rows[k + 4],
+                            {{rows[k + 5], rows[k + 6]}}});
+  state.phase = static_cast<std::int64_t>(phase.at(0));
+  state.phase_start = phase.at(1);
+  state.phase_edge = {{phase.at(2), phase.at(3)}};
+  read_system(group.open("system"), state.system);
+}
+
+struct Sample {
+  PowderState state;
+  PowderResult result;
+};
+
+Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t number, const TaskStore& store,
+                  Progress& progress) {
+  Sample sample;
+  sample.state = start_powder(setup.spec, seed, static_cast<std::uint64_t>(number));
+  const std::string task = fmt::format("powder-{}", number);
+  store.load(task, [&](const h5::Group& g) { read_state(g, sample.state); });
+  const auto phases = setup.phases();
+  double reported = 0.0;
+  sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {
+    store.save(task, [&](const h5::Group& g) { write_state(g, now); });
+    const double share =
+        (static_cast<double>(now.phase) + std::min(1.0, (now.system.time - now.phase_start) / setup.options.time_max)) /
+        static_cast<double>(phases.size());
+    progress.advance(std::max(share - reported, 0.0));
+    reported = std::max(share, reported);
+    if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
+  });
+  progress.advance(1.0 - reported);
+  return sample;
+}
+
+json sample_json(const Sample& s) {
+  const PowderContacts& c = s.result.contacts;
+  return {{"usable", s.result.usable},
+          {"reason", s.result.reason},
+          {"time", s.state.system.time},
+          {"steps", s.state.system.step},
+          {"loop_passes", s.state.system.cost.loop_passes},
+          {"contact_evaluations", s.state.system.cost.contact_evaluations},
+          {"Phi", s.result.fraction},
+          {"z", c.coordination},
+          {"z_star", c.coordination_backbone},
+          {"shares", c.shares},
+          {"contacts", c.contacts},
+          {"distant", c.distant},
+          {"rattlers", c.rattlers},
+          {"repulsive", c.repulsive},
+          {"tensile", c.tensile},
+          {"unstressed", c.unstressed},
+          {"mean_normal", c.mean_normal},
+          {"mean_repulsive", c.mean_repulsive},
+          {"mean_tensile", c.mean_tensile},
+          {"quadratic_mean_normal", c.square_mean_normal},
+          {"rumpf_pressure", c.rumpf_pressure},
+          {"stress", {s.result.stress[0], s.result.stress[1]}}};
+}
+
+struct Mean {
+  double mean = 0.0;
+  double deviation = 0.0;  ///< of the sample; 0 for one
+};
+
+template <class Get>
+Mean mean_of(const std::vector<Sample>& samples, const Get& get) {
+  Mean m;
+  double n = 0.0;
+  double square = 0.0;
+  for (const Sample& s : samples) {
+    if (!s.result.usable) continue;
+    const double x = get(s.result);
+    n += 1.0;
+    m.mean += x;
+    square += x * x;
+  }
+  if (n > 0.0) m.mean /= n;
+  if (n > 1.0) m.deviation = std::sqrt(std::max(square - n * m.mean * m.mean, 0.0) / (n - 1.0));
+  return m;
+}
+
+void save_samples(const std::string& path, const std::vector<Sample>& samples, const Provenance& provenance) {
+  h5::AtomicFile file(path);
+  write_provenance(file.root(), provenance);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const h5::Group group = file.root().create(fmt::format("sample_{}", k));
+    group.attribute("usable", std::int64_t{samples[k].result.usable ? 1 : 0});
+    group.attribute("reason", samples[k].result.reason);
+    write_state(group, samples[k].state);
+  }
+  file.commit();
+}
+
+}  // namespace
+
+ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
+  const PowderSetup setup = read_powder(scene);
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(setup.seed);
+  const TaskStore store(context, scene, seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  std::vector<Sample> samples(static_cast<std::size_t>(setup.samples));
+  context.guard([&] {
+    Progress progress("powders", static_cast<double>(setup.samples), context.quiet());
+    parallel_tasks(setup.samples, [&](std::int64_t k) {
+      samples[static_cast<std::size_t>(k)] = run_sample(setup, seed, k, store, progress);
+    });
+    progress.finish();
+  });
+  save_samples(context.path("powder.h5"), samples, provenance);
+  bool usable = true;
+  json summary{{"kind", "cohesive-powder"}, {"title", setup.title}, {"remarks", json::array()}};
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    summary["samples"].push_back(sample_json(samples[k]));
+    usable = usable && samples[k].result.usable;
+    if (!samples[k].result.usable)
+      summary["remarks"].push_back(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
+  }
+  const Mean fraction = mean_of(samples, [](const PowderResult& r) { return r.fraction; });
+  const Mean z = mean_of(samples, [](const PowderResult& r) { return r.contacts.coordination; });
+  summary["status"] = usable ? "good" : "not usable";
+  summary["mean"] = {
+      {"Phi", fraction.mean}, {"Phi_deviation", fraction.deviation}, {"z", z.mean}, {"z_deviation", z.deviation}};
+  summary["files"] = {{"powder.h5", context.path("powder.h5")}};
+  summary["provenance"] = provenance_json(provenance);
+  std::string people =
+      fmt::format("{} samples of {} disks: Phi {:.4f} (deviation {:.4f}), z {:.3f} ({:.3f})\n", setup.samples,
+                  setup.spec.disks, fraction.mean, fraction.deviation, z.mean, z.deviation);
+  for (const auto& remark : summary["remarks"]) people += "note: " + remark.get<std::string>() + "\n";
+  context.finish(summary, people + "data: " + context.path("powder.h5"));
+  store.clear();
+  return usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+void check_powder(const Scene& scene, json& facts, std::string& lines) {
+  const PowderSetup setup = read_powder(scene);
+  const double step =
+      setup.options.step * std::sqrt(setup.spec.diameter_min * setup.spec.diameter_min / setup.spec.stiffness);
+  const auto phases = static_cast<double>(setup.phases().size());
+  facts["time_step"] = step;
+  facts["steps_max"] = phases * setup.options.time_max / step;
+  lines += fmt::format(
+      "  {} samples of {} disks, {:.0f} phases; time step {:.3g} T0 or a little more, at most {:.3g} steps each\n",
+      setup.samples, setup.spec.disks, phases, step, phases * setup.options.time_max / step);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,19 @@
+// Scene kind "cohesive-powder": disks with adhesion in two dimensions, assembled until they rest.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/io/scene.h"
+#include "pipelines/run_context.h"
+
+namespace softgrain {
+
+/// Runs all samples; writes powder.h5 (final states and the course of each assembly) and summary.json. Status
+/// not_usable when a sample did not come to rest: the summary says which criterion was unmet.
+ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options);
+
+/// What follows from such a scene: phases, time step, steps at most.
+void check_powder(const Scene& scene, nlohmann::json& facts, std::string& lines);
+
+}  // namespace softgrain

@@ -1,0 +1,58 @@
+#include "pipelines/powder_setup.h"
+
+namespace softgrain {
+
+namespace {
+
+void read_disks(const SceneTable& t, PowderSpec& spec) {
+  spec.disks = t.count("count", 2, 1000000, spec.disks);
+  spec.diameter_min = t.number("diameter_min", Unit::none, Range{0.0, 1.0, true, false}, spec.diameter_min);
+  spec.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 0.9, true, true}, spec.solid_fraction);
+}
+
+void read_contact(const SceneTable& t, PowderSpec& spec) {
+  spec.cohesive = t.flag("cohesive", spec.cohesive);
+  spec.stiffness = t.number("kappa", Unit::none, Range::positive(), spec.stiffness);
+  spec.stiffness_ratio = t.number("kt_ratio", Unit::none, Range::positive(), spec.stiffness_ratio);
+  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
+  spec.damping = t.number("zeta", Unit::none, Range::not_negative(), spec.damping);
+  spec.range = t.number("range", Unit::none, Range{0.0, 0.5, true, false}, spec.range);
+  spec.rolling = t.flag("rolling", spec.rolling);
+  spec.rolling_stiffness = t.number("rolling_stiffness", Unit::none, Range::positive(), spec.rolling_stiffness);
+  spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
+}
+
+void read_assembly(const SceneTable& t, PowderSetup& setup) {
+  setup.method = static_cast<int>(t.count("method", 1, 2, 1));
+  if (!setup.spec.cohesive && t.has("pressure"))
+    t.reject("pressure", "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
+  if (!setup.spec.cohesive && setup.method == 2) t.reject("method", "disks without cohesion do not aggregate");
+  setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
+  if (setup.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
+    t.reject("pressure", "method 1 starts at rest: without pressure nothing moves");
+  setup.spec.start_speed = setup.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
+  setup.strain_rate_cap =
+      t.number("strain_rate_cap", Unit::none, Range::not_negative(), setup.method == 2 ? 0.05 : 0.0);
+  setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
+  setup.options.step = t.number("step", Unit::none, Range{0.0, 0.5, true, false}, setup.options.step);
+  setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
+  setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
+}
+
+}  // namespace
+
+PowderSetup read_powder(const Scene& scene) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"cohesive-powder"});
+  PowderSetup setup;
+  setup.title = root.text("title", "");
+  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.samples = root.count("samples", 1, 10000, 1);
+  read_disks(root.table_or_empty("disks"), setup.spec);
+  read_contact(root.table_or_empty("contact"), setup.spec);
+  read_assembly(root.table_or_empty("assembly"), setup);
+  root.finish();
+  return setup;
+}
+
+}  // namespace softgrain

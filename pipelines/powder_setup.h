@@ -1,0 +1,27 @@
+// Tables of a scene of kind "cohesive-powder".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/io/scene.h"
+#include "microsim/powder/powder_assembly.h"
+
+namespace softgrain {
+
+struct PowderSetup {
+  std::string title;
+  PowderSpec spec;
+  PowderOptions options;
+  int method = 1;
+  double strain_rate_cap = 0.0;
+  std::int64_t samples = 1;
+  std::uint64_t seed = 1;
+
+  [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, method, strain_rate_cap); }
+};
+
+/// Reads the scene to the last key. Throws BadInput.
+PowderSetup read_powder(const Scene& scene);
+
+}  // namespace softgrain

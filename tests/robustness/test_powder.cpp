@@ -1,0 +1,84 @@
+// Cohesive powders through the built program: a small pack comes to rest, other threads change nothing, what does not
+// rest is said, what cannot be is refused.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "common/io/text_file.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr const char* kPack = R"(kind = "cohesive-powder"
+seed = 1
+samples = 2
+[disks]
+count = 100
+solid_fraction = 0.36
+[contact]
+cohesive = false
+kappa = 1e4
+mu = 0.5
+[assembly]
+)";
+
+class Powder : public ::testing::Test {
+ protected:
+  Powder() { write_text_atomic(scene(), kPack); }
+  [[nodiscard]] std::string scene() const { return directory_.file("scene.toml"); }
+  [[nodiscard]] std::string out(const std::string& name) const { return directory_.file(name); }
+  json run(const std::string& name, const std::string& more, int status) {
+    const ProgramOutcome outcome =
+        run_the_program("microsim '" + scene() + "' --quiet --out '" + out(name) + "' " + more);
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    return json::parse(read_text(out(name) + "/summary.json"));
+  }
+  void expect_refused(const std::string& more, const std::string& word) {
+    const ProgramOutcome outcome = run_the_program("microsim '" + scene() + "' --out '" + out("bad") + "' " + more);
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(word), std::string::npos) << outcome.output;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Powder, DisksWithoutCohesionJam) {
+  const json s = run("out", "--threads 1", 0);
+  EXPECT_EQ(s["status"], "good");
+  EXPECT_GT(s["mean"]["Phi"].get<double>(), 0.76);
+  EXPECT_LT(s["mean"]["Phi"].get<double>(), 0.85);
+  for (const json& sample : s["samples"]) {
+    EXPECT_NEAR(sample["stress"][0].get<double>(), 1.0, 1e-4);
+    EXPECT_NEAR(sample["rumpf_pressure"].get<double>(), 1.0, 0.06) << "pressure from the mean force alone";
+    double shares = 0.0;
+    for (const json& x : sample["shares"]) shares += x.get<double>();
+    EXPECT_NEAR(shares, 1.0, 1e-12);
+    EXPECT_GE(sample["z_star"].get<double>(), sample["z"].get<double>());
+  }
+  EXPECT_TRUE(fs::exists(out("out") + "/powder.h5"));
+  EXPECT_EQ(run("two", "--threads 2", 0)["samples"], s["samples"]);
+}
+
+TEST_F(Powder, WhatDoesNotRestIsSaid) {
+  const json s = run("out", "--set assembly.time_max=3", 3);
+  EXPECT_EQ(s["status"], "not usable");
+  ASSERT_FALSE(s["remarks"].empty());
+  EXPECT_NE(s["remarks"][0].get<std::string>().find("phase compaction"), std::string::npos);
+}
+
+TEST_F(Powder, WhatCannotBeIsRefused) {
+  expect_refused("--set assembly.method=2", "do not aggregate");
+  expect_refused("--set assembly.pressure=0.01", "kappa");
+  expect_refused("--set disks.solid_fraction=1.2", "solid_fraction");
+  expect_refused("--set contact.kapa=1e4", "kappa");
+  expect_refused("--set contact.cohesive=true --set assembly.pressure=0", "nothing moves");
+}
+
+}  // namespace
