@@ -29,8 +29,7 @@ CrowdModel starting_model(const std::string& form) {
 }
 
 bool fits(const CrowdStates& c, PartnerKind kind) {
-  const CrowdConfiguration& configuration = *c.configuration;
-  return !configuration.held_out && !configuration.centre_free && !c.states.empty() && c.all_of(kind);
+  return c.use == CrowdUse::fitted && !c.states.empty() && c.all_of(kind);
 }
 
 /// The pair law knows one contact only; the others use every configuration of planes that is not held out.
@@ -215,10 +214,11 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   int counts[2] = {0, 0};
   for (const CrowdStates& c : states) {
     if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
-    const bool out = c.configuration->held_out || c.configuration->centre_free;
-    const ConfigurationError e{c.configuration->name, out, crowd_error(fit.model, c), end_ratio(fit.model, c),
-                               noise(c)};
+    const ConfigurationError e{c.configuration->name, to_string(c.use), crowd_error(fit.model, c),
+                               end_ratio(fit.model, c), noise(c)};
     law.errors.push_back(e);
+    if (c.use == CrowdUse::repeated) continue;
+    const bool out = c.use == CrowdUse::predicted;
     sums[out ? 1 : 0] += e.error;
     ++counts[out ? 1 : 0];
   }
@@ -226,17 +226,16 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   if (counts[1] > 0) law.error_held_out = sums[1] / counts[1];
 }
 
-/// Leave one configuration of planes out, fit the others, predict it; held-out ones are predicted by the full fit. For
-/// the pair law, which is fitted to one plane alone, nothing changes.
+/// Leave one loading of planes out, fit the others, predict it; held-out ones are predicted by the full fit, and so is
+/// everything by the pair law, which is fitted to one plane alone.
 double cross_validate(const FormFit& full, const std::vector<CrowdStates>& states, double discrepancy) {
   double sum = 0.0;
   int count = 0;
   for (const CrowdStates& c : states) {
-    if (c.states.empty() || c.configuration->centre_free || !c.all_of(PartnerKind::plane)) continue;
+    if (c.states.empty() || c.use == CrowdUse::repeated || !c.all_of(PartnerKind::plane)) continue;
     CrowdModel model = full.model;
     const StateSelection rest = plane_selection(states, model.crowd, &c);
-    if (!c.configuration->held_out && c.configuration->partners.size() > 1 && model.crowd != Crowd::pair)
-      (void)fit_planes(model, rest, discrepancy, false);
+    if (c.use == CrowdUse::fitted && model.crowd != Crowd::pair) (void)fit_planes(model, rest, discrepancy, false);
     sum += crowd_error(model, c);
     ++count;
   }
@@ -310,7 +309,8 @@ void describe_packings(const CrowdMeasurements& data, LawTableEntry& entry) {
     square += p.solid_fraction * p.solid_fraction;
   }
   entry.solid_fraction = sum / n;
-  entry.solid_fraction_error = std::sqrt(std::max(square / n - entry.solid_fraction * entry.solid_fraction, 0.0) / n);
+  entry.solid_fraction_error =
+      std::sqrt(std::max(square / n - entry.solid_fraction * entry.solid_fraction, 0.0) / (n - 1.0));
   entry.packings = static_cast<int>(data.packings.size());
 }
 

@@ -77,12 +77,65 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
       state.error.push_back(sums[k].force[j].error());
     }
     state.tangential = sums[k].tangential.mean();
-    state.tangential_error = sums[k].tangential.error();
   }
   std::erase_if(out.states, [](const CrowdState& s) { return s.packings < 2; });
 }
 
+/// Whether two configurations begin by pressing the same neighbours in the same way, however deep.
+bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
+  constexpr double kSame = 1e-9;
+  if (a.partners.size() != b.partners.size()) return false;
+  const std::vector<double>& x = a.stages.front().overlap;
+  const std::vector<double>& y = b.stages.front().overlap;
+  const double deep_x = *std::max_element(x.begin(), x.end());
+  const double deep_y = *std::max_element(y.begin(), y.end());
+  for (std::size_t k = 0; k < a.partners.size(); ++k) {
+    const CrowdPartner& p = a.partners[k];
+    const CrowdPartner& q = b.partners[k];
+    if (p.kind != q.kind || p.ratio != q.ratio || norm(p.direction - q.direction) > kSame ||
+        std::abs(x[k] / deep_x - y[k] / deep_y) > kSame)
+      return false;
+  }
+  return true;
+}
+
+/// Held out as a loading, not only as a path that goes on from it.
+bool holds_out(const CrowdStates& c) { return c.configuration->held_out && c.configuration->stages.size() == 1; }
+
+bool may_be_fitted(const CrowdStates& c) { return !c.configuration->held_out && !c.configuration->centre_free; }
+
+/// One loading: of its configurations one is used, the others repeat it.
+void assign_use(const std::vector<CrowdStates*>& group) {
+  for (CrowdStates* c : group) c->use = CrowdUse::repeated;
+  const auto first = [&](auto&& wanted) { return std::find_if(group.begin(), group.end(), wanted); };
+  const auto held_out = first([](const CrowdStates* c) { return holds_out(*c); });
+  const auto fitted = first([](const CrowdStates* c) { return may_be_fitted(*c); });
+  if (held_out == group.end() && fitted != group.end())
+    (*fitted)->use = CrowdUse::fitted;
+  else
+    (held_out != group.end() ? *held_out : group.front())->use = CrowdUse::predicted;
+}
+
+void assign_uses(std::vector<CrowdStates>& all) {
+  std::vector<std::vector<CrowdStates*>> groups;
+  for (CrowdStates& c : all) {
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const std::vector<CrowdStates*>& g) {
+      return same_loading(*g.front()->configuration, *c.configuration);
+    });
+    if (known == groups.end())
+      groups.push_back({&c});
+    else
+      known->push_back(&c);
+  }
+  for (const auto& group : groups) assign_use(group);
+}
+
 }  // namespace
+
+std::string to_string(CrowdUse use) {
+  if (use == CrowdUse::fitted) return "fitted";
+  return use == CrowdUse::predicted ? "predicted" : "repeated";
+}
 
 bool CrowdStates::all_of(PartnerKind kind) const {
   return std::all_of(configuration->partners.begin(), configuration->partners.end(),
@@ -102,6 +155,7 @@ std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std
     out[c].configuration = &data.configurations[c];
     average(data, c, weight, out[c]);
   }
+  assign_uses(out);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "common/data/crowd_measurements.h"
@@ -14,24 +15,35 @@ struct CrowdState {
   std::vector<double> mean;     ///< normal force per neighbour
   std::vector<double> error;    ///< its standard error
   double tangential = 0.0;      ///< what holds the first neighbour back on its slide
-  double tangential_error = 0.0;
-  double slide = 0.0;        ///< of the first neighbour [Rs]
-  double max_overlap = 0.0;  ///< of grains, largest over packings
+  double slide = 0.0;           ///< of the first neighbour [Rs]
+  double max_overlap = 0.0;     ///< of grains, largest over packings
   std::int64_t stage = 0;
   std::int64_t packings = 0;  ///< converged ones
 };
+
+/// What a fit of forces does with a configuration.
+enum class CrowdUse {
+  fitted,
+  predicted,  ///< held out, with every other path that begins with the same loading
+  repeated    ///< the same loading of the same packings as one that is fitted or predicted: says nothing new
+};
+
+std::string to_string(CrowdUse use);
 
 /// The states of one configuration, in the order of the path.
 struct CrowdStates {
   const CrowdConfiguration* configuration = nullptr;  ///< in the data they come from
   std::vector<CrowdState> states;
+  CrowdUse use = CrowdUse::fitted;
 
   [[nodiscard]] bool all_of(PartnerKind kind) const;
   [[nodiscard]] double largest_force() const;  ///< mean normal force of a neighbour, over all states
 };
 
-/// Averages every configuration. `weight[p]` says how often packing p counts (a bootstrap replicate); empty: once each.
-/// States with fewer than two converged packings are left out.
+/// Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
+/// ratios of their overlaps) only the first with a held shell is fitted, or none when plain loading is held out.
+/// `weight[p]` says how often packing p counts (a bootstrap replicate); empty: once each. States with fewer than two
+/// converged packings are left out.
 std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std::vector<double>& weight = {});
 
 }  // namespace softgrain

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/solid_sphere.h"
 #include "common/data/slide_direction.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/displace.h"
@@ -16,261 +15,6 @@
 namespace softgrain {
 
 namespace {
-
-// Grains and inner soft particles of every soft particle have materials of their own, so that neighbours can be made
-// blind to each other: kGrain and kInner of the centre, then two for each soft neighbour.
-constexpr std::int32_t kGrain = 0;
-constexpr std::int32_t kInner = 1;
-constexpr std::int32_t kSolid = 2;  ///< solid spheres as neighbours
-constexpr std::int32_t kWall = 3;   ///< planes and shells: neither meets the other, both meet grains
-constexpr std::int32_t kPlane = 4;
-constexpr std::int32_t kFirstOther = 5;
-
-/// Laws are added once and shared by many pairs of materials.
-class LawTable {
- public:
-  LawTable(std::int32_t materials, const AnyLaw& hertz, const InnerLaws* inner) : laws_(materials) {
-    hertz_ = laws_.add(hertz);
-    if (inner == nullptr) return;
-    soft_plane_ = laws_.add(inner->soft_plane);
-    soft_solid_ = laws_.add(inner->soft_solid);
-    solid_soft_ = laws_.add(inner->solid_soft);
-    soft_soft_ = laws_.add(inner->soft_soft);
-  }
-  void solids(std::int32_t m1, std::int32_t m2) { laws_.use(m1, m2, hertz_); }
-  void soft_with_solid(std::int32_t soft, std::int32_t solid) {
-    if (soft_solid_ == LawSet::kNoContact) return;
-    laws_.use(soft, solid, soft_solid_, true);
-    laws_.use(solid, soft, solid_soft_, true);
-  }
-  void softs(std::int32_t m1, std::int32_t m2) {
-    if (soft_soft_ != LawSet::kNoContact) laws_.use(m1, m2, soft_soft_);
-  }
-  /// Two contents meet (or one with itself).
-  void contents(std::int32_t grain1, std::int32_t grain2) {
-    solids(grain1, grain2);
-    soft_with_solid(grain1 + 1, grain2);
-    soft_with_solid(grain2 + 1, grain1);
-    softs(grain1 + 1, grain2 + 1);
-  }
-  /// A content meets a solid sphere.
-  void content_with(std::int32_t grain, std::int32_t solid) {
-    solids(grain, solid);
-    soft_with_solid(grain + 1, solid);
-  }
-  /// A content meets a plane or the inside of a shell.
-  void content_with_plane(std::int32_t grain, std::int32_t plane) {
-    solids(grain, plane);
-    if (soft_plane_ != LawSet::kNoContact) laws_.use(grain + 1, plane, soft_plane_);
-  }
-  [[nodiscard]] const LawSet& laws() const { return laws_; }
-
- private:
-  LawSet laws_;
-  std::int32_t hertz_ = LawSet::kNoContact;
-  std::int32_t soft_plane_ = LawSet::kNoContact;
-  std::int32_t soft_solid_ = LawSet::kNoContact;
-  std::int32_t solid_soft_ = LawSet::kNoContact;
-  std::int32_t soft_soft_ = LawSet::kNoContact;
-};
-
-std::int32_t other_material(std::size_t soft) { return kFirstOther + 2 * static_cast<std::int32_t>(soft); }
-
-LawSet crowd_laws(const SoftParticleSpec& spec, const Material& grain, std::size_t softs, const InnerLaws* inner) {
-  const AnyLaw hertz = hertz_law(HertzCoefficients::of(grain, grain, spec.friction, 1.0), false);
-  LawTable table(other_material(softs), hertz, inner);
-  table.contents(kGrain, kGrain);
-  table.content_with(kGrain, kSolid);
-  for (const std::int32_t wall : {kWall, kPlane}) table.content_with_plane(kGrain, wall);
-  for (std::size_t k = 0; k < softs; ++k) {
-    const std::int32_t other = other_material(k);
-    table.contents(other, other);
-    table.contents(kGrain, other);
-    table.content_with_plane(other, kWall);
-  }
-  return table.laws();
-}
-
-std::vector<Material> crowd_materials(const SoftParticleSpec& spec, std::size_t softs) {
-  std::vector<Material> materials;
-  for (std::int32_t m = 0; m < other_material(softs); ++m)
-    materials.push_back(
-        {"material " + std::to_string(m), spec.density, spec.youngs_modulus, spec.poisson_ratio, false});
-  return materials;
-}
-
-void require_configuration(const CrowdConfiguration& c, std::size_t others) {
-  constexpr double kUnit = 1e-9;
-  std::size_t softs = 0;
-  for (const CrowdPartner& p : c.partners) {
-    if (std::abs(norm(p.direction) - 1.0) > kUnit) throw BadInput(c.name + ": a direction is no unit vector");
-    if (p.kind != PartnerKind::plane && !(p.ratio > 0.0))
-      throw BadInput(c.name + ": the ratio of a sphere must be > 0");
-    softs += p.kind == PartnerKind::soft ? 1 : 0;
-  }
-  if (others < softs)
-    throw BadInput(c.name + ": " + std::to_string(softs) + " soft neighbours, content for " + std::to_string(others));
-  for (const CrowdStage& s : c.stages)
-    if (s.overlap.size() != c.partners.size()) throw BadInput(c.name + ": one overlap per neighbour and stage");
-}
-
-/// Content of a soft particle as bodies of radius scale * r.
-struct ContentPlace {
-  Vec3 centre{};
-  double scale = 0.0;  ///< radius of its shell [m]
-  std::int32_t material = 0;
-  Slot shell = 0;
-};
-
-void add_content(System3& s, const SoftParticleSpec& spec, const SoftContent& content, const ContentPlace& at,
-                 double inner_fraction) {
-  const auto add = [&](const Vec3& x, double r, double density, std::int32_t material) {
-    NewBody<3> body = solid_sphere(at.centre + x * at.scale, r * at.scale, density, material);
-    body.shell = at.shell;
-    add_grain(s.particles, body);
-  };
-  for (std::size_t k = 0; k < content.grains.radius.size(); ++k)
-    add(content.grains.position[k], content.grains.radius[k], spec.density, at.material);
-  if (content.inner_packings.empty())
-    for (const InnerSoft& inner : content.inner) add(inner.x, inner.r, spec.density * inner_fraction, at.material + 1);
-}
-
-/// Grains of the packing that inner soft particle k holds.
-const ShellPacking& inner_packing(const SoftContent& content, std::size_t k) {
-  return content.inner_packings[k % content.inner_packings.size()];
-}
-
-/// Grains of resolved inner soft particles; they live in their own shell, which lives in the shell of the content.
-void add_inner_grains(System3& s, const SoftParticleSpec& spec, const SoftContent& content, const ContentPlace& at,
-                      Slot first_shell) {
-  if (content.inner_packings.empty()) return;
-  for (std::size_t k = 0; k < content.inner.size(); ++k) {
-    const ContentPlace inner{at.centre + content.inner[k].x * at.scale, content.inner[k].r * at.scale, at.material,
-                             first_shell + static_cast<Slot>(k)};
-    add_content(s, spec, {inner_packing(content, k), {}, {}}, inner, 1.0);
-  }
-}
-
-void add_inner_shells(System3& s, const SoftParticleSpec& spec, const SoftContent& content, const ContentPlace& at) {
-  if (content.inner_packings.empty()) return;
-  for (std::size_t k = 0; k < content.inner.size(); ++k) {
-    const double fraction = inner_packing(content, k).solid_fraction();
-    NewBody<3> shell = solid_sphere(at.centre + content.inner[k].x * at.scale, content.inner[k].r * at.scale,
-                                    spec.density * fraction, kWall);
-    shell.shell = at.shell;
-    add_shell(s.particles, shell);
-  }
-}
-
-Slot count(const SoftContent& content) {
-  std::size_t n = content.grains.radius.size();
-  if (content.inner_packings.empty()) n += content.inner.size();
-  for (std::size_t k = 0; k < content.inner.size() && !content.inner_packings.empty(); ++k)
-    n += inner_packing(content, k).radius.size();
-  return static_cast<Slot>(n);
-}
-
-/// Solid volume over the volume of the shell.
-double solid_fraction(const SoftContent& content, double inner_fraction) {
-  double sum = content.grains.solid_fraction();
-  for (const InnerSoft& inner : content.inner) sum += inner_fraction * inner.r * inner.r * inner.r;
-  return sum;
-}
-
-/// A free shell has the mass of its content.
-NewBody<3> centre_shell(const SoftParticleSpec& spec, bool free, double fraction) {
-  if (free) return solid_sphere({}, spec.shell_radius, spec.density * fraction, kWall);
-  NewBody<3> shell;
-  shell.r = spec.shell_radius;
-  shell.material = kWall;
-  return shell;
-}
-
-/// Where neighbour k sits for an overlap and a direction; of planes a point of them [m].
-Vec3 place(const SoftParticleSpec& spec, const CrowdPartner& p, const Vec3& direction, double overlap) {
-  return direction * ((1.0 + p.ratio - overlap) * spec.shell_radius);
-}
-
-/// Adds bodies group by group, because slots are ordered grains, shells, planes.
-class Builder {
- public:
-  Builder(CrowdExperiment& e, const std::vector<const SoftContent*>& others, double inner_fraction)
-      : e_(e), others_(others), fraction_(inner_fraction) {
-    e_.neighbours.resize(e.configuration.partners.size());
-  }
-
-  void build(const SoftContent& centre) {
-    e_.centre_bodies = count(centre);
-    const Slot shell = first_shell();
-    e_.centre_shell = shell;
-    const ContentPlace place{{}, e_.spec.shell_radius, kGrain, shell};
-    Slot softs = 0;
-    each(PartnerKind::soft, [&](const auto&, auto&, std::size_t) { ++softs; });
-    add_content(e_.system, e_.spec, centre, place, fraction_);
-    add_inner_grains(e_.system, e_.spec, centre, place, shell + 1 + softs);
-    soft_contents(shell + 1);
-    solids();
-    add_shell(e_.system.particles,
-              centre_shell(e_.spec, e_.configuration.centre_free, solid_fraction(centre, fraction_)));
-    soft_shells();
-    add_inner_shells(e_.system, e_.spec, centre, place);
-    planes();
-  }
-
- private:
-  template <class Work>
-  void each(PartnerKind kind, Work&& work) {
-    std::size_t found = 0;
-    for (std::size_t k = 0; k < e_.neighbours.size(); ++k)
-      if (e_.configuration.partners[k].kind == kind) work(e_.configuration.partners[k], e_.neighbours[k], found++);
-  }
-  [[nodiscard]] Vec3 at(const CrowdPartner& p) const { return place(e_.spec, p, p.direction, 0.0); }
-
-  Slot first_shell() {
-    Slot grains = e_.centre_bodies;
-    each(PartnerKind::soft, [&](const auto&, auto&, std::size_t k) { grains += count(*others_[k]); });
-    each(PartnerKind::solid, [&](const auto&, auto&, std::size_t) { ++grains; });
-    return grains;
-  }
-  void soft_contents(Slot first) {
-    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t k) {
-      n.begin = e_.system.particles.grains;
-      add_content(e_.system, e_.spec, *others_[k],
-                  {at(p), p.ratio * e_.spec.shell_radius, other_material(k), first + static_cast<Slot>(k)}, fraction_);
-      n.end = e_.system.particles.grains;
-    });
-  }
-  void solids() {
-    each(PartnerKind::solid, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      NewBody<3> ball;
-      ball.x = at(p);
-      ball.r = p.ratio * e_.spec.shell_radius;
-      ball.material = kSolid;
-      n.body = add_grain(e_.system.particles, ball);
-    });
-  }
-  void soft_shells() {
-    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      NewBody<3> shell;
-      shell.x = at(p);
-      shell.r = p.ratio * e_.spec.shell_radius;
-      shell.material = kWall;
-      n.body = add_shell(e_.system.particles, shell);
-    });
-  }
-  void planes() {
-    each(PartnerKind::plane, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      NewBody<3> plane;
-      plane.x = at(p);
-      plane.material = kPlane;
-      n.body = add_plane(e_.system.particles, plane, -p.direction);
-    });
-  }
-
-  CrowdExperiment& e_;
-  const std::vector<const SoftContent*>& others_;
-  double fraction_;
-};
 
 /// Which neighbour a body belongs to; -1 for the centre.
 std::vector<std::int32_t> owners(const CrowdExperiment& e) {
@@ -368,6 +112,10 @@ void require_plan(const CrowdConfiguration& c, const CrowdPlan& plan) {
 
 }  // namespace
 
+Vec3 neighbour_place(const SoftParticleSpec& spec, const CrowdPartner& p, const Vec3& direction, double overlap) {
+  return direction * ((1.0 + p.ratio - overlap) * spec.shell_radius);
+}
+
 Vec3 CrowdExperiment::direction(std::size_t k) const {
   const CrowdPartner& p = configuration.partners[k];
   if (k > 0 || slide == 0.0 || p.kind == PartnerKind::plane) return p.direction;
@@ -389,7 +137,8 @@ void CrowdExperiment::move_to(const std::vector<double>& overlaps, double slide_
     if (k == 0 && slide != slide_before)
       move = p.kind == PartnerKind::plane
                  ? move + slide_direction(p.direction) * ((slide - slide_before) * spec.shell_radius)
-                 : place(spec, p, direction(0), overlap[0]) - place(spec, p, before[0], overlaps_before[0]);
+                 : neighbour_place(spec, p, direction(0), overlap[0]) -
+                       neighbour_place(spec, p, before[0], overlaps_before[0]);
     for (Slot i = neighbours[k].begin; i < neighbours[k].end; ++i) moves[static_cast<std::size_t>(i)] = move;
     moves[static_cast<std::size_t>(neighbours[k].body)] = move;
   }
@@ -413,27 +162,6 @@ CrowdPoint CrowdExperiment::observe() const {
   point.slide = slide;
   point.centre = system.particles.sphere[static_cast<std::size_t>(centre_shell)].x * (1.0 / spec.shell_radius);
   return point;
-}
-
-CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguration& configuration,
-                           const SoftContent& centre, const std::vector<const SoftContent*>& others,
-                           const InnerLaws* laws) {
-  require_configuration(configuration, others.size());
-  bool inner = !centre.inner.empty();
-  for (const SoftContent* other : others) {
-    inner = inner || !other->inner.empty();
-    if (!other->inner_packings.empty())
-      throw BadInput(configuration.name + ": inner soft particles can hold their grains in the centre only");
-  }
-  if (inner && laws == nullptr) throw BadInput(configuration.name + ": inner soft particles need laws");
-  CrowdExperiment e;
-  e.spec = spec;
-  e.configuration = configuration;
-  e.overlap.assign(configuration.partners.size(), 0.0);
-  e.system.materials = crowd_materials(spec, others.size());
-  e.system.laws = crowd_laws(spec, e.system.materials[kGrain], others.size(), inner ? laws : nullptr);
-  Builder(e, others, laws == nullptr ? 1.0 : laws->solid_fraction).build(centre);
-  return e;
 }
 
 CrowdRun run_crowd(CrowdExperiment& e, const CrowdPlan& plan, const CrowdOptions& options,

@@ -53,7 +53,7 @@ struct CrowdOptions {
 using CrowdPlan = std::vector<std::vector<double>>;
 
 /// Slots: grains and inner soft particles of the centre, then those of soft neighbours, solid spheres, shells (centre
-/// first), planes. Materials: see microsim/crowd_experiment.cpp.
+/// first), planes. Materials: see microsim/crowd_build.cpp.
 struct CrowdExperiment {
   /// The bodies that make up one neighbour: all of them move as one when it is moved.
   struct Neighbour {
@@ -80,6 +80,9 @@ struct CrowdExperiment {
   /// Forces, overlaps, residual of the state as it is; `stage` and `converged` are left to the caller.
   [[nodiscard]] CrowdPoint observe() const;
 };
+
+/// Where a neighbour sits for an overlap and a direction [m]; of planes a point of them.
+Vec3 neighbour_place(const SoftParticleSpec& spec, const CrowdPartner& partner, const Vec3& direction, double overlap);
 
 /// All neighbours touch and none overlaps. `others`: content of the soft neighbours in their order. `laws` are needed
 /// when some content has inner soft particles. Neighbours never interact with each other.

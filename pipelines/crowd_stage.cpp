@@ -249,7 +249,7 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& stor
   std::vector<SoftContent> filled(pool.size());
   parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
     const ShellPacking& packing = pool[static_cast<std::size_t>(k)];
-    filled[static_cast<std::size_t>(k)] = level != nullptr ? level->fill(packing, k) : SoftContent{packing, {}, {}};
+    filled[static_cast<std::size_t>(k)] = level != nullptr && level->fill ? level->fill(packing, k) : SoftContent{packing, {}, {}};
   });
   CrowdMeasurements data;
   data.spec = setup.spec;

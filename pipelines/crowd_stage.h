@@ -13,10 +13,11 @@
 
 namespace softgrain {
 
-/// A level of a hierarchy whose soft particles hold soft particles.
+/// A level of a hierarchy whose soft particles hold soft particles; or another series of the same run, with a file of its
+/// own.
 struct CrowdLevel {
   std::function<SoftContent(const ShellPacking&, std::int64_t packing)>
-      fill;  ///< adds what the packing leaves room for
+      fill;  ///< adds what the packing leaves room for; empty: nothing
   InnerLaws laws;
   std::string tag;                ///< all that decides `fill` and `laws`, for the cache
   std::string file = "crowd.h5";  ///< in the run directory

@@ -142,7 +142,6 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   std::vector<ShellPacking> pool;
   if (below == nullptr) {
     CrowdLevel grains;  // nothing inside, but a file of its own
-    grains.fill = [](const ShellPacking& packing, std::int64_t) { return SoftContent{packing, {}, {}}; };
     grains.file = "crowd_level_0.h5";
     data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &grains);
   } else {

@@ -94,7 +94,6 @@ LawTableRun measure_and_fit(const LawTableScene& setup, const TaskStore& store, 
     const Variant& v = setup.variants[k];
     context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
     CrowdLevel named;  // nothing inside the soft particles, but a file of its own
-    named.fill = [](const ShellPacking& packing, std::int64_t) { return SoftContent{packing, {}, {}}; };
     named.file = fmt::format("crowd_variant_{}.h5", k + 1);
     add_entry(run.fit, run_crowd_stage(setup_of(v, setup.crowd), store, context, provenance, nullptr, &named), fit,
               setup.crowd.target);

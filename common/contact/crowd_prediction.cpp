@@ -10,9 +10,9 @@ constexpr double kPlaneLike = 100.0;
 double positive(double x) { return std::max(x, 0.0); }
 
 PairConstants constants_of(const CrowdModel& model, const CrowdPartner& p) {
-  if (p.kind == PartnerKind::plane) return {model.solid.plane_weight, model.solid.plane_exponent};
+  if (p.kind == PartnerKind::plane) return model.solid.at(0.0);
   if (p.kind == PartnerKind::solid) return model.solid.at(p.ratio);
-  return {model.soft.at(p.ratio).a, model.soft.plane_exponent};
+  return model.soft.at(p.ratio);
 }
 
 LostVolume lost_to(const CrowdModel& model, const CrowdPartner& p, double overlap) {
@@ -87,7 +87,7 @@ void set_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>
     y.push_back(log_weights[k]);
   }
   if (kind == PartnerKind::soft) {
-    table.plane_exponent = exponent;
+    table.common_exponent = exponent;
   } else {  // very large spheres are planes
     std::vector<double> m(x.size(), exponent);
     x.push_back(std::log(std::max(kPlaneLike, 2.0 * ratios.back())));

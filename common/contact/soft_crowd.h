@@ -21,18 +21,17 @@ enum class Crowd {
   directional  ///< M(c) = m0 - m1 c - m2 c^2
 };
 
-/// Constants w and m of nu = w v^m against the logarithm of R'/R; `plane` stands for an infinite ratio.
+/// Constants w and m of nu = w v^m against the logarithm of R'/R; planes and the insides of shells have w = m = 1.
 struct LostVolumeTable {
-  MonotoneCurve log_weight;     ///< ln w over ln(R'/R)
-  MonotoneCurve exponent;       ///< m over ln(R'/R)
-  double plane_weight = 1.0;    ///< at R'/R infinite, and for the inside of a parent's shell
-  double plane_exponent = 1.0;  ///< and of all soft-soft pairs, whatever their ratio
+  MonotoneCurve log_weight;      ///< ln w over ln(R'/R)
+  MonotoneCurve exponent;        ///< m over ln(R'/R); empty: common_exponent
+  double common_exponent = 1.0;  ///< m at every ratio: of soft-soft pairs
 
   /// {w, m} for a partner of radius ratio * R; ratio <= 0: plane or inside of a shell.
   [[nodiscard]] PairConstants at(double ratio) const {
-    if (!(ratio > 0.0) || log_weight.empty()) return {plane_weight, plane_exponent};
+    if (!(ratio > 0.0) || log_weight.empty()) return {1.0, common_exponent};
     const double x = std::log(ratio);
-    return {std::exp(log_weight.value(x)), exponent.empty() ? plane_exponent : exponent.value(x)};
+    return {std::exp(log_weight.value(x)), exponent.empty() ? common_exponent : exponent.value(x)};
   }
 };
 
@@ -115,7 +114,7 @@ struct SoftCrowd {
     const double curvature = other != 0.0 ? own / other : 0.0;
     const bool both = i_is_soft && j_is_soft;
     const double w = both && !of_i ? s.constants.b : s.constants.a;
-    const double m = both ? partner.plane_exponent : s.constants.b;
+    const double m = both ? partner.common_exponent : s.constants.b;
     return lost_volume(lens(felt_overlap(s) / own, curvature), w, m);
   }
 

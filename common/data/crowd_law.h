@@ -25,7 +25,7 @@ struct PartnerRow {
 /// How well a law gives back one configuration.
 struct ConfigurationError {
   std::string name;
-  bool held_out = false;   ///< not used in the fit: predicted
+  std::string use = "fitted";  ///< "predicted": not used in the fit; "repeated": the loading of another one
   double error = 0.0;      ///< root mean square of (law - mean) over that of the mean, all recorded states
   double end_ratio = 0.0;  ///< law over mean at the largest overlap, sums over the neighbours
   double noise = 0.0;      ///< root mean square standard error of the mean over that of the mean

@@ -66,7 +66,7 @@ void write_law(Out out, const CrowdLaw& law) {
   fmt::format_to(out, "criterion = {}  # corrected Akaike, smaller is better\n", real(law.criterion));
   for (const PartnerRow& row : law.partners) write_partner(out, row);
   for (const ConfigurationError& e : law.errors) {
-    fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nheld_out = {}\n", quoted(e.name), e.held_out);
+    fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nuse = {}\n", quoted(e.name), quoted(e.use));
     fmt::format_to(out, "error = {}\nend_ratio = {}\nnoise = {}\n", real(e.error), real(e.end_ratio), real(e.noise));
   }
 }
@@ -117,7 +117,7 @@ CrowdLaw read_law(const SceneTable& t) {
   law.criterion = read_real(t, "criterion", Range::any());
   for (const SceneTable& p : t.tables("partner")) law.partners.push_back(read_partner(p));
   for (const SceneTable& e : t.tables("error"))
-    law.errors.push_back({e.text("configuration"), e.flag("held_out", false),
+    law.errors.push_back({e.text("configuration"), e.choice("use", {"fitted", "predicted", "repeated"}),
                           e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
                           e.number("noise", Unit::none, Range::not_negative())});
   for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {

@@ -36,7 +36,6 @@ class StressCellVerlet {
 
   /// Of the last pass.
   [[nodiscard]] const Vec<D>& stress() const { return stress_; }
-  void set_control(const StressControl<D>& control) { control_ = control; }
 
  private:
   void sum_forces(System<D>& system, double dt, History history);

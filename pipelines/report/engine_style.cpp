@@ -1,5 +1,9 @@
 #include "pipelines/report/engine_style.h"
 
+#include <fmt/format.h>
+
+#include <set>
+
 namespace softgrain::report {
 namespace {
 
@@ -37,6 +41,20 @@ SeriesStyle engine_style(const std::string& engine) {
   const Known* known = find(engine);
   if (known == nullptr) return {.color = palette::green, .width = 1.5, .marker = Marker::triangle, .marker_size = 2.6};
   return {.color = known->color, .width = 1.5, .dash = known->dash, .marker = known->marker, .marker_size = 2.6};
+}
+
+void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit) {
+  std::set<std::string> named;
+  for (const MacroCurve& c : curves) {
+    if ((c.*member).size() != c.strain.size() || c.strain.empty()) continue;
+    Series s{.label = named.insert(c.engine).second ? engine_name(c.engine) : "", .hover = "", .x = {}, .y = {}};
+    s.hover = fmt::format("{}, sample {}{}", engine_name(c.engine), c.sample, c.usable ? "" : " (not usable)");
+    for (const double e : c.strain) s.x.push_back(100.0 * e);
+    for (const double v : c.*member) s.y.push_back(v / unit);
+    s.style = engine_style(c.engine);
+    if (!c.usable) s.style.opacity = 0.4;
+    plot.add(std::move(s));
+  }
 }
 
 }  // namespace softgrain::report

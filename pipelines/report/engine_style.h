@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "common/data/macro_result.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain::report {
@@ -11,5 +13,11 @@ namespace softgrain::report {
 std::string engine_name(const std::string& engine);
 
 SeriesStyle engine_style(const std::string& engine);
+
+/// A column of macro curves.
+using Stress = std::vector<double> MacroCurve::*;
+
+/// One line per curve that has the column, over strain in per cent, in units of `unit`; each engine once in the legend.
+void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit);
 
 }  // namespace softgrain::report

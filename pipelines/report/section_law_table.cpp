@@ -28,8 +28,10 @@ constexpr Group kGroups[] = {{"planes", "Planes, used in the fit", PartnerKind::
 
 /// Plain loading only: other paths to the same overlaps would be drawn on top of each other.
 bool belongs(const CrowdStates& c, const Group& g) {
-  return c.all_of(g.kind) && c.configuration->held_out == g.held_out && !c.configuration->centre_free &&
-         c.configuration->stages.size() == 1 && c.states.size() > 1;
+  const auto& stages = c.configuration->stages;
+  const auto loads = std::count_if(stages.begin(), stages.end(), [](const CrowdStage& s) { return s.name == "load"; });
+  const CrowdUse wanted = g.held_out ? CrowdUse::predicted : CrowdUse::fitted;
+  return c.all_of(g.kind) && c.use == wanted && loads == 1 && c.states.size() > 1;
 }
 
 double mean_force(const std::vector<double>& forces) {
@@ -96,7 +98,7 @@ std::string error_table(const LawTableEntry& entry) {
   HtmlTable table(header, 2);
   const CrowdLaw& first = entry.laws.front();
   for (std::size_t k = 0; k < first.errors.size(); ++k) {
-    std::vector<std::string> cells{first.errors[k].name, first.errors[k].held_out ? "predicted" : "fitted"};
+    std::vector<std::string> cells{first.errors[k].name, first.errors[k].use};
     for (const CrowdLaw& law : entry.laws)
       cells.push_back(k < law.errors.size() ? format_number(100.0 * law.errors[k].error, 2) : "–");
     cells.push_back(format_number(100.0 * first.errors[k].noise, 2));

@@ -17,8 +17,6 @@
 namespace softgrain::report {
 namespace {
 
-using Stress = std::vector<double> MacroCurve::*;
-
 double largest_stress(const std::vector<MacroCurve>& curves) {
   double largest = 0.0;
   for (const MacroCurve& c : curves) {
@@ -50,17 +48,7 @@ std::string stress_figure(const std::vector<MacroCurve>& curves, const std::stri
              .x = {.label = "strain [%]", .low = 100.0 * first},
              .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)}});
   const Stress member = axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral;
-  std::set<std::string> named;
-  for (const MacroCurve& c : curves) {
-    if ((c.*member).size() != c.strain.size() || c.strain.empty()) continue;
-    Series s{.label = named.insert(c.engine).second ? engine_name(c.engine) : "", .hover = "", .x = {}, .y = {}};
-    s.hover = fmt::format("{}, sample {}{}", engine_name(c.engine), c.sample, c.usable ? "" : " (not usable)");
-    for (const double e : c.strain) s.x.push_back(100.0 * e);
-    for (const double v : c.*member) s.y.push_back(v / prefix.factor);
-    s.style = engine_style(c.engine);
-    if (!c.usable) s.style.opacity = 0.4;
-    plot.add(std::move(s));
-  }
+  add_curves(plot, curves, member, prefix.factor);
   return plot.empty() ? ""
                       : figure(plot.svg(), axial ? "Stress from the wall forces; one line per sample."
                                                  : "Mean of both lateral directions.");

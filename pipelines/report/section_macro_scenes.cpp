@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/report/engine_style.h"
@@ -16,8 +15,6 @@
 
 namespace softgrain::report {
 namespace {
-
-using Stress = std::vector<double> MacroCurve::*;
 
 double largest(const std::vector<MacroCurve>& curves, Stress member) {
   double value = 0.0;
@@ -37,17 +34,7 @@ std::string stress_figure(const MacroScene& scene, Stress member, const std::str
              .title = capital(what) + " stress, " + scene.name,
              .x = {.label = "strain [%]"},
              .y = {.label = fmt::format("{} stress [{}Pa]", what, prefix.symbol)}});
-  std::set<std::string> named;
-  for (const MacroCurve& c : scene.curves) {
-    if ((c.*member).size() != c.strain.size() || c.strain.empty()) continue;
-    Series s{.label = named.insert(c.engine).second ? engine_name(c.engine) : "", .hover = "", .x = {}, .y = {}};
-    s.hover = fmt::format("{}, sample {}{}", engine_name(c.engine), c.sample, c.usable ? "" : " (not usable)");
-    for (const double e : c.strain) s.x.push_back(100.0 * e);
-    for (const double v : c.*member) s.y.push_back(v / prefix.factor);
-    s.style = engine_style(c.engine);
-    if (!c.usable) s.style.opacity = 0.4;
-    plot.add(std::move(s));
-  }
+  add_curves(plot, scene.curves, member, prefix.factor);
   return plot.empty() ? "" : figure(plot.svg(), "From the wall forces; one line per sample.");
 }
 

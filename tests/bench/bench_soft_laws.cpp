@@ -45,7 +45,7 @@ AnyLaw crowd_law(bool solid_partner) {
   law.form.pressure = {0.6, 2.2, kThreshold};
   law.form.coupling = {0.6, 0.5, 0.1};
   law.partner.log_weight = MonotoneCurve({-1.4, 0.0, 1.4}, {-0.5, -0.4, -0.3});
-  law.partner.plane_exponent = 1.2;  // of soft neighbours; those of solid ones come with the ratio
+  law.partner.common_exponent = 1.2;  // of soft neighbours; those of solid ones come with the ratio
   law.partner.exponent = MonotoneCurve({-1.4, 0.0, 1.4}, {1.1, 1.1, 1.1});
   law.modulus = 5e5;
   law.friction = 0.3;

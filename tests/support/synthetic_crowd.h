@@ -39,7 +39,7 @@ inline CrowdLaw crowd_law(const std::string& form, double shift = 0.0) {
                   {PartnerKind::solid, 2.0, near(0.8 + shift), near(1.1), 0.3, 0.2 / 3.0},
                   {PartnerKind::soft, 1.0, near(0.4 + shift), near(1.3), 0.35, 0.1 / 7.0},
                   {PartnerKind::soft, 2.0, near(0.5 + shift), near(1.3), 0.25, 0.2 / 7.0}};
-  law.errors = {{"one-plane", false, 0.05 / 3.0, 1.01, 0.02}, {"cube-plane", true, 0.1 / 3.0, 0.97, 0.03}};
+  law.errors = {{"one-plane", "fitted", 0.05 / 3.0, 1.01, 0.02}, {"cube-plane", "predicted", 0.1 / 3.0, 0.97, 0.03}};
   law.error_fitted = 0.05 / 3.0;
   law.error_held_out = 0.1 / 3.0;
   law.error_cross = 0.07 / 3.0;

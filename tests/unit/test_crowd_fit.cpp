@@ -122,6 +122,27 @@ TEST(CrowdFit, DataOfABagGiveTheBag) {
   EXPECT_GT(entry.find("pair")->error_cross, 0.3);
 }
 
+/// The same loading of the same packings is no new data: it is fitted once, and not at all when it is held out.
+TEST(CrowdFit, ALoadingIsUsedOnce) {
+  std::vector<CrowdConfiguration> list{crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
+                                       crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"),
+                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.15, "slide"),
+                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.2),
+                                       crowd_configuration("one", PartnerKind::solid, 1.0, 0.3),
+                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.2)};
+  list[3].held_out = true;
+  list[5].centre_free = true;
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
+  const auto states = average_states(data);
+  const CrowdUse expected[] = {CrowdUse::fitted,    CrowdUse::repeated, CrowdUse::repeated,
+                               CrowdUse::predicted, CrowdUse::fitted,   CrowdUse::repeated};
+  for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(states[k].use, expected[k]) << k;
+  list[3].held_out = false;
+  const CrowdMeasurements all = crowd_measurements(known(Crowd::bag), list, {});
+  EXPECT_EQ(average_states(all)[2].use, CrowdUse::fitted) << "the first of its loading";
+  EXPECT_EQ(average_states(all)[3].use, CrowdUse::repeated);
+}
+
 TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
   CrowdOptionsKnown o;
   o.noise = 0.05;

@@ -36,7 +36,7 @@ void expect_same(const PartnerRow& a, const PartnerRow& b) {
 
 void expect_same(const ConfigurationError& a, const ConfigurationError& b) {
   EXPECT_EQ(a.name, b.name);
-  EXPECT_EQ(a.held_out, b.held_out);
+  EXPECT_EQ(a.use, b.use);
   EXPECT_EQ(a.error, b.error);
   EXPECT_EQ(a.end_ratio, b.end_ratio);
   EXPECT_EQ(a.noise, b.noise);

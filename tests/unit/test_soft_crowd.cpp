@@ -98,7 +98,7 @@ TEST(CrowdForm, ForcesComeFromTheEnergy) {
 LostVolumeTable soft_table() {
   LostVolumeTable t;
   t.log_weight = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {std::log(0.4), std::log(0.6), std::log(0.9)});
-  t.plane_exponent = 1.3;
+  t.common_exponent = 1.3;
   return t;
 }
 
