@@ -28,7 +28,7 @@ void write_state(const h5::Group& group, const PowderState& state) {
   group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
   group.write("course", rows, {state.points.size(), kColumns});
   group.write("phase", std::vector<double>{static_cast<double>(state.phase), state.phase_start, state.phase_edge[0],
-                                           state.phase_edge[1]});
+                                           state.phase_edge[1], state.settling ? 1.0 : 0.0});
   write_system(group.create("system"), state.system);
 }
 
@@ -46,6 +46,7 @@ void read_state(const h5::Group& group, PowderState& state) {
   state.phase = static_cast<std::int64_t>(phase.at(0));
   state.phase_start = phase.at(1);
   state.phase_edge = {{phase.at(2), phase.at(3)}};
+  state.settling = phase.at(4) != 0.0;
   read_system(group.open("system"), state.system);
 }
 

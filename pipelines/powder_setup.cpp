@@ -35,6 +35,11 @@ void read_assembly(const SceneTable& t, PowderSetup& setup) {
       t.number("strain_rate_cap", Unit::none, Range::not_negative(), setup.method == 2 ? 0.05 : 0.0);
   setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
   setup.options.step = t.number("step", Unit::none, Range{0.0, 0.5, true, false}, setup.options.step);
+  setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
+  setup.options.settle_kinetic =
+      t.number("settle_kinetic", Unit::none, Range::not_negative(), setup.options.settle_kinetic);
+  setup.options.settle_pressure =
+      t.number("settle_pressure", Unit::none, Range::not_negative(), setup.options.settle_pressure);
   setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
   setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
 }

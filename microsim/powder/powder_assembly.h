@@ -26,7 +26,7 @@ struct PowderPhase {
 std::vector<PowderPhase> powder_phases(const PowderSpec& spec, int method, double strain_rate_cap);
 
 struct PowderOptions {
-  double step = 0.1;              ///< dt over sqrt(m_min/K_N)
+  double step = 0.2;              ///< dt over sqrt(m_min/K_N)
   double cell_mass = 0.3;         ///< of the sum of all masses, divided by L/a
   double time_max = 20000.0;      ///< per phase [T0]
   double record_every = 10.0;     ///< [T0]
@@ -34,7 +34,7 @@ struct PowderOptions {
   /// Once the pressure is balanced to `settle_pressure` F1/a and the kinetic energy per disk is below `settle_kinetic`
   /// F1 a, the last vibrations are damped by a drag of `settle_drag` m v/T0. They do not rearrange anything any more,
   /// but tangential springs without damping ring for hundreds of T0. 0: never.
-  double settle_drag = 0.5;
+  double settle_drag = 0.05;
   double settle_kinetic = 1e-6;
   double settle_pressure = 1e-3;
 };
