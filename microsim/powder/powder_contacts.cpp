@@ -1,5 +1,6 @@
 #include "microsim/powder/powder_contacts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +12,7 @@ namespace softgrain {
 namespace {
 
 /// Disks with fewer than two contacts, taken away until every one left has two.
-std::int64_t count_rattlers(std::size_t disks, const std::vector<ContactRecord<2>>& records) {
+std::vector<bool> find_rattlers(std::size_t disks, const std::vector<ContactRecord<2>>& records) {
   std::vector<int> degree(disks, 0);
   std::vector<bool> gone(disks, false);
   for (const auto& c : records) {
@@ -19,13 +20,11 @@ std::int64_t count_rattlers(std::size_t disks, const std::vector<ContactRecord<2
     ++degree[static_cast<std::size_t>(c.j)];
   }
   std::vector<bool> cut(records.size(), false);
-  std::int64_t count = 0;
   for (bool again = true; again;) {
     again = false;
     for (std::size_t k = 0; k < disks; ++k)
       if (!gone[k] && degree[k] < 2) {
         gone[k] = again = true;
-        ++count;
       }
     for (std::size_t c = 0; c < records.size(); ++c) {
       const auto i = static_cast<std::size_t>(records[c].i);
@@ -36,7 +35,7 @@ std::int64_t count_rattlers(std::size_t disks, const std::vector<ContactRecord<2
       --degree[j];
     }
   }
-  return count;
+  return gone;
 }
 
 std::vector<double> shares_of(std::size_t disks, const std::vector<ContactRecord<2>>& records) {
@@ -90,7 +89,10 @@ PowderContacts powder_contacts(const System<2>& s, double zero, bool cohesive) {
   const auto n = static_cast<double>(records.size());
   out.coordination = 2.0 * n / static_cast<double>(disks);
   out.shares = shares_of(disks, records);
-  if (!cohesive) out.rattlers = count_rattlers(disks, records);
+  if (!cohesive) {
+    const std::vector<bool> rattlers = find_rattlers(disks, records);
+    out.rattlers = std::count(rattlers.begin(), rattlers.end(), true);
+  }
   const double idle = cohesive ? (out.shares.empty() ? 0.0 : out.shares[0])
                                : static_cast<double>(out.rattlers) / static_cast<double>(disks);
   out.coordination_backbone = idle < 1.0 ? out.coordination / (1.0 - idle) : 0.0;
@@ -101,6 +103,10 @@ PowderContacts powder_contacts(const System<2>& s, double zero, bool cohesive) {
   if (out.tensile > 0) out.mean_tensile = tensile / static_cast<double>(out.tensile);
   out.rumpf_pressure = rumpf(s, out);
   return out;
+}
+
+std::vector<bool> powder_rattlers(const System<2>& system) {
+  return find_rattlers(static_cast<std::size_t>(system.particles.grains), contact_records(system));
 }
 
 }  // namespace softgrain

@@ -30,4 +30,7 @@ struct PowderContacts {
 /// whether disks are held by tension, so that none is a rattler.
 PowderContacts powder_contacts(const System<2>& system, double zero, bool cohesive);
 
+/// Whether each disk, by slot, has fewer than two contacts once such disks are taken away one after another.
+std::vector<bool> powder_rattlers(const System<2>& system);
+
 }  // namespace softgrain
