@@ -16,7 +16,7 @@ std::int64_t held_column(const RigidityMatrix& m) {
   std::vector<int> count(static_cast<std::size_t>(m.entries.columns), 0);
   for (const auto& e : m.entries.entries) ++count[static_cast<std::size_t>(e.column)];
   std::int64_t held = 0;
-  for (std::int64_t c = 0; c + m.per_disk <= m.entries.columns; c += m.per_disk)
+  for (std::int64_t c = 0; c < m.disk_columns; c += m.per_disk)
     if (count[static_cast<std::size_t>(c)] > count[static_cast<std::size_t>(held)]) held = c;
   return held;
 }
@@ -38,7 +38,7 @@ SparseMatrix held_matrix(const RigidityMatrix& m) {
 
 Definiteness stiffness_definiteness(const RigidityMatrix& m) {
   Definiteness out;
-  if (m.entries.columns < 2 || m.entries.rows == 0) return out;
+  if (m.disk_columns == 0 || m.entries.rows == 0) return out;
   const SparseMatrix g = held_matrix(m);
   const Eigen::Map<const Eigen::VectorXd> k(m.stiffness.data(), static_cast<Eigen::Index>(m.stiffness.size()));
   const SparseMatrix gt = g.transpose();

@@ -30,6 +30,7 @@ class Builder {
       first_.push_back(kept ? columns_ : -1);
       if (kept) columns_ += out_.per_disk;
     }
+    out_.disk_columns = columns_;
     out_.entries.columns = columns_ + (cell_free ? 2 : 0);
   }
 

@@ -30,6 +30,7 @@ struct RigidityMatrix {
   std::int64_t contacts = 0;      ///< N_c
   std::int64_t distant = 0;       ///< N_d
   int per_disk = 3;               ///< columns of a disk
+  std::int64_t disk_columns = 0;  ///< of all disks; strains of the cell follow
 };
 
 /// Of the pairs between disks that `keep` names (by slot); the others have no columns. Arms and branches are those of

@@ -178,6 +178,24 @@ TEST(PowderRigidity, IdentitiesOfEveryVariant) {
   }
 }
 
+/// Holds against every strain, also without friction.
+System<2> triangular_lattice(Contact contact) {
+  std::vector<HandDisk> disks;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) disks.push_back({{{kTouch * (i + 0.5 * (j % 2)), kRise * j}}});
+  System<2> s = disks_by_hand(spec_of(contact), disks, 1.0);
+  s.cell = box_cell<2>({{4.0 * kTouch, 4.0 * kRise}}, {true, true});
+  return s;
+}
+
+TEST(PowderRigidity, OfThePeriodicTriangularLatticeWithoutFriction) {
+  const PowderRigidity r = rigidity(triangular_lattice(Contact::smooth));
+  EXPECT_EQ(r.fixed.floppy, 2);
+  EXPECT_EQ(r.fixed.indeterminacy, 48 + 2 - 32);
+  EXPECT_TRUE(r.fixed.stiffness.positive);
+  EXPECT_TRUE(r.free->stiffness.positive);
+}
+
 /// Definite or not, as the eigenvalues say, translations taken out.
 TEST(PowderRigidity, DefinitenessIsThatOfTheSpectrum) {
   int positive = 0;
@@ -198,6 +216,7 @@ TEST(PowderRigidity, DefinitenessIsThatOfTheSpectrum) {
     for (const bool cell_free : {false, true}) {
       for (const std::uint64_t seed : {1U, 2U}) check(broken_lattice(contact, seed), cell_free);
       check(disks_by_hand(spec_of(contact), square_lattice(5), kTouch * 5), cell_free);
+      check(triangular_lattice(contact), cell_free);
     }
   System<2> rows = disks_by_hand(spec_of(Contact::rolling), square_lattice(5, 1.0005), 1.0);
   rows.cell = box_cell<2>({{5.0 * kTouch, 5.0 * 1.0005}}, {true, true});
