@@ -78,13 +78,19 @@ constexpr bool resists_rolling() {
   return false;
 }
 
-/// Keeps a spring in the tangent plane as the normal turns: projects, keeps the magnitude.
+/// Keeps a spring in the tangent plane as the normal turns: projects, keeps the magnitude. In two dimensions the
+/// tangent is one direction, and the spring a length along it.
 template <int D>
-Vec<D> carried_spring(const Vec<D>& spring, const Vec<D>& normal) {
-  const Vec<D> flat = spring - normal * dot(spring, normal);
-  const double before = norm2(spring);
-  const double after = norm2(flat);
-  return after > 0.0 ? flat * std::sqrt(before / after) : flat;
+[[gnu::always_inline]] inline Vec<D> carried_spring(const Vec<D>& spring, const Vec<D>& normal) {
+  if constexpr (D == 2) {
+    const Vec<D> tangent{{-normal[1], normal[0]}};
+    return tangent * std::copysign(std::sqrt(norm2(spring)), dot(spring, tangent));
+  } else {
+    const Vec<D> flat = spring - normal * dot(spring, normal);
+    const double before = norm2(spring);
+    const double after = norm2(flat);
+    return after > 0.0 ? flat * std::sqrt(before / after) : flat;
+  }
 }
 
 }  // namespace softgrain

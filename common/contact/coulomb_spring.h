@@ -11,7 +11,7 @@ namespace softgrain {
 /// The spring is carried into the tangent plane, lengthened by the sliding of this step and shortened to the Coulomb
 /// limit [SP 1.3]; a sliding contact has no tangential damping, and damping never lifts the force above the limit.
 template <int D>
-inline void coulomb_spring(const ContactState<D>& s, double stiffness, double damping, double limit,
+[[gnu::always_inline]] inline void coulomb_spring(const ContactState<D>& s, double stiffness, double damping, double limit,
                            ContactResponse<D>& out) {
   Vec<D> spring = carried_spring(s.spring, s.normal) + s.sliding * s.dt;
   Vec<D> force = spring * -stiffness;

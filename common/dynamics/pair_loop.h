@@ -27,8 +27,8 @@ namespace detail {
 /// False when the bodies do not overlap, spheres: not within `reach` of each other (overlap is then minus the gap).
 /// Coincident centres of spheres get an arbitrary, fixed normal.
 template <int D, Geometry kGeometry>
-inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<D>& shift, ContactGeometry<D>& g,
-                 double reach = 0.0) {
+[[gnu::always_inline]] inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<D>& shift,
+                                        ContactGeometry<D>& g, double reach = 0.0) {
   const Sphere<D>& a = p.sphere[i];
   const Sphere<D>& b = p.sphere[j];
   const Vec<D> d = a.x - b.x - shift;
@@ -74,8 +74,9 @@ inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<
 /// Relative velocity of i against j at the contact point, split along the normal. Spins move the contact point across
 /// the normal only: without a tangential force they are not needed.
 template <int D, bool kSpins>
-inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j, const ContactGeometry<D>& g,
-                            const Vec<D>& image_velocity, ContactState<D>& state) {
+[[gnu::always_inline]] inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j,
+                                                   const ContactGeometry<D>& g, const Vec<D>& image_velocity,
+                                                   ContactState<D>& state) {
   Vec<D> v = p.velocity[i] - p.velocity[j] - image_velocity;
   if constexpr (kSpins) v -= cross(p.spin[i] * g.arm_i + p.spin[j] * g.arm_j, g.normal);
   state.normal_speed = dot(v, g.normal);
@@ -111,7 +112,7 @@ void run_section(System<D>& s, const Law& law, double dt, const PairRange& range
     const auto j = static_cast<std::size_t>(list.j[c]);
     Vec<D> shift{};
     Vec<D> image_velocity{};
-    if constexpr (kPeriodic) {
+    if (kPeriodic && list.image[c] != home_image<D>()) {
       shift = s.cell.image_shift(list.image[c]);
       image_velocity = s.cell.velocity_gradient * shift;
     }

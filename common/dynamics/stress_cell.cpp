@@ -15,7 +15,7 @@ namespace {
 template <int D>
 struct VirialSink {
   ScatterSink<D> scatter;
-  Vec<D>& virial;
+  Vec<D> virial{};
 
   void apart(std::size_t) {}
   template <bool kTorque>
@@ -26,107 +26,168 @@ struct VirialSink {
   void roll(std::size_t i, std::size_t j, const Rot<D>& moment) { scatter.roll(i, j, moment); }
 };
 
-template <int D>
-Vec<D> lengths(const Cell<D>& cell) {
-  Vec<D> out;
-  for (int k = 0; k < D; ++k) out[k] = cell.edges[k][k];
-  return out;
-}
-
 }  // namespace
 
+/// The exact test of the list runs only when the sum of the bounds says that it may fail.
 template <int D>
-Vec<D> StressCellVerlet<D>::peculiar(const System<D>& s, std::size_t u) const {
-  Vec<D> v = s.particles.velocity[u];
-  for (int k = 0; k < D; ++k) v[k] -= s.cell.velocity_gradient[k][k] * s.particles.sphere[u].x[k];
-  return v;
+void StressCellVerlet<D>::find_pairs(System<D>& s) {
+  constexpr double kTrusted = 0.999;  // the rest covers rounding
+  if (build_ == s.contacts.build && build_ != 0 && used_ < kTrusted) return;
+  update_neighbours(s);
+  build_ = s.contacts.build;
+  used_ = skin_used(s);
 }
 
+/// Forces must be zero before.
 template <int D>
 void StressCellVerlet<D>::sum_forces(System<D>& s, double dt, History history) {
-  auto& p = s.particles;
-  update_neighbours(s);
-  std::fill(p.force.begin(), p.force.end(), Stored<D>{});
-  std::fill(p.torque.begin(), p.torque.end(), StoredRot<D>{});
-  virial_ = {};
-  VirialSink<D> sink{{p}, virial_};
+  VirialSink<D> sink{{s.particles}, {}};
   pair_loop(s, dt, sink, history);
+  virial_ = sink.virial;
   ++s.cost.loop_passes;
   s.cost.contact_evaluations += s.contacts.size();
 }
 
 /// Stress of the state, and the cell's own acceleration for a time.
 template <int D>
-void StressCellVerlet<D>::drive(System<D>& s, double time) {
-  Vec<D> sum = virial_;
-  for (Slot i = 0; i < s.particles.grains; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    const Vec<D> v = peculiar(s, u);
-    for (int k = 0; k < D; ++k) sum[k] += v[k] * v[k] / s.particles.inverse_mass[u];
-  }
-  const double area = s.cell.volume();
+void StressCellVerlet<D>::drive(const Cell<D>& cell, double time) {
+  const double area = cell.volume();
   for (int k = 0; k < D; ++k) {
-    stress_[k] = sum[k] / area;
+    stress_[k] = (virial_[k] + kinetic_[k]) / area;
     if (std::isinf(control_.cell_mass)) continue;
     const double l0 = control_.reference_length[k];
-    rate_[k] -= time * l0 * (control_.imposed[k] - stress_[k]) / control_.cell_mass;
+    rate_[k] -= time * (l0 * (control_.imposed[k] - stress_[k]) / control_.cell_mass + cell_drag_ * rate_[k]);
     rate_[k] = std::clamp(rate_[k], -control_.strain_rate_cap * l0, control_.strain_rate_cap * l0);
   }
 }
 
 template <int D>
 void StressCellVerlet<D>::initialise(System<D>& s) {
+  auto& p = s.particles;
+  const std::size_t bodies = p.sphere.size();
+  mass_.resize(bodies);
+  peculiar_.resize(bodies);
+  spin_.resize(bodies);
+  middle_.resize(bodies);
+  middle_spin_.resize(bodies);
   for (int k = 0; k < D; ++k) rate_[k] = s.cell.velocity_gradient[k][k] * s.cell.edges[k][k];
+  build_ = 0;
+  find_pairs(s);
+  kinetic_ = {};
+  for (std::size_t u = 0; u < bodies; ++u) {
+    p.force[u] = {};
+    p.torque[u] = {};
+    mass_[u] = 1.0 / p.inverse_mass[u];
+    spin_[u] = p.spin[u];
+    for (int k = 0; k < D; ++k) {
+      peculiar_[u][k] = p.velocity[u][k] - s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
+      kinetic_[k] += mass_[u] * peculiar_[u][k] * peculiar_[u][k];
+    }
+  }
   sum_forces(s, 0.0, History::none);
-  drive(s, 0.0);
+  drive(s.cell, 0.0);
+}
+
+/// Positions and predicted velocities one step on; forces are set to zero for the pass.
+template <int D>
+template <bool kDrag>
+void StressCellVerlet<D>::move_bodies(System<D>& s, const Vec<D>& growth, const Vec<D>& stretch, const Vec<D>& way) {
+  auto& p = s.particles;
+  const double half = 0.5 * dt_;
+  double fastest2 = 0.0;
+  for (std::size_t u = 0; u < peculiar_.size(); ++u) {
+    const double loss = kDrag ? half * drag_[u] : 0.0;
+    const Rot<D> turn = static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
+    middle_spin_[u] = spin_[u] * (1.0 - loss) + turn;
+    p.spin[u] = middle_spin_[u] + turn;
+    for (int k = 0; k < D; ++k) {
+      const double kick = half * (p.force[u][k] * p.inverse_mass[u]);
+      middle_[u][k] = peculiar_[u][k] + kick + (growth[k] - loss) * peculiar_[u][k];
+      p.sphere[u].x[k] = stretch[k] * p.sphere[u].x[k] + way[k] * middle_[u][k];
+      p.velocity[u][k] = middle_[u][k] + kick + s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
+    }
+    p.force[u] = {};
+    p.torque[u] = {};
+    fastest2 = std::max(fastest2, norm2(middle_[u]) * s.neighbours.inverse_skin2[u]);
+  }
+  used_ += dt_ * (std::sqrt(fastest2) + SkinUse<D>(s).strain_rate());
+}
+
+/// The cell and all that is in it one step on.
+template <int D>
+void StressCellVerlet<D>::move(System<D>& s) {
+  drive(s.cell, 0.5 * dt_);
+  Vec<D> growth;
+  Vec<D> stretch;
+  Vec<D> way;
+  for (int k = 0; k < D; ++k) {
+    const double before = s.cell.edges[k][k];
+    const double after = before + dt_ * rate_[k];
+    growth[k] = 0.5 * dt_ * s.cell.velocity_gradient[k][k];
+    stretch[k] = after / before;
+    way[k] = dt_ * after / (0.5 * (before + after));
+    s.cell.edges[k][k] = after;
+    s.cell.velocity_gradient[k][k] = rate_[k] / after;
+  }
+  if (drag_.empty())
+    move_bodies<false>(s, growth, stretch, way);
+  else
+    move_bodies<true>(s, growth, stretch, way);
+}
+
+/// Velocities at the end of the step, from the forces there. A rebuild may have carried a body to another image; its
+/// stored velocity went along, the peculiar one stayed.
+template <int D>
+template <bool kDrag>
+void StressCellVerlet<D>::correct_bodies(System<D>& s) {
+  const auto& p = s.particles;
+  const double half = 0.5 * dt_;
+  Vec<D> growth;
+  for (int k = 0; k < D; ++k) growth[k] = 1.0 + half * s.cell.velocity_gradient[k][k];
+  Vec<D> kinetic{};
+  for (std::size_t u = 0; u < peculiar_.size(); ++u) {
+    const double loss = kDrag ? half * drag_[u] : 0.0;
+    spin_[u] = middle_spin_[u] * (1.0 - loss) + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
+    for (int k = 0; k < D; ++k) {
+      const double v = (growth[k] - loss) * middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u]);
+      peculiar_[u][k] = v;
+      kinetic[k] += mass_[u] * v * v;
+    }
+  }
+  kinetic_ = kinetic;
 }
 
 template <int D>
-void StressCellVerlet<D>::step(System<D>& s) {
+void StressCellVerlet<D>::correct(System<D>& s) {
+  if (drag_.empty())
+    correct_bodies<false>(s);
+  else
+    correct_bodies<true>(s);
+  drive(s.cell, 0.5 * dt_);
+  for (int k = 0; k < D; ++k) s.cell.velocity_gradient[k][k] = rate_[k] / s.cell.edges[k][k];
+}
+
+/// The velocities of bodies, as the cell moves now.
+template <int D>
+void StressCellVerlet<D>::publish(System<D>& s) const {
   auto& p = s.particles;
-  const double half = 0.5 * dt_;
-  const std::size_t bodies = p.sphere.size();
-  middle_.resize(bodies);
-  middle_spin_.resize(bodies);
-  for (std::size_t u = 0; u < bodies; ++u) {
-    Vec<D> v = peculiar(s, u);
-    for (int k = 0; k < D; ++k)
-      v[k] += half * (p.force[u][k] * p.inverse_mass[u] + s.cell.velocity_gradient[k][k] * v[k]);
-    middle_[u] = v;
-    middle_spin_[u] = static_cast<Rot<D>>(p.spin[u]) + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
+  for (std::size_t u = 0; u < peculiar_.size(); ++u) {
+    p.spin[u] = spin_[u];
+    for (int k = 0; k < D; ++k) p.velocity[u][k] = peculiar_[u][k] + s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
   }
-  drive(s, half);
-  const Vec<D> before = lengths(s.cell);
-  for (int k = 0; k < D; ++k) s.cell.edges[k][k] += dt_ * rate_[k];
-  const Vec<D> after = lengths(s.cell);
-  for (int k = 0; k < D; ++k) s.cell.velocity_gradient[k][k] = rate_[k] / after[k];
-  for (std::size_t u = 0; u < bodies; ++u) {
-    for (int k = 0; k < D; ++k) {
-      const double between = 0.5 * (before[k] + after[k]);
-      p.sphere[u].x[k] = after[k] * (p.sphere[u].x[k] / before[k] + dt_ * middle_[u][k] / between);
-      const double predicted = middle_[u][k] + half * p.force[u][k] * p.inverse_mass[u];
-      p.velocity[u][k] = predicted + s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
-    }
-    p.spin[u] = middle_spin_[u] + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
+}
+
+template <int D>
+void StressCellVerlet<D>::advance(System<D>& s, std::int64_t steps) {
+  for (std::int64_t k = 0; k < steps; ++k) {
+    move(s);
+    find_pairs(s);
+    sum_forces(s, dt_, History::advance);
+    correct(s);
+    s.time += dt_;
+    ++s.step;
   }
-  sum_forces(s, dt_, History::advance);
-  for (std::size_t u = 0; u < bodies; ++u) {
-    // A rebuild may have carried the body to another image; its velocity went along, the peculiar one stayed.
-    for (int k = 0; k < D; ++k) {
-      const double kappa = s.cell.velocity_gradient[k][k];
-      const double v = middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u] + kappa * middle_[u][k]);
-      p.velocity[u][k] = v + kappa * p.sphere[u].x[k];
-    }
-    p.spin[u] = middle_spin_[u] + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
-  }
-  drive(s, half);
-  // The velocities of bodies follow the corrected motion of the cell.
-  for (std::size_t u = 0; u < bodies; ++u)
-    for (int k = 0; k < D; ++k)
-      p.velocity[u][k] += (rate_[k] / after[k] - s.cell.velocity_gradient[k][k]) * p.sphere[u].x[k];
-  for (int k = 0; k < D; ++k) s.cell.velocity_gradient[k][k] = rate_[k] / after[k];
-  s.time += dt_;
-  ++s.step;
+  publish(s);
 }
 
 template <int D>
@@ -145,13 +206,13 @@ PowderResidual<D> powder_residual(const System<D>& s, const Vec<D>& imposed, con
     for (int k = 0; k < D; ++k) v[k] -= s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
     kinetic += 0.5 * norm2(v) / p.inverse_mass[u] + 0.5 * norm2(static_cast<Rot<D>>(p.spin[u])) / p.inverse_inertia[u];
   }
-  constexpr double kForce = 1e-4;
-  constexpr double kKinetic = 5e-8;
-  out.force /= kForce * f1;
-  out.moment /= kForce * f1 * largest_diameter;
-  out.kinetic = kinetic / static_cast<double>(std::max<Slot>(p.grains, 1)) / (kKinetic * f1 * largest_diameter);
+  out.force /= kPowderForceLimit * f1;
+  out.moment /= kPowderForceLimit * f1 * largest_diameter;
+  out.kinetic =
+      kinetic / static_cast<double>(std::max<Slot>(p.grains, 1)) / (kPowderKineticLimit * f1 * largest_diameter);
   for (int k = 0; lengths_free && k < D; ++k)
-    out.pressure = std::max(out.pressure, std::abs(imposed[k] - measured[k]) * largest_diameter / (kForce * f1));
+    out.pressure =
+        std::max(out.pressure, std::abs(imposed[k] - measured[k]) * largest_diameter / (kPowderForceLimit * f1));
   return out;
 }
 

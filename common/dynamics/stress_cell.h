@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/system.h"
@@ -17,6 +19,8 @@ struct StressControl {
   Vec<D> reference_length{};  ///< L0 of the strain eps, d(eps)/dt = -dL/dt/L0
   double cell_mass = 0.0;     ///< Mc of Mc d2(eps)/dt2 = Sigma_imposed - Sigma_measured; infinite: lengths are fixed
   double strain_rate_cap = std::numeric_limits<double>::infinity();  ///< of |d(eps)/dt|
+  double drag =
+      0.0;  ///< gamma of -gamma m v, likewise on spins and on the rate of the cell: settles what has come together
 };
 
 /// Moves bodies and cell together: r = L s per axis, m L d2s/dt2 = F, so that the peculiar velocity v = L ds/dt obeys
@@ -32,24 +36,52 @@ class StressCellVerlet {
   /// change from outside.
   void initialise(System<D>& system);
 
-  void step(System<D>& system);
+  void step(System<D>& system) { advance(system, 1); }
+
+  /// The same as so many single steps, bit for bit, with one pass over the bodies less per step.
+  void advance(System<D>& system, std::int64_t steps);
+
+  /// From the next step on: gamma of -gamma m v (peculiar) and -gamma I spin per body, and of the rate of the cell
+  /// [1/time]. Empty: no drag.
+  void set_drag(double of_cell, std::vector<double> of_bodies) {
+    cell_drag_ = of_cell;
+    drag_ = std::move(of_bodies);
+  }
 
   /// Of the last pass.
   [[nodiscard]] const Vec<D>& stress() const { return stress_; }
 
  private:
+  void move(System<D>& system);
+  void find_pairs(System<D>& system);
   void sum_forces(System<D>& system, double dt, History history);
-  void drive(System<D>& system, double time);
-  [[nodiscard]] Vec<D> peculiar(const System<D>& system, std::size_t u) const;
+  void correct(System<D>& system);
+  template <bool kDrag>
+  void move_bodies(System<D>& system, const Vec<D>& growth, const Vec<D>& stretch, const Vec<D>& way);
+  template <bool kDrag>
+  void correct_bodies(System<D>& system);
+  void drive(const Cell<D>& cell, double time);
+  void publish(System<D>& system) const;
 
   double dt_;
   StressControl<D> control_;
+  double cell_drag_ = 0.0;
+  std::vector<double> drag_;
   Vec<D> virial_{};
+  Vec<D> kinetic_{};  ///< sum m v^2 per axis
   Vec<D> stress_{};
-  Vec<D> rate_{};               ///< dL/dt
-  std::vector<Vec<D>> middle_;  ///< peculiar velocity in the middle of a step
+  Vec<D> rate_{};  ///< dL/dt
+  std::vector<double> mass_;
+  std::vector<Vec<D>> peculiar_;  ///< at the end of a step
+  std::vector<Rot<D>> spin_;      ///< likewise
+  std::vector<Vec<D>> middle_;    ///< peculiar velocity in the middle of a step
   std::vector<Rot<D>> middle_spin_;
+  std::uint64_t build_ = 0;  ///< list that used_ belongs to; 0: unknown
+  double used_ = 0.0;        ///< bound for the share of its margin that any body has used up
 };
+
+constexpr double kPowderForceLimit = 1e-4;    ///< of net force, moment and pressure error, in F1, F1 a and F1/a
+constexpr double kPowderKineticLimit = 5e-8;  ///< of the kinetic energy per disk, in F1 a
 
 /// How far a powder is from the published equilibrium [CP 3.2], each over its limit: equilibrium when all are below 1.
 template <int D>

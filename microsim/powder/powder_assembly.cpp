@@ -58,8 +58,18 @@ PowderPoint point_of(const PowderState& state, const PowderSpec& spec, const Vec
           state.system.time,
           powder_fraction(state.system),
           c.coordination,
-          r.kinetic * 5e-8 * spec.force_scale(),
+          r.kinetic * kPowderKineticLimit * spec.force_scale(),
           stress};
+}
+
+/// Drag of the disks that are held: those that hang by one contact, alone or with others behind them, roll on until
+/// they meet a second one.
+std::vector<double> drag_of(const System<2>& s, double drag) {
+  std::vector<double> out(s.particles.sphere.size(), drag);
+  const std::vector<bool> loose = powder_rattlers(s);
+  for (std::size_t u = 0; u < loose.size(); ++u)
+    if (loose[u]) out[u] = 0.0;
+  return out;
 }
 
 class Phase {
@@ -77,22 +87,21 @@ class Phase {
     integrator_.initialise(state_.system);
     look();
     double next = state_.points.empty() ? 0.0 : state_.points.back().time + options_.record_every;
-    for (std::int64_t step = 0;; ++step) {
-      if (step % options_.test_every == 0) {
-        look();
-        if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
-        const bool done = step > 0 && at_rest();
-        if (state_.system.time >= next || done) {
-          state_.points.push_back(point_of(state_, spec_, integrator_.stress(), residual_));
-          next = state_.system.time + options_.record_every;
-          observer(state_);
-          integrator_.initialise(state_.system);  // as a run does that goes on from here
-        }
-        if (done) return "";
-        if (state_.system.time - state_.phase_start > options_.time_max)
-          return unmet(residual_, phase_, one_aggregate(state_.system));
+    for (bool first = true;; first = false) {
+      look();
+      if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
+      const bool done = !first && at_rest();
+      if (state_.system.time >= next || done) {
+        state_.points.push_back(point_of(state_, spec_, integrator_.stress(), residual_));
+        next = state_.system.time + options_.record_every;
+        observer(state_);
+        integrator_.initialise(state_.system);  // as a run does that goes on from here
       }
-      integrator_.step(state_.system);
+      if (done) return "";
+      if (state_.system.time - state_.phase_start > options_.time_max)
+        return unmet(residual_, phase_, one_aggregate(state_.system));
+      settle();
+      integrator_.advance(state_.system, options_.test_every);
     }
   }
 
@@ -103,6 +112,20 @@ class Phase {
   void look() {
     residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(), 1.0,
                                 !phase_.fixed_cell);
+  }
+  /// Drag sets in when all has come together, and is taken off when something moves again.
+  void settle() {
+    constexpr double kHysteresis = 10.0;
+    const double margin = state_.settling ? kHysteresis : 1.0;
+    const double error = std::max(std::abs(control_.imposed[0] - integrator_.stress()[0]),
+                                  std::abs(control_.imposed[1] - integrator_.stress()[1]));
+    state_.settling = residual_.kinetic * kPowderKineticLimit < margin * options_.settle_kinetic &&
+                      (phase_.fixed_cell || error < margin * options_.settle_pressure * spec_.force_scale()) &&
+                      (!phase_.one_aggregate || state_.settling || one_aggregate(state_.system));
+    if (state_.settling && options_.settle_drag > 0.0)
+      integrator_.set_drag(options_.settle_drag, drag_of(state_.system, options_.settle_drag));
+    else
+      integrator_.set_drag(0.0, {});
   }
   [[nodiscard]] bool at_rest() const {
     return residual_.equilibrium() && (!phase_.one_aggregate || one_aggregate(state_.system));

@@ -31,6 +31,12 @@ struct PowderOptions {
   double time_max = 20000.0;      ///< per phase [T0]
   double record_every = 10.0;     ///< [T0]
   std::int64_t test_every = 200;  ///< steps between two looks at the criteria
+  /// Once the pressure is balanced to `settle_pressure` F1/a and the kinetic energy per disk is below `settle_kinetic`
+  /// F1 a, the last vibrations are damped by a drag of `settle_drag` m v/T0. They do not rearrange anything any more,
+  /// but tangential springs without damping ring for hundreds of T0. 0: never.
+  double settle_drag = 0.5;
+  double settle_kinetic = 1e-6;
+  double settle_pressure = 1e-3;
 };
 
 /// One recorded moment.
@@ -49,6 +55,7 @@ struct PowderState {
   std::int64_t phase = 0;
   double phase_start = 0.0;  ///< time at which the phase began
   Vec<2> phase_edge{};       ///< lengths of the cell then: the reference of the strain
+  bool settling = false;     ///< under drag
   std::vector<PowderPoint> points;
 };
 
