@@ -263,5 +263,22 @@ TEST(SparseRank, OfProductsAndTinyColumns) {
   EXPECT_EQ(sparse_rank({3, 4, {}}).rank, 0);
 }
 
+/// 1 on the diagonal, -2 beside it: no diagonal of R is small, but the smallest singular value is about 2^-n.
+TEST(SparseRank, FindsADependenceThatNoDiagonalShows) {
+  SparseEntries chain;
+  chain.rows = chain.columns = 60;
+  for (std::int64_t k = 0; k < 60; ++k) {
+    chain.entries.push_back({k, k, 1.0});
+    if (k > 0) chain.entries.push_back({k - 1, k, -2.0});
+  }
+  for (const SparseEntries& m : {chain, chain.transposed()}) {
+    const SparseRank r = sparse_rank(m);
+    EXPECT_EQ(r.rank, 59);
+    EXPECT_GT(r.smallest_kept, 0.1);
+    EXPECT_LT(r.largest_dropped, 1e-12);
+  }
+  EXPECT_GT(sparse_rank(chain).factorisations, 1);
+}
+
 }  // namespace
 }  // namespace softgrain
