@@ -9,8 +9,10 @@
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "pipelines/parallel_tasks.h"
+#include "pipelines/powder_output.h"
 #include "pipelines/powder_setup.h"
 #include "pipelines/run_summary.h"
+#include "pipelines/sample_statistics.h"
 #include "pipelines/task_store.h"
 
 namespace softgrain {
@@ -53,7 +55,13 @@ void read_state(const h5::Group& group, PowderState& state) {
 struct Sample {
   PowderState state;
   PowderResult result;
+  PowderAnalysis analysis;
 };
+
+/// Pressure of the last phase that was reached.
+double imposed_pressure(const std::vector<PowderPhase>& phases, const PowderState& state) {
+  return phases[std::min(static_cast<std::size_t>(state.phase), phases.size() - 1)].pressure;
+}
 
 Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t number, const TaskStore& store,
                   Progress& progress) {
@@ -72,34 +80,51 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
     reported = std::max(share, reported);
     if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
   });
+  sample.analysis =
+      analyse_powder(sample.state.system, setup.spec, imposed_pressure(phases, sample.state), setup.rigidity);
   progress.advance(1.0 - reported);
   return sample;
 }
 
 json sample_json(const Sample& s) {
   const PowderContacts& c = s.result.contacts;
-  return {{"usable", s.result.usable},
-          {"reason", s.result.reason},
-          {"time", s.state.system.time},
-          {"steps", s.state.system.step},
-          {"loop_passes", s.state.system.cost.loop_passes},
-          {"contact_evaluations", s.state.system.cost.contact_evaluations},
-          {"Phi", s.result.fraction},
-          {"z", c.coordination},
-          {"z_star", c.coordination_backbone},
-          {"shares", c.shares},
-          {"contacts", c.contacts},
-          {"distant", c.distant},
-          {"rattlers", c.rattlers},
-          {"repulsive", c.repulsive},
-          {"tensile", c.tensile},
-          {"unstressed", c.unstressed},
-          {"mean_normal", c.mean_normal},
-          {"mean_repulsive", c.mean_repulsive},
-          {"mean_tensile", c.mean_tensile},
-          {"quadratic_mean_normal", c.square_mean_normal},
-          {"rumpf_pressure", c.rumpf_pressure},
-          {"stress", {s.result.stress[0], s.result.stress[1]}}};
+  json out{{"usable", s.result.usable},
+           {"reason", s.result.reason},
+           {"time", s.state.system.time},
+           {"steps", s.state.system.step},
+           {"loop_passes", s.state.system.cost.loop_passes},
+           {"contact_evaluations", s.state.system.cost.contact_evaluations},
+           {"Phi", s.result.fraction},
+           {"z", c.coordination},
+           {"z_star", c.coordination_backbone},
+           {"shares", c.shares},
+           {"contacts", c.contacts},
+           {"distant", c.distant},
+           {"rattlers", c.rattlers},
+           {"repulsive", c.repulsive},
+           {"tensile", c.tensile},
+           {"unstressed", c.unstressed},
+           {"mean_normal", c.mean_normal},
+           {"mean_repulsive", c.mean_repulsive},
+           {"mean_tensile", c.mean_tensile},
+           {"quadratic_mean_normal", c.square_mean_normal},
+           {"rumpf_pressure", c.rumpf_pressure},
+           {"stress", {s.result.stress[0], s.result.stress[1]}}};
+  out.update(analysis_json(s.analysis));
+  return out;
+}
+
+/// Means over the samples that came to rest, and their histograms added up.
+void add_statistics(const std::vector<Sample>& samples, json& summary) {
+  std::vector<json> scalars;
+  std::vector<const PowderForces*> forces;
+  for (const Sample& s : samples) {
+    if (!s.result.usable) continue;
+    scalars.push_back(sample_json(s));
+    forces.push_back(&s.analysis.forces);
+  }
+  summary["statistics"] = sample_statistics(scalars);
+  summary["histograms"] = histograms_json(forces);
 }
 
 struct Mean {
@@ -132,6 +157,7 @@ void save_samples(const std::string& path, const std::vector<Sample>& samples, c
     group.attribute("usable", std::int64_t{samples[k].result.usable ? 1 : 0});
     group.attribute("reason", samples[k].result.reason);
     write_state(group, samples[k].state);
+    write_analysis(group.create("analysis"), samples[k].analysis);
   }
   file.commit();
 }
@@ -166,6 +192,7 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   summary["status"] = usable ? "good" : "not usable";
   summary["mean"] = {
       {"Phi", fraction.mean}, {"Phi_deviation", fraction.deviation}, {"z", z.mean}, {"z_deviation", z.deviation}};
+  add_statistics(samples, summary);
   summary["files"] = {{"powder.h5", context.path("powder.h5")}};
   summary["provenance"] = provenance_json(provenance);
   std::string people =

@@ -56,6 +56,7 @@ PowderSetup read_powder(const Scene& scene) {
   read_disks(root.table_or_empty("disks"), setup.spec);
   read_contact(root.table_or_empty("contact"), setup.spec);
   read_assembly(root.table_or_empty("assembly"), setup);
+  setup.rigidity = root.table_or_empty("analysis").flag("rigidity", setup.rigidity);
   root.finish();
   return setup;
 }

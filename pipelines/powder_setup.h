@@ -17,6 +17,7 @@ struct PowderSetup {
   double strain_rate_cap = 0.0;
   std::int64_t samples = 1;
   std::uint64_t seed = 1;
+  bool rigidity = true;  ///< whether the rigidity matrix is factorised at the end
 
   [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, method, strain_rate_cap); }
 };

@@ -11,13 +11,15 @@
 namespace softgrain {
 
 /// With h the overlap: N = K_N h - F0 + N_v in contact (N_v = eta times the closing speed, eta = zeta sqrt(4 K_N m12)),
-/// N = -F0 (1 - gap/D0) for a gap up to D0, nothing beyond. T = -K_T u_T, |T| <= mu K_N h: the Coulomb cone starts at
-/// N = -F0. kRolling: moment -K_r theta, |K_r theta| <= mu_r K_N h, theta the elastic part of the relative rotation. No
-/// damping but the normal one; springs vanish when the contact opens. Any consistent units; 2D only.
-template <bool kRolling>
+/// N = -F0 (1 - gap/D0) for a gap up to D0, nothing beyond. kFriction: T = -K_T u_T, |T| <= mu K_N h: the Coulomb cone
+/// starts at N = -F0; without it neither springs nor spins are looked at. kRolling: moment -K_r theta, |K_r theta| <=
+/// mu_r K_N h, theta the elastic part of the relative rotation. No damping but the normal one; springs vanish when the
+/// contact opens. Any consistent units; 2D only.
+template <bool kFriction, bool kRolling>
 struct CohesiveDisk {
+  static_assert(kFriction || !kRolling, "the limit of rolling is a share of friction [CP 3.1]: mu_r = c mu a");
   static constexpr int dimension = 2;
-  static constexpr bool has_tangential = true;
+  static constexpr bool has_tangential = kFriction;
   static constexpr bool has_memory = kRolling;
   static constexpr bool has_rolling = kRolling;
   static constexpr bool needs_velocity = true;
@@ -52,7 +54,7 @@ struct CohesiveDisk {
     out.elastic_force = repulsion - adhesion;
     out.normal_stiffness = normal;
     out.normal_force = out.elastic_force - s.constants.b * s.normal_speed;
-    coulomb_spring(s, tangential, 0.0, friction * repulsion, out);
+    if constexpr (kFriction) coulomb_spring(s, tangential, 0.0, friction * repulsion, out);
     if constexpr (kRolling) roll(s, repulsion, out);
     return out;
   }

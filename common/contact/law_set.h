@@ -22,7 +22,7 @@ using AnyLaw =
                  HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>, LinearSpring,
                  SoftContact, SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::pair, true>, SoftCrowd<Crowd::bag, false>,
                  SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>,
-                 CohesiveDisk<false>, CohesiveDisk<true>>;
+                 CohesiveDisk<false, false>, CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
 
 /// Whether a law knows this number of dimensions; all do but those that name one.
 template <class Law, int D>

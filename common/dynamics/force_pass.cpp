@@ -49,7 +49,8 @@ struct RecordSink {
   void touch(std::size_t c, std::size_t i, std::size_t, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
     if (r.elastic_force == 0.0 && r.normal_force == 0.0) return;
     out.push_back({s.contacts.i[c], s.contacts.j[c], g.overlap, g.normal, g.branch,
-                   s.particles.sphere[i].x - g.normal * g.arm_i, r.normal_force, r.tangential_force, r.sliding});
+                   s.particles.sphere[i].x - g.normal * g.arm_i, r.normal_force, r.tangential_force, r.sliding,
+                   r.rolling_moment});
   }
 };
 

@@ -45,6 +45,7 @@ struct ContactRecord {
   double normal_force = 0.0;
   Vec<D> tangential_force{};
   bool sliding = false;
+  Rot<D> rolling_moment{};  ///< on i, of laws with rolling resistance [N m]
 };
 
 /// All force-carrying contacts of the committed state. Never changes the trajectory; not counted as a loop pass.

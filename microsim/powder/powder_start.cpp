@@ -13,9 +13,9 @@ namespace softgrain {
 
 namespace {
 
-template <bool kRolling>
-CohesiveDisk<kRolling> law_of(const PowderSpec& spec) {
-  CohesiveDisk<kRolling> law;
+template <bool kFriction, bool kRolling>
+AnyLaw law_of(const PowderSpec& spec) {
+  CohesiveDisk<kFriction, kRolling> law;
   law.normal = spec.stiffness;
   law.tangential = spec.stiffness_ratio * spec.stiffness;
   law.friction = spec.friction;
@@ -110,8 +110,8 @@ void set_velocities(System<2>& s, const PowderSpec& spec, std::uint64_t seed, st
 }  // namespace
 
 AnyLaw powder_law(const PowderSpec& spec) {
-  if (spec.rolling) return law_of<true>(spec);
-  return law_of<false>(spec);
+  if (spec.friction == 0.0) return law_of<false, false>(spec);  // mu_r = c mu a vanishes with mu
+  return spec.rolling ? law_of<true, true>(spec) : law_of<true, false>(spec);
 }
 
 System<2> make_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {

@@ -14,8 +14,8 @@ namespace {
 
 using System2 = System<2>;
 
-CohesiveDisk<true> disk_law(double kappa, double adhesion) {
-  CohesiveDisk<true> law;
+CohesiveDisk<true, true> disk_law(double kappa, double adhesion) {
+  CohesiveDisk<true, true> law;
   law.normal = law.tangential = kappa;
   law.friction = 0.5;
   law.damping = 0.8;
@@ -26,7 +26,7 @@ CohesiveDisk<true> disk_law(double kappa, double adhesion) {
   return law;
 }
 
-System2 empty_cell(const CohesiveDisk<true>& law, double edge) {
+System2 empty_cell(const CohesiveDisk<true, true>& law, double edge) {
   System2 s;
   s.materials = {{"disk", 1.0, 1.0, 0.3, false}};
   s.laws = LawSet(1);
@@ -45,7 +45,7 @@ void add_disk(System2& s, const Vec<2>& x, double diameter) {
 }
 
 /// Diameters uniform in [1/2, 1], no overlap, at a solid fraction.
-System2 loose(int n, double fraction, const CohesiveDisk<true>& law, std::uint64_t seed) {
+System2 loose(int n, double fraction, const CohesiveDisk<true, true>& law, std::uint64_t seed) {
   RandomStream random(seed, RandomPurpose::test, 1);
   std::vector<double> d;
   double area = 0.0;

@@ -63,11 +63,24 @@ TEST_F(Powder, DisksWithoutCohesionJam) {
     EXPECT_GE(sample["z_star"].get<double>(), sample["z"].get<double>());
   }
   EXPECT_TRUE(fs::exists(out("out") + "/powder.h5"));
+  for (const json& sample : s["samples"]) {
+    for (const char* variant : {"fixed", "free", "backbone", "backbone_free"})
+      EXPECT_TRUE(sample["rigidity"][variant]["identity_holds"].get<bool>()) << variant;
+    EXPECT_TRUE(sample["rigidity"]["backbone_free"]["positive_definite"].get<bool>()) << "it carries its load";
+    EXPECT_EQ(sample["rigidity"]["backbone_free"]["k"], 2) << "the translations";
+    EXPECT_GT(sample["F_perc"]["both"].get<double>(), 0.1);
+    EXPECT_NEAR(sample["rumpf_ratio"].get<double>(), sample["rumpf_pressure"].get<double>(), 1e-12);
+  }
+  EXPECT_EQ(s["statistics"]["Phi"]["samples"], 2);
+  EXPECT_NEAR(s["statistics"]["Phi"]["mean"].get<double>(), s["mean"]["Phi"].get<double>(), 1e-12);
+  EXPECT_GT(s["statistics"]["rigidity.backbone_free.h"]["mean"].get<double>(), 0.0);
   EXPECT_EQ(run("two", "--threads 2", 0)["samples"], s["samples"]);
 }
 
 TEST_F(Powder, WhatDoesNotRestIsSaid) {
-  const json s = run("out", "--set assembly.time_max=3", 3);
+  const json s = run("out", "--set assembly.time_max=3 --set analysis.rigidity=false", 3);
+  EXPECT_TRUE(s["samples"][0]["rigidity"].is_null()) << "not asked for";
+  EXPECT_TRUE(s["statistics"].empty()) << "no sample to be averaged";
   EXPECT_EQ(s["status"], "not usable");
   ASSERT_FALSE(s["remarks"].empty());
   EXPECT_NE(s["remarks"][0].get<std::string>().find("phase compaction"), std::string::npos);

@@ -17,9 +17,9 @@ namespace {
 using System2 = System<2>;
 
 /// Units of the publication: a = F0 = m = 1.
-template <bool kRolling>
-CohesiveDisk<kRolling> published(double kappa) {
-  CohesiveDisk<kRolling> law;
+template <bool kRolling, bool kFriction = true>
+CohesiveDisk<kFriction, kRolling> published(double kappa) {
+  CohesiveDisk<kFriction, kRolling> law;
   law.normal = law.tangential = kappa;
   law.friction = 0.5;
   law.damping = 0.8;
@@ -191,6 +191,34 @@ TEST(CohesiveDisk, SlowDisksStickAndFastOnesPart) {
   integrator.initialise(s);
   for (int k = 0; k < 40000; ++k) integrator.step(s);
   EXPECT_NEAR(norm(s.particles.sphere[1].x - s.particles.sphere[0].x), 1.0 - 1e-4, 1e-6) << "at rest at h = F0/K_N";
+}
+
+/// What a law without friction leaves out has no bit of influence: positions and velocities are those of mu = 0.
+TEST(CohesiveDisk, WithoutFrictionNothingButSpinsIsMissing) {
+  std::vector<Vec<2>> x;
+  for (int k = 0; k < 36; ++k) x.push_back({{1.02 * (k % 6) + 0.5, 1.02 * (k / 6) + 0.5 + 0.1 * (k % 2)}});
+  auto with = published<false>(1e3);
+  with.friction = 0.0;
+  System2 a = disks(with, x, 0.5, 6.2);
+  System2 b = disks(published<false, false>(1e3), x, 0.5, 6.2);
+  RandomStream random(4, RandomPurpose::test, 0);
+  for (std::size_t u = 0; u < x.size(); ++u)
+    for (int k = 0; k < 2; ++k) a.particles.velocity[u][k] = b.particles.velocity[u][k] = random.uniform() - 0.5;
+  VelocityVerlet<2> step_a(1e-3);
+  VelocityVerlet<2> step_b(1e-3);
+  step_a.initialise(a);
+  step_b.initialise(b);
+  for (int k = 0; k < 3000; ++k) {
+    step_a.step(a);
+    step_b.step(b);
+  }
+  EXPECT_FALSE(b.contacts.has_spring);
+  EXPECT_GT(contact_records(b).size(), 20U);
+  for (std::size_t u = 0; u < x.size(); ++u) {
+    EXPECT_EQ(a.particles.sphere[u].x, b.particles.sphere[u].x) << u;
+    EXPECT_EQ(a.particles.velocity[u], b.particles.velocity[u]) << u;
+    EXPECT_EQ(b.particles.spin[u][0], 0.0) << u;
+  }
 }
 
 TEST(CohesiveDisk, ThreadsChangeNoBit) {

@@ -1,0 +1,33 @@
+// Everything that is measured on a powder at rest [CP 3.5].
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "microsim/powder/powder_contacts.h"
+#include "microsim/powder/powder_forces.h"
+#include "microsim/powder/powder_percolation.h"
+#include "microsim/powder/powder_rigidity.h"
+#include "microsim/powder/powder_start.h"
+
+namespace softgrain {
+
+/// Of one state, in the units of the sample. What is undefined is absent.
+struct PowderAnalysis {
+  double zero = 0.0;  ///< contacts with |F| below it count as unstressed
+  PowderContacts contacts;
+  std::vector<PowderInteraction> pairs;
+  PowderForces forces;
+  PowderPercolation percolation;
+  std::optional<PowderRigidity> rigidity;  ///< when asked for
+  double solid_fraction_3d = 0.0;     ///< of spheres that look the same: 4/(3 sqrt(pi)) Phi^(3/2) = 0.752 Phi^(3/2)
+  std::optional<double> rumpf_ratio;  ///< Rumpf's pressure z Phi <N> <d>/(pi <d^2>) over the one imposed, P > 0
+};
+
+/// 1e-4 of the unit of force, with rolling resistance 1e-2 (published).
+double zero_force(const PowderSpec& spec);
+
+/// `pressure`: imposed on the state. Changes nothing in the system.
+PowderAnalysis analyse_powder(const System<2>& system, const PowderSpec& spec, double pressure, bool rigidity);
+
+}  // namespace softgrain
