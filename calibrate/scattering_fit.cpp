@@ -107,7 +107,7 @@ LeastSquaresFit solve(const std::vector<Datum>& data) {
   problem.jacobian = [&](std::span<const double> p, std::span<double> j) { return jacobian(data, p, j); };
   problem.bounds = {{}, kDimensionBounds, {-12.0, 12.0}, {}};
   LeastSquaresOptions options;
-  options.max_iterations = 300;
+  options.max_iterations = 100;
   options.scale_covariance = false;
   options.thorough = false;  // several starts with one strategy are enough nearly always
   const auto starts = starts_for(data);

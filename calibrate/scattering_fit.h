@@ -1,6 +1,7 @@
 // Fractal dimension and correlation length of a packing from the intensity that it scatters [CP 3.5].
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,9 @@
 namespace softgrain {
 
 struct ScatteringFitOptions {
-  double k_low = 0.0;        ///< fitted range of k [1/length]; 0: from the first bin on
-  double k_high = 2.0;       ///< beyond about 2/a the form factor of the disks bends the curve
+  double k_low = 0.0;  ///< fitted range of k [1/length]; 0: from the first bin on
+  double k_high =
+      std::numbers::pi;      ///< about pi/a, two diameters: beyond, the form factor of the disks bends the curve
   double disk = 1.0;         ///< largest diameter: a xi below it is reported
   double cell_length = 0.0;  ///< shortest period: a xi beyond half of it is reported; 0: unknown
 };

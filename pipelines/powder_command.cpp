@@ -185,7 +185,7 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   summary["mean"] = {
       {"Phi", fraction.mean}, {"Phi_deviation", fraction.deviation}, {"z", z.mean}, {"z_deviation", z.deviation}};
   summary["mean"].update(structure_means_json(structures, usable_samples(samples)));
-  if (structures.mean_curve) summary["scattering"] = fit_json(structures.fit);
+  if (structures.mean_curve) summary["scattering"] = ensemble_fit_json(structures);
   for (const std::string& remark : structure_remarks(structures)) summary["remarks"].push_back(remark);
   summary["files"] = {{"powder.h5", context.path("powder.h5")}};
   summary["provenance"] = provenance_json(provenance);

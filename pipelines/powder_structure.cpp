@@ -69,6 +69,11 @@ void fit_ensemble(const std::vector<bool>& usable, const std::vector<double>& ed
   }
   out.mean_curve = pooled_curve(curves, edges);
   out.fit = fit_scattering(curves, fit_options(options, shortest));
+  for (const double share : {2.0 / 3.0, 4.0 / 3.0}) {
+    PowderStructureOptions other = options;
+    other.fit_k_max *= share;
+    out.other_ranges.push_back(fit_scattering(curves, fit_options(other, shortest)));
+  }
 }
 
 }  // namespace

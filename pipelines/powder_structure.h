@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +18,8 @@ namespace softgrain {
 struct PowderStructureOptions {
   bool scattering = true;
   bool holes = true;
-  double mesh = 100.0;     ///< cells per largest diameter
-  double fit_k_max = 2.0;  ///< upper end of the fitted k [1/a]
+  double mesh = 100.0;                  ///< cells per largest diameter
+  double fit_k_max = std::numbers::pi;  ///< upper end of the fitted k [1/a]: distances above two diameters
 };
 
 /// What the density field of one sample shows.
@@ -35,7 +36,8 @@ struct PowderStructure {
 struct PowderStructures {
   std::vector<PowderStructure> samples;
   std::optional<ScatteringCurve> mean_curve;
-  ScatteringFit fit;  ///< common parameters of all usable samples
+  ScatteringFit fit;                        ///< common parameters of all usable samples
+  std::vector<ScatteringFit> other_ranges;  ///< the same with the upper end of k at 2/3 and 4/3: how much it matters
 };
 
 /// One sample after the other (the transform of 1400 disks takes 150 MB). `usable[s]`: whether sample s counts in the
@@ -48,8 +50,11 @@ void write_structure(const h5::Group& group, const PowderStructure& structure);
 /// The mean curve and the common fit: group "scattering".
 void write_structures(const h5::Group& root, const PowderStructures& structures);
 
-/// {usable, reason, dF, dF_error, dF_interval, xi, ..., amplitude, ..., c, ..., k_range, bins, chi2_per_degree}.
+/// {usable, reason, dF, dF_error, dF_interval, xi, ..., amplitude, ..., c, ..., k_range, bins, chi2_per_degree};
+/// without numbers when there was no fit.
 nlohmann::json fit_json(const ScatteringFit& fit);
+/// The common fit, and in "other_ranges" those with other upper ends of k.
+nlohmann::json ensemble_fit_json(const PowderStructures& structures);
 /// {scattering: fit_json, holes: {count, fragments, mean_radius, ...}}; a radius is null when a hole percolates.
 nlohmann::json structure_json(const PowderStructure& structure);
 /// {dF, dF_deviation, xi, xi_deviation, R_w, R_w_deviation, hole_count, ...}: means and sample deviations over usable

@@ -100,15 +100,21 @@ void write_structures(const h5::Group& root, const PowderStructures& s) {
 }
 
 json fit_json(const ScatteringFit& fit) {
-  json out{{"usable", fit.usable},
-           {"reason", fit.reason},
-           {"k_range", {fit.k_low, fit.k_high}},
-           {"bins", fit.bins},
-           {"chi2_per_degree", fit.chi2_per_degree}};
+  json out{{"usable", fit.usable}, {"reason", fit.reason}, {"bins", fit.bins}};
+  if (fit.covariance.empty()) return out;
+  out["k_range"] = {fit.k_low, fit.k_high};
+  out["chi2_per_degree"] = fit.chi2_per_degree;
   add_estimate(out, "dF", fit.dimension);
   add_estimate(out, "xi", fit.length);
   add_estimate(out, "amplitude", fit.amplitude);
   add_estimate(out, "c", fit.background);
+  return out;
+}
+
+json ensemble_fit_json(const PowderStructures& s) {
+  json out = fit_json(s.fit);
+  out["other_ranges"] = json::array();
+  for (const ScatteringFit& fit : s.other_ranges) out["other_ranges"].push_back(fit_json(fit));
   return out;
 }
 

@@ -18,8 +18,7 @@ constexpr double kWidth = 620.0;
 constexpr double kTop = 30.0;
 constexpr double kMargin = 10.0;
 constexpr double kLegend = 26.0;
-/// Width of the line of the force that one contact in twenty exceeds [px, or share of a]; and the most it may be.
-constexpr double kStrongLine = 0.22;
+/// The most a line may be wide [a].
 constexpr double kWidestLine = 0.7;
 /// Lines of nearly the same width share an element, so that the file stays small.
 constexpr double kWidthStep = 0.15;
@@ -112,15 +111,6 @@ class LineGroup {
 
 std::string solid_style(const char* color) { return fmt::format("stroke=\"{}\" stroke-linecap=\"round\"", color); }
 
-/// The normal force that one interaction in twenty exceeds.
-double strong_force(const std::vector<ContactRecord<2>>& contacts) {
-  std::vector<double> force;
-  for (const auto& c : contacts) force.push_back(std::abs(c.normal_force));
-  if (force.empty()) return 0.0;
-  std::sort(force.begin(), force.end());
-  return force[static_cast<std::size_t>(0.95 * static_cast<double>(force.size() - 1))];
-}
-
 std::string draw_contacts(const CellView& view, const PowderSample& sample, PowderLines lines, double zero) {
   LineGroup unstressed(solid_style(kBlue));
   LineGroup compressive(solid_style(kCompressive));
@@ -204,6 +194,14 @@ std::string id_of(const std::string& title) {
 }
 
 }  // namespace
+
+double strong_force(const std::vector<ContactRecord<2>>& contacts) {
+  std::vector<double> force;
+  for (const auto& c : contacts) force.push_back(std::abs(c.normal_force));
+  if (force.empty()) return 0.0;
+  std::sort(force.begin(), force.end());
+  return force[static_cast<std::size_t>(0.95 * static_cast<double>(force.size() - 1))];
+}
 
 std::string packing_view(const PowderSample& sample, PowderLines lines, double zero, const std::string& title) {
   if (!drawable(sample.packing)) return "";

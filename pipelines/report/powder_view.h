@@ -18,6 +18,10 @@ enum class PowderLines {
 /// cross the boundary are drawn on both sides and cut there.
 std::string packing_view(const PowderSample& sample, PowderLines lines, double zero, const std::string& title);
 
+/// What a line of kStrongLine a stands for: the normal force that one interaction in twenty exceeds; 0 without any.
+double strong_force(const std::vector<ContactRecord<2>>& contacts);
+inline constexpr double kStrongLine = 0.22;
+
 /// Disks alone, small; `scale` [px per a] is the caller's, so that a row of pictures shows a cell that shrinks.
 std::string snapshot_view(const PowderSnapshot& snapshot, double scale, double width, const std::string& title);
 

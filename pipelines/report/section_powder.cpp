@@ -180,7 +180,9 @@ std::string packings(const PowderRun& run) {
       packing_view(sample, PowderLines::stressed, run.zero_force, "Stressed and unstressed contacts, sample 0");
   if (forces.empty()) return "";
   return figure_row(
-      {figure(forces, "Lines between the centres of interacting disks, as wide as the normal force."),
+      {figure(forces, fmt::format("Lines between the centres of interacting disks, as wide as the normal force: {} a "
+                                  "stand for {} F0, which one in twenty exceeds. Sample 0.",
+                                  kStrongLine, format_number(strong_force(sample.contacts), 2))),
        figure(stressed,
               fmt::format("All interactions; unstressed ones have |N| below {}. Disks with none but such are grey.",
                           format_number(run.zero_force, 2)))});

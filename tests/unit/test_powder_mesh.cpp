@@ -334,6 +334,29 @@ TEST(PowderHoles, ThreeTouchingDisksEncloseAHole) {
     }
 }
 
+/// Nine touching disks on a square lattice that fills the period: nine holes of (1 - pi/4) d^2, some across it.
+TEST(PowderHoles, ALatticeHasOneHolePerDisk) {
+  Disks disks;
+  std::vector<ContactRecord<2>> contacts;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const auto at = static_cast<Slot>(disks.size());
+      disks.push_back({{{0.2 + i, 0.7 + j}}, 0.5});
+      ContactRecord<2> c;
+      c.i = at;
+      c.branch = {{-1.0, 0.0}};
+      contacts.push_back(c);
+      c.branch = {{0.0, -1.0}};
+      contacts.push_back(c);
+    }
+  PowderMesh mesh = powder_mesh(disks, {{3.0, 3.0}});
+  close_contacts(mesh, disks, contacts);
+  const PowderHoles holes = powder_holes(mesh, 0.5 * smallest_hole_area(0.5));
+  EXPECT_EQ(holes.count, 9);
+  EXPECT_EQ(holes.percolating, 0);
+  for (std::size_t n = 0; n < 9; ++n) EXPECT_NEAR(holes.holes[n].area, 1.0 - kPi / 4.0, 0.01);
+}
+
 /// A contact along a row of cells: without the wall the mesh leaks through it.
 TEST(PowderHoles, AContactAlongARowLeaksWithoutItsWall) {
   const double y = 2.005;  // between the centres of two cells of a mesh of 0.01: a whole row lies in the gap

@@ -96,6 +96,7 @@ ScatteringCurve synthetic(const ScatteringModel& truth, std::uint64_t index, dou
 
 ScatteringFitOptions options() {
   ScatteringFitOptions o;
+  o.k_high = 2.0;
   o.cell_length = 42.0;
   return o;
 }
@@ -131,6 +132,7 @@ TEST(ScatteringFit, ErrorsAreThoseOfTheScatter) {
     std::vector<ScatteringCurve> curves;
     for (int s = 0; s < 3; ++s) curves.push_back(synthetic(kTruth, static_cast<std::uint64_t>(100 * t + s + 1), 84.0));
     ScatteringFitOptions wide;
+    wide.k_high = 2.0;
     wide.cell_length = 84.0;
     const ScatteringFit fit = fit_scattering(curves, wide);
     ASSERT_TRUE(fit.usable) << fit.reason;
@@ -176,7 +178,7 @@ TEST(ScatteringFit, BadDataAreReported) {
   for (std::size_t n = 0; n < rising.size(); ++n) rising.intensity[n] = rising.k[n] * rising.k[n];
   EXPECT_NE(reason(rising), "");
   ScatteringFitOptions backwards;
-  backwards.k_low = 3.0;
+  backwards.k_low = 4.0;
   EXPECT_THROW((void)fit_scattering({flat}, backwards), BadInput);
 }
 
