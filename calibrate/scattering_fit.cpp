@@ -112,7 +112,7 @@ LeastSquaresFit solve(const std::vector<Datum>& data) {
   options.thorough = false;  // several starts with one strategy are enough nearly always
   const auto starts = starts_for(data);
   LeastSquaresFit found = fit_least_squares(problem, starts, options);
-  if (found.usable()) return found;
+  if (found.end == FitEnd::converged) return found;
   options.thorough = true;
   return fit_least_squares(problem, starts, options);
 }

@@ -8,6 +8,7 @@
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
+#include "microsim/powder/powder_spec_io.h"
 #include "pipelines/parallel_tasks.h"
 #include "pipelines/powder_setup.h"
 #include "pipelines/powder_structure.h"
@@ -138,9 +139,10 @@ PowderStructures structures_of(const std::vector<Sample>& samples, const PowderS
 }
 
 void save_samples(const std::string& path, const std::vector<Sample>& samples, const PowderStructures& structures,
-                  const Provenance& provenance) {
+                  const PowderSpec& spec, const Provenance& provenance) {
   h5::AtomicFile file(path);
   write_provenance(file.root(), provenance);
+  write_powder_spec(file.root().create("spec"), spec);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const h5::Group group = file.root().create(fmt::format("sample_{}", k));
     group.attribute("usable", std::int64_t{samples[k].result.usable ? 1 : 0});
@@ -169,7 +171,7 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
     progress.finish();
   });
   const PowderStructures structures = structures_of(samples, setup.structure);
-  save_samples(context.path("powder.h5"), samples, structures, provenance);
+  save_samples(context.path("powder.h5"), samples, structures, setup.spec, provenance);
   bool usable = true;
   json summary{{"kind", "cohesive-powder"}, {"title", setup.title}, {"remarks", json::array()}};
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -28,6 +28,8 @@ struct PowderHoles {
   std::int64_t percolating = 0;  ///< holes that percolate
 };
 
+/// Gaps below about a cell between disks that do not interact count as closed or open as the mesh falls: in dense
+/// packs of 200 disks <R>_w at a/100 is 2 % below its value at a/200.
 /// Finds the holes by joining runs of void cells, row by row: time in proportion to the cells. `smallest_area` [a^2]
 /// only divides the number of holes into holes and fragments.
 PowderHoles powder_holes(const PowderMesh& mesh, double smallest_area = 0.0);

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "common/io/scene.h"
 #include "common/state/system_io.h"
-#include "microsim/powder/powder_start.h"
-#include "pipelines/powder_setup.h"
+#include "microsim/powder/powder_spec_io.h"
 
 namespace softgrain::report {
 namespace {
@@ -58,12 +56,12 @@ PowderSample read_sample(const h5::Group& group, const PowderSpec& spec) {
 
 PowderRun load_powder(const std::string& path) {
   const h5::Group root = h5::open_file(path);
-  const PowderSetup setup = read_powder(Scene::parse(root.open("provenance").text("scene"), path));
+  const PowderSpec spec = read_powder_spec(root.open("spec"));
   PowderRun run;
-  run.cohesive = setup.spec.cohesive;
-  run.zero_force = setup.spec.rolling ? 1e-2 : 1e-4;
+  run.cohesive = spec.cohesive;
+  run.zero_force = spec.rolling ? 1e-2 : 1e-4;
   for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k)
-    run.samples.push_back(read_sample(root.open(fmt::format("sample_{}", k)), setup.spec));
+    run.samples.push_back(read_sample(root.open(fmt::format("sample_{}", k)), spec));
   run.scattering = read_scattering(root);
   return run;
 }

@@ -8,7 +8,7 @@
 #include "calibrate/scattering_model.h"
 #include "common/data/scattering_curve.h"
 #include "common/dynamics/force_pass.h"
-#include "pipelines/powder_snapshots.h"
+#include "microsim/powder/powder_snapshots.h"
 
 namespace softgrain::report {
 
@@ -32,7 +32,7 @@ struct FittedCurve {
 struct PowderSample {
   bool usable = false;
   PowderSnapshot packing;                  ///< at the end
-  std::vector<ContactRecord<2>> contacts;  ///< of it, computed again from the stored state and the laws of the scene
+  std::vector<ContactRecord<2>> contacts;  ///< of it, computed again from the stored state and its laws
   std::vector<PowderMoment> course;
   std::vector<PowderSnapshot> snapshots;
   std::optional<FittedCurve> scattering;
@@ -45,7 +45,7 @@ struct PowderRun {
   bool cohesive = true;
 };
 
-/// Throws FileTrouble; BadInput when the stored scene is of another kind.
+/// Throws FileTrouble.
 PowderRun load_powder(const std::string& path);
 
 }  // namespace softgrain::report

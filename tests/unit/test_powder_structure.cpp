@@ -6,9 +6,11 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
+#include "microsim/powder/powder_snapshots.h"
+#include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_start.h"
 #include "pipelines/powder_command.h"
-#include "pipelines/powder_snapshots.h"
+#include "pipelines/powder_setup.h"
 #include "pipelines/powder_structure.h"
 #include "pipelines/report/powder_plots.h"
 #include "pipelines/report/powder_view.h"
@@ -57,6 +59,42 @@ TEST(PowderStructure, OptionsSwitchItsPartsOff) {
   EXPECT_FALSE(holes.mean_curve.has_value());
   options.holes = false;
   EXPECT_TRUE(powder_structures({&a}, {true}, options).samples.empty());
+}
+
+TEST(PowderStructure, MeshAndRangeOfTheFitAreThoseAsked) {
+  const System<2> a = make_powder(spec_of(60), 1, 0);
+  PowderStructureOptions options;
+  options.mesh = 10.0;
+  const PowderStructures coarse = powder_structures({&a}, {true}, options);
+  options.mesh = 20.0;
+  options.fit_k_max = 6.0;
+  const PowderStructures fine = powder_structures({&a}, {true}, options);
+  EXPECT_GE(fine.samples[0].nx, 2 * coarse.samples[0].nx - 20);
+  EXPECT_GT(fine.samples[0].fit.bins, coarse.samples[0].fit.bins);
+  EXPECT_LE(fine.samples[0].fit.k_high, 6.0);
+}
+
+TEST(PowderStructure, TableAnalysisIsReadAndChecked) {
+  const std::string head = "kind = \"cohesive-powder\"\n[analysis]\n";
+  const auto read = [&](const std::string& keys) { return read_powder(Scene::parse(head + keys, "s.toml")).structure; };
+  const PowderStructureOptions o = read("scattering = false\nholes = false\nmesh = 50\nfit_k_max = 2.5\n");
+  EXPECT_FALSE(o.scattering);
+  EXPECT_FALSE(o.holes);
+  EXPECT_EQ(o.mesh, 50.0);
+  EXPECT_EQ(o.fit_k_max, 2.5);
+  EXPECT_THROW((void)read("mesh = 2\n"), BadInput);
+  EXPECT_THROW((void)read("meshes = 50\n"), BadInput);
+}
+
+TEST(PowderSpecIo, EveryMemberComesBack) {
+  const PowderSpec spec{7, 0.6, 0.3, 2e4, 0.7, 0.15, 0.5, false, 2e-3, true, 3e-4, 4e-2, 0.02, 9.48};
+  const test::TemporaryDirectory directory;
+  {
+    h5::AtomicFile file(directory.file("s.h5"));
+    write_powder_spec(file.root().create("spec"), spec);
+    file.commit();
+  }
+  EXPECT_EQ(read_powder_spec(h5::open_file(directory.file("s.h5")).open("spec")), spec);
 }
 
 TEST(PowderSnapshots, ComeBackAsTheyWere) {

@@ -125,6 +125,7 @@ TEST(ScatteringFit, ErrorsAreThoseOfTheScatter) {
   const int trials = 60;
   double sum = 0.0;
   double square = 0.0;
+  double length_square = 0.0;
   double chi2 = 0.0;
   int covered = 0;
   for (int t = 0; t < trials; ++t) {
@@ -139,12 +140,15 @@ TEST(ScatteringFit, ErrorsAreThoseOfTheScatter) {
     const double pull = (fit.dimension.value - kTruth.dimension) / fit.dimension.error;
     sum += pull;
     square += pull * pull;
+    const double length_pull = std::log(fit.length.value / kTruth.length) * fit.length.value / fit.length.error;
+    length_square += length_pull * length_pull / trials;
     chi2 += fit.chi2_per_degree / trials;
     covered += fit.dimension.low <= kTruth.dimension && kTruth.dimension <= fit.dimension.high ? 1 : 0;
   }
   const double mean = sum / trials;
   EXPECT_NEAR(mean, 0.0, 4.0 / std::sqrt(trials) + 0.2);
   EXPECT_NEAR(std::sqrt(square / trials - mean * mean), 1.0, 0.3);
+  EXPECT_NEAR(std::sqrt(length_square), 1.0, 0.35);
   EXPECT_GE(covered, 51);  // of 57 expected
   EXPECT_NEAR(chi2, 1.0, 0.03);
 }

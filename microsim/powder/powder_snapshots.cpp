@@ -1,4 +1,4 @@
-#include "pipelines/powder_snapshots.h"
+#include "microsim/powder/powder_snapshots.h"
 
 #include "common/core/error.h"
 
