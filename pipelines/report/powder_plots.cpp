@@ -101,11 +101,11 @@ std::string angle_figure(const PowderForces& forces) {
 }
 
 Series fit_line(const FittedCurve& fitted) {
-  Series s{.label = fmt::format("fit: dF = {}, xi = {} a{}", format_number(fitted.model.dimension, 3),
-                                format_number(fitted.model.length, 3), fitted.usable ? "" : " (not to be relied on)"),
-           .hover = "",
-           .x = {},
-           .y = {}};
+  const std::string label = fitted.usable
+                                ? fmt::format("fit: dF = {}, xi = {} a", format_number(fitted.model.dimension, 3),
+                                              format_number(fitted.model.length, 3))
+                                : "fit, not to be relied on";
+  Series s{.label = label, .hover = "", .x = {}, .y = {}};
   for (int n = 0; n <= 160; ++n) {
     const double k = fitted.k_low * std::pow(fitted.k_high / fitted.k_low, n / 160.0);
     s.x.push_back(k);

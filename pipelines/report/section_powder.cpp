@@ -34,15 +34,14 @@ std::optional<double> value_of(const json& sample, const Column& column) {
 }
 
 std::vector<Column> contact_columns() {
-  return {{"Phi", {"Phi"}},
-          {"z", {"z"}},
-          {"z*", {"z_star"}},
-          {"repulsive", {"repulsive"}},
-          {"tensile", {"tensile"}},
-          {"unstressed", {"unstressed"}},
-          {"distant", {"distant"}},
-          {"rattlers", {"rattlers"}},
-          {"<N>", {"mean_normal"}, 3},
+  return {{"Phi", {"Phi"}},         {"z", {"z"}},
+          {"z*", {"z_star"}},       {"repulsive", {"repulsive"}},
+          {"tensile", {"tensile"}}, {"unstressed", {"unstressed"}},
+          {"distant", {"distant"}}, {"rattlers", {"rattlers"}}};
+}
+
+std::vector<Column> force_columns() {
+  return {{"<N>", {"mean_normal"}, 3},
           {"<N> repulsive", {"mean_repulsive"}, 3},
           {"<N> tensile", {"mean_tensile"}, 3},
           {"sqrt <N²>", {"quadratic_mean_normal"}, 3},
@@ -135,10 +134,35 @@ std::string shares_table(const json& samples) {
   return table_of(rows, columns);
 }
 
+std::string fit_text(const json& fit) {
+  const auto number = [&](const char* key) { return find_number(fit, key).value_or(std::nan("")); };
+  const json* range = find_value(fit, "k_range");
+  const double last = range != nullptr && range->is_array() && range->size() == 2 && (*range)[1].is_number()
+                          ? (*range)[1].get<double>()
+                          : std::nan("");
+  const json* usable = find_value(fit, "usable");
+  if (usable == nullptr || !usable->is_boolean() || !usable->get<bool>())
+    return "not to be relied on (" + find_text(fit, "reason") + ")";
+  return fmt::format("up to k a = {}: dF = {}, xi = {} a, chi² per degree {}", format_number(last, 3),
+                     format_with_error(number("dF"), number("dF_error")),
+                     format_with_error(number("xi"), number("xi_error")), format_number(number("chi2_per_degree"), 2));
+}
+
+/// One fit to all samples, and what other ends of the fitted range make of it.
+std::string common_fit(const json& summary) {
+  const json* fit = find_value(summary, "scattering");
+  if (fit == nullptr || !fit->is_object()) return "";
+  std::string out = paragraph("One fit to all samples, " + fit_text(*fit) + ".");
+  const json* others = find_value(*fit, "other_ranges");
+  if (others == nullptr || !others->is_array()) return out;
+  for (const json& other : *others) out += paragraph("Another end of the range: " + fit_text(other) + ".");
+  return out;
+}
+
 std::string tables(const RunData& run) {
   const json* samples = find_value(run.summary, "samples");
   if (samples == nullptr || !samples->is_array() || samples->empty()) return "";
-  return table_of(*samples, contact_columns()) +
+  return table_of(*samples, contact_columns()) + table_of(*samples, force_columns()) +
          paragraph(
              "Lengths in a (largest diameter), forces in F0 (adhesion; without it P a). Interactions are contacts "
              "and distant pairs; unstressed ones are below the published threshold.") +
@@ -146,7 +170,8 @@ std::string tables(const RunData& run) {
          table_of(*samples, structure_columns()) +
          paragraph(
              "dF, xi: fit of I(k), with its standard error; values of fits that cannot be relied on are left "
-             "out. <R>_w: radii of holes, weighted by their areas.");
+             "out. <R>_w: radii of holes, weighted by their areas.") +
+         common_fit(run.summary);
 }
 
 /// At most kSnapshots of them, the first and the last among them.
