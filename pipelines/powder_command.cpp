@@ -8,9 +8,11 @@
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
+#include "microsim/powder/powder_spec_io.h"
 #include "pipelines/parallel_tasks.h"
 #include "pipelines/powder_output.h"
 #include "pipelines/powder_setup.h"
+#include "pipelines/powder_structure.h"
 #include "pipelines/run_summary.h"
 #include "pipelines/sample_statistics.h"
 #include "pipelines/task_store.h"
@@ -149,16 +151,33 @@ Mean mean_of(const std::vector<Sample>& samples, const Get& get) {
   return m;
 }
 
-void save_samples(const std::string& path, const std::vector<Sample>& samples, const Provenance& provenance) {
+/// Which samples count in the mean.
+std::vector<bool> usable_samples(const std::vector<Sample>& samples) {
+  std::vector<bool> usable;
+  for (const Sample& s : samples) usable.push_back(s.result.usable);
+  return usable;
+}
+
+PowderStructures structures_of(const std::vector<Sample>& samples, const PowderStructureOptions& options) {
+  std::vector<const System<2>*> systems;
+  for (const Sample& s : samples) systems.push_back(&s.state.system);
+  return powder_structures(systems, usable_samples(samples), options);
+}
+
+void save_samples(const std::string& path, const std::vector<Sample>& samples, const PowderStructures& structures,
+                  const PowderSpec& spec, const Provenance& provenance) {
   h5::AtomicFile file(path);
   write_provenance(file.root(), provenance);
+  write_powder_spec(file.root().create("spec"), spec);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const h5::Group group = file.root().create(fmt::format("sample_{}", k));
     group.attribute("usable", std::int64_t{samples[k].result.usable ? 1 : 0});
     group.attribute("reason", samples[k].result.reason);
     write_state(group, samples[k].state);
     write_analysis(group.create("analysis"), samples[k].analysis);
+    if (k < structures.samples.size()) write_structure(group, structures.samples[k]);
   }
+  write_structures(file.root(), structures);
   file.commit();
 }
 
@@ -178,11 +197,13 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
     });
     progress.finish();
   });
-  save_samples(context.path("powder.h5"), samples, provenance);
+  const PowderStructures structures = structures_of(samples, setup.structure);
+  save_samples(context.path("powder.h5"), samples, structures, setup.spec, provenance);
   bool usable = true;
   json summary{{"kind", "cohesive-powder"}, {"title", setup.title}, {"remarks", json::array()}};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     summary["samples"].push_back(sample_json(samples[k]));
+    if (k < structures.samples.size()) summary["samples"].back().update(structure_json(structures.samples[k]));
     usable = usable && samples[k].result.usable;
     if (!samples[k].result.usable)
       summary["remarks"].push_back(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
@@ -193,6 +214,9 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   summary["mean"] = {
       {"Phi", fraction.mean}, {"Phi_deviation", fraction.deviation}, {"z", z.mean}, {"z_deviation", z.deviation}};
   add_statistics(samples, summary);
+  summary["mean"].update(structure_means_json(structures, usable_samples(samples)));
+  if (structures.mean_curve) summary["scattering"] = ensemble_fit_json(structures);
+  for (const std::string& remark : structure_remarks(structures)) summary["remarks"].push_back(remark);
   summary["files"] = {{"powder.h5", context.path("powder.h5")}};
   summary["provenance"] = provenance_json(provenance);
   std::string people =

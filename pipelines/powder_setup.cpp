@@ -44,6 +44,13 @@ void read_assembly(const SceneTable& t, PowderSetup& setup) {
   setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
 }
 
+void read_structure(const SceneTable& t, PowderStructureOptions& o) {
+  o.scattering = t.flag("scattering", o.scattering);
+  o.holes = t.flag("holes", o.holes);
+  o.mesh = t.number("mesh", Unit::none, Range{5.0, 1000.0, false, false}, o.mesh);
+  o.fit_k_max = t.number("fit_k_max", Unit::none, Range{0.0, 100.0, true, false}, o.fit_k_max);
+}
+
 }  // namespace
 
 PowderSetup read_powder(const Scene& scene) {
@@ -56,7 +63,9 @@ PowderSetup read_powder(const Scene& scene) {
   read_disks(root.table_or_empty("disks"), setup.spec);
   read_contact(root.table_or_empty("contact"), setup.spec);
   read_assembly(root.table_or_empty("assembly"), setup);
-  setup.rigidity = root.table_or_empty("analysis").flag("rigidity", setup.rigidity);
+  const SceneTable analysis = root.table_or_empty("analysis");
+  setup.rigidity = analysis.flag("rigidity", setup.rigidity);
+  read_structure(analysis, setup.structure);
   root.finish();
   return setup;
 }

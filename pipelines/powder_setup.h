@@ -6,6 +6,7 @@
 
 #include "common/io/scene.h"
 #include "microsim/powder/powder_assembly.h"
+#include "pipelines/powder_structure.h"
 
 namespace softgrain {
 
@@ -13,6 +14,7 @@ struct PowderSetup {
   std::string title;
   PowderSpec spec;
   PowderOptions options;
+  PowderStructureOptions structure;
   int method = 1;
   double strain_rate_cap = 0.0;
   std::int64_t samples = 1;

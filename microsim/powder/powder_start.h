@@ -29,6 +29,7 @@ struct PowderSpec {
   [[nodiscard]] double force_scale() const { return cohesive ? std::max(1.0, pressure) : 1.0; }
   /// Imposed stress.
   [[nodiscard]] double stress() const { return cohesive ? pressure : 1.0; }
+  friend bool operator==(const PowderSpec&, const PowderSpec&) = default;
 };
 
 /// The law of all pairs; stiffness in the units of the sample.

@@ -67,8 +67,10 @@ RunData load_run(const std::string& directory) {
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;
   if (exists("comparison.json")) run.macro_scenes = load_scenes(directory), any = true;
   if (exists("grain_box.h5")) run.grain_boxes = load_grain_boxes(file("grain_box.h5")), any = true;
+  if (exists("powder.h5")) run.powder = load_powder(file("powder.h5")), any = true;
   if (!any)
-    throw FileTrouble(directory + ": holds none of summary.json, measurements.h5, law.toml, macro.h5, grain_box.h5");
+    throw FileTrouble(directory +
+                      ": holds none of summary.json, measurements.h5, law.toml, macro.h5, grain_box.h5, powder.h5");
   return run;
 }
 

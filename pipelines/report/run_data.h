@@ -13,6 +13,7 @@
 #include "common/data/measurements.h"
 #include "microsim/grain_box/record.h"
 #include "pipelines/compare/measured_stiffness.h"
+#include "pipelines/report/powder_data.h"
 
 namespace softgrain::report {
 
@@ -40,6 +41,7 @@ struct RunData {
   std::vector<MacroCurve> macro;
   std::vector<MacroScene> macro_scenes;
   std::vector<GrainBoxResult> grain_boxes;
+  std::optional<PowderRun> powder;
 
   /// Law of a pair kind, if it was fitted and is usable for drawing.
   [[nodiscard]] const PairLaw* law(PairKind kind) const;
@@ -49,9 +51,9 @@ struct RunData {
   [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
 };
 
-/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5, comparison.json (and the curves that it
-/// names) and grain_box.h5.
-/// Throws FileTrouble when the directory is missing, holds none of them, or one of them is damaged.
+/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5, comparison.json
+/// (and the curves that it names), grain_box.h5 and powder.h5. Throws FileTrouble when the directory is missing, holds
+/// none of them, or one of them is damaged.
 RunData load_run(const std::string& directory);
 
 /// Lookups that never throw: a path of keys "measurement.points"; absent or of another type gives nothing.

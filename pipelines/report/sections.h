@@ -21,6 +21,7 @@ std::string macro_scenes_section(const RunData& run);  ///< every law and both t
 std::string radii_section(const RunData& run);         ///< size distribution of the packed grains
 std::string particles_section(const RunData& run);     ///< final states and contacts of a scene of explicit particles
 std::string grain_box_section(const RunData& run);     ///< packs between six planes: stresses, moduli, contacts
+std::string powder_section(const RunData& run);        ///< cohesive powders: packings, forces, I(k), courses
 std::string cost_section(const RunData& run);          ///< passes, contact evaluations, seconds, speed-ups
 std::string provenance_section(const RunData& run);    ///< version, seeds, command, scene
 

@@ -1,0 +1,218 @@
+#include "calibrate/scattering_fit.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_sf_psi.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calibrate/least_squares.h"
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::size_t kParameters = 4;  ///< ln A, dF, ln xi, c
+constexpr std::size_t kFewestBins = 8;
+constexpr ParameterBounds kDimensionBounds{0.02, 3.0};
+constexpr double kWorstChi2 = 10.0;
+constexpr double kWidestInterval = 2.0;
+
+/// One bin as the fit sees it.
+struct Datum {
+  double k = 0.0;
+  double log_intensity = 0.0;  ///< without the bias of a logarithm of a mean
+  double deviation = 1.0;
+};
+
+void require_valid(const ScatteringFitOptions& o) {
+  if (!(o.k_low >= 0.0) || !(o.k_high > o.k_low))
+    throw BadInput(fmt::format("scattering fit: range of k [{}, {}] must rise from 0 or above", o.k_low, o.k_high));
+  if (!(o.disk > 0.0) || !(o.cell_length >= 0.0))
+    throw BadInput("scattering fit: disk must be above 0 and cell_length 0 or above");
+}
+
+/// The bins in range; `bad` counts those without a logarithm.
+std::vector<Datum> select(const std::vector<ScatteringCurve>& curves, const ScatteringFitOptions& o, std::size_t& bad) {
+  std::vector<Datum> data;
+  bad = 0;
+  for (const ScatteringCurve& curve : curves)
+    for (std::size_t n = 0; n < curve.size(); ++n) {
+      if (!(curve.k[n] >= o.k_low && curve.k[n] <= o.k_high)) continue;
+      const double m = curve.modes[n];
+      if (!(curve.intensity[n] > 0.0) || !std::isfinite(curve.intensity[n]) || !(m > 0.0)) {
+        ++bad;
+        continue;
+      }
+      data.push_back({curve.k[n], std::log(curve.intensity[n]) - (gsl_sf_psi(m) - std::log(m)),
+                      std::sqrt(gsl_sf_psi_1(m > 0.0 ? m : 1.0))});
+    }
+  return data;
+}
+
+ScatteringModel model_of(std::span<const double> p) { return {std::exp(p[0]), p[1], std::exp(p[2]), p[3]}; }
+
+bool residuals(const std::vector<Datum>& data, std::span<const double> p, std::span<double> r) {
+  const ScatteringModel model = model_of(p);
+  for (std::size_t n = 0; n < data.size(); ++n) {
+    const double intensity = scattering_intensity(model, data[n].k);
+    if (!(intensity > 0.0) || !std::isfinite(intensity)) return false;
+    r[n] = (std::log(intensity) - data[n].log_intensity) / data[n].deviation;
+  }
+  return true;
+}
+
+/// Exact in A and c, central differences of fourth order of the decay in dF and ln xi.
+bool jacobian(const std::vector<Datum>& data, std::span<const double> p, std::span<double> j) {
+  constexpr double h = 1e-3;
+  const ScatteringModel m = model_of(p);
+  const auto slope = [&](const auto& f) { return (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h); };
+  for (std::size_t n = 0; n < data.size(); ++n) {
+    const double x = m.length * data[n].k;
+    const double decay = m.amplitude * fractal_decay(m.dimension, x);
+    const double by_dimension = slope([&](double e) { return fractal_decay(m.dimension + e, x); });
+    const double by_length = slope([&](double e) { return fractal_decay(m.dimension, x * std::exp(e)); });
+    const double scale = 1.0 / ((m.background + decay) * data[n].deviation);
+    const std::array<double, kParameters> row{decay, m.amplitude * by_dimension, m.amplitude * by_length, 1.0};
+    for (std::size_t q = 0; q < kParameters; ++q) {
+      j[kParameters * n + q] = row[q] * scale;
+      if (!std::isfinite(j[kParameters * n + q])) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<std::vector<double>> starts_for(const std::vector<Datum>& data) {
+  double top = data.front().log_intensity;
+  double bottom = top;
+  for (const Datum& d : data) {
+    top = std::max(top, d.log_intensity);
+    bottom = std::min(bottom, d.log_intensity);
+  }
+  const double k_first = std::min_element(data.begin(), data.end(), [](auto& a, auto& b) { return a.k < b.k; })->k;
+  std::vector<std::vector<double>> starts;
+  for (const double dimension : {1.2, 1.8})
+    for (const double reach : {0.5, 3.0}) starts.push_back({top, dimension, std::log(reach / k_first), 0.0});
+  starts.push_back({top, 1.5, std::log(1.0 / k_first), 0.3 * std::exp(bottom)});
+  return starts;
+}
+
+LeastSquaresFit solve(const std::vector<Datum>& data) {
+  LeastSquaresProblem problem;
+  problem.residuals = data.size();
+  problem.evaluate = [&](std::span<const double> p, std::span<double> r) { return residuals(data, p, r); };
+  problem.jacobian = [&](std::span<const double> p, std::span<double> j) { return jacobian(data, p, j); };
+  problem.bounds = {{}, kDimensionBounds, {-12.0, 12.0}, {}};
+  LeastSquaresOptions options;
+  options.max_iterations = 100;
+  options.scale_covariance = false;
+  options.thorough = false;  // several starts with one strategy are enough nearly always
+  const auto starts = starts_for(data);
+  LeastSquaresFit found = fit_least_squares(problem, starts, options);
+  if (found.end == FitEnd::converged) return found;
+  options.thorough = true;
+  return fit_least_squares(problem, starts, options);
+}
+
+ScatteringEstimate plain(double value, double error, double quantile) {
+  return {value, error, value - quantile * error, value + quantile * error};
+}
+ScatteringEstimate logarithmic(double log_value, double error, double quantile) {
+  const double value = std::exp(log_value);
+  return {value, value * error, std::exp(log_value - quantile * error), std::exp(log_value + quantile * error)};
+}
+
+void fill(const LeastSquaresFit& found, ScatteringFit& out) {
+  const auto& p = found.parameters;
+  out.model = model_of(p);
+  const auto degrees = static_cast<double>(found.degrees_of_freedom);
+  out.chi2_per_degree = found.residual_sum_of_squares / degrees;
+  const double widening = std::max(1.0, out.chi2_per_degree);
+  const double quantile = widening > 1.0 ? gsl_cdf_tdist_Pinv(0.975, degrees) : gsl_cdf_ugaussian_Pinv(0.975);
+  out.covariance = found.covariance;
+  for (double& c : out.covariance) c *= widening;
+  const auto error = [&](std::size_t q) { return std::sqrt(widening) * found.standard_deviations[q]; };
+  out.amplitude = logarithmic(p[0], error(0), quantile);
+  out.dimension = plain(p[1], error(1), quantile);
+  out.length = logarithmic(p[2], error(2), quantile);
+  out.background = plain(p[3], error(3), quantile);
+}
+
+/// Everything that speaks against relying on the result.
+std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const ScatteringFitOptions& o) {
+  std::vector<std::string> reasons;
+  if (found.rank_deficient)
+    reasons.push_back("the data do not determine all parameters");
+  else if (found.end != FitEnd::converged)
+    reasons.push_back("not converged: " + found.message);
+  const double xi = fit.model.length;
+  if (fit.model.dimension > 2.0 || found.at_bound[1])
+    reasons.push_back(fmt::format("dF = {:.3f} is outside (0, 2]", fit.model.dimension));
+  if (xi < o.disk) reasons.push_back(fmt::format("xi = {:.3g} is below the disks", xi));
+  if (o.cell_length > 0.0 && xi > 0.5 * o.cell_length)
+    reasons.push_back(fmt::format("xi = {:.3g} is beyond half the cell, {:.3g}", xi, 0.5 * o.cell_length));
+  if (!(fit.dimension.high - fit.dimension.low < kWidestInterval))
+    reasons.push_back("the interval of dF is wider than all it can be");
+  if (fit.chi2_per_degree > kWorstChi2)
+    reasons.push_back(fmt::format("the curve is another: chi^2 per degree {:.3g}", fit.chi2_per_degree));
+  std::string text;
+  for (const std::string& r : reasons) text += (text.empty() ? "" : "; ") + r;
+  return text;
+}
+
+}  // namespace
+
+ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const ScatteringFitOptions& options) {
+  require_valid(options);
+  ScatteringFit fit;
+  std::size_t bad = 0;
+  const std::vector<Datum> data = select(curves, options, bad);
+  fit.bins = data.size();
+  if (bad > 0) {
+    fit.reason = fmt::format("{} bins hold no positive, finite intensity", bad);
+    return fit;
+  }
+  if (data.size() < kFewestBins) {
+    fit.reason = fmt::format("{} bins of k in the range, {} needed", data.size(), kFewestBins);
+    return fit;
+  }
+  const auto [first, last] =
+      std::minmax_element(data.begin(), data.end(), [](const Datum& a, const Datum& b) { return a.k < b.k; });
+  fit.k_low = first->k;
+  fit.k_high = last->k;
+  const LeastSquaresFit found = solve(data);
+  if (found.parameters.size() != kParameters || found.standard_deviations.size() != kParameters) {
+    fit.reason = "no fit: " + found.message;
+    return fit;
+  }
+  fill(found, fit);
+  fit.reason = judge(found, fit, options);
+  fit.usable = fit.reason.empty();
+  return fit;
+}
+
+ScatteringCurve pooled_curve(const std::vector<ScatteringCurve>& curves, const std::vector<double>& edges) {
+  ScatteringCurve out;
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    double modes = 0.0;
+    double k = 0.0;
+    double sum = 0.0;
+    for (const ScatteringCurve& c : curves)
+      for (std::size_t n = 0; n < c.size(); ++n) {
+        if (c.k[n] < edges[b] || c.k[n] >= edges[b + 1]) continue;
+        modes += c.modes[n];
+        k += c.modes[n] * c.k[n];
+        sum += c.modes[n] * c.intensity[n];
+      }
+    if (modes == 0.0) continue;
+    out.k.push_back(k / modes);
+    out.intensity.push_back(sum / modes);
+    out.modes.push_back(modes);
+  }
+  return out;
+}
+
+}  // namespace softgrain

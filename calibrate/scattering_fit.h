@@ -1,0 +1,58 @@
+// Fractal dimension and correlation length of a packing from the intensity that it scatters [CP 3.5].
+#pragma once
+
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "calibrate/scattering_model.h"
+#include "common/data/scattering_curve.h"
+
+namespace softgrain {
+
+struct ScatteringFitOptions {
+  double k_low = 0.0;  ///< fitted range of k [1/length]; 0: from the first bin on
+  double k_high =
+      std::numbers::pi;      ///< about pi/a, two diameters: beyond, the form factor of the disks bends the curve
+  double disk = 1.0;         ///< largest diameter: a xi below it is reported
+  double cell_length = 0.0;  ///< shortest period: a xi beyond half of it is reported; 0: unknown
+};
+
+/// One fitted number.
+struct ScatteringEstimate {
+  double value = 0.0;
+  double error = 0.0;  ///< standard error; of ln(value) times value for amplitude and length
+  double low = 0.0;    ///< 95 % interval
+  double high = 0.0;
+};
+
+struct ScatteringFit {
+  bool usable = false;
+  std::string reason = "not run";  ///< why it is not usable; empty when it is
+  ScatteringModel model;           ///< best values, also when not usable (then not to be relied on); zero without a fit
+  ScatteringEstimate amplitude;
+  ScatteringEstimate dimension;
+  ScatteringEstimate length;
+  ScatteringEstimate background;
+  std::vector<double> covariance;  ///< 4 x 4 row-major of (ln A, dF, ln xi, c)
+  double k_low = 0.0;              ///< first and last k that were fitted
+  double k_high = 0.0;
+  std::size_t bins = 0;
+  double chi2_per_degree = 0.0;  ///< about 1 when the model holds; above 1 the errors have been widened by its root
+};
+
+/// Least squares of ln I over the bins in [k_low, k_high]. A mode of a disordered density field has an exponentially
+/// distributed intensity, so the mean of m independent ones is gamma-distributed: its logarithm has the bias
+/// psi(m) - ln m and the deviation sqrt(psi'(m)), both exact, whatever the intensity. With them every residual has mean
+/// 0 and deviation 1, the steep start of the curve weighs as much as its modes tell, and chi^2 judges the model. Errors
+/// from the curvature; widened by sqrt(chi^2/degrees) (and Student's t) when that is above 1. Several starts.
+/// Several curves are fitted with common parameters (samples of one ensemble).
+/// Not usable, with the reason: fewer than 8 bins in the range, an intensity that is not positive and finite, no
+/// convergence, parameters that the data do not determine, dF outside (0, 2], xi below the disks or beyond half the
+/// cell, an interval of dF wider than 2, chi^2 per degree above 10. Throws BadInput for options out of range.
+ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const ScatteringFitOptions& options = {});
+
+/// Bins of several curves on the same edges put together, each with its modes: the mean intensity of an ensemble.
+ScatteringCurve pooled_curve(const std::vector<ScatteringCurve>& curves, const std::vector<double>& edges);
+
+}  // namespace softgrain

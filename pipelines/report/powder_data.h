@@ -1,0 +1,51 @@
+// What powder.h5 holds for a report: final packings with their contacts, courses, snapshots, scattered intensity.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/scattering_model.h"
+#include "common/data/scattering_curve.h"
+#include "common/dynamics/force_pass.h"
+#include "microsim/powder/powder_snapshots.h"
+
+namespace softgrain::report {
+
+/// One row of the course of an assembly.
+struct PowderMoment {
+  double time = 0.0;  ///< [T0]
+  double fraction = 0.0;
+  double coordination = 0.0;
+  double kinetic = 0.0;  ///< per disk [F0 a]
+};
+
+/// Intensity with the best fit to it.
+struct FittedCurve {
+  ScatteringCurve curve;
+  ScatteringModel model;
+  bool usable = false;
+  double k_low = 0.0;  ///< fitted range
+  double k_high = 0.0;
+};
+
+struct PowderSample {
+  bool usable = false;
+  PowderSnapshot packing;                  ///< at the end
+  std::vector<ContactRecord<2>> contacts;  ///< of it, computed again from the stored state and its laws
+  std::vector<PowderMoment> course;
+  std::vector<PowderSnapshot> snapshots;
+  std::optional<FittedCurve> scattering;
+};
+
+struct PowderRun {
+  std::vector<PowderSample> samples;
+  std::optional<FittedCurve> scattering;  ///< mean over samples and their common fit
+  double zero_force = 1e-4;               ///< below it a contact counts as unstressed [F0]
+  bool cohesive = true;
+};
+
+/// Throws FileTrouble.
+PowderRun load_powder(const std::string& path);
+
+}  // namespace softgrain::report
