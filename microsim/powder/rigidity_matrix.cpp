@@ -59,10 +59,11 @@ class Builder {
 
   /// Displacement of i against j along `axis`, where turning by theta moves the contact point by `turn` theta.
   void displacement(const PowderInteraction& pair, const Vec<2>& axis, double turn_i, double turn_j, double stiffness) {
+    const Vec<2> periods = winding(system_, pair);
     for (int k = 0; k < 2; ++k) {
       put(first(pair.i) + k, axis[k]);
       put(first(pair.j) + k, -axis[k]);
-      if (cell_free_) put(columns_ + k, axis[k] * pair.branch[k]);
+      if (cell_free_) put(columns_ + k, axis[k] * periods[k] * system_.cell.edges[k][k]);
     }
     if (turn_i != 0.0) put(first(pair.i) + 2, turn_i / radius(pair.i));
     if (turn_j != 0.0) put(first(pair.j) + 2, turn_j / radius(pair.j));

@@ -23,7 +23,9 @@ PairStiffness pair_stiffness(const System<2>& system);
 /// G: one row per contact and component of its relative displacement, du_N = (u_i - u_j).n, with friction
 /// du_T = (u_i - u_j).t - (a_i theta_i + a_j theta_j), with rolling resistance theta_i - theta_j; distant pairs have
 /// the first alone. Columns: u_x, u_y and, with friction, R theta of every disk; then, when the cell is free, its two
-/// strains, of which a pair sees the branch vector. Every contact counts in full, whether it slides or not.
+/// strains: u includes the strain of the whole, so that only pairs across the boundary see the periods between them
+/// (with u relative to it every pair would see its branch vector: the same ranks, but two dense columns). Every contact
+/// counts in full, whether it slides or not.
 struct RigidityMatrix {
   SparseEntries entries;          ///< M rows, N_f columns
   std::vector<double> stiffness;  ///< per row
