@@ -32,7 +32,8 @@ void write_state(const h5::Group& group, const PowderState& state) {
   group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
   group.write("course", rows, {state.points.size(), kColumns});
   group.write("phase", std::vector<double>{static_cast<double>(state.phase), state.phase_start, state.phase_edge[0],
-                                           state.phase_edge[1], state.settling ? 1.0 : 0.0});
+                                           state.phase_edge[1], state.settling ? 1.0 : 0.0, state.still_since,
+                                           state.still_edge[0], state.still_edge[1]});
   write_system(group.create("system"), state.system);
 }
 
@@ -51,6 +52,8 @@ void read_state(const h5::Group& group, PowderState& state) {
   state.phase_start = phase.at(1);
   state.phase_edge = {{phase.at(2), phase.at(3)}};
   state.settling = phase.at(4) != 0.0;
+  state.still_since = phase.at(5);
+  state.still_edge = {{phase.at(6), phase.at(7)}};
   read_system(group.open("system"), state.system);
 }
 

@@ -38,8 +38,7 @@ void read_assembly(const SceneTable& t, PowderSetup& setup) {
   setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
   setup.options.settle_kinetic =
       t.number("settle_kinetic", Unit::none, Range::not_negative(), setup.options.settle_kinetic);
-  setup.options.settle_pressure =
-      t.number("settle_pressure", Unit::none, Range::not_negative(), setup.options.settle_pressure);
+  setup.options.settle_after = t.number("settle_after", Unit::none, Range::not_negative(), setup.options.settle_after);
   setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
   setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
 }

@@ -62,10 +62,11 @@ PowderPoint point_of(const PowderState& state, const PowderSpec& spec, const Vec
           stress};
 }
 
-/// Drag of the disks that are held: those that hang by one contact, alone or with others behind them, roll on until
-/// they meet a second one.
-std::vector<double> drag_of(const System<2>& s, double drag) {
+/// Drag of the disks that are held: without rolling resistance those that hang by one contact, alone or with others
+/// behind them, roll on until they meet a second one.
+std::vector<double> drag_of(const System<2>& s, double drag, bool rolling) {
   std::vector<double> out(s.particles.sphere.size(), drag);
+  if (rolling) return out;
   const std::vector<bool> loose = powder_rattlers(s);
   for (std::size_t u = 0; u < loose.size(); ++u)
     if (loose[u]) out[u] = 0.0;
@@ -113,17 +114,27 @@ class Phase {
     residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(), 1.0,
                                 !phase_.fixed_cell);
   }
+  /// Notes since when the cell keeps its lengths.
+  void watch_cell() {
+    constexpr double kStill = 1e-5;
+    const auto& edges = state_.system.cell.edges;
+    bool still = true;
+    for (int k = 0; k < 2; ++k) still = still && std::abs(edges[k][k] - state_.still_edge[k]) <= kStill * edges[k][k];
+    if (still) return;
+    state_.still_edge = {{edges[0][0], edges[1][1]}};
+    state_.still_since = state_.system.time;
+  }
   /// Drag sets in when all has come together, and is taken off when something moves again.
   void settle() {
     constexpr double kHysteresis = 10.0;
+    constexpr double kCell = 20.0;
+    watch_cell();
     const double margin = state_.settling ? kHysteresis : 1.0;
-    const double error = std::max(std::abs(control_.imposed[0] - integrator_.stress()[0]),
-                                  std::abs(control_.imposed[1] - integrator_.stress()[1]));
     state_.settling = residual_.kinetic * kPowderKineticLimit < margin * options_.settle_kinetic &&
-                      (phase_.fixed_cell || error < margin * options_.settle_pressure * spec_.force_scale()) &&
+                      (phase_.fixed_cell || state_.system.time - state_.still_since >= options_.settle_after) &&
                       (!phase_.one_aggregate || state_.settling || one_aggregate(state_.system));
     if (state_.settling && options_.settle_drag > 0.0)
-      integrator_.set_drag(options_.settle_drag, drag_of(state_.system, options_.settle_drag));
+      integrator_.set_drag(kCell * options_.settle_drag, drag_of(state_.system, options_.settle_drag, spec_.rolling));
     else
       integrator_.set_drag(0.0, {});
   }
@@ -189,7 +200,8 @@ PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::v
       break;
     }
     ++state.phase;
-    state.phase_start = state.system.time;
+    state.phase_start = state.still_since = state.system.time;
+    state.settling = false;
     state.phase_edge = {{state.system.cell.edges[0][0], state.system.cell.edges[1][1]}};
   }
   result.fraction = powder_fraction(state.system);

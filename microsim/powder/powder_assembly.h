@@ -31,12 +31,12 @@ struct PowderOptions {
   double time_max = 20000.0;      ///< per phase [T0]
   double record_every = 10.0;     ///< [T0]
   std::int64_t test_every = 200;  ///< steps between two looks at the criteria
-  /// Once the pressure is balanced to `settle_pressure` F1/a and the kinetic energy per disk is below `settle_kinetic`
-  /// F1 a, the last vibrations are damped by a drag of `settle_drag` m v/T0. They do not rearrange anything any more,
-  /// but tangential springs without damping ring for hundreds of T0. 0: never.
+  /// Once the lengths of the cell have kept to kStill for `settle_after` T0 and the kinetic energy per disk is below
+  /// `settle_kinetic` F1 a, the last vibrations are damped: `settle_drag` m v/T0 on disks, 20 times that on the cell.
+  /// They rearrange next to nothing any more, but tangential springs without damping ring for hundreds of T0. 0: never.
   double settle_drag = 0.05;
   double settle_kinetic = 1e-6;
-  double settle_pressure = 1e-3;
+  double settle_after = 10.0;
 };
 
 /// One recorded moment.
@@ -56,6 +56,8 @@ struct PowderState {
   double phase_start = 0.0;  ///< time at which the phase began
   Vec<2> phase_edge{};       ///< lengths of the cell then: the reference of the strain
   bool settling = false;     ///< under drag
+  double still_since = 0.0;  ///< the lengths have kept to those of `still_edge` since then
+  Vec<2> still_edge{};
   std::vector<PowderPoint> points;
 };
 
