@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/core/error.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
@@ -34,6 +35,7 @@ void write_state(const h5::Group& group, const PowderState& state) {
   group.write("phase", std::vector<double>{static_cast<double>(state.phase), state.phase_start, state.phase_edge[0],
                                            state.phase_edge[1], state.settling ? 1.0 : 0.0, state.still_since,
                                            state.still_edge[0], state.still_edge[1]});
+  write_snapshots(group, state.snapshots);
   write_system(group.create("system"), state.system);
 }
 
@@ -54,6 +56,9 @@ void read_state(const h5::Group& group, PowderState& state) {
   state.settling = phase.at(4) != 0.0;
   state.still_since = phase.at(5);
   state.still_edge = {{phase.at(6), phase.at(7)}};
+  state.stiffness = phase.at(8);
+  state.phase_stiffness = phase.at(9);
+  state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);
 }
 
@@ -68,12 +73,26 @@ double imposed_pressure(const std::vector<PowderPhase>& phases, const PowderStat
   return phases[std::min(static_cast<std::size_t>(state.phase), phases.size() - 1)].pressure;
 }
 
+/// The sample of this number of an earlier run. Throws BadInput when that run was of other disks.
+void take_state(const PowderSetup& setup, std::int64_t number, PowderState& state) {
+  const std::lock_guard lock(hdf5_mutex());
+  const h5::Group file = h5::open_file(setup.states);
+  const std::string sample = fmt::format("sample_{}", number);
+  if (!file.has("spec") || !file.has(sample)) throw BadInput(fmt::format("{}: has no {}", setup.states, sample));
+  if (!(read_powder_spec(file.open("spec")) == setup.spec))
+    throw BadInput(setup.states + ": holds samples of other [disks], [contact] or [assembly] than the scene");
+  read_state(file.open(sample), state);
+}
+
 Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t number, const TaskStore& store,
                   Progress& progress) {
   Sample sample;
   sample.state = start_powder(setup.spec, seed, static_cast<std::uint64_t>(number));
   const std::string task = fmt::format("powder-{}", number);
-  store.load(task, [&](const h5::Group& g) { read_state(g, sample.state); });
+  if (setup.states.empty())
+    store.load(task, [&](const h5::Group& g) { read_state(g, sample.state); });
+  else
+    take_state(setup, number, sample.state);
   const auto phases = setup.phases();
   double reported = 0.0;
   sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {

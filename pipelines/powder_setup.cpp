@@ -22,17 +22,31 @@ void read_contact(const SceneTable& t, PowderSpec& spec) {
   spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
 }
 
+void read_protocol(const SceneTable& t, PowderSetup& setup) {
+  PowderProtocol& p = setup.protocol;
+  const bool aggregates = p.method == 2;
+  p.strain_rate_cap = t.number("strain_rate_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
+  for (const char* key : {"aggregation_kappa", "stiffening_time"})
+    if (!aggregates && t.has(key)) t.reject(key, "only method 2 has disks that aggregate first");
+  if (!aggregates) return;
+  p.aggregation_kappa = t.number("aggregation_kappa", Unit::none, Range::not_negative(), 0.0);
+  if (p.aggregation_kappa == 0.0 && t.has("stiffening_time"))
+    t.reject("stiffening_time", "nothing stiffens without an aggregation_kappa");
+  if (p.aggregation_kappa > 0.0)
+    p.stiffening_time = t.number("stiffening_time", Unit::none, Range::positive(), p.stiffening_time);
+}
+
 void read_assembly(const SceneTable& t, PowderSetup& setup) {
-  setup.method = static_cast<int>(t.count("method", 1, 2, 1));
+  setup.protocol.method = static_cast<int>(t.count("method", 1, 2, 1));
   if (!setup.spec.cohesive && t.has("pressure"))
     t.reject("pressure", "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
-  if (!setup.spec.cohesive && setup.method == 2) t.reject("method", "disks without cohesion do not aggregate");
+  if (!setup.spec.cohesive && setup.protocol.method == 2) t.reject("method", "disks without cohesion do not aggregate");
   setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
-  if (setup.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
+  if (setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
     t.reject("pressure", "method 1 starts at rest: without pressure nothing moves");
-  setup.spec.start_speed = setup.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
-  setup.strain_rate_cap =
-      t.number("strain_rate_cap", Unit::none, Range::not_negative(), setup.method == 2 ? 0.05 : 0.0);
+  setup.spec.start_speed =
+      setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
+  read_protocol(t, setup);
   setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
   setup.options.step = t.number("step", Unit::none, Range{0.0, 0.5, true, false}, setup.options.step);
   setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
@@ -64,6 +78,7 @@ PowderSetup read_powder(const Scene& scene) {
   read_assembly(root.table_or_empty("assembly"), setup);
   const SceneTable analysis = root.table_or_empty("analysis");
   setup.rigidity = analysis.flag("rigidity", setup.rigidity);
+  setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
   read_structure(analysis, setup.structure);
   root.finish();
   return setup;

@@ -15,13 +15,13 @@ struct PowderSetup {
   PowderSpec spec;
   PowderOptions options;
   PowderStructureOptions structure;
-  int method = 1;
-  double strain_rate_cap = 0.0;
+  PowderProtocol protocol;
   std::int64_t samples = 1;
   std::uint64_t seed = 1;
+  std::string states;    ///< powder.h5 of an earlier run: its states are analysed instead of new ones assembled
   bool rigidity = true;  ///< whether the rigidity matrix is factorised at the end
 
-  [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, method, strain_rate_cap); }
+  [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, protocol); }
 };
 
 /// Reads the scene to the last key. Throws BadInput.

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
+#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
 
@@ -20,9 +21,24 @@ double total_mass(const System<2>& s) {
   return mass;
 }
 
-double time_step(const System<2>& s, const PowderSpec& spec, const PowderOptions& options) {
-  const double lightest = 1.0 / *std::max_element(s.particles.inverse_mass.begin(), s.particles.inverse_mass.end());
-  return options.step * std::sqrt(lightest / spec.stiffness);
+double time_step(const PowderState& state, const PowderOptions& options) {
+  const auto& inverse_mass = state.system.particles.inverse_mass;
+  const double lightest = 1.0 / *std::max_element(inverse_mass.begin(), inverse_mass.end());
+  return options.step * std::sqrt(lightest / state.stiffness);
+}
+
+/// The law of another stiffness; the list of pairs and their histories stay as they are.
+void install_law(PowderState& state, PowderSpec spec, double kappa) {
+  spec.stiffness = kappa;
+  state.system.laws = LawSet(1);
+  state.system.laws.set(0, 0, powder_law(spec));
+  ContactList<2>& list = state.system.contacts;
+  const auto springs = list.spring;
+  const auto memories = list.memory;
+  adopt_list(state.system);
+  list.spring = springs;
+  list.memory = memories;
+  state.stiffness = kappa;
 }
 
 StressControl<2> control_of(const PowderState& state, const PowderPhase& phase, const PowderOptions& options) {
@@ -81,7 +97,7 @@ class Phase {
         phase_(phase),
         options_(options),
         control_(control_of(state, phase, options)),
-        integrator_(time_step(state.system, spec, options), control_) {}
+        integrator_(time_step(state, options), control_) {}
 
   /// Empty when the phase came to rest, else why not.
   std::string run(const std::function<void(const PowderState&)>& observer) {
@@ -91,7 +107,8 @@ class Phase {
     for (bool first = true;; first = false) {
       look();
       if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
-      const bool done = !first && at_rest();
+      const bool done = !first && !stiffening() && at_rest();
+      picture(done);
       if (state_.system.time >= next || done) {
         state_.points.push_back(point_of(state_, spec_, integrator_.stress(), residual_));
         next = state_.system.time + options_.record_every;
@@ -99,11 +116,17 @@ class Phase {
         integrator_.initialise(state_.system);  // as a run does that goes on from here
       }
       if (done) return "";
-      if (state_.system.time - state_.phase_start > options_.time_max)
+      if (elapsed() > options_.time_max + phase_.stiffening)
         return unmet(residual_, phase_, one_aggregate(state_.system));
       settle();
-      integrator_.advance(state_.system, options_.test_every);
+      integrator_.advance(state_.system, stiffen());
     }
+  }
+
+  /// Residual and stress of the state as it is.
+  void examine() {
+    integrator_.initialise(state_.system);
+    look();
   }
 
   [[nodiscard]] const PowderResidual<2>& residual() const { return residual_; }
@@ -114,6 +137,36 @@ class Phase {
     residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(), 1.0,
                                 !phase_.fixed_cell);
   }
+  [[nodiscard]] double elapsed() const { return state_.system.time - state_.phase_start; }
+  [[nodiscard]] bool stiffening() const { return state_.stiffness != phase_.stiffness; }
+
+  /// Takes kappa a little further when it is on its way; returns how many steps to go until the next look.
+  std::int64_t stiffen() {
+    if (!stiffening()) return options_.test_every;
+    constexpr double kGrowth = 0.01;  // largest change of ln kappa at once
+    const double way = std::log(phase_.stiffness / state_.phase_stiffness);
+    const double share = std::min(1.0, elapsed() / phase_.stiffening);
+    set_stiffness(state_, spec_, share < 1.0 ? state_.phase_stiffness * std::exp(share * way) : phase_.stiffness);
+    const double dt = time_step(state_, options_);
+    integrator_ = StressCellVerlet<2>(dt, control_);
+    integrator_.initialise(state_.system);
+    const double pause = phase_.stiffening * kGrowth / std::abs(way);
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(pause / dt), 1, options_.test_every);
+  }
+
+  /// Keeps a picture at the start, after the phase, and whenever the solid fraction has changed visibly.
+  void picture(bool done) {
+    constexpr double kVisible = 0.07;
+    auto& shots = state_.snapshots;
+    const double fraction = powder_fraction(state_.system);
+    if (!shots.empty() && !done && std::abs(fraction - last_fraction()) < kVisible) return;
+    shots.push_back(powder_snapshot(state_.system));
+  }
+  [[nodiscard]] double last_fraction() const {
+    const PowderSnapshot& last = state_.snapshots.back();
+    return powder_fraction(state_.system) * state_.system.cell.volume() / (last.lengths[0] * last.lengths[1]);
+  }
+
   /// Notes since when the cell keeps its lengths.
   void watch_cell() {
     constexpr double kStill = 1e-5;
@@ -130,7 +183,7 @@ class Phase {
     constexpr double kCell = 20.0;
     watch_cell();
     const double margin = state_.settling ? kHysteresis : 1.0;
-    state_.settling = residual_.kinetic * kPowderKineticLimit < margin * options_.settle_kinetic &&
+    state_.settling = !stiffening() && residual_.kinetic * kPowderKineticLimit < margin * options_.settle_kinetic &&
                       (phase_.fixed_cell || state_.system.time - state_.still_since >= options_.settle_after) &&
                       (!phase_.one_aggregate || state_.settling || one_aggregate(state_.system));
     if (state_.settling && options_.settle_drag > 0.0)
@@ -153,16 +206,30 @@ class Phase {
 
 }  // namespace
 
-std::vector<PowderPhase> powder_phases(const PowderSpec& spec, int method, double cap) {
-  if (method == 1) return {{"compaction", false, false, spec.stress(), cap}};
-  std::vector<PowderPhase> phases{{"aggregation", true, true, 0.0, 0.0}, {"free", false, false, 0.0, cap}};
-  if (spec.stress() > 0.0) phases.push_back({"load", false, false, spec.stress(), cap});
+std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProtocol& p) {
+  const double kappa = spec.stiffness;
+  const double cap = p.strain_rate_cap;
+  if (p.method == 1) return {{"compaction", false, false, spec.stress(), kappa, 0.0, cap}};
+  const bool soft = p.aggregation_kappa > 0.0;
+  const double first = soft ? p.aggregation_kappa : kappa;
+  std::vector<PowderPhase> phases{{"aggregation", true, true, 0.0, first, 0.0, 0.0},
+                                  {"free", false, false, 0.0, first, 0.0, cap}};
+  if (soft) phases.push_back({"stiffening", false, false, 0.0, kappa, p.stiffening_time, cap});
+  if (spec.stress() > 0.0) phases.push_back({"load", false, false, spec.stress(), kappa, 0.0, cap});
   return phases;
+}
+
+void set_stiffness(PowderState& state, const PowderSpec& spec, double kappa) {
+  const double share = state.stiffness / kappa;
+  for (auto& spring : state.system.contacts.spring) spring *= share;
+  for (auto& angle : state.system.contacts.memory) angle *= share;
+  install_law(state, spec, kappa);
 }
 
 PowderState start_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {
   PowderState state;
   state.system = make_powder(spec, seed, sample);
+  state.stiffness = state.phase_stiffness = spec.stiffness;
   state.phase_edge = {{state.system.cell.edges[0][0], state.system.cell.edges[1][1]}};
   return state;
 }
@@ -189,21 +256,23 @@ bool one_aggregate(const System<2>& s) {
 PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::vector<PowderPhase>& phases,
                         const PowderOptions& options, const std::function<void(const PowderState&)>& observer) {
   PowderResult result;
-  result.usable = true;
-  while (state.phase < static_cast<std::int64_t>(phases.size())) {
-    Phase phase(state, spec, phases[static_cast<std::size_t>(state.phase)], options);
-    result.reason = phase.run(observer);
-    result.residual = phase.residual();
-    result.stress = phase.stress();
-    if (!result.reason.empty()) {
-      result.usable = false;
-      break;
-    }
+  install_law(state, spec, state.stiffness);  // a saved state knows its stiffness, not the law
+  while (result.reason.empty() && state.phase < static_cast<std::int64_t>(phases.size())) {
+    const PowderPhase& now = phases[static_cast<std::size_t>(state.phase)];
+    if (now.stiffening == 0.0 && state.stiffness != now.stiffness) set_stiffness(state, spec, now.stiffness);
+    result.reason = Phase(state, spec, now, options).run(observer);
+    if (!result.reason.empty()) break;
     ++state.phase;
     state.phase_start = state.still_since = state.system.time;
+    state.phase_stiffness = state.stiffness;
     state.settling = false;
     state.phase_edge = {{state.system.cell.edges[0][0], state.system.cell.edges[1][1]}};
   }
+  Phase last(state, spec, phases[std::min(static_cast<std::size_t>(state.phase), phases.size() - 1)], options);
+  last.examine();
+  result.usable = result.reason.empty();
+  result.residual = last.residual();
+  result.stress = last.stress();
   result.fraction = powder_fraction(state.system);
   result.contacts = powder_contacts(state.system, spec.rolling ? 1e-2 : 1e-4, spec.cohesive);
   return result;

@@ -8,22 +8,34 @@
 
 #include "common/dynamics/stress_cell.h"
 #include "microsim/powder/powder_contacts.h"
+#include "microsim/powder/powder_snapshots.h"
 #include "microsim/powder/powder_start.h"
 
 namespace softgrain {
 
 /// A stretch of an assembly.
 struct PowderPhase {
-  std::string name;              ///< "compaction", "aggregation", "free", "load"
-  bool fixed_cell = false;       ///< the cell keeps its lengths; pressure is no criterion
-  bool one_aggregate = false;    ///< also wait until all disks hang together
-  double pressure = 0.0;         ///< imposed, in the units of the sample
+  std::string name;            ///< "compaction", "aggregation", "free", "load"
+  bool fixed_cell = false;     ///< the cell keeps its lengths; pressure is no criterion
+  bool one_aggregate = false;  ///< also wait until all disks hang together
+  double pressure = 0.0;       ///< imposed, in the units of the sample
+  double stiffness = 0.0;      ///< kappa of all contacts
+  double stiffening = 0.0;     ///< T0 in which kappa goes there from where it was, evenly in its logarithm; 0: at once
   double strain_rate_cap = 0.0;  ///< per T0; 0: none
 };
 
-/// Method 1: at rest, the pressure at once, no cap. Method 2: the disks aggregate in a fixed cell, then the cell is
-/// freed at P = 0, then the pressure.
-std::vector<PowderPhase> powder_phases(const PowderSpec& spec, int method, double strain_rate_cap);
+/// How a sample comes together.
+struct PowderProtocol {
+  int method = 1;
+  double strain_rate_cap = 0.0;    ///< per T0; 0: none
+  double aggregation_kappa = 0.0;  ///< method 2: stiffness while disks aggregate and the cell is freed; 0: as always
+  double stiffening_time = 200.0;  ///< T0 in which it goes to the stiffness of the sample then
+};
+
+/// Method 1: at rest, the pressure at once. Method 2: the disks aggregate in a fixed cell, then the cell is freed at
+/// P = 0, then the pressure. With aggregation_kappa (published as series B) contacts are soft at first, which allows
+/// long steps, and stiffen at P = 0 before the pressure.
+std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProtocol& protocol);
 
 struct PowderOptions {
   double step = 0.2;              ///< dt over sqrt(m_min/K_N)
@@ -53,12 +65,15 @@ struct PowderPoint {
 struct PowderState {
   System<2> system;
   std::int64_t phase = 0;
-  double phase_start = 0.0;  ///< time at which the phase began
-  Vec<2> phase_edge{};       ///< lengths of the cell then: the reference of the strain
-  bool settling = false;     ///< under drag
-  double still_since = 0.0;  ///< the lengths have kept to those of `still_edge` since then
+  double phase_start = 0.0;      ///< time at which the phase began
+  double stiffness = 0.0;        ///< kappa now
+  double phase_stiffness = 0.0;  ///< kappa when the phase began
+  Vec<2> phase_edge{};           ///< lengths of the cell then: the reference of the strain
+  bool settling = false;         ///< under drag
+  double still_since = 0.0;      ///< the lengths have kept to those of `still_edge` since then
   Vec<2> still_edge{};
   std::vector<PowderPoint> points;
+  std::vector<PowderSnapshot> snapshots;  ///< at the start, whenever Phi has changed by kSnapshot, after each phase
 };
 
 struct PowderResult {
@@ -75,7 +90,11 @@ PowderState start_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64
 /// Whether contacts and attracting pairs join all disks into one.
 bool one_aggregate(const System<2>& system);
 
-/// Goes through the phases from where the state stands; `observer` after each recorded point (to save; may throw).
+/// Gives all contacts another stiffness (K_T and K_r follow); springs keep their force, not their length.
+void set_stiffness(PowderState& state, const PowderSpec& spec, double kappa);
+
+/// Goes through the phases from where the state stands (all done: only looks at it); `observer` after each recorded
+/// point (to save; may throw).
 PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::vector<PowderPhase>& phases,
                         const PowderOptions& options, const std::function<void(const PowderState&)>& observer);
 
