@@ -169,7 +169,7 @@ class Phase {
 
   /// Notes since when the cell keeps its lengths.
   void watch_cell() {
-    constexpr double kStill = 1e-5;
+    constexpr double kStill = 1e-4;
     const auto& edges = state_.system.cell.edges;
     bool still = true;
     for (int k = 0; k < 2; ++k) still = still && std::abs(edges[k][k] - state_.still_edge[k]) <= kStill * edges[k][k];
