@@ -58,6 +58,8 @@ void read_state(const h5::Group& group, PowderState& state) {
   state.still_edge = {{phase.at(6), phase.at(7)}};
   state.stiffness = phase.at(8);
   state.phase_stiffness = phase.at(9);
+  state.pictured = phase.at(10);
+  state.still_contacts = static_cast<std::int64_t>(phase.at(11));
   state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);
 }
