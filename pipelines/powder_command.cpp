@@ -59,9 +59,11 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
   double reported = 0.0;
   sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {
     store.save(task, [&](const h5::Group& g) { write_powder_state(g, now); });
+    // Nobody knows when a phase comes to rest; most take about kUsual.
+    constexpr double kUsual = 150.0;
+    const double elapsed = now.system.time - now.phase_start;
     const double share =
-        (static_cast<double>(now.phase) + std::min(1.0, (now.system.time - now.phase_start) / setup.options.time_max)) /
-        static_cast<double>(phases.size());
+        (static_cast<double>(now.phase) + elapsed / (elapsed + kUsual)) / static_cast<double>(phases.size());
     progress.advance(std::max(share - reported, 0.0));
     reported = std::max(share, reported);
     if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");

@@ -40,7 +40,7 @@ std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProto
 struct PowderOptions {
   double step = 0.2;              ///< dt over sqrt(m_min/K_N)
   double cell_mass = 0.3;         ///< of the sum of all masses, divided by L/a
-  double time_max = 20000.0;      ///< per phase [T0]
+  double time_max = 3000.0;       ///< per phase [T0]
   double record_every = 10.0;     ///< [T0]
   std::int64_t test_every = 200;  ///< steps between two looks at the criteria
   /// Once for `settle_after` T0 the lengths of the cell have kept to 1e-4, or the number of contacts has not changed,
