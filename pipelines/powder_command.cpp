@@ -97,6 +97,7 @@ json sample_json(const Sample& s) {
            {"mean_tensile", c.mean_tensile},
            {"quadratic_mean_normal", c.square_mean_normal},
            {"rumpf_pressure", c.rumpf_pressure},
+           {"branch_pressure", c.branch_pressure},
            {"stress", {s.result.stress[0], s.result.stress[1]}}};
   out.update(analysis_json(s.analysis));
   return out;

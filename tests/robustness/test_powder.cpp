@@ -59,6 +59,7 @@ TEST_F(Powder, DisksWithoutCohesionJam) {
   for (const json& sample : s["samples"]) {
     EXPECT_NEAR(sample["stress"][0].get<double>(), 1.0, 1e-4);
     EXPECT_NEAR(sample["rumpf_pressure"].get<double>(), 1.0, 0.06) << "pressure from the mean force alone";
+    EXPECT_NEAR(sample["branch_pressure"].get<double>(), 1.0, 2e-3) << "with the distances of centres";
     double shares = 0.0;
     for (const json& x : sample["shares"]) shares += x.get<double>();
     EXPECT_NEAR(shares, 1.0, 1e-12);
