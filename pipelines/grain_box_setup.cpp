@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "microsim/grain_box/analysis.h"
+#include "pipelines/variant_name.h"
 
 namespace softgrain {
 
@@ -205,11 +206,7 @@ void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
 }
 
 GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow) {
-  spec.name = t.text("name");
-  const bool plain = !spec.name.empty() && std::all_of(spec.name.begin(), spec.name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-  });
-  if (!plain || spec.name.front() == '.') t.reject("name", "must be made of letters, digits, '-', '_' and '.'");
+  spec.name = read_variant_name(t);
   spec.grains = t.count("grains", 8, 10000000, spec.grains);
   spec.friction = read_friction(t, "mu", spec.friction);
   if (walls_follow) spec.walls.friction = spec.friction;

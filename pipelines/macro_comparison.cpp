@@ -11,6 +11,7 @@
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_summary.h"
+#include "pipelines/text_table.h"
 
 namespace softgrain {
 
@@ -141,23 +142,10 @@ ScoreTable whole_table(const std::vector<SceneResult>& results) {
   return all;
 }
 
-std::string joined(const std::vector<std::string>& cells, const std::string& between) {
-  std::string out;
-  for (std::size_t k = 0; k < cells.size(); ++k) out += (k == 0 ? "" : between) + cells[k];
-  return out;
-}
-
-void write_tables(const ScoreTable& table, const RunContext& context) {
-  std::string markdown = "| " + joined(table.header, " | ") + " |\n|";
-  for (std::size_t k = 0; k < table.header.size(); ++k) markdown += "---|";
-  std::string csv = joined(table.header, ",") + "\n";
-  markdown += "\n";
-  for (const auto& row : table.rows) {
-    markdown += "| " + joined(row, " | ") + " |\n";
-    csv += joined(row, ",") + "\n";
-  }
-  write_text_atomic(context.path("table.md"), markdown);
-  write_text_atomic(context.path("table.csv"), csv);
+void write_tables(const ScoreTable& scores, const RunContext& context) {
+  const TextTable table{scores.header, scores.rows};
+  write_text_atomic(context.path("table.md"), as_markdown(table));
+  write_text_atomic(context.path("table.csv"), as_csv(table));
 }
 
 std::string people_text(const std::vector<SceneResult>& results, const RunContext& context, double seconds) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -14,6 +15,8 @@
 #include "pipelines/powder_output.h"
 #include "pipelines/powder_setup.h"
 #include "pipelines/powder_structure.h"
+#include "pipelines/powder_variants.h"
+#include "pipelines/powder_variants_command.h"
 #include "pipelines/run_summary.h"
 #include "pipelines/sample_statistics.h"
 #include "pipelines/task_store.h"
@@ -23,6 +26,9 @@ namespace softgrain {
 namespace {
 
 using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 struct Sample {
   PowderState state;
@@ -57,7 +63,10 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
     take_state(setup, number, sample.state);
   const auto phases = setup.phases();
   double reported = 0.0;
+  const Clock::time_point start = Clock::now();
+  const double seconds_before = sample.state.system.cost.seconds;
   sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {
+    sample.state.system.cost.seconds = seconds_before + seconds_since(start);
     store.save(task, [&](const h5::Group& g) { write_powder_state(g, now); });
     // Nobody knows when a phase comes to rest; most take about kUsual.
     constexpr double kUsual = 150.0;
@@ -68,6 +77,7 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
     reported = std::max(share, reported);
     if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
   });
+  sample.state.system.cost.seconds = seconds_before + seconds_since(start);
   sample.analysis =
       analyse_powder(sample.state.system, setup.spec, imposed_pressure(phases, sample.state), setup.rigidity);
   progress.advance(1.0 - reported);
@@ -168,63 +178,72 @@ void save_samples(const std::string& path, const std::vector<Sample>& samples, c
   file.commit();
 }
 
-}  // namespace
-
-ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
-  const PowderSetup setup = read_powder(scene);
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.seed);
-  const TaskStore store(context, scene, seed);
-  const Provenance provenance = context.provenance(scene, seed);
+std::vector<Sample> run_samples(const PowderSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                const RunContext& context) {
   std::vector<Sample> samples(static_cast<std::size_t>(setup.samples));
-  context.guard([&] {
-    Progress progress("powders", static_cast<double>(setup.samples), context.quiet());
-    parallel_tasks(setup.samples, [&](std::int64_t k) {
-      samples[static_cast<std::size_t>(k)] = run_sample(setup, seed, k, store, progress);
-    });
-    progress.finish();
+  Progress progress("powders", static_cast<double>(setup.samples), context.quiet());
+  parallel_tasks(setup.samples, [&](std::int64_t k) {
+    samples[static_cast<std::size_t>(k)] = run_sample(setup, seed, k, store, progress);
   });
-  const PowderStructures structures = structures_of(samples, setup.structure);
-  save_samples(context.path("powder.h5"), samples, structures, setup.spec, provenance);
+  progress.finish();
+  return samples;
+}
+
+/// {"samples", "seconds", "remarks", "status"}: what came out of each.
+void add_samples(const std::vector<Sample>& samples, const PowderStructures& structures, json& summary) {
   bool usable = true;
-  json summary{{"kind", "cohesive-powder"}, {"title", setup.title}, {"remarks", json::array()}};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     summary["samples"].push_back(sample_json(samples[k]));
     if (k < structures.samples.size()) summary["samples"].back().update(structure_json(structures.samples[k]));
+    summary["seconds"].push_back(samples[k].state.system.cost.seconds);
     usable = usable && samples[k].result.usable;
     if (!samples[k].result.usable)
       summary["remarks"].push_back(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
   }
+  summary["status"] = usable ? "good" : "not usable";
+  for (const std::string& remark : structure_remarks(structures)) summary["remarks"].push_back(remark);
+}
+
+/// Means over samples that came to rest; returns the line about them for people.
+std::string add_means(const PowderSetup& setup, const std::vector<Sample>& samples, const PowderStructures& structures,
+                      json& summary) {
   const Mean fraction = mean_of(samples, [](const PowderResult& r) { return r.fraction; });
   const Mean z = mean_of(samples, [](const PowderResult& r) { return r.contacts.coordination; });
-  summary["status"] = usable ? "good" : "not usable";
   summary["mean"] = {
       {"Phi", fraction.mean}, {"Phi_deviation", fraction.deviation}, {"z", z.mean}, {"z_deviation", z.deviation}};
   add_statistics(samples, summary);
   summary["mean"].update(structure_means_json(structures, usable_samples(samples)));
   if (structures.mean_curve) summary["scattering"] = ensemble_fit_json(structures);
-  for (const std::string& remark : structure_remarks(structures)) summary["remarks"].push_back(remark);
+  return fmt::format("{} samples of {} disks: Phi {:.4f} (deviation {:.4f}), z {:.3f} ({:.3f})\n", setup.samples,
+                     setup.spec.disks, fraction.mean, fraction.deviation, z.mean, z.deviation);
+}
+
+}  // namespace
+
+ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, const RunContext& context) {
+  const std::uint64_t seed = context.seed(setup.seed);
+  const TaskStore store(context, scene, seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  std::vector<Sample> samples;
+  context.guard([&] { samples = run_samples(setup, seed, store, context); });
+  const PowderStructures structures = structures_of(samples, setup.structure);
+  save_samples(context.path("powder.h5"), samples, structures, setup.spec, provenance);
+  json summary{{"kind", "cohesive-powder"}, {"title", setup.title}, {"remarks", json::array()}};
+  add_samples(samples, structures, summary);
+  std::string people = add_means(setup, samples, structures, summary);
   summary["files"] = {{"powder.h5", context.path("powder.h5")}};
   summary["provenance"] = provenance_json(provenance);
-  std::string people =
-      fmt::format("{} samples of {} disks: Phi {:.4f} (deviation {:.4f}), z {:.3f} ({:.3f})\n", setup.samples,
-                  setup.spec.disks, fraction.mean, fraction.deviation, z.mean, z.deviation);
   for (const auto& remark : summary["remarks"]) people += "note: " + remark.get<std::string>() + "\n";
   context.finish(summary, people + "data: " + context.path("powder.h5"));
   store.clear();
-  return usable ? ExitStatus::good : ExitStatus::not_usable;
+  return summary["status"] == "good" ? ExitStatus::good : ExitStatus::not_usable;
 }
 
-void check_powder(const Scene& scene, json& facts, std::string& lines) {
+ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
+  if (has_powder_variants(scene)) return run_powder_variants(scene, options);
   const PowderSetup setup = read_powder(scene);
-  const double step =
-      setup.options.step * std::sqrt(setup.spec.diameter_min * setup.spec.diameter_min / setup.spec.stiffness);
-  const auto phases = static_cast<double>(setup.phases().size());
-  facts["time_step"] = step;
-  facts["steps_max"] = phases * setup.options.time_max / step;
-  lines += fmt::format(
-      "  {} samples of {} disks, {:.0f} phases; time step {:.3g} T0 or a little more, at most {:.3g} steps each\n",
-      setup.samples, setup.spec.disks, phases, step, phases * setup.options.time_max / step);
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
+  return run_powder_ensemble(setup, scene, context);
 }
 
 }  // namespace softgrain

@@ -5,12 +5,16 @@
 #include <string>
 
 #include "common/io/scene.h"
+#include "pipelines/powder_setup.h"
 #include "pipelines/run_context.h"
 
 namespace softgrain {
 
 /// Runs all samples; writes powder.h5 (final states and the course of each assembly) and summary.json. Status
 /// not_usable when a sample did not come to rest: the summary says which criterion was unmet.
+ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, const RunContext& context);
+
+/// The same from a scene, or each of its variants.
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options);
 
 /// What follows from such a scene: phases, time step, steps at most.

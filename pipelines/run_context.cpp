@@ -52,6 +52,14 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
        fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
 }
 
+RunContext RunContext::part(const std::string& name) const {
+  CommonOptions options = options_;
+  options.out = path(name);
+  RunContext out(options, command_, name);
+  out.shows_ = false;
+  return out;
+}
+
 Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {
   Provenance p = build_provenance();
   p.threads = threads_;
@@ -74,6 +82,7 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
   add("commit", build.commit);
   const std::string text = summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   write_text_atomic(path("summary.json"), text);
+  if (!shows_) return;
   std::string shown = options_.json ? text : people;
   if (!shown.empty() && shown.back() != '\n') shown += '\n';
   if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size() || std::fflush(stdout) != 0)

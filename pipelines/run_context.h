@@ -40,6 +40,9 @@ class RunContext {
   /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent.
   RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name);
 
+  /// A part of this run in a directory of its own below, with its own log and summary, which goes to the file alone.
+  [[nodiscard]] RunContext part(const std::string& name) const;
+
   [[nodiscard]] const std::string& directory() const { return directory_; }
   [[nodiscard]] std::string path(const std::string& file) const { return directory_ + "/" + file; }
   [[nodiscard]] int threads() const { return threads_; }
@@ -61,8 +64,8 @@ class RunContext {
   /// standard output.
   void finish(nlohmann::json summary, const std::string& people) const;
 
-  /// Runs `work`; when it ends with NotUsable (a lost grain, a preparation that does not jam...) a summary that says so is
-  /// written before the error goes on, so that the directory never looks like a run that is still going.
+  /// Runs `work`; when it ends with NotUsable (a lost grain, a preparation that does not jam...) a summary that says so
+  /// is written before the error goes on, so that the directory never looks like a run that is still going.
   void guard(const std::function<void()>& work) const;
 
  private:
@@ -70,6 +73,7 @@ class RunContext {
   std::string command_;
   std::string directory_;
   int threads_ = 1;
+  bool shows_ = true;  ///< the summary on standard output
   std::shared_ptr<spdlog::logger> logger_;
 };
 

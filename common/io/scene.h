@@ -97,6 +97,8 @@ class SceneTable {
   std::shared_ptr<Impl> impl_;
 };
 
+struct SceneDocument;
+
 /// A scene file with its overrides applied.
 class Scene {
  public:
@@ -112,8 +114,14 @@ class Scene {
   [[nodiscard]] const std::string& text() const { return text_; }
   /// A path written in the scene, relative to the scene's own folder.
   [[nodiscard]] std::string resolve(const std::string& relative) const;
+  /// The scene with its [[variant]] of this number laid over it: tables key by key, everything else replaced. The
+  /// variants themselves and the keys in `apart` belong to neither. Messages name the lines where keys stand.
+  [[nodiscard]] Scene variant(std::size_t number, const std::vector<std::string>& apart) const;
 
  private:
+  Scene(const std::string& name, std::string text, std::shared_ptr<SceneDocument> document);
+
+  std::shared_ptr<const SceneDocument> document_;
   std::string path_;
   std::string text_;
   std::shared_ptr<SceneTable::Impl> root_;

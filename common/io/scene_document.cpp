@@ -12,12 +12,6 @@ namespace softgrain {
 
 namespace {
 
-std::string as_toml(const toml::table& table) {
-  std::ostringstream out;
-  out << table << "\n";
-  return out.str();
-}
-
 std::vector<std::string> split(const std::string& path) {
   std::vector<std::string> parts;
   std::istringstream in(path);
@@ -109,24 +103,38 @@ void apply_override(SceneDocument& document, const std::string& setting) {
 
 }  // namespace
 
+std::string as_toml(const toml::table& table) {
+  std::ostringstream out;
+  out << table << "\n";
+  return out.str();
+}
+
+std::shared_ptr<SceneDocument> read_document(const std::string& text, const std::string& name,
+                                             const std::vector<std::string>& overrides) {
+  auto document = std::make_shared<SceneDocument>();
+  document->name = name;
+  document->source = text;
+  document->overrides = overrides;
+  document->content = std::make_shared<toml::table>(parse_toml(text, name));
+  for (const std::string& setting : overrides) apply_override(*document, setting);
+  return document;
+}
+
 Scene Scene::load(const std::string& path, const std::vector<std::string>& overrides) {
   return parse(read_text(path), path, overrides);
 }
 
 Scene Scene::parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-  auto document = std::make_shared<SceneDocument>();
-  document->name = name;
-  document->content = std::make_shared<toml::table>(parse_toml(text, name));
-  for (const std::string& setting : overrides) apply_override(*document, setting);
+  auto document = read_document(text, name, overrides);
+  std::string used = overrides.empty() ? text : as_toml(*document->content);
+  return {name, std::move(used), std::move(document)};
+}
 
-  Scene scene;
-  scene.path_ = name;
-  scene.text_ = overrides.empty() ? text : as_toml(*document->content);
-  scene.root_ = std::make_shared<SceneTable::Impl>();
-  scene.root_->content = document->content.get();
-  scene.root_->place = name + ":1";
-  scene.root_->document = std::move(document);
-  return scene;
+Scene::Scene(const std::string& name, std::string text, std::shared_ptr<SceneDocument> document)
+    : document_(document), path_(name), text_(std::move(text)), root_(std::make_shared<SceneTable::Impl>()) {
+  root_->content = document->content.get();
+  root_->place = name + ":1";
+  root_->document = std::move(document);
 }
 
 SceneTable Scene::root() const { return SceneTable(root_); }

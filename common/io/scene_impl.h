@@ -21,10 +21,18 @@ namespace softgrain {
 
 /// A parsed file; every table of it holds the document.
 struct SceneDocument {
-  std::string name;  ///< of the file, as shown in messages
+  std::string name;                    ///< of the file, as shown in messages
+  std::string source;                  ///< the file as it was read
+  std::vector<std::string> overrides;  ///< applied to it
   std::shared_ptr<toml::table> content;
   std::set<const toml::node*> overridden;  ///< nodes that --set gave
 };
+
+/// Parses the text and applies the overrides. Throws BadInput.
+std::shared_ptr<SceneDocument> read_document(const std::string& text, const std::string& name,
+                                             const std::vector<std::string>& overrides);
+
+std::string as_toml(const toml::table& table);
 
 struct SceneTable::Impl {
   std::shared_ptr<const SceneDocument> document;

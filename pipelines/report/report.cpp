@@ -26,6 +26,7 @@ void write_report(const std::string& run_directory) {
   body += radii_section(run);
   body += particles_section(run);
   body += grain_box_section(run);
+  body += powder_variants_section(run);
   body += powder_section(run);
   body += cost_section(run);
   body += provenance_section(run);

@@ -23,42 +23,61 @@ constexpr std::size_t kSnapshots = 6;
 /// A column of the table: where its value stands in the summary of a sample.
 struct Column {
   std::string header;
-  std::vector<std::string> paths;  ///< the first that exists counts
+  std::string path;
   int digits = 4;
+  bool yes_no = false;  ///< a flag, shown as a word; its mean is how many say yes
 };
 
 std::optional<double> value_of(const json& sample, const Column& column) {
-  for (const std::string& path : column.paths)
-    if (const auto value = find_number(sample, path)) return value;
-  return std::nullopt;
+  if (!column.yes_no) return find_number(sample, column.path);
+  const json* flag = find_value(sample, column.path);
+  if (flag == nullptr || !flag->is_boolean()) return std::nullopt;
+  return flag->get<bool>() ? 1.0 : 0.0;
 }
 
 std::vector<Column> contact_columns() {
-  return {{"Phi", {"Phi"}},         {"z", {"z"}},
-          {"z*", {"z_star"}},       {"repulsive", {"repulsive"}},
-          {"tensile", {"tensile"}}, {"unstressed", {"unstressed"}},
-          {"distant", {"distant"}}, {"rattlers", {"rattlers"}}};
+  return {{"Phi", "Phi"},
+          {"Phi in 3D", "solid_fraction_3d"},
+          {"z", "z"},
+          {"z*", "z_star"},
+          {"repulsive", "repulsive"},
+          {"tensile", "tensile"},
+          {"unstressed", "unstressed"},
+          {"distant", "distant"},
+          {"rattlers", "rattlers"}};
 }
 
 std::vector<Column> force_columns() {
-  return {{"<N>", {"mean_normal"}, 3},
-          {"<N> repulsive", {"mean_repulsive"}, 3},
-          {"<N> tensile", {"mean_tensile"}, 3},
-          {"sqrt <N²>", {"quadratic_mean_normal"}, 3},
-          {"P of Rumpf", {"rumpf_pressure"}, 3}};
+  return {{"<N>", "mean_normal", 3},
+          {"<N> repulsive", "mean_repulsive", 3},
+          {"<N> tensile", "mean_tensile", 3},
+          {"sqrt <N²>", "quadratic_mean_normal", 3},
+          {"share without force", "zero_share", 3},
+          {"P of Rumpf", "rumpf_pressure", 3},
+          {"over the imposed", "rumpf_ratio", 4},
+          {"F_perc", "F_perc.either", 3}};
+}
+
+std::vector<Column> rigidity_columns() {
+  return {{"h", "rigidity.fixed.h"},
+          {"k", "rigidity.fixed.k"},
+          {"positive definite", "rigidity.fixed.positive_definite", 0, true},
+          {"h, free cell", "rigidity.free.h"},
+          {"k, free cell", "rigidity.free.k"},
+          {"positive definite, free cell", "rigidity.free.positive_definite", 0, true},
+          {"h, backbone", "rigidity.backbone.h"},
+          {"k, backbone", "rigidity.backbone.k"},
+          {"positive definite, backbone", "rigidity.backbone.positive_definite", 0, true}};
 }
 
 std::vector<Column> structure_columns() {
-  return {{"h", {"rigidity.h", "h", "force_indeterminacy"}},
-          {"k", {"rigidity.k", "k", "floppy_modes"}},
-          {"F_perc", {"F_perc", "percolation.F_perc", "percolation_threshold"}, 3},
-          {"dF", {"scattering.dF"}, 3},
-          {"error of dF", {"scattering.dF_error"}, 2},
-          {"xi [a]", {"scattering.xi"}, 3},
-          {"error of xi", {"scattering.xi_error"}, 2},
-          {"<R>_w [a]", {"holes.mean_radius"}, 4},
-          {"largest hole [a]", {"holes.largest_radius"}, 4},
-          {"holes", {"holes.count"}}};
+  return {{"dF", "scattering.dF", 3},
+          {"error of dF", "scattering.dF_error", 2},
+          {"xi [a]", "scattering.xi", 3},
+          {"error of xi", "scattering.xi_error", 2},
+          {"<R>_w [a]", "holes.mean_radius", 4},
+          {"largest hole [a]", "holes.largest_radius", 4},
+          {"holes", "holes.count"}};
 }
 
 /// Mean of the values with the sample deviation in brackets.
@@ -73,9 +92,19 @@ std::string mean_text(const std::vector<double>& values, int digits) {
                      format_number(std::sqrt(square / static_cast<double>(values.size() - 1)), 2));
 }
 
+std::string cell_text(double value, const Column& column) {
+  if (column.yes_no) return value > 0.0 ? "yes" : "no";
+  return format_number(value, column.digits);
+}
+
+std::string summary_text(const std::vector<double>& values, const Column& column) {
+  if (!column.yes_no) return mean_text(values, column.digits);
+  return fmt::format("{} of {}", std::count(values.begin(), values.end(), 1.0), values.size());
+}
+
 /// A fit that is not usable must not stand in a table as if it were.
 bool counts(const json& sample, const Column& column) {
-  if (!column.paths.front().starts_with("scattering.")) return true;
+  if (!column.path.starts_with("scattering.")) return true;
   const json* usable = find_value(sample, "scattering.usable");
   return usable != nullptr && usable->is_boolean() && usable->get<bool>();
 }
@@ -99,13 +128,13 @@ std::string table_of(const json& samples, std::vector<Column> columns) {
     std::vector<std::string> row{fmt::format("{}{}", k, is_usable(samples[k]) ? "" : " (not at rest)")};
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const auto value = counts(samples[k], columns[c]) ? value_of(samples[k], columns[c]) : std::nullopt;
-      row.push_back(value ? format_number(*value, columns[c].digits) : "–");
+      row.push_back(value ? cell_text(*value, columns[c]) : "–");
       if (value && is_usable(samples[k])) values[c].push_back(*value);
     }
     table.row(std::move(row));
   }
   std::vector<std::string> row{"mean (deviation)"};
-  for (std::size_t c = 0; c < columns.size(); ++c) row.push_back(mean_text(values[c], columns[c].digits));
+  for (std::size_t c = 0; c < columns.size(); ++c) row.push_back(summary_text(values[c], columns[c]));
   table.row(std::move(row));
   return table.html();
 }
@@ -129,7 +158,7 @@ std::string shares_table(const json& samples) {
     const std::string name = fmt::format("x{}", k);
     for (json& row : rows)
       if (!row.contains(name)) row[name] = 0.0;
-    columns.push_back({fmt::format("x_{}", k), {name}, 3});
+    columns.push_back({fmt::format("x_{}", k), name, 3});
   }
   return table_of(rows, columns);
 }
@@ -165,8 +194,14 @@ std::string tables(const RunData& run) {
   return table_of(*samples, contact_columns()) + table_of(*samples, force_columns()) +
          paragraph(
              "Lengths in a (largest diameter), forces in F0 (adhesion; without it P a). Interactions are contacts "
-             "and distant pairs; unstressed ones are below the published threshold.") +
+             "and distant pairs; unstressed ones are below the published threshold. F_perc: largest force whose "
+             "contacts "
+             "still reach across the cell. Phi in 3D: the equivalent 0.752 Phi^1.5.") +
          shares_table(*samples) + paragraph("x_k: share of disks with k interactions.") +
+         table_of(*samples, rigidity_columns()) +
+         paragraph(
+             "h: self-stresses, k: motions without force, of the rigidity matrix with fixed cell, with its two strains "
+             "free, and without rattlers (where there is no cohesion). Positive definite: the springs alone hold it.") +
          table_of(*samples, structure_columns()) +
          paragraph(
              "dF, xi: fit of I(k), with its standard error; values of fits that cannot be relied on are left "

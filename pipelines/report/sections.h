@@ -22,7 +22,8 @@ std::string radii_section(const RunData& run);         ///< size distribution of
 std::string particles_section(const RunData& run);     ///< final states and contacts of a scene of explicit particles
 std::string grain_box_section(const RunData& run);     ///< packs between six planes: stresses, moduli, contacts
 std::string powder_section(const RunData& run);        ///< cohesive powders: packings, forces, I(k), courses
-std::string cost_section(const RunData& run);          ///< passes, contact evaluations, seconds, speed-ups
-std::string provenance_section(const RunData& run);    ///< version, seeds, command, scene
+std::string powder_variants_section(const RunData& run);  ///< all variants beside what is published
+std::string cost_section(const RunData& run);             ///< passes, contact evaluations, seconds, speed-ups
+std::string provenance_section(const RunData& run);       ///< version, seeds, command, scene
 
 }  // namespace softgrain::report

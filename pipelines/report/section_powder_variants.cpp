@@ -1,0 +1,165 @@
+// Variants of a cohesive powder: a table of all, and how far they are from what is published.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/sections.h"
+#include "pipelines/report/svg_plot.h"
+
+namespace softgrain::report {
+
+namespace {
+
+using nlohmann::json;
+
+double number(const json& entry, const std::string& path) { return find_number(entry, path).value_or(std::nan("")); }
+
+/// Mean with its standard error.
+std::string ours(const json& entry, const std::string& quantity) {
+  return format_with_error(number(entry, "values." + quantity + ".mean"),
+                           number(entry, "values." + quantity + ".error"));
+}
+
+/// As printed: a published value without an error keeps its own digits.
+std::string theirs(const json& entry, const std::string& quantity) {
+  return format_with_error(number(entry, "published." + quantity + ".value"),
+                           number(entry, "published." + quantity + ".error"));
+}
+
+std::string difference(const json& entry, const std::string& quantity) {
+  const double value = number(entry, "difference." + quantity + ".value");
+  const double errors = number(entry, "difference." + quantity + ".in_errors");
+  if (!std::isfinite(errors)) return format_number(value, 2);
+  return fmt::format("{} ({} errors)", format_number(value, 2), format_fixed(errors, 1));
+}
+
+std::string status_text(const json& entry) {
+  return fmt::format("{}, {} of {}", find_text(entry, "status"), find_text(entry, "usable_samples"),
+                     find_text(entry, "samples"));
+}
+
+std::string comparison_table(const json& entries) {
+  HtmlTable table({"variant", "samples at rest", "Phi", "published", "difference", "z", "published", "difference"});
+  for (const json& e : entries)
+    table.row({find_text(e, "name"), status_text(e), ours(e, "Phi"), theirs(e, "Phi"), difference(e, "Phi"),
+               ours(e, "z"), theirs(e, "z"), difference(e, "z")});
+  return table.html();
+}
+
+/// A quantity and how its column is called.
+using Quantity = std::pair<const char*, const char*>;
+
+/// Means and standard errors, one row per variant; columns without any value are left out.
+std::string quantity_table(const json& entries, std::vector<Quantity> quantities) {
+  std::erase_if(quantities, [&](const Quantity& q) {
+    const std::string path = std::string("values.") + q.first + ".mean";
+    return std::none_of(entries.begin(), entries.end(),
+                        [&](const json& e) { return find_number(e, path).has_value(); });
+  });
+  if (quantities.empty()) return "";
+  std::vector<std::string> header{"variant"};
+  for (const Quantity& q : quantities) header.emplace_back(q.second);
+  HtmlTable table(header);
+  for (const json& e : entries) {
+    std::vector<std::string> row{find_text(e, "name")};
+    for (const Quantity& q : quantities) row.push_back(ours(e, q.first));
+    table.row(std::move(row));
+  }
+  return table.html();
+}
+
+std::string tables(const json& entries) {
+  return comparison_table(entries) +
+         paragraph(
+             "Mean over samples ± standard error; the difference to the published value also in combined standard "
+             "errors where both are known.") +
+         quantity_table(entries, {{"z_star", "z*"},
+                                  {"x_0", "x_0"},
+                                  {"x_1", "x_1"},
+                                  {"x_2", "x_2"},
+                                  {"mean_normal", "<N>"},
+                                  {"mean_repulsive", "<N> repulsive"},
+                                  {"mean_tensile", "<N> tensile"},
+                                  {"zero_share", "share without force"},
+                                  {"rumpf_ratio", "P of Rumpf over P"},
+                                  {"F_perc", "F_perc"}}) +
+         quantity_table(entries, {{"h", "h"},
+                                  {"k", "k"},
+                                  {"h_backbone", "h, backbone"},
+                                  {"k_backbone", "k, backbone"},
+                                  {"dF", "dF"},
+                                  {"xi", "xi [a]"},
+                                  {"R_w", "<R>_w [a]"},
+                                  {"solid_fraction_3d", "Phi in 3D"},
+                                  {"loop_passes", "loop passes"},
+                                  {"seconds", "seconds per sample"}});
+}
+
+struct Extent {
+  double low = 1e300;
+  double high = -1e300;
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+/// Where ours and theirs would be equal.
+Series diagonal(const Extent& e) {
+  const double margin = 0.05 * (e.high - e.low) + 1e-3 * std::abs(e.high);
+  Series s{.label = "equal", .hover = "", .x = {e.low - margin, e.high + margin}, .y = {}};
+  s.y = s.x;
+  s.style = {.color = palette::grey, .width = 1.0, .dash = "5 4"};
+  return s;
+}
+
+std::string comparison_figure(const json& entries, const std::string& quantity) {
+  Plot plot({.id = "powder-published-" + quantity,
+             .title = quantity + ", here and published",
+             .x = {.label = quantity + ", published"},
+             .y = {.label = quantity + ", here"}});
+  Extent extent;
+  std::vector<Series> points;
+  for (const json& e : entries) {
+    const double published = number(e, "published." + quantity + ".value");
+    const double here = number(e, "values." + quantity + ".mean");
+    if (!std::isfinite(published) || !std::isfinite(here)) continue;
+    extent.add(published);
+    extent.add(here);
+    Series s{.label = find_text(e, "name"), .hover = "", .x = {published}, .y = {here}};
+    const double error = number(e, "values." + quantity + ".error");
+    if (std::isfinite(error)) s.y_error = {error};
+    s.style = {.color = palette::cycle(points.size()), .width = 0.0, .marker = Marker::circle, .marker_size = 4.0};
+    points.push_back(std::move(s));
+  }
+  if (points.empty()) return "";
+  plot.add(diagonal(extent));
+  for (Series& s : points) plot.add(std::move(s));
+  return figure(plot.svg(), "Mean over samples with its standard error; dashed: no difference.");
+}
+
+std::string links(const json& entries) {
+  std::string names;
+  for (const json& e : entries)
+    if (find_text(e, "status") != "not run") names += (names.empty() ? "" : ", ") + find_text(e, "name");
+  if (names.empty()) return "";
+  return paragraph("Each variant has a directory of its own with all its data: " + names +
+                   "; softgrain report on that directory shows its packings.");
+}
+
+}  // namespace
+
+std::string powder_variants_section(const RunData& run) {
+  const json* entries = find_value(run.summary, "variants");
+  if (find_text(run.summary, "kind") != "cohesive-powder" || entries == nullptr || !entries->is_array()) return "";
+  std::vector<std::string> figures;
+  for (const char* quantity : {"Phi", "z"})
+    if (std::string drawn = comparison_figure(*entries, quantity); !drawn.empty()) figures.push_back(std::move(drawn));
+  return section("powder-variants", "Variants",
+                 tables(*entries) + (figures.empty() ? "" : figure_row(figures)) + links(*entries));
+}
+
+}  // namespace softgrain::report
