@@ -1,5 +1,7 @@
 #include "microsim/powder/powder_spec_io.h"
 
+#include "common/io/attribute_members.h"
+
 namespace softgrain {
 
 namespace {
@@ -23,27 +25,13 @@ void for_members(Spec& s, const Item& item) {
   item("start_speed", s.start_speed);
 }
 
-struct Writer {
-  const h5::Group& group;
-  void operator()(const char* name, double value) const { group.attribute(name, value); }
-  void operator()(const char* name, std::int64_t value) const { group.attribute(name, value); }
-  void operator()(const char* name, bool value) const { group.attribute(name, std::int64_t{value ? 1 : 0}); }
-};
-
-struct Reader {
-  const h5::Group& group;
-  void operator()(const char* name, double& value) const { value = group.number(name); }
-  void operator()(const char* name, std::int64_t& value) const { value = group.integer(name); }
-  void operator()(const char* name, bool& value) const { value = group.integer(name) != 0; }
-};
-
 }  // namespace
 
-void write_powder_spec(const h5::Group& group, const PowderSpec& spec) { for_members(spec, Writer{group}); }
+void write_powder_spec(const h5::Group& group, const PowderSpec& spec) { for_members(spec, AttributeWriter{group}); }
 
 PowderSpec read_powder_spec(const h5::Group& group) {
   PowderSpec spec;
-  for_members(spec, Reader{group});
+  for_members(spec, AttributeReader{group});
   return spec;
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/io/attribute_members.h"
 #include "common/state/system_io.h"
 
 namespace softgrain {
@@ -27,20 +28,6 @@ void for_progress(State& s, const Item& item) {
   item("pictured", s.pictured);
 }
 
-struct Writer {
-  const h5::Group& group;
-  void operator()(const char* name, double value) const { group.attribute(name, value); }
-  void operator()(const char* name, std::int64_t value) const { group.attribute(name, value); }
-  void operator()(const char* name, bool value) const { group.attribute(name, std::int64_t{value ? 1 : 0}); }
-};
-
-struct Reader {
-  const h5::Group& group;
-  void operator()(const char* name, double& value) const { value = group.number(name); }
-  void operator()(const char* name, std::int64_t& value) const { value = group.integer(name); }
-  void operator()(const char* name, bool& value) const { value = group.integer(name) != 0; }
-};
-
 }  // namespace
 
 void write_powder_state(const h5::Group& group, const PowderState& state) {
@@ -50,7 +37,7 @@ void write_powder_state(const h5::Group& group, const PowderState& state) {
                              p.stress[1]});
   group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
   group.write("course", rows, {state.points.size(), kColumns});
-  for_progress(state, Writer{group.create("progress")});
+  for_progress(state, AttributeWriter{group.create("progress")});
   write_snapshots(group, state.snapshots);
   write_system(group.create("system"), state.system);
 }
@@ -65,7 +52,7 @@ void read_powder_state(const h5::Group& group, PowderState& state) {
                             rows[k + 3],
                             rows[k + 4],
                             {{rows[k + 5], rows[k + 6]}}});
-  for_progress(state, Reader{group.open("progress")});
+  for_progress(state, AttributeReader{group.open("progress")});
   state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);
 }
