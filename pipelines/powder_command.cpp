@@ -9,8 +9,8 @@
 #include "common/core/error.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
-#include "common/state/system_io.h"
 #include "microsim/powder/powder_spec_io.h"
+#include "microsim/powder/powder_state_io.h"
 #include "pipelines/parallel_tasks.h"
 #include "pipelines/powder_output.h"
 #include "pipelines/powder_setup.h"
@@ -27,47 +27,8 @@ namespace {
 
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t kColumns = 7;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-void write_state(const h5::Group& group, const PowderState& state) {
-  std::vector<double> rows;
-  for (const PowderPoint& p : state.points)
-    rows.insert(rows.end(), {static_cast<double>(p.phase), p.time, p.fraction, p.coordination, p.kinetic, p.stress[0],
-                             p.stress[1]});
-  group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
-  group.write("course", rows, {state.points.size(), kColumns});
-  group.write("phase",
-              std::vector<double>{static_cast<double>(state.phase), state.phase_start, state.phase_edge[0],
-                                  state.phase_edge[1], state.settling ? 1.0 : 0.0, state.still_since,
-                                  state.still_edge[0], state.still_edge[1], state.stiffness, state.phase_stiffness});
-  write_snapshots(group, state.snapshots);
-  write_system(group.create("system"), state.system);
-}
-
-void read_state(const h5::Group& group, PowderState& state) {
-  const auto rows = group.doubles("course");
-  const auto phase = group.doubles("phase");
-  state.points.clear();
-  for (std::size_t k = 0; k + kColumns <= rows.size(); k += kColumns)
-    state.points.push_back({static_cast<std::int64_t>(rows[k]),
-                            rows[k + 1],
-                            rows[k + 2],
-                            rows[k + 3],
-                            rows[k + 4],
-                            {{rows[k + 5], rows[k + 6]}}});
-  state.phase = static_cast<std::int64_t>(phase.at(0));
-  state.phase_start = phase.at(1);
-  state.phase_edge = {{phase.at(2), phase.at(3)}};
-  state.settling = phase.at(4) != 0.0;
-  state.still_since = phase.at(5);
-  state.still_edge = {{phase.at(6), phase.at(7)}};
-  state.stiffness = phase.at(8);
-  state.phase_stiffness = phase.at(9);
-  state.snapshots = read_snapshots(group);
-  read_system(group.open("system"), state.system);
-}
 
 struct Sample {
   PowderState state;
@@ -88,7 +49,7 @@ void take_state(const PowderSetup& setup, std::int64_t number, PowderState& stat
   if (!file.has("spec") || !file.has(sample)) throw BadInput(fmt::format("{}: has no {}", setup.states, sample));
   if (!(read_powder_spec(file.open("spec")) == setup.spec))
     throw BadInput(setup.states + ": holds samples of other [disks], [contact] or [assembly] than the scene");
-  read_state(file.open(sample), state);
+  read_powder_state(file.open(sample), state);
 }
 
 Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t number, const TaskStore& store,
@@ -97,7 +58,7 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
   sample.state = start_powder(setup.spec, seed, static_cast<std::uint64_t>(number));
   const std::string task = fmt::format("powder-{}", number);
   if (setup.states.empty())
-    store.load(task, [&](const h5::Group& g) { read_state(g, sample.state); });
+    store.load(task, [&](const h5::Group& g) { read_powder_state(g, sample.state); });
   else
     take_state(setup, number, sample.state);
   const auto phases = setup.phases();
@@ -106,10 +67,12 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
   const double seconds_before = sample.state.system.cost.seconds;
   sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {
     sample.state.system.cost.seconds = seconds_before + seconds_since(start);
-    store.save(task, [&](const h5::Group& g) { write_state(g, now); });
+    store.save(task, [&](const h5::Group& g) { write_powder_state(g, now); });
+    // Nobody knows when a phase comes to rest; most take about kUsual.
+    constexpr double kUsual = 150.0;
+    const double elapsed = now.system.time - now.phase_start;
     const double share =
-        (static_cast<double>(now.phase) + std::min(1.0, (now.system.time - now.phase_start) / setup.options.time_max)) /
-        static_cast<double>(phases.size());
+        (static_cast<double>(now.phase) + elapsed / (elapsed + kUsual)) / static_cast<double>(phases.size());
     progress.advance(std::max(share - reported, 0.0));
     reported = std::max(share, reported);
     if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
@@ -144,6 +107,7 @@ json sample_json(const Sample& s) {
            {"mean_tensile", c.mean_tensile},
            {"quadratic_mean_normal", c.square_mean_normal},
            {"rumpf_pressure", c.rumpf_pressure},
+           {"branch_pressure", c.branch_pressure},
            {"stress", {s.result.stress[0], s.result.stress[1]}}};
   out.update(analysis_json(s.analysis));
   return out;
@@ -206,7 +170,7 @@ void save_samples(const std::string& path, const std::vector<Sample>& samples, c
     const h5::Group group = file.root().create(fmt::format("sample_{}", k));
     group.attribute("usable", std::int64_t{samples[k].result.usable ? 1 : 0});
     group.attribute("reason", samples[k].result.reason);
-    write_state(group, samples[k].state);
+    write_powder_state(group, samples[k].state);
     write_analysis(group.create("analysis"), samples[k].analysis);
     if (k < structures.samples.size()) write_structure(group, structures.samples[k]);
   }

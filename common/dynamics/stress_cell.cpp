@@ -146,10 +146,10 @@ void StressCellVerlet<D>::correct_bodies(System<D>& s) {
   for (int k = 0; k < D; ++k) growth[k] = 1.0 + half * s.cell.velocity_gradient[k][k];
   Vec<D> kinetic{};
   for (std::size_t u = 0; u < peculiar_.size(); ++u) {
-    const double loss = kDrag ? half * drag_[u] : 0.0;
-    spin_[u] = middle_spin_[u] * (1.0 - loss) + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u]);
+    const double left = kDrag ? 1.0 / (1.0 + half * drag_[u]) : 1.0;
+    spin_[u] = (middle_spin_[u] + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u])) * left;
     for (int k = 0; k < D; ++k) {
-      const double v = (growth[k] - loss) * middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u]);
+      const double v = (growth[k] * middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u])) * left;
       peculiar_[u][k] = v;
       kinetic[k] += mass_[u] * v * v;
     }

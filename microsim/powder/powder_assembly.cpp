@@ -67,15 +67,22 @@ std::string unmet(const PowderResidual<2>& r, const PowderPhase& phase, bool tog
   return "phase " + phase.name + ": " + text;
 }
 
-PowderPoint point_of(const PowderState& state, const PowderSpec& spec, const Vec<2>& stress,
-                     const PowderResidual<2>& r) {
+/// Kinetic energy per disk relative to the moving cell, of all disks.
+double mean_kinetic(const System<2>& s) {
+  const auto& p = s.particles;
+  double sum = 0.0;
+  for (std::size_t u = 0; u < p.sphere.size(); ++u) {
+    Vec<2> v = p.velocity[u];
+    for (int k = 0; k < 2; ++k) v[k] -= s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
+    sum += 0.5 * norm2(v) / p.inverse_mass[u] + 0.5 * p.spin[u][0] * p.spin[u][0] / p.inverse_inertia[u];
+  }
+  return sum / static_cast<double>(p.sphere.size());
+}
+
+PowderPoint point_of(const PowderState& state, const PowderSpec& spec, const Vec<2>& stress) {
   const PowderContacts c = powder_contacts(state.system, 1e-4, spec.cohesive);
-  return {state.phase,
-          state.system.time,
-          powder_fraction(state.system),
-          c.coordination,
-          r.kinetic * kPowderKineticLimit * spec.force_scale(),
-          stress};
+  return {state.phase,    state.system.time,          powder_fraction(state.system),
+          c.coordination, mean_kinetic(state.system), stress};
 }
 
 /// Drag of the disks that are held: without rolling resistance those that hang by one contact, alone or with others
@@ -104,13 +111,13 @@ class Phase {
     integrator_.initialise(state_.system);
     look();
     double next = state_.points.empty() ? 0.0 : state_.points.back().time + options_.record_every;
-    for (bool first = true;; first = false) {
+    for (;;) {
       look();
       if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
-      const bool done = !first && !stiffening() && at_rest();
+      const bool done = elapsed() > 0.0 && !stiffening() && at_rest();
       picture(done);
-      if (state_.system.time >= next || done) {
-        state_.points.push_back(point_of(state_, spec_, integrator_.stress(), residual_));
+      if ((state_.system.time >= next || done) && !recorded()) {
+        state_.points.push_back(point_of(state_, spec_, integrator_.stress()));
         next = state_.system.time + options_.record_every;
         observer(state_);
         integrator_.initialise(state_.system);  // as a run does that goes on from here
@@ -137,6 +144,11 @@ class Phase {
     residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(), 1.0,
                                 !phase_.fixed_cell);
   }
+  /// A run may go on from the very moment that it saved.
+  [[nodiscard]] bool recorded() const {
+    return !state_.points.empty() && state_.points.back().phase == state_.phase &&
+           state_.points.back().time == state_.system.time;
+  }
   [[nodiscard]] double elapsed() const { return state_.system.time - state_.phase_start; }
   [[nodiscard]] bool stiffening() const { return state_.stiffness != phase_.stiffness; }
 
@@ -154,28 +166,42 @@ class Phase {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(pause / dt), 1, options_.test_every);
   }
 
-  /// Keeps a picture at the start, after the phase, and whenever the solid fraction has changed visibly.
+  /// Keeps a picture at the start, after the phase, and whenever the solid fraction or what a recorded point says of
+  /// the coordination has changed visibly.
   void picture(bool done) {
     constexpr double kVisible = 0.07;
+    constexpr double kContacts = 1.0;
     auto& shots = state_.snapshots;
-    const double fraction = powder_fraction(state_.system);
-    if (!shots.empty() && !done && std::abs(fraction - last_fraction()) < kVisible) return;
+    const double z = state_.points.empty() ? 0.0 : state_.points.back().coordination;
+    const bool same = !shots.empty() && std::abs(powder_fraction(state_.system) - last_fraction()) < kVisible &&
+                      std::abs(z - state_.pictured) < kContacts;
+    if (!shots.empty() && ((same && !done) || shots.back().time == state_.system.time)) return;
     shots.push_back(powder_snapshot(state_.system));
+    state_.pictured = z;
   }
   [[nodiscard]] double last_fraction() const {
     const PowderSnapshot& last = state_.snapshots.back();
     return powder_fraction(state_.system) * state_.system.cell.volume() / (last.lengths[0] * last.lengths[1]);
   }
 
-  /// Notes since when the cell keeps its lengths.
+  /// Notes since when the cell keeps its lengths, or a network that could bear its contacts.
   void watch_cell() {
     constexpr double kStill = 1e-4;
     const auto& edges = state_.system.cell.edges;
     bool still = true;
     for (int k = 0; k < 2; ++k) still = still && std::abs(edges[k][k] - state_.still_edge[k]) <= kStill * edges[k][k];
     if (still) return;
+    const auto contacts = static_cast<std::int64_t>(contact_records(state_.system).size());
+    if (contacts == state_.still_contacts && contacts >= spec_.disks) return;
     state_.still_edge = {{edges[0][0], edges[1][1]}};
+    state_.still_contacts = contacts;
     state_.still_since = state_.system.time;
+  }
+  /// Kinetic energy per disk, in F1 a, below which motion is vibration of springs.
+  [[nodiscard]] double vibration() const {
+    const double f1 = spec_.force_scale();
+    const double elastic = options_.settle_kinetic * f1 / state_.stiffness;
+    return spec_.cohesive ? std::min(elastic, 0.1 * 0.5 * spec_.range / f1) : elastic;
   }
   /// Drag sets in when all has come together, and is taken off when something moves again.
   void settle() {
@@ -183,7 +209,7 @@ class Phase {
     constexpr double kCell = 20.0;
     watch_cell();
     const double margin = state_.settling ? kHysteresis : 1.0;
-    state_.settling = !stiffening() && residual_.kinetic * kPowderKineticLimit < margin * options_.settle_kinetic &&
+    state_.settling = !stiffening() && residual_.kinetic * kPowderKineticLimit < margin * vibration() &&
                       (phase_.fixed_cell || state_.system.time - state_.still_since >= options_.settle_after) &&
                       (!phase_.one_aggregate || state_.settling || one_aggregate(state_.system));
     if (state_.settling && options_.settle_drag > 0.0)
@@ -212,9 +238,9 @@ std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProto
   if (p.method == 1) return {{"compaction", false, false, spec.stress(), kappa, 0.0, cap}};
   const bool soft = p.aggregation_kappa > 0.0;
   const double first = soft ? p.aggregation_kappa : kappa;
-  std::vector<PowderPhase> phases{{"aggregation", true, true, 0.0, first, 0.0, 0.0},
-                                  {"free", false, false, 0.0, first, 0.0, cap}};
-  if (soft) phases.push_back({"stiffening", false, false, 0.0, kappa, p.stiffening_time, cap});
+  std::vector<PowderPhase> phases{{"aggregation", true, true, 0.0, first, 0.0, 0.0}};
+  // Soft rolling springs would let the freed cell ring by percents: it is freed as they stiffen.
+  phases.push_back({soft ? "stiffening" : "free", false, false, 0.0, kappa, soft ? p.stiffening_time : 0.0, cap});
   if (spec.stress() > 0.0) phases.push_back({"load", false, false, spec.stress(), kappa, 0.0, cap});
   return phases;
 }

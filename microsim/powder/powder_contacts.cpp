@@ -72,7 +72,9 @@ PowderContacts powder_contacts(const System<2>& s, double zero, bool cohesive) {
   double square = 0.0;
   double repulsive = 0.0;
   double tensile = 0.0;
+  double work = 0.0;
   for (const auto& c : records) {
+    work += c.normal_force * norm(c.branch);
     ++(c.overlap > 0.0 ? out.contacts : out.distant);
     sum += c.normal_force;
     square += c.normal_force * c.normal_force;
@@ -102,6 +104,7 @@ PowderContacts powder_contacts(const System<2>& s, double zero, bool cohesive) {
   if (out.repulsive > 0) out.mean_repulsive = repulsive / static_cast<double>(out.repulsive);
   if (out.tensile > 0) out.mean_tensile = tensile / static_cast<double>(out.tensile);
   out.rumpf_pressure = rumpf(s, out);
+  out.branch_pressure = 0.5 * work / s.cell.volume();
   return out;
 }
 

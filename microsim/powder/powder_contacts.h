@@ -24,6 +24,8 @@ struct PowderContacts {
   double mean_tensile = 0.0;        ///< negative
   double square_mean_normal = 0.0;  ///< sqrt(<N^2>)
   double rumpf_pressure = 0.0;      ///< z Phi <N> <d>/(pi <d^2>)
+  double branch_pressure =
+      0.0;  ///< sum of N |branch|/(2 A): what Rumpf's means leave out is that large disks touch more
 };
 
 /// `zero`: forces below it count as none (published: 1e-4 F0 without rolling resistance, 1e-2 F0 with). `cohesive`:

@@ -2,10 +2,12 @@
 // rest is said, what cannot be is refused.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/io/text_file.h"
+#include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -57,6 +59,7 @@ TEST_F(Powder, DisksWithoutCohesionJam) {
   for (const json& sample : s["samples"]) {
     EXPECT_NEAR(sample["stress"][0].get<double>(), 1.0, 1e-4);
     EXPECT_NEAR(sample["rumpf_pressure"].get<double>(), 1.0, 0.06) << "pressure from the mean force alone";
+    EXPECT_NEAR(sample["branch_pressure"].get<double>(), 1.0, 2e-3) << "with the distances of centres";
     double shares = 0.0;
     for (const json& x : sample["shares"]) shares += x.get<double>();
     EXPECT_NEAR(shares, 1.0, 1e-12);
@@ -92,6 +95,63 @@ TEST_F(Powder, WhatCannotBeIsRefused) {
   expect_refused("--set disks.solid_fraction=1.2", "solid_fraction");
   expect_refused("--set contact.kapa=1e4", "kappa");
   expect_refused("--set contact.cohesive=true --set assembly.pressure=0", "nothing moves");
+}
+
+constexpr const char* kSeriesB = R"(kind = "cohesive-powder"
+seed = 2
+samples = 2
+[disks]
+count = 60
+solid_fraction = 0.36
+[contact]
+kappa = 1e3
+mu = 0.5
+rolling = true
+[assembly]
+method = 2
+aggregation_kappa = 1e2
+stiffening_time = 30.0
+pressure = 0.01
+record_every = 5.0
+[analysis]
+mesh = 10
+)";
+
+TEST_F(Powder, AKilledSeriesBGoesOnToTheSameEnd) {
+  write_text_atomic(scene(), kSeriesB);
+  const json whole = run("whole", "--threads 2", 0);
+  const fs::path work = fs::path(out("half")) / "work";
+  const auto begun = [&] {
+    std::error_code none;
+    return fs::exists(work, none) && !fs::is_empty(work, none);
+  };
+  for (const double seconds : {0.0, 0.1, 0.2}) {
+    std::vector<std::string> words{"microsim", scene(), "--quiet", "--threads", "2", "--out", out("half")};
+    if (seconds > 0.0) words.push_back("--resume");
+    const pid_t child = start_program(words);
+    if (seconds > 0.0)
+      (void)signal_after(child, seconds, SIGKILL);
+    else
+      (void)signal_when(child, begun, SIGKILL);
+  }
+  const json resumed = run("half", "--resume", 0);
+  EXPECT_EQ(resumed["samples"], whole["samples"]);
+  EXPECT_EQ(resumed["mean"], whole["mean"]);
+}
+
+TEST_F(Powder, StatesOfAnEarlierRunAreAnalysedAgain) {
+  write_text_atomic(scene(), kSeriesB);
+  const json first = run("first", "", 0);
+  const std::string states = "--set analysis.states='\"" + out("first") + "/powder.h5\"'";
+  const json again = run("again", states + " --set analysis.mesh=20", 0);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(again["samples"][k]["Phi"], first["samples"][k]["Phi"]);
+    EXPECT_EQ(again["samples"][k]["F_perc"], first["samples"][k]["F_perc"]);
+    EXPECT_NE(again["samples"][k]["mesh"], first["samples"][k]["mesh"]);
+  }
+  expect_refused(states + " --set contact.mu=0.4", "other [disks], [contact]");
+  expect_refused(states + " --set samples=3", "sample_2");
+  expect_refused("--set assembly.method=1 --set assembly.aggregation_kappa=1e2", "only method 2");
 }
 
 }  // namespace
