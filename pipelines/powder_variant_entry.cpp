@@ -111,6 +111,7 @@ json powder_variant_entry(const PowderVariant& variant, const json& summary) {
           {"title", variant.setup.title},
           {"status", ran ? summary.value("status", "not usable") : "not run"},
           {"reason", ran ? reason_of(summary) : ""},
+          {"commit", ran ? summary.value("commit", "") : ""},
           {"disks", variant.setup.spec.disks},
           {"samples", variant.setup.samples},
           {"usable_samples", scalars.size()},

@@ -49,10 +49,10 @@ inline constexpr std::array kPowderQuantities{PowderQuantity{"Phi", "/Phi"},
                                               PowderQuantity{"loop_passes", "/loop_passes"},
                                               PowderQuantity{"seconds", "/seconds"}};
 
-/// {"name", "title", "status", "reason", "samples", "usable_samples", "values", "published", "difference"}: "values"
-/// has mean, deviation, standard error and number of samples of every quantity over the samples at rest; "difference"
-/// to the published values, also in combined standard errors where both are known.
-/// `summary`: of the variant; null when it was not run.
+/// {"name", "title", "status", "reason", "commit", "disks", "samples", "usable_samples", "values", "published",
+/// "difference"}: "values" has mean, deviation, standard error and number of samples of every quantity over the samples
+/// at rest; "difference" to the published values, also in combined standard errors where both are known. `summary`: of
+/// the variant; null when it was not run.
 nlohmann::json powder_variant_entry(const PowderVariant& variant, const nlohmann::json& summary);
 
 }  // namespace softgrain

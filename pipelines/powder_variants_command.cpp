@@ -65,11 +65,16 @@ void write_tables(const json& entries, const RunContext& context) {
   write_text_atomic(context.path("table.md"), as_markdown(powder_people_table(entries)));
 }
 
+/// Samples that do not rest, and results that another build of the program left.
 json remarks_on(const json& entries) {
   json remarks = json::array();
-  for (const json& e : entries)
-    if (const std::string reason = e["reason"]; !reason.empty())
-      remarks.push_back(e["name"].get<std::string>() + ": " + reason);
+  const std::string commit = build_provenance().commit;
+  for (const json& e : entries) {
+    const std::string name = e["name"];
+    if (const std::string reason = e["reason"]; !reason.empty()) remarks.push_back(name + ": " + reason);
+    if (const std::string of = e["commit"]; !of.empty() && of != commit)
+      remarks.push_back(fmt::format("{}: was run by another build of the program (commit {})", name, of));
+  }
   return remarks;
 }
 

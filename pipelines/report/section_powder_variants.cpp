@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pipelines/report/html.h"
@@ -80,10 +81,12 @@ std::string tables(const json& entries) {
                                   {"x_0", "x_0"},
                                   {"x_1", "x_1"},
                                   {"x_2", "x_2"},
-                                  {"mean_normal", "<N>"},
+                                  {"x_3", "x_3"},
+                                  {"zero_share", "share without force"},
+                                  {"solid_fraction_3d", "Phi in 3D"}}) +
+         quantity_table(entries, {{"mean_normal", "<N>"},
                                   {"mean_repulsive", "<N> repulsive"},
                                   {"mean_tensile", "<N> tensile"},
-                                  {"zero_share", "share without force"},
                                   {"rumpf_ratio", "P of Rumpf over P"},
                                   {"F_perc", "F_perc"}}) +
          quantity_table(entries, {{"h", "h"},
@@ -93,7 +96,6 @@ std::string tables(const json& entries) {
                                   {"dF", "dF"},
                                   {"xi", "xi [a]"},
                                   {"R_w", "<R>_w [a]"},
-                                  {"solid_fraction_3d", "Phi in 3D"},
                                   {"loop_passes", "loop passes"},
                                   {"seconds", "seconds per sample"}});
 }
@@ -116,6 +118,16 @@ Series diagonal(const Extent& e) {
   return s;
 }
 
+/// Another marker where the colours begin again.
+SeriesStyle point_style(std::size_t index) {
+  constexpr std::array kMarkers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
+  constexpr std::size_t kColours = 7;
+  return {.color = palette::cycle(index),
+          .width = 0.0,
+          .marker = kMarkers[index / kColours % kMarkers.size()],
+          .marker_size = 4.0};
+}
+
 std::string comparison_figure(const json& entries, const std::string& quantity) {
   Plot plot({.id = "powder-published-" + quantity,
              .title = quantity + ", here and published",
@@ -132,7 +144,7 @@ std::string comparison_figure(const json& entries, const std::string& quantity) 
     Series s{.label = find_text(e, "name"), .hover = "", .x = {published}, .y = {here}};
     const double error = number(e, "values." + quantity + ".error");
     if (std::isfinite(error)) s.y_error = {error};
-    s.style = {.color = palette::cycle(points.size()), .width = 0.0, .marker = Marker::circle, .marker_size = 4.0};
+    s.style = point_style(points.size());
     points.push_back(std::move(s));
   }
   if (points.empty()) return "";

@@ -2,11 +2,13 @@
 // cannot be are refused before any work, one that does not rest does not stop the others.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "common/io/text_file.h"
+#include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -112,10 +114,14 @@ TEST_F(PowderVariants, WhatHasEndedIsNotRunAgain) {
   const json first = summary();
   const auto written = fs::last_write_time(out("smooth/powder.h5"));
   fs::remove(out("rough/summary.json"));
+  json of_another_build = summary("smooth");
+  of_another_build["commit"] = "abc";
+  write_text_atomic(out("smooth/summary.json"), of_another_build.dump());
   run("--resume", 0);
   const json again = summary();
   EXPECT_EQ(fs::last_write_time(out("smooth/powder.h5")), written);
-  EXPECT_EQ(again["variants"][1], first["variants"][1]);
+  EXPECT_EQ(again["variants"][1]["values"], first["variants"][1]["values"]);
+  EXPECT_NE(again["remarks"][0].get<std::string>().find("smooth: was run by another build"), std::string::npos);
   json values = first["variants"][0]["values"];
   json values_again = again["variants"][0]["values"];
   for (json* one : {&values, &values_again}) one->erase("seconds");
@@ -123,6 +129,22 @@ TEST_F(PowderVariants, WhatHasEndedIsNotRunAgain) {
   run("--resume --seed 2", 0);
   EXPECT_NE(fs::last_write_time(out("smooth/powder.h5")), written) << "of another seed";
   EXPECT_NE(summary()["variants"][1]["values"]["Phi"], first["variants"][1]["values"]["Phi"]);
+}
+
+TEST_F(PowderVariants, AStoppedOneGoesOnFromItsCheckpoint) {
+  const std::string longer = "--set disks.count=300 --set contact.kappa=1e4 --set samples=1 --set only=rough";
+  run(longer, 0);
+  const json whole = summary("rough");
+  fs::remove_all(directory_.file("out"));
+  const pid_t child =
+      start_program({"microsim", scene(), "--quiet", "--threads", "1", "--out", directory_.file("out"), "--set",
+                     "disks.count=300", "--set", "contact.kappa=1e4", "--set", "samples=1", "--set", "only=rough"});
+  const int status = signal_when(
+      child, [&] { return fs::exists(out("rough/work/powder-0.h5.previous")); }, SIGINT);
+  ASSERT_TRUE(ended_with(status, 130)) << status;
+  EXPECT_FALSE(fs::exists(out("rough/summary.json")));
+  run("--resume " + longer, 0);
+  EXPECT_EQ(summary("rough")["samples"], whole["samples"]);
 }
 
 TEST_F(PowderVariants, SomeOfThem) {

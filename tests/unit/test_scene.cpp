@@ -204,6 +204,46 @@ TEST(Scene, PathsAreRelativeToTheScene) {
   EXPECT_EQ(Scene::parse("", "scene.toml").resolve("A"), "A");
 }
 
+constexpr const char* kVariants = R"(title = "all"
+only = ["b"]
+[disks]
+count = 10
+share = 0.3
+[[variant]]
+name = "a"
+[[variant]]
+name = "b"
+title = "two"
+disks = { share = -1 }
+[variant.walls]
+count = 4
+)";
+
+TEST(SceneVariant, LiesOverItsScene) {
+  const Scene scene = parse(kVariants, {"disks.count=20", "variant.1.walls.count=-5"});
+  const Scene b = scene.variant(1, {"only", "name"});
+  EXPECT_EQ(b.root().keys(), (std::vector<std::string>{"disks", "title", "walls"}));
+  EXPECT_EQ(b.root().text("title"), "two");
+  EXPECT_EQ(b.root().table("disks").count("count", 0, 100), 20) << "what --set says of the scene holds";
+  EXPECT_EQ(message_of([&] { (void)b.root().table("disks").number("share", Unit::none, Range::positive()); }),
+            "scene.toml:11: share = -1: must be above 0");
+  EXPECT_EQ(message_of([&] { (void)b.root().table("walls").count("count", 0, 9); }),
+            "scene.toml (--set walls.count): count = -5: must be a whole number from 0 to 9");
+  EXPECT_EQ(message_of([&] { b.root().finish(); }), "");
+  EXPECT_EQ(Scene::parse(b.text(), "b.toml").root().table("disks").number("share", Unit::none), -1.0)
+      << "its text is a scene of its own";
+}
+
+TEST(SceneVariant, LeavesTheOthersAndTheSceneAlone) {
+  const Scene scene = parse(kVariants);
+  const Scene a = scene.variant(0, {"only", "name"});
+  EXPECT_EQ(a.root().text("title"), "all");
+  EXPECT_EQ(a.root().table("disks").number("share", Unit::none), 0.3);
+  EXPECT_FALSE(a.root().has("walls"));
+  EXPECT_EQ(scene.root().tables("variant").size(), 2U);
+  EXPECT_NE(message_of([&] { (void)scene.variant(2, {}); }), "");
+}
+
 TEST(NearestWord, FindsTyposAndStaysSilentOtherwise) {
   const std::vector<std::string> known{"radius", "density", "friction", "mu"};
   EXPECT_EQ(nearest_word("raduis", known), "radius");
