@@ -233,7 +233,23 @@ class Loop {
     put<D>(block_.force, g, normal * normal_force);
   }
 
-  /// See carried_spring and coulomb_spring.
+  /// See carried_spring.
+  static Vec<D, Lanes> carried(const Vec<D, Lanes>& old, const Vec<D, Lanes>& normal) {
+    using std::experimental::copysign;
+    using std::experimental::sqrt;
+    if constexpr (D == 2) {
+      const Vec<D, Lanes> tangent{{-normal[1], normal[0]}};
+      return tangent * Lanes(copysign(sqrt(norm2(old)), dot(old, tangent)));
+    } else {
+      const Vec<D, Lanes> flat = old - normal * dot(old, normal);
+      const Lanes after = norm2(flat);
+      Lanes stretch(1.0);
+      where(after > 0.0, stretch) = sqrt(norm2(old) / after);
+      return flat * stretch;
+    }
+  }
+
+  /// See coulomb_spring.
   Vec<D, Lanes> tangential(int g, const Vec<D, Lanes>& normal, const Vec<D, Lanes>& sliding,
                            const Lanes& contact_radius, const Lanes& eta, const Lanes& normal_force) {
     using std::experimental::any_of;
@@ -248,11 +264,7 @@ class Loop {
       old *= share;
       block_.memory.put(g, contact_radius);
     }
-    const Vec<D, Lanes> flat = old - normal * dot(old, normal);
-    const Lanes after = norm2(flat);
-    Lanes stretch(1.0);
-    where(after > 0.0, stretch) = sqrt(norm2(old) / after);
-    Vec<D, Lanes> spring = flat * stretch + sliding * Lanes(dt_);
+    Vec<D, Lanes> spring = carried(old, normal) + sliding * Lanes(dt_);
     const Lanes stiffness = contact_radius * law_.k.shear;
     Vec<D, Lanes> force = spring * -stiffness;
     const Lanes size2 = norm2(force);
