@@ -235,6 +235,7 @@ double cross_validate(const FormFit& full, const std::vector<CrowdStates>& state
     if (c.states.empty() || c.use == CrowdUse::repeated || !c.all_of(PartnerKind::plane)) continue;
     CrowdModel model = full.model;
     const StateSelection rest = plane_selection(states, model.crowd, &c);
+    if (c.use == CrowdUse::fitted && rest.empty()) continue;  // nothing else to predict it from
     if (c.use == CrowdUse::fitted && model.crowd != Crowd::pair) (void)fit_planes(model, rest, discrepancy, false);
     sum += crowd_error(model, c);
     ++count;

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Makes a committed results folder of a run: collect_run.py RUN_DIR RESULTS_DIR FIGURE... Standard library only.
+
+Copies law_table.toml and table.csv where the run has them and the named figures of its report, and writes README.md: the
+hand-written notes (RESULTS_DIR/notes.md) after a heading with command, version and seed, then the tables of the run.
+"""
+import json
+import os
+import shutil
+import sys
+
+
+def row(cells):
+    return "| " + " | ".join(cells) + " |\n"
+
+
+def table(header, rows):
+    return row(header) + "|" + "---|" * len(header) + "\n" + "".join(row(r) for r in rows) + "\n"
+
+
+def number(x, digits=3):
+    return "-" if x is None or x != x else f"{x:.{digits}g}"
+
+
+def with_error(e, digits=3):
+    return f"{e['value']:.{digits}g} ± {e['standard_error']:.2g}"
+
+
+def plain(command):
+    """The command without what only says where things are kept."""
+    words, out, skip = command.split(), ["softgrain"], False
+    for word in words[1:]:
+        if skip:
+            skip = False
+        elif word in ("--out", "--law-cache"):
+            skip = True
+        elif word not in ("--quiet", "--resume"):
+            out.append(word)
+    return " ".join(out)
+
+
+def law_tables(summary):
+    text = ""
+    for entry in summary.get("entries", []):
+        text += f"## Laws at solid fraction {entry['solid_fraction']:.3f} ({entry['packings']} packings)\n\n"
+        text += table(["law", "a", "b", "delta", "m0", "m1", "m2", "error, fitted [%]", "held out [%]", "leave one out [%]",
+                       "information criterion"],
+                      [[law["form"] + (" (best)" if law["form"] == entry["best"] else "")] +
+                       [with_error(law[k]) for k in ("a", "b", "delta", "m0", "m1", "m2")] +
+                       [number(None if law[k] is None else 100 * law[k]) for k in ("error_fitted", "error_held_out", "error_cross")] +
+                       [number(law["criterion"], 4)] for law in entry["laws"]])
+        text += table(["neighbour", "friction limit", "kt/kn"],
+                      [[k, with_error(entry["slide_" + k]["friction"]), with_error(entry["slide_" + k]["kt_ratio"])]
+                       for k in ("plane", "solid", "soft")])
+    return text
+
+
+def hierarchy_tables(summary):
+    if "levels" not in summary or "fixed_point" not in summary:
+        return ""
+    rows = []
+    changes = []
+    for level in summary["levels"]:
+        inner = level.get("inner", {})
+        rows.append([str(level["level"]), number(inner.get("mean", 0)), number(inner.get("volume_percent", 0)),
+                     number(level["law"]["a"]), number(level["law"]["b"]), number(level["law"]["delta"]),
+                     number(level.get("distance_percent")), number(level.get("noise_percent")),
+                     number(level["resolved_grains"]), number(level["contact_evaluations"]), number(level["seconds"])])
+        changes += [[str(level["level"]), c["configuration"], f"{c['ratio']:.3f} ± {c['error']:.3f}"]
+                    for c in level.get("changes", [])]
+    text = summary["fixed_point"]["text"] + "\n\n"
+    text += table(["level", "soft particles inside", "their volume [%]", "a", "b", "delta", "law against the level below [%]",
+                   "noise [%]", "grains if resolved", "contact evaluations", "seconds"], rows)
+    text += table(["level", "configuration", "force over that of the level below"], changes)
+    if "check" in summary:
+        check = summary["check"]
+        text += "## Two decades with all grains\n\n" + check["text"] + "\n\n"
+        text += table(["h/Rs", "law [F/(E Rs²)]", "all grains", "without inner soft particles", "law over all grains"],
+                      [[number(p["overlap"]), f"{p['law']:.4g} ± {p['law_error']:.2g}",
+                        f"{p['resolved']:.4g} ± {p['resolved_error']:.2g}", number(p["empty"], 4),
+                        f"{p['ratio']:.3f} ± {p['ratio_error']:.3f}"] for p in check["points"]])
+    return text
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    run, out, figures = sys.argv[1], sys.argv[2], sys.argv[3:]
+    with open(os.path.join(run, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    if os.path.exists(os.path.join(run, "table.csv")):
+        shutil.copy(os.path.join(run, "table.csv"), out)
+    if os.path.exists(os.path.join(run, "law_table.toml")):
+        with open(os.path.join(run, "law_table.toml"), encoding="utf-8") as file:
+            card = file.read()
+        raw = summary.get("provenance", {}).get("command", "")
+        with open(os.path.join(out, "law_table.toml"), "w", encoding="utf-8") as file:
+            file.write(card.replace(raw, plain(raw)) if raw else card)
+    for name in figures:
+        shutil.copy(os.path.join(run, "figures", name + ".svg"), out)
+    p = summary.get("provenance", {})
+    text = f"# {summary.get('title', '')}\n\nMade by `{os.path.basename(__file__)}` from `{plain(p.get('command', ''))}` "
+    text += f"(version {p.get('version')}, commit {p.get('commit')}, seed {p.get('seed')}, status {summary['status']}"
+    text += f", {summary['seconds']:.0f} s on {p.get('threads')} threads).\n\n" if "seconds" in summary else ").\n\n"
+    notes = os.path.join(out, "notes.md")
+    if os.path.exists(notes):
+        with open(notes, encoding="utf-8") as file:
+            text += file.read() + "\n"
+    for name in figures:
+        text += f"![{name.replace('-', ' ')}]({name}.svg)\n\n"
+    text += law_tables(summary) + hierarchy_tables(summary)
+    if os.path.exists(os.path.join(run, "table.md")):
+        with open(os.path.join(run, "table.md"), encoding="utf-8") as file:
+            text += file.read() + "\n"
+    if summary.get("remarks"):
+        text += "## Remarks of the run\n\n" + "".join(f"- {r}\n" for r in summary["remarks"])
+    with open(os.path.join(out, "README.md"), "w", encoding="utf-8") as file:
+        file.write(text.rstrip("\n") + "\n")
+
+
+if __name__ == "__main__":
+    main()
