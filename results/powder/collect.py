@@ -78,12 +78,16 @@ def run_text(argument):
     with open(os.path.join(directory, "summary.json"), encoding="utf-8") as file:
         summary = json.load(file)
     p = summary.get("provenance", {})
-    text = f"## {summary.get('title', name)}\n\n`{plain(p.get('command', ''))}` (version {p.get('version')}, commit "
+    text = f"## {summary.get('title', '')} ({name})\n\n`{plain(p.get('command', ''))}` (version {p.get('version')}, commit "
     text += f"{p.get('commit')}, seed {p.get('seed')}, status {summary['status']})\n\n"
     table = os.path.join(directory, "table.md")
     if os.path.exists(table):
         with open(table, encoding="utf-8") as file:
-            text += file.read() + "\n"
+            rows = file.read().splitlines()
+        left = [r.split("|")[1].strip() for r in rows if "| not run |" in r]
+        text += "\n".join(r for r in rows if "| not run |" not in r) + "\n\n"
+        if left:
+            text += "Not run: " + ", ".join(left) + ".\n\n"
     else:
         text += one(summary)
     for figure in filter(None, figures.split(",")):
