@@ -15,7 +15,7 @@ namespace softgrain {
 
 /// A stretch of an assembly.
 struct PowderPhase {
-  std::string name;            ///< "compaction", "aggregation", "free", "load"
+  std::string name;            ///< "compaction", "aggregation", "free" or "stiffening", "load"
   bool fixed_cell = false;     ///< the cell keeps its lengths; pressure is no criterion
   bool one_aggregate = false;  ///< also wait until all disks hang together
   double pressure = 0.0;       ///< imposed, in the units of the sample
@@ -28,8 +28,8 @@ struct PowderPhase {
 struct PowderProtocol {
   int method = 1;
   double strain_rate_cap = 0.0;    ///< per T0; 0: none
-  double aggregation_kappa = 0.0;  ///< method 2: stiffness while disks aggregate and the cell is freed; 0: as always
-  double stiffening_time = 200.0;  ///< T0 in which it goes to the stiffness of the sample then
+  double aggregation_kappa = 0.0;  ///< method 2: stiffness while disks aggregate; 0: as always
+  double stiffening_time = 200.0;  ///< T0 in which it goes to that of the sample, as the cell is freed
 };
 
 /// Method 1: at rest, the pressure at once. Method 2: the disks aggregate in a fixed cell, then the cell is freed at

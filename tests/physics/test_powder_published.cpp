@@ -17,8 +17,7 @@ struct Means {
 };
 
 Means method1(const PowderSpec& spec, int samples) {
-  PowderOptions options;
-  if (spec.rolling) options.settle_drag = 0.5;
+  const PowderOptions options;
   Means m;
   for (int k = 0; k < samples; ++k) {
     PowderState s = start_powder(spec, 11, static_cast<std::uint64_t>(k));

@@ -140,7 +140,7 @@ TEST_F(PowderVariants, AStoppedOneGoesOnFromItsCheckpoint) {
       start_program({"microsim", scene(), "--quiet", "--threads", "1", "--out", directory_.file("out"), "--set",
                      "disks.count=300", "--set", "contact.kappa=1e4", "--set", "samples=1", "--set", "only=rough"});
   const int status = signal_when(
-      child, [&] { return fs::exists(out("rough/work/powder-0.h5.previous")); }, SIGINT);
+      child, [&] { return fs::exists(fs::path(out("rough")) / "work" / "powder-0.h5.previous"); }, SIGINT);
   ASSERT_TRUE(ended_with(status, 130)) << status;
   EXPECT_FALSE(fs::exists(out("rough/summary.json")));
   run("--resume " + longer, 0);
