@@ -81,14 +81,19 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
   std::erase_if(out.states, [](const CrowdState& s) { return s.packings < 2; });
 }
 
+double deepest(const CrowdConfiguration& c) {
+  const std::vector<double>& overlap = c.stages.front().overlap;
+  return *std::max_element(overlap.begin(), overlap.end());
+}
+
 /// Whether two configurations begin by pressing the same neighbours in the same way, however deep.
 bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
   constexpr double kSame = 1e-9;
   if (a.partners.size() != b.partners.size()) return false;
   const std::vector<double>& x = a.stages.front().overlap;
   const std::vector<double>& y = b.stages.front().overlap;
-  const double deep_x = *std::max_element(x.begin(), x.end());
-  const double deep_y = *std::max_element(y.begin(), y.end());
+  const double deep_x = deepest(a);
+  const double deep_y = deepest(b);
   for (std::size_t k = 0; k < a.partners.size(); ++k) {
     const CrowdPartner& p = a.partners[k];
     const CrowdPartner& q = b.partners[k];
@@ -104,16 +109,21 @@ bool holds_out(const CrowdStates& c) { return c.configuration->held_out && c.con
 
 bool may_be_fitted(const CrowdStates& c) { return !c.configuration->held_out && !c.configuration->centre_free; }
 
-/// One loading: of its configurations one is used, the others repeat it.
+/// One loading: of its configurations the deepest is used, the others repeat it.
 void assign_use(const std::vector<CrowdStates*>& group) {
   for (CrowdStates* c : group) c->use = CrowdUse::repeated;
-  const auto first = [&](auto&& wanted) { return std::find_if(group.begin(), group.end(), wanted); };
-  const auto held_out = first([](const CrowdStates* c) { return holds_out(*c); });
-  const auto fitted = first([](const CrowdStates* c) { return may_be_fitted(*c); });
-  if (held_out == group.end() && fitted != group.end())
-    (*fitted)->use = CrowdUse::fitted;
+  const auto deepest_of = [&](auto&& wanted) {
+    CrowdStates* best = nullptr;
+    for (CrowdStates* c : group)
+      if (wanted(*c) && (best == nullptr || deepest(*c->configuration) > deepest(*best->configuration))) best = c;
+    return best;
+  };
+  CrowdStates* const held_out = deepest_of(holds_out);
+  CrowdStates* const fitted = deepest_of(may_be_fitted);
+  if (held_out == nullptr && fitted != nullptr)
+    fitted->use = CrowdUse::fitted;
   else
-    (held_out != group.end() ? *held_out : group.front())->use = CrowdUse::predicted;
+    (held_out != nullptr ? held_out : group.front())->use = CrowdUse::predicted;
 }
 
 void assign_uses(std::vector<CrowdStates>& all) {
