@@ -85,7 +85,7 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
 }
 
 json sample_json(const Sample& s) {
-  const PowderContacts& c = s.result.contacts;
+  const PowderContacts& c = s.analysis.contacts;
   json out{{"usable", s.result.usable},
            {"reason", s.result.reason},
            {"time", s.state.system.time},
@@ -124,28 +124,6 @@ void add_statistics(const std::vector<Sample>& samples, json& summary) {
   }
   summary["statistics"] = sample_statistics(scalars);
   summary["histograms"] = histograms_json(forces);
-}
-
-struct Mean {
-  double mean = 0.0;
-  double deviation = 0.0;  ///< of the sample; 0 for one
-};
-
-template <class Get>
-Mean mean_of(const std::vector<Sample>& samples, const Get& get) {
-  Mean m;
-  double n = 0.0;
-  double square = 0.0;
-  for (const Sample& s : samples) {
-    if (!s.result.usable) continue;
-    const double x = get(s.result);
-    n += 1.0;
-    m.mean += x;
-    square += x * x;
-  }
-  if (n > 0.0) m.mean /= n;
-  if (n > 1.0) m.deviation = std::sqrt(std::max(square - n * m.mean * m.mean, 0.0) / (n - 1.0));
-  return m;
 }
 
 /// Which samples count in the mean.
@@ -207,15 +185,22 @@ void add_samples(const std::vector<Sample>& samples, const PowderStructures& str
 /// Means over samples that came to rest; returns the line about them for people.
 std::string add_means(const PowderSetup& setup, const std::vector<Sample>& samples, const PowderStructures& structures,
                       json& summary) {
-  const Mean fraction = mean_of(samples, [](const PowderResult& r) { return r.fraction; });
-  const Mean z = mean_of(samples, [](const PowderResult& r) { return r.contacts.coordination; });
-  summary["mean"] = {
-      {"Phi", fraction.mean}, {"Phi_deviation", fraction.deviation}, {"z", z.mean}, {"z_deviation", z.deviation}};
   add_statistics(samples, summary);
+  const json none{{"mean", nullptr}, {"deviation", nullptr}};  // no sample came to rest
+  const json fraction = summary["statistics"].value("Phi", none);
+  const json z = summary["statistics"].value("z", none);
+  summary["mean"] = {{"Phi", fraction["mean"]},
+                     {"Phi_deviation", fraction["deviation"]},
+                     {"z", z["mean"]},
+                     {"z_deviation", z["deviation"]}};
   summary["mean"].update(structure_means_json(structures, usable_samples(samples)));
   if (structures.mean_curve) summary["scattering"] = ensemble_fit_json(structures);
-  return fmt::format("{} samples of {} disks: Phi {:.4f} (deviation {:.4f}), z {:.3f} ({:.3f})\n", setup.samples,
-                     setup.spec.disks, fraction.mean, fraction.deviation, z.mean, z.deviation);
+  const auto text = [](const json& x, int digits) {
+    return x.is_null() ? std::string("-") : fmt::format("{:.{}f}", x.get<double>(), digits);
+  };
+  return fmt::format("{} samples of {} disks: Phi {} (deviation {}), z {} ({})\n", setup.samples, setup.spec.disks,
+                     text(fraction["mean"], 4), text(fraction["deviation"], 4), text(z["mean"], 3),
+                     text(z["deviation"], 3));
 }
 
 }  // namespace

@@ -5,11 +5,9 @@
 
 namespace softgrain {
 
-double zero_force(const PowderSpec& spec) { return spec.rolling ? 1e-2 : 1e-4; }
-
 PowderAnalysis analyse_powder(const System<2>& system, const PowderSpec& spec, double pressure, bool rigidity) {
   PowderAnalysis out;
-  out.zero = zero_force(spec);
+  out.zero = spec.zero_force();
   out.contacts = powder_contacts(system, out.zero, spec.cohesive);
   out.pairs = powder_interactions(system, out.zero);
   out.forces = powder_forces(out.pairs, out.zero);

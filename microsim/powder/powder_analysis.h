@@ -24,9 +24,6 @@ struct PowderAnalysis {
   std::optional<double> rumpf_ratio;  ///< Rumpf's pressure z Phi <N> <d>/(pi <d^2>) over the one imposed, P > 0
 };
 
-/// 1e-4 of the unit of force, with rolling resistance 1e-2 (published).
-double zero_force(const PowderSpec& spec);
-
 /// `pressure`: imposed on the state. Changes nothing in the system.
 PowderAnalysis analyse_powder(const System<2>& system, const PowderSpec& spec, double pressure, bool rigidity);
 

@@ -80,7 +80,7 @@ double mean_kinetic(const System<2>& s) {
 }
 
 PowderPoint point_of(const PowderState& state, const PowderSpec& spec, const Vec<2>& stress) {
-  const PowderContacts c = powder_contacts(state.system, 1e-4, spec.cohesive);
+  const PowderContacts c = powder_contacts(state.system, spec.zero_force(), spec.cohesive);
   return {state.phase,    state.system.time,          powder_fraction(state.system),
           c.coordination, mean_kinetic(state.system), stress};
 }
@@ -109,7 +109,6 @@ class Phase {
   /// Empty when the phase came to rest, else why not.
   std::string run(const std::function<void(const PowderState&)>& observer) {
     integrator_.initialise(state_.system);
-    look();
     double next = state_.points.empty() ? 0.0 : state_.points.back().time + options_.record_every;
     for (;;) {
       look();
@@ -211,7 +210,7 @@ class Phase {
     const double margin = state_.settling ? kHysteresis : 1.0;
     state_.settling = !stiffening() && residual_.kinetic * kPowderKineticLimit < margin * vibration() &&
                       (phase_.fixed_cell || state_.system.time - state_.still_since >= options_.settle_after) &&
-                      (!phase_.one_aggregate || state_.settling || one_aggregate(state_.system));
+                      (!phase_.one_aggregate || one_aggregate(state_.system));
     if (state_.settling && options_.settle_drag > 0.0)
       integrator_.set_drag(kCell * options_.settle_drag, drag_of(state_.system, options_.settle_drag, spec_.rolling));
     else
@@ -300,7 +299,6 @@ PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::v
   result.residual = last.residual();
   result.stress = last.stress();
   result.fraction = powder_fraction(state.system);
-  result.contacts = powder_contacts(state.system, spec.rolling ? 1e-2 : 1e-4, spec.cohesive);
   return result;
 }
 

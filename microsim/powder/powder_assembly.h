@@ -88,7 +88,6 @@ struct PowderResult {
   double fraction = 0.0;
   Vec<2> stress{};
   PowderResidual<2> residual;
-  PowderContacts contacts;
 };
 
 PowderState start_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);

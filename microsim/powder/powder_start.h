@@ -27,6 +27,8 @@ struct PowderSpec {
 
   /// F1 = max(F0, P a), the scale of forces in equilibrium criteria.
   [[nodiscard]] double force_scale() const { return cohesive ? std::max(1.0, pressure) : 1.0; }
+  /// 1e-4 of the unit of force, with rolling resistance 1e-2 (published): below it a contact counts as unstressed.
+  [[nodiscard]] double zero_force() const { return rolling ? 1e-2 : 1e-4; }
   /// Imposed stress.
   [[nodiscard]] double stress() const { return cohesive ? pressure : 1.0; }
   friend bool operator==(const PowderSpec&, const PowderSpec&) = default;

@@ -59,7 +59,7 @@ PowderRun load_powder(const std::string& path) {
   const PowderSpec spec = read_powder_spec(root.open("spec"));
   PowderRun run;
   run.cohesive = spec.cohesive;
-  run.zero_force = spec.rolling ? 1e-2 : 1e-4;
+  run.zero_force = spec.zero_force();
   for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k)
     run.samples.push_back(read_sample(root.open(fmt::format("sample_{}", k)), spec));
   run.scattering = read_scattering(root);

@@ -24,9 +24,10 @@ Means method1(const PowderSpec& spec, int samples) {
     const PowderResult r = run_powder(s, spec, powder_phases(spec, {}), options, [](const PowderState&) {});
     EXPECT_TRUE(r.usable) << r.reason;
     m.fraction += r.fraction / samples;
-    m.z += r.contacts.coordination / samples;
-    m.rumpf += r.contacts.rumpf_pressure / spec.stress() / samples;
-    m.branch += r.contacts.branch_pressure / spec.stress() / samples;
+    const PowderContacts c = powder_contacts(s.system, spec.zero_force(), spec.cohesive);
+    m.z += c.coordination / samples;
+    m.rumpf += c.rumpf_pressure / spec.stress() / samples;
+    m.branch += c.branch_pressure / spec.stress() / samples;
   }
   return m;
 }

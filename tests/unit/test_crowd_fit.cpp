@@ -139,8 +139,8 @@ TEST(CrowdFit, ALoadingIsUsedOnce) {
   for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(states[k].use, expected[k]) << k;
   list[3].held_out = false;
   const CrowdMeasurements all = crowd_measurements(known(Crowd::bag), list, {});
-  EXPECT_EQ(average_states(all)[2].use, CrowdUse::fitted) << "the first of its loading";
-  EXPECT_EQ(average_states(all)[3].use, CrowdUse::repeated);
+  EXPECT_EQ(average_states(all)[2].use, CrowdUse::repeated);
+  EXPECT_EQ(average_states(all)[3].use, CrowdUse::fitted) << "the deepest of its loading";
 }
 
 TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
