@@ -20,6 +20,7 @@ struct NeighbourState {
   std::vector<double> skin;       ///< per body [m]: a pair's margin is the sum of both, each may move its own share
   Matrix<D> reference_edges{};    ///< of the cell, likewise
   std::int64_t rebuilds = 0;
+  std::int64_t hasty = 0;  ///< rebuilds one pass after the one before: some body crosses its whole margin in a step
   std::int64_t passes_at_build = 0;  ///< loop passes when the list was made
   // Follow from the margins (note_skin), not part of a saved state.
   std::vector<double> inverse_skin2;  ///< [1/m^2]

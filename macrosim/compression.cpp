@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "common/core/error.h"
+#include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/io/interrupt.h"
@@ -66,6 +68,35 @@ void record_bodies(const MacroSystem& macro, MacroCurve& c) {
   for (const BodyContact& b : between) c.body_forces.push_back(b.normal_force);
 }
 
+/// Soft particles of a law run against the range of their law. Twins have no fitted law and record nothing.
+LawUse record_law_use(CompressionState& state) {
+  MacroCurve& c = state.curve;
+  if (c.grains > 0 || c.soft == 0) return {};
+  const LawUse use = watch_contacts(state.macro.system).laws;
+  c.law_asked.push_back(static_cast<double>(use.asked));
+  c.law_beyond.push_back(static_cast<double>(use.beyond));
+  c.law_largest.push_back(use.largest);
+  return use;
+}
+
+/// Over all recorded points; what happens beyond the range is that of `last`.
+void note_law_use(MacroCurve& c, const LawUse& last, double strain) {
+  LawUse all = last;
+  const auto total = [](const std::vector<double>& v) {
+    return static_cast<std::int64_t>(std::accumulate(v.begin(), v.end(), 0.0));
+  };
+  all.asked = total(c.law_asked);
+  all.beyond = total(c.law_beyond);
+  const std::string text = law_use_text(all);
+  if (text.empty()) return;
+  if (last.refused > 0) {
+    c.usable = false;
+    c.note = text + " (strain " + std::to_string(strain) + ")";
+  } else if (c.note.empty()) {
+    c.note = text;
+  }
+}
+
 void record(CompressionState& state, const MacroSpec& spec, double strain, const RelaxationResult& rest) {
   const System3& s = state.macro.system;
   const Vec3 wall = wall_stress(s, state.macro.box);
@@ -122,10 +153,14 @@ void compress(CompressionState& state, const MacroSpec& spec, const CompressionO
       rest = relaxation.relax(s);
     }
     record(state, spec, strain_at(spec, point), rest);
+    const LawUse use = record_law_use(state);
+    const bool last = point + 1 == points;
+    if (last || use.refused > 0) note_law_use(state.curve, use, strain_at(spec, point));
     state.curve.cost +=
         {s.cost.loop_passes - before.loop_passes, s.cost.contact_evaluations - before.contact_evaluations,
          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
     observer(state, static_cast<double>(point + 1) / static_cast<double>(points));
+    if (use.refused > 0) return;
     if (interrupt_requested()) throw Interrupted("stopped by a signal; finished points are saved");
   }
 }

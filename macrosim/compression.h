@@ -25,7 +25,8 @@ std::int64_t recorded_points(const MacroSpec& spec);
 /// logarithmic strains while y stands. Records strain (nominal from the start; in shear logarithmic from the end of
 /// the preload, which is recorded at -preload .. 0), wall and contact stresses, coordination, fabric, residual, and the
 /// forces between bodies of the last point.
-/// Points that did not converge make the curve not usable, with a note. Throws NotUsable (lost grain) and Interrupted.
+/// Points that did not converge make the curve not usable, with a note; so does a law asked beyond its range that does
+/// not allow it, and the test ends there. Throws NotUsable (lost grain) and Interrupted.
 void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer);
 
 /// A curve with the facts of the packing filled in.

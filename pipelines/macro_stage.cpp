@@ -69,7 +69,10 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& e
     progress.advance(share - done);
     done = share;
   });
-  if (laws != nullptr && laws->note && state.curve.note.empty()) state.curve.note = laws->note(state.macro.system);
+  if (laws != nullptr && laws->note && state.curve.usable) {
+    const std::string note = laws->note(state.macro.system);
+    state.curve.note += (state.curve.note.empty() || note.empty() ? "" : "; ") + note;
+  }
   return state.curve;
 }
 

@@ -19,59 +19,14 @@ std::int32_t law_of(const System3& s, const ContactRecord<3>& c) {
   return s.laws.index(material[static_cast<std::size_t>(c.i)], material[static_cast<std::size_t>(c.j)]);
 }
 
-double reference_radius(const System3& s, const SoftContact& law, const ContactRecord<3>& c) {
-  const double rj = c.j < s.particles.grains ? s.particles.sphere[static_cast<std::size_t>(c.j)].r : 0.0;
-  return law.pair_constants({s.particles.sphere[static_cast<std::size_t>(c.i)].r, rj, 0.0, 0.0}).a;
-}
-
-/// Largest Delta among the soft contacts of a law run, against the range its laws were fitted in; empty when inside.
-std::string extrapolation_note(const System3& s, const LawCard& card) {
-  double beyond = 0.0;
-  std::string note;
-  for (const ContactRecord<3>& c : contact_records(s)) {
-    const auto* soft = std::get_if<SoftContact>(&s.laws.law(law_of(s, c)));
-    if (soft == nullptr) continue;
-    const double delta = c.overlap / reference_radius(s, *soft, c);
-    const PairLaw* law = card.find(soft->partner_is_soft ? PairKind::soft_soft : PairKind::soft_solid);
-    if (law == nullptr || delta - law->delta_max <= beyond) continue;
-    beyond = delta - law->delta_max;
-    note = fmt::format(
-        "soft contacts reach Delta = {:.2f} at the end, the {} law was fitted up to {:.2f} and is extrapolated", delta,
-        to_string(law->kind), law->delta_max);
-  }
-  return note;
-}
-
-/// What the crowd laws of a run meet that was not measured: equivalent volumes and overlaps beyond the end of the
-/// table, ratios that no row covers.
+/// What the crowd laws of a run meet at its end that was not measured: single overlaps beyond the end of the table,
+/// ratios that no row covers.
 class RangeCheck {
  public:
   RangeCheck(const LawTableEntry& entry, const std::string& form) : entry_(entry), law_(*entry.find(form)) {}
 
-  [[nodiscard]] std::string note(const System3& s, const CrowdForm& form) const {
-    std::size_t soft = 0;
-    std::size_t beyond = 0;
-    double largest = 0.0;
-    for (const CrowdSum<3>& sum : s.contacts.particle_sum) {
-      if (!(sum.square > 0.0)) continue;
-      ++soft;
-      const double volume = form.equivalent_volume(sum);
-      beyond += volume > entry_.volume_max ? 1 : 0;
-      largest = std::max(largest, volume);
-    }
-    std::string text;
-    if (beyond > 0)
-      text = fmt::format(
-          "{} of {} soft particles are compacted further at the end (up to a lost volume of {:.2f}) than the law was "
-          "measured ({:.2f}): extrapolated",
-          beyond, soft, largest, entry_.volume_max);
-    const std::string deep = overlap_note(s);
-    return text + (text.empty() || deep.empty() ? "" : "; ") + deep;
-  }
-
- private:
   /// Contacts deeper than any row of their kind, or smaller partners than the table has.
-  [[nodiscard]] std::string overlap_note(const System3& s) const {
+  [[nodiscard]] std::string note(const System3& s) const {
     std::size_t deep = 0;
     std::size_t outside = 0;
     std::size_t all = 0;
@@ -104,6 +59,7 @@ class RangeCheck {
     return text;
   }
 
+ private:
   static constexpr std::int32_t kSoftMaterial = 1;  ///< of make_law_system
   static bool is_crowd_law(const AnyLaw& law) {
     return std::visit([]<class Law>(const Law&) { return law_serves<Law, 3>() && !law_serves<Law, 2>(); }, law);
@@ -115,8 +71,9 @@ class RangeCheck {
 
 /// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
 std::string tag_of(const LawTableEntry& entry, const LawSources& sources, const std::string& form) {
-  return short_hash(
-      fmt::format("{} {} {}", sources.friction.value_or(-1.0), sources.unloading, numbers_of(entry, form)));
+  return short_hash(fmt::format("{} {} {} {} {:a}", sources.friction.value_or(-1.0), sources.unloading,
+                                numbers_of(entry, form), to_string(sources.beyond.value_or(entry.beyond)),
+                                entry.volume_max));
 }
 
 /// E scales; nu and mu do not.
@@ -134,6 +91,7 @@ void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
 constexpr std::array kTableKeys{"form", "range", "mu", "unloading"};
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
+  if (t.has("beyond")) out.beyond = beyond_of(t.choice("beyond", {"error", "clamp", "extrapolate"}));
   out.range = t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
   if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
   out.unloading = t.flag("unloading", false);
@@ -152,26 +110,27 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, con
   choices.modulus = spec.youngs_modulus;
   choices.friction = sources.friction.value_or(-1.0);
   choices.unloading = sources.unloading;
+  choices.beyond = sources.beyond;
   const CrowdLaws laws = make_crowd_laws(entry, choices);
   choices.friction = spec.wall_friction;
-  const CrowdModel model = crowd_model(*entry.find(form));
   const RangeCheck check(entry, form);
   return {form,
           form,
           {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft},
           tag_of(entry, sources, form),
           [=](const System3& s) {
-            const std::string note = check.note(s, model.form);
+            const std::string note = check.note(s);
             return remark + (remark.empty() || note.empty() ? "" : "; ") + note;
           }};
 }
 
-NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name) {
+NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
+                      std::optional<Beyond> beyond) {
   const auto contact = [&](PairKind kind) {
-    return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant);
+    return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant, beyond);
   };
   return {name, "pair", pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction),
-          "", [card](const System3& s) { return extrapolation_note(s, card); }};
+          beyond ? to_string(*beyond) : "", nullptr};
 }
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
@@ -218,7 +177,7 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
 }
 
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double solid_fraction, const std::string& name) {
-  if (sources.card) return pair_law_of(*sources.card, spec, name);
+  if (sources.card) return pair_law_of(*sources.card, spec, name, sources.beyond);
   NamedLaws law = table_law_of(sources, sources.forms.front(), spec, solid_fraction);
   law.name = name;
   return law;
@@ -228,7 +187,7 @@ std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec
   std::vector<NamedLaws> laws;
   for (const std::string& form : sources.forms) {
     if (form == "pair" && sources.card)
-      laws.push_back(pair_law_of(*sources.card, spec, "pair"));
+      laws.push_back(pair_law_of(*sources.card, spec, "pair", sources.beyond));
     else
       laws.push_back(table_law_of(sources, form, spec, solid_fraction));
   }

@@ -19,12 +19,13 @@ struct NamedLaws {
   std::string form;  ///< "pair", "bag" or "directional"
   SoftLaws laws;
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
-  /// What to say about the end of a run (left the range of the fit); empty text when nothing.
+  /// What to say about the end of a run (contacts that no measurement covers); empty text when nothing; may be empty.
   std::function<std::string(const System3&)> note;
 };
 
-/// The pair law of a card. Throws BadInput when the card has no usable law.
-NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name);
+/// The pair law of a card; `beyond` instead of what the card says. Throws BadInput when the card has no usable law.
+NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
+                      std::optional<Beyond> beyond = std::nullopt);
 
 /// Where a scene takes its laws from: table [law] of a comparison, keys of a macro scene.
 struct LawSources {
@@ -34,6 +35,7 @@ struct LawSources {
   RangePolicy range = RangePolicy::reject;                       ///< of solid fractions outside the table
   std::optional<double> friction;                                ///< mu_soft of the table's laws; empty: as measured
   bool unloading = false;                                        ///< with the measured unloading branch
+  std::optional<Beyond> beyond{};                                ///< instead of what card or table say
 };
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
@@ -45,8 +47,9 @@ enum class LawFileKind { card, table };
 /// Tells them apart by content: a card has [[pair]], a table [[entry]]. Throws BadInput for anything else, FileTrouble.
 LawFileKind law_file_kind(const std::string& path);
 
-/// The one law of a macro scene: keys `form` (default the best of the table; a card has the pair law only), `range`,
-/// `mu` and `unloading` of `root`, which go with tables, and the card or table at `path`. Throws BadInput, FileTrouble.
+/// The one law of a macro scene: key `beyond`, and keys `form` (default the best of the table; a card has the pair law
+/// only), `range`, `mu` and `unloading` of `root`, which go with tables, and the card or table at `path`. Throws
+/// BadInput, FileTrouble.
 LawSources read_scene_law(const SceneTable& root, const std::string& path);
 
 /// The keys of read_scene_law() alone, for scenes that are read without their law. Throws BadInput.

@@ -38,6 +38,8 @@ ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options)
   const ParticlesResult result = run_with_progress(setup, std::move(setup.system), context);
   json summary = particles_summary(setup, result, memory_before);
   std::string text = particles_text(result);
+  if (summary.contains("remarks"))
+    for (const json& remark : summary["remarks"]) text += "\nremark: " + remark.get<std::string>();
   if (setup.record) {
     save_particles_run(context.path("run.h5"), setup, result, provenance);
     summary["files"] = {{"trajectory", context.path("run.h5")}};

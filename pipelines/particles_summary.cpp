@@ -56,6 +56,56 @@ json contacts_json(const ParticlesScene& scene, const ParticlesResult& result) {
   return out;
 }
 
+json record_json(const GuardRecord& r, const GuardRule& rule, double limit) {
+  const char* actions[] = {"ignore", "count", "stop"};
+  json out = {{"action", actions[static_cast<int>(rule.action)]},
+              {"limit", std::isfinite(limit) ? json(limit) : json(nullptr)},
+              {"worst", r.worst},
+              {"count", r.count}};
+  if (r.count > 0) out["first_time"] = r.first_time;
+  return out;
+}
+
+/// What the guards saw; counts are looks, not events.
+json guards_json(const GuardSpec& spec, const GuardReport& g, const System3& s) {
+  json out = {{"looks", g.looks},
+              {"steps_between_looks", g.every},
+              {"overlap", record_json(g.overlap, spec.overlap, spec.overlap.limit)},
+              {"energy", record_json(g.energy, spec.energy, spec.energy.limit)},
+              {"escape", record_json(g.escape, spec.escape, spec.escape.limit)},
+              {"wall", record_json(g.wall_travel, spec.wall_travel, g.wall_travel_limit)},
+              {"hasty_lists", s.neighbours.hasty}};
+  out["energy"]["watched"] = g.energy_unwatched.empty();
+  if (!g.energy_unwatched.empty()) out["energy"]["unwatched_because"] = g.energy_unwatched;
+  if (g.laws.asked > 0)
+    out["law_range"] = {{"asked", g.laws.asked},
+                        {"beyond", g.laws.beyond},
+                        {"clamped", g.laws.clamped},
+                        {"refused", g.laws.refused},
+                        {"largest_over_end", g.laws.largest}};
+  return out;
+}
+
+/// What was counted, in words.
+json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System3& s) {
+  json out = json::array();
+  const auto counted = [&](const GuardRecord& r, double limit, const char* what) {
+    if (r.count > 0)
+      out.push_back(fmt::format("{} above the limit of {:.3g} at {} of {} looks (first at {:.4g} s, largest {:.3g})",
+                                what, limit, r.count, g.looks, r.first_time, r.worst));
+  };
+  counted(g.overlap, spec.overlap.limit, "overlap over the smaller radius");
+  counted(g.energy, spec.energy.limit, "growth of energy in a scene that nothing drives");
+  counted(g.escape, spec.escape.limit, "grains outside");
+  counted(g.wall_travel, g.wall_travel_limit, "way of a wall that its load moves [m]");
+  if (s.neighbours.hasty > 0)
+    out.push_back(fmt::format("{} of {} neighbour lists lasted one step only: bodies move far in a step",
+                              s.neighbours.hasty, s.neighbours.rebuilds));
+  const std::string laws = law_use_text(g.laws);
+  if (!laws.empty()) out.push_back(laws);
+  return out;
+}
+
 /// Times that do not exist are null.
 json time_json(double seconds) { return std::isfinite(seconds) ? json(seconds) : json(nullptr); }
 
@@ -123,6 +173,9 @@ json particles_summary(const ParticlesScene& scene, const ParticlesResult& resul
   out["contact_state"] = contact_state_json(totals);
   out["cost"] = cost_json(scene, result, totals, memory_before);
   if (result.watched) out["contacts"] = contacts_json(scene, result);
+  out["guards"] = guards_json(scene.guards, result.guards, s);
+  const json remarks = guard_remarks(scene.guards, result.guards, s);
+  if (!remarks.empty()) out["remarks"] = remarks;
   if (!result.usable) out["reason"] = result.reason;
   return out;
 }

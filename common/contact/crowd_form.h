@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/contact/law_range.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
@@ -49,6 +50,7 @@ struct CrowdPressure {
   double a = 0.0;
   double b = 1.0;
   double delta = 0.0;
+  LawRange range{};  ///< of S
 
   struct Value {
     double p = 0.0;
@@ -56,11 +58,13 @@ struct CrowdPressure {
   };
 
   [[nodiscard]] Value at(double s) const {
-    const double d = cap_depth(s);
+    const double end = range.clamp_at();
+    const double d = cap_depth(std::min(s, end));
     if (!(d > delta)) return {};
     const double force = a * (std::pow(d, b) - std::pow(delta, b));
     const double disk = 0.75 * d * (2.0 - d);
     const double p = force / disk;
+    if (s > end) return {p, 0.0};
     return {p, (a * b * std::pow(d, b - 1.0) - p * 1.5 * (1.0 - d)) / (disk * disk)};
   }
 };

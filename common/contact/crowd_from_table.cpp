@@ -79,7 +79,8 @@ CrowdModel crowd_model(const CrowdLaw& law) {
 }
 
 CrowdLaws make_crowd_laws(const LawTableEntry& entry, const CrowdChoices& choices) {
-  const CrowdModel model = crowd_model(usable(entry, choices.form));
+  CrowdModel model = crowd_model(usable(entry, choices.form));
+  if (entry.volume_max > 0.0) model.form.pressure.range = {entry.volume_max, choices.beyond.value_or(entry.beyond)};
   if (model.crowd == Crowd::pair) return laws_of<Crowd::pair>(entry, model, choices);
   if (model.crowd == Crowd::bag) return laws_of<Crowd::bag>(entry, model, choices);
   return laws_of<Crowd::directional>(entry, model, choices);

@@ -1,6 +1,7 @@
 // From a law table to the laws of the contact loop.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/contact/crowd_prediction.h"
@@ -18,9 +19,10 @@ CrowdModel crowd_model(const CrowdLaw& law);
 /// What is not in the table.
 struct CrowdChoices {
   std::string form = "directional";
-  double modulus = 0.0;    ///< E of what the soft particles hold [Pa]
-  double friction = -1.0;  ///< mu_soft; negative: as measured
-  bool unloading = false;  ///< with the measured unloading branch
+  double modulus = 0.0;            ///< E of what the soft particles hold [Pa]
+  double friction = -1.0;          ///< mu_soft; negative: as measured
+  bool unloading = false;          ///< with the measured unloading branch
+  std::optional<Beyond> beyond{};  ///< instead of what the table says
 };
 
 /// The laws of soft particles against solid grains in either order, against planes and shells, and among themselves.

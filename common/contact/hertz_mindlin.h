@@ -67,6 +67,11 @@ struct HertzMindlin {
   /// Overlap below which the pair cannot interact [m].
   [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
 
+  /// Work of the elastic force from touch to this overlap [J]: 2/5 F h.
+  [[nodiscard]] double stored_energy(double overlap, const PairConstants& constants) const {
+    return 0.4 * constants.a * k.inverse_d * overlap * overlap * std::sqrt(overlap);
+  }
+
   template <int D>
   [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
     ContactResponse<D> out;

@@ -37,6 +37,11 @@ struct LinearSpring {
   }
   [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
 
+  /// Work of the elastic force from touch to this overlap [J].
+  [[nodiscard]] double stored_energy(double overlap, const PairConstants&) const {
+    return 0.5 * normal * overlap * overlap;
+  }
+
   template <int D>
   [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
     ContactResponse<D> out;

@@ -7,6 +7,7 @@
 
 #include "common/contact/contact_state.h"
 #include "common/contact/coulomb_spring.h"
+#include "common/contact/law_range.h"
 
 namespace softgrain {
 
@@ -18,6 +19,7 @@ struct PowerTerm {
 
   [[nodiscard]] double value(double d) const { return a * std::pow(d, b) + c; }
   [[nodiscard]] double slope(double d) const { return a * b * std::pow(d, b - 1.0); }
+  [[nodiscard]] double integral(double d) const { return a * std::pow(d, b + 1.0) / (b + 1.0) + c * d; }
 };
 
 /// Fn = E R^2 f(Delta), kt = E R g(Delta), |Ft| <= mu Fn, viscous damping eta = 2 zeta sqrt(m12 kn).
@@ -37,6 +39,7 @@ struct SoftContact {
   double damping = 0.0;          ///< zeta, fraction of critical
   bool partner_is_soft = false;  ///< soft-soft: the smaller radius counts; soft-solid: the soft one's
   bool i_is_soft = true;         ///< soft-solid: which of the two is soft
+  LawRange range;                ///< of Delta
 
   /// a: radius of the shell that Delta refers to [m], b: 2 zeta sqrt(m12).
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
@@ -48,7 +51,7 @@ struct SoftContact {
   [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
     ContactResponse<D> out;
     const double radius = s.constants.a;
-    const double ratio = s.overlap / radius;
+    const double ratio = std::min(s.overlap / radius, range.clamp_at());
     if (ratio < delta) return out;
     out.elastic_force = modulus * radius * radius * normal.value(ratio);
     out.normal_stiffness = modulus * radius * normal.slope(ratio);
@@ -57,6 +60,16 @@ struct SoftContact {
     const double stiffness = modulus * radius * std::max(tangential.value(ratio), 0.0);
     if (stiffness > 0.0) coulomb_spring(s, stiffness, eta, friction * std::max(out.normal_force, 0.0), out);
     return out;
+  }
+
+  /// Work of the elastic force from touch to this overlap [J].
+  [[nodiscard]] double stored_energy(double overlap, const PairConstants& constants) const {
+    const double radius = constants.a;
+    const double ratio = std::min(overlap / radius, range.clamp_at());
+    if (ratio < delta) return 0.0;
+    const double beyond = overlap / radius - ratio;  // of a clamped law: at constant force
+    return modulus * radius * radius * radius *
+           (normal.integral(ratio) - normal.integral(delta) + beyond * normal.value(ratio));
   }
 
  private:

@@ -47,7 +47,7 @@ PowerTerm tangential_term(const PairLaw& law, bool use_secant) {
 }  // namespace
 
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
-                              bool use_secant) {
+                              bool use_secant, std::optional<Beyond> beyond) {
   const PairLaw& law = usable_law(card, kind);
   SoftContact out;
   out.normal = term(law.normal);
@@ -56,6 +56,7 @@ SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus
   out.modulus = modulus;
   out.friction = friction;
   out.damping = damping;
+  if (law.delta_max > 0.0) out.range = {law.delta_max, beyond.value_or(law.beyond)};
   out.partner_is_soft = kind == PairKind::soft_soft;
   return out;
 }

@@ -1,6 +1,8 @@
 // From a law card to a law of the loop.
 #pragma once
 
+#include <optional>
+
 #include "common/contact/soft_contact.h"
 #include "common/data/law_card.h"
 
@@ -11,7 +13,8 @@ namespace softgrain {
 /// 1 degree with `use_secant`; when only one of them was fitted, that one. Throws BadInput when the card has no usable
 /// law of this kind
 /// ("no threshold crossing", "not run") - an underdetermined law is accepted: it reproduces its data within its range.
+/// `beyond` is what the law does above the range it was fitted in; empty: what the card says.
 SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus, double friction, double damping,
-                              bool use_secant);
+                              bool use_secant, std::optional<Beyond> beyond = std::nullopt);
 
 }  // namespace softgrain

@@ -26,9 +26,9 @@ struct PartnerRow {
 struct ConfigurationError {
   std::string name;
   std::string use = "fitted";  ///< "predicted": not used in the fit; "repeated": the loading of another one
-  double error = 0.0;      ///< root mean square of (law - mean) over that of the mean, all recorded states
-  double end_ratio = 0.0;  ///< law over mean at the largest overlap, sums over the neighbours
-  double noise = 0.0;      ///< root mean square standard error of the mean over that of the mean
+  double error = 0.0;          ///< root mean square of (law - mean) over that of the mean, all recorded states
+  double end_ratio = 0.0;      ///< law over mean at the largest overlap, sums over the neighbours
+  double noise = 0.0;          ///< root mean square standard error of the mean over that of the mean
 };
 
 /// One form of law with its parameters.
@@ -78,9 +78,10 @@ struct LawTableEntry {
   double solid_fraction_error = 0.0;  ///< standard error over packings
   int packings = 0;
   std::string relaxation;
-  double volume_max = 0.0;         ///< validity: largest equivalent volume S among the fitted states
-  double overlap_max = 0.0;        ///< and overlap with a plane, h/Rs
-  double grain_overlap_max = 0.0;  ///< largest overlap of grains over the smaller radius in that range
+  double volume_max = 0.0;              ///< validity: largest equivalent volume S among the fitted states
+  double overlap_max = 0.0;             ///< and overlap with a plane, h/Rs
+  double grain_overlap_max = 0.0;       ///< largest overlap of grains over the smaller radius in that range
+  Beyond beyond = Beyond::extrapolate;  ///< what the laws do above volume_max
   SlideLaw slide_plane;
   SlideLaw slide_solid;
   SlideLaw slide_soft;

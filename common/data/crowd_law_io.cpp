@@ -76,6 +76,9 @@ void write_entry(Out out, const LawTableEntry& e) {
                  real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
   fmt::format_to(out, "relaxation = {}\nbest = {}  # by cross-validation\n", quoted(e.relaxation), quoted(e.best));
   fmt::format_to(out, "volume_max = {}  # validity: equivalent volume S\n", real(e.volume_max));
+  fmt::format_to(out,
+                 "beyond = \"{}\"  # above volume_max: \"error\", \"clamp\" or \"extrapolate\"; counted either way\n",
+                 to_string(e.beyond));
   fmt::format_to(out, "overlap_max = {}  # and overlap with a plane, h/Rs\n", real(e.overlap_max));
   fmt::format_to(out, "grain_overlap_max = {}  # of grains over the smaller radius in that range\n",
                  real(e.grain_overlap_max));
@@ -138,6 +141,7 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.relaxation = t.text("relaxation");
   e.best = t.choice("best", {"pair", "bag", "directional"});
   e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
+  e.beyond = beyond_of(t.choice("beyond", {"error", "clamp", "extrapolate"}, "extrapolate"));
   e.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
   e.grain_overlap_max = t.number("grain_overlap_max", Unit::none, Range::not_negative());
   for (const SlideName& slide : kSlides) {

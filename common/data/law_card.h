@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/contact/law_range.h"
 #include "common/data/measurements.h"
 #include "common/data/pair_kind.h"
 #include "common/io/provenance.h"
@@ -70,7 +71,8 @@ struct PairLaw {
   std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
   double delta_min = 0.0;          ///< validity: range of Delta that was fitted
   double delta_max = 0.0;
-  double max_overlap = 0.0;  ///< largest grain overlap over the smaller radius inside that range
+  Beyond beyond = Beyond::extrapolate;  ///< what the law does above delta_max
+  double max_overlap = 0.0;             ///< largest grain overlap over the smaller radius inside that range
   int packings = 0;
   int points = 0;
   double chi2_per_dof = 0.0;

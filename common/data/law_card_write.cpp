@@ -100,6 +100,9 @@ void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
       out, "\n# Range of Delta that was fitted, and the largest grain overlap over the smaller radius inside it.\n");
   fmt::format_to(out, "[pair.validity]\ndelta_min = {}\ndelta_max = {}\n", real(pair.delta_min), real(pair.delta_max));
   fmt::format_to(out, "max_overlap = {}\n", real(pair.max_overlap));
+  fmt::format_to(out,
+                 "beyond = \"{}\"  # above delta_max: \"error\", \"clamp\" or \"extrapolate\"; counted either way\n",
+                 to_string(pair.beyond));
   for (const LawPartName& part : kLawParts) write_part(out, pair, part, spec);
   write_covariance(out, pair);
 }

@@ -31,7 +31,10 @@ constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x}
                                        {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
                                        {"fabric", "1", &MacroCurve::fabric},
                                        {"fabric_bodies", "1", &MacroCurve::fabric_bodies},
-                                       {"coordination_bodies", "1", &MacroCurve::coordination_bodies}};
+                                       {"coordination_bodies", "1", &MacroCurve::coordination_bodies},
+                                       {"law_asked", "1", &MacroCurve::law_asked},
+                                       {"law_beyond", "1", &MacroCurve::law_beyond},
+                                       {"law_largest", "1", &MacroCurve::law_largest}};
 constexpr Column kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
 
 void write_column(const h5::Group& group, const MacroCurve& curve, const Column& c) {

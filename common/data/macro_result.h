@@ -38,6 +38,9 @@ struct MacroCurve {
   std::vector<double> fabric_bodies;        ///< the same of contacts between bodies, a soft particle being one
   std::vector<double> coordination_bodies;  ///< bodies and walls that a body touches, mean
   std::vector<double> body_forces;          ///< normal forces between bodies, walls included, at the end [N]
+  std::vector<double> law_asked;            ///< soft contacts (pair laws) and soft particles (crowd laws) in contact
+  std::vector<double> law_beyond;           ///< of them, those beyond the range that their law was measured in
+  std::vector<double> law_largest;          ///< largest Delta or lost volume over the end of that range
   bool usable = true;
   std::string note;
   Cost cost;

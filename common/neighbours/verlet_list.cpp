@@ -304,6 +304,7 @@ void rebuild_neighbours(System<D>& s) {
   n.reference.resize(static_cast<std::size_t>(s.particles.size()));
   for (std::size_t u = 0; u < n.reference.size(); ++u) n.reference[u] = s.particles.sphere[u].x;
   n.reference_edges = s.cell.edges;
+  if (n.rebuilds > 1 && s.cost.loop_passes - n.passes_at_build <= 1) ++n.hasty;
   n.passes_at_build = s.cost.loop_passes;
   ++n.rebuilds;
 }

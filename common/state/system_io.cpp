@@ -162,6 +162,7 @@ void write_neighbours(const h5::Group& g, const NeighbourState<D>& n) {
   write_vectors(g, "reference_edges", rows(n.reference_edges));
   g.attribute("rebuilds", n.rebuilds);
   g.attribute("passes_at_build", n.passes_at_build);
+  g.attribute("hasty", n.hasty);
 }
 
 template <int D>
@@ -173,6 +174,7 @@ void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodie
   n.reference_edges = read_matrix<D>(g, "reference_edges");
   n.rebuilds = g.integer("rebuilds");
   n.passes_at_build = g.integer("passes_at_build");
+  n.hasty = g.has_attribute("hasty") ? g.integer("hasty") : 0;
 }
 
 template <int D>

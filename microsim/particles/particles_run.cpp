@@ -38,6 +38,7 @@ class ParticlesRun {
         control_(control),
         system_(std::move(start)),
         integrator_(scene.time.step),
+        guards_(scene.guards, system_),
         due_(scene.checkpoint_seconds),
         started_(Clock::now()) {}
 
@@ -66,6 +67,7 @@ class ParticlesRun {
   const ParticlesControl& control_;
   System3 system_;
   VelocityVerlet<3> integrator_;
+  Guards guards_;
   Trajectory trajectory_;
   ContactMonitor monitor_;
   LoopPart warm_up_;
@@ -92,6 +94,7 @@ bool ParticlesRun::restore() {
   read_system(saved->open("system"), system_);
   trajectory_ = read_trajectory(saved->open("trajectory"));
   monitor_.load(saved->open("contacts"));
+  guards_.load(saved->open("guards"));
   if (control_.say) control_.say("continuing from step " + std::to_string(system_.step));
   return true;
 }
@@ -100,6 +103,7 @@ void ParticlesRun::begin() {
   if (restore()) return;
   order_grains();
   integrator_.initialise(system_);
+  guards_.look(system_);
   if (watched()) monitor_.observe(system_);
   record();
 }
@@ -141,6 +145,7 @@ void ParticlesRun::save() {
     write_system(root.create("system"), system_);
     write_trajectory(root.create("trajectory"), trajectory_);
     monitor_.save(root.create("contacts"));
+    guards_.save(root.create("guards"));
   });
 }
 
@@ -162,6 +167,7 @@ void ParticlesRun::observe() {
     require_sound();
     if (control_.progress) control_.progress(system_.step);
   }
+  if (system_.step % guards_.every() == 0) guards_.look(system_);
   if (frame_due() && system_.step < scene_.time.steps) record();
 }
 
@@ -187,6 +193,7 @@ void ParticlesRun::advance() {
   warm_up_ = advance_to(scene_.time.warm_up_steps);
   measured_ = advance_to(scene_.time.steps);
   require_sound();
+  if (system_.step % guards_.every() != 0) guards_.look(system_);
 }
 
 ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
@@ -200,6 +207,7 @@ ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
           monitor_.histories(),
           usable,
           reason,
+          guards_.report(),
           warm_up_,
           measured_,
           peak};

@@ -7,6 +7,7 @@
 
 #include "common/io/provenance.h"
 #include "microsim/particles/contact_monitor.h"
+#include "microsim/particles/guards.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/particles/trajectory.h"
 
@@ -38,7 +39,8 @@ struct ParticlesResult {
   bool watched = false;                  ///< contacts were watched
   std::vector<ContactHistory> contacts;  ///< of every pair that touched
   bool usable = false;
-  std::string reason;        ///< why not: lost or diverged particle, with step and time
+  std::string reason;  ///< why not: lost or diverged particle, with step and time
+  GuardReport guards;
   LoopPart warm_up;          ///< the first SceneTime::warm_up_steps
   LoopPart measured;         ///< the others; of a run that was lost: empty
   double peak_memory = 0.0;  ///< of the process at the end of the loop [bytes]; 0 when unknown

@@ -7,6 +7,7 @@
 
 #include "common/io/scene.h"
 #include "common/system.h"
+#include "microsim/particles/guards.h"
 #include "microsim/particles/scene_time.h"
 
 namespace softgrain {
@@ -21,7 +22,8 @@ struct ParticlesScene {
   std::int64_t output_stride = 0;     ///< steps between recorded frames; 0: only the first and the last state
   std::int64_t checkpoint_steps = 0;  ///< 0: by wall time alone
   double checkpoint_seconds = 300.0;  ///< wall time between checkpoints [s]
-  std::string text;                   ///< the scene as it is used
+  GuardSpec guards;
+  std::string text;  ///< the scene as it is used
 };
 
 /// Reads and checks everything, computes the step. Throws BadInput with file:line (also for particles that lie in a

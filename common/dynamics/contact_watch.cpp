@@ -1,0 +1,166 @@
+#include "common/dynamics/contact_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <type_traits>
+
+#include "common/dynamics/pair_loop.h"
+
+namespace softgrain {
+
+namespace {
+
+template <class Law>
+constexpr bool stores_energy() {
+  return requires(const Law& law) { law.stored_energy(0.0, PairConstants{}); };
+}
+
+template <class Law>
+constexpr bool is_crowd() {
+  return requires { Law::needs_particle_pass; }
+  &&requires(const Law& law) { law.form; };
+}
+
+/// Sections one after another; sums of crowd laws are made anew, because those of the last pass are scratch.
+template <int D>
+class Watcher {
+ public:
+  explicit Watcher(const System<D>& system) : s_(system) {}
+
+  ContactWatch<D> watch() {
+    for (const ContactSection& section : s_.contacts.sections)
+      detail::with_types(s_, section,
+                         [&](const auto& law, auto geometry, auto) { look<decltype(geometry)::value>(section, law); });
+    for (std::size_t u = 0; u < sums_.size(); ++u)
+      if (sums_[u].square > 0.0) out_.laws.add(volume_[u](sums_[u]) / range_[u].end, range_[u].beyond);
+    return out_;
+  }
+
+ private:
+  template <Geometry kGeometry, class Law>
+  void look(const ContactSection& section, const Law& law) {
+    for (std::int32_t k = section.begin; k < section.end; ++k) {
+      const auto c = static_cast<std::size_t>(k);
+      const auto i = static_cast<std::size_t>(s_.contacts.i[c]);
+      const auto j = static_cast<std::size_t>(s_.contacts.j[c]);
+      const Vec<D> shift = s_.cell.any_periodic() ? s_.cell.image_shift(s_.contacts.image[c]) : Vec<D>{};
+      ContactGeometry<D> g;
+      if (!detail::meet<D, kGeometry>(s_.particles, i, j, shift, g, reach_of(law))) continue;
+      note_overlap(c, g, kGeometry);
+      ContactState<D> state = detail::contact_state<D, kGeometry>(s_, c, g);
+      if constexpr (Law::has_tangential) state.spring = s_.contacts.spring[c];
+      if constexpr (Law::has_memory) state.memory = s_.contacts.memory[c];
+      note_energy(law, state);
+      note_use(law, state, i, j);
+    }
+  }
+
+  void note_overlap(std::size_t c, const ContactGeometry<D>& g, Geometry geometry) {
+    const auto& sphere = s_.particles.sphere;
+    const double ri = sphere[static_cast<std::size_t>(s_.contacts.i[c])].r;
+    const double rj = sphere[static_cast<std::size_t>(s_.contacts.j[c])].r;
+    const double smaller = geometry == Geometry::sphere_sphere ? std::min(ri, rj) : ri;
+    if (geometry == Geometry::sphere_plane && g.overlap > ri) {
+      ++out_.behind_planes;
+      out_.behind = s_.contacts.i[c];
+    }
+    if (g.overlap / smaller <= out_.overlap) return;
+    out_.overlap = g.overlap / smaller;
+    out_.i = s_.contacts.i[c];
+    out_.j = s_.contacts.j[c];
+  }
+
+  /// The state carries no motion: what the law answers is elastic.
+  template <class Law>
+  void note_energy(const Law& law, const ContactState<D>& state) {
+    if constexpr (stores_energy<Law>()) {
+      out_.stored += law.stored_energy(state.overlap, state.constants);
+      if constexpr (Law::has_tangential) {
+        const ContactResponse<D> r = law.evaluate(state);
+        if (r.tangential_stiffness > 0.0) out_.stored += 0.5 * norm2(r.tangential_force) / r.tangential_stiffness;
+      }
+    } else {
+      out_.energy_known = false;
+    }
+  }
+
+  template <class Law>
+  void note_use(const Law& law, const ContactState<D>& state, std::size_t i, std::size_t j) {
+    if constexpr (std::is_same_v<Law, SoftContact>) {
+      out_.laws.add(state.overlap / (state.constants.a * law.range.end), law.range.beyond);
+    } else if constexpr (is_crowd<Law>()) {
+      note_crowd(law, state, true, i);
+      note_crowd(law, state, false, j);
+    }
+  }
+
+  template <class Law>
+  void note_crowd(const Law& law, const ContactState<D>& state, bool of_i, std::size_t body) {
+    const LawRange& range = law.form.pressure.range;
+    if constexpr (!Law::needs_particle_pass) {
+      CrowdSum<D> own;
+      law.share(state, of_i, own);
+      if (own.square > 0.0) out_.laws.add(own.volume / range.end, range.beyond);
+    } else {
+      make_sums();
+      CrowdSum<D>& sum = sums_[body];
+      law.share(state, of_i, sum);
+      range_[body] = range;
+      volume_[body] = [form = law.form](const CrowdSum<D>& all) { return form.equivalent_volume(all); };
+    }
+  }
+  void make_sums() {
+    if (!sums_.empty()) return;
+    const std::size_t bodies = s_.particles.sphere.size();
+    sums_.resize(bodies);
+    range_.resize(bodies);
+    volume_.resize(bodies);
+  }
+
+  const System<D>& s_;
+  ContactWatch<D> out_;
+  std::vector<CrowdSum<D>> sums_;  ///< per body; empty without laws of crowds
+  std::vector<LawRange> range_;
+  std::vector<std::function<double(const CrowdSum<D>&)>> volume_;
+};
+
+}  // namespace
+
+void LawUse::add(double value_over_end, Beyond policy) {
+  ++asked;
+  largest = std::max(largest, value_over_end);
+  if (!(value_over_end > 1.0)) return;
+  ++beyond;
+  refused += policy == Beyond::error ? 1 : 0;
+  clamped += policy == Beyond::clamp ? 1 : 0;
+}
+
+LawUse& LawUse::operator+=(const LawUse& other) {
+  asked += other.asked;
+  beyond += other.beyond;
+  largest = std::max(largest, other.largest);
+  refused += other.refused;
+  clamped += other.clamped;
+  return *this;
+}
+
+std::string law_use_text(const LawUse& use) {
+  if (use.beyond == 0) return "";
+  const char* done = use.refused > 0 ? "which the law does not allow" : use.clamped > 0 ? "clamped" : "extrapolated";
+  return fmt::format(
+      "{} of {} uses of fitted laws beyond what was measured, up to {:.2f} times the end of the range: {}", use.beyond,
+      use.asked, use.largest, done);
+}
+
+template <int D>
+ContactWatch<D> watch_contacts(const System<D>& system) {
+  return Watcher<D>(system).watch();
+}
+
+template ContactWatch<2> watch_contacts<2>(const System<2>&);
+template ContactWatch<3> watch_contacts<3>(const System<3>&);
+
+}  // namespace softgrain

@@ -1,0 +1,44 @@
+// One look at all contacts of a state, for guards: how deep, how much energy they store, how far laws are from what
+// was measured. Reads only, and copies nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/system.h"
+
+namespace softgrain {
+
+/// How far fitted laws are used beyond the range they were measured in. Pair laws of a card count contacts by Delta,
+/// crowd laws soft particles by the lost volume S of all their contacts (the pair form by that of each).
+struct LawUse {
+  std::int64_t asked = 0;    ///< contacts and particles that a fitted law serves
+  std::int64_t beyond = 0;   ///< of them, those beyond the end of their range
+  double largest = 0.0;      ///< largest Delta or S over the end of its range; 1: at the end
+  std::int64_t refused = 0;  ///< of those beyond, under laws that do not allow it (Beyond::error)
+  std::int64_t clamped = 0;  ///< and under laws that are clamped there
+
+  void add(double value_over_end, Beyond policy);
+  LawUse& operator+=(const LawUse& other);
+};
+
+/// "12 of 340 soft contacts beyond ... extrapolated"; empty when nothing is beyond.
+std::string law_use_text(const LawUse& use);
+
+template <int D>
+struct ContactWatch {
+  double overlap = 0.0;  ///< largest overlap over the radius of the smaller body
+  Slot i = -1;           ///< of that contact
+  Slot j = -1;
+  std::int64_t behind_planes = 0;  ///< grains whose centre is behind a plane (once per plane)
+  Slot behind = -1;                ///< one of them
+  double stored = 0.0;             ///< elastic energy of all contacts, tangential springs included [J]
+  bool energy_known = true;        ///< false when a law in use has no energy of its own contact (crowd laws, cohesion)
+  LawUse laws;
+};
+
+/// The list of pairs must be valid for the positions, as it is after a force pass.
+template <int D>
+ContactWatch<D> watch_contacts(const System<D>& system);
+
+}  // namespace softgrain

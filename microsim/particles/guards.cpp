@@ -1,0 +1,216 @@
+#include "microsim/particles/guards.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "common/dynamics/verlet.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// Grains up to which every 64th step is looked at, above it every 512th.
+constexpr Slot kFewGrains = 1000;
+
+std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
+
+GuardAction read_action(const SceneTable& t, GuardAction fallback) {
+  const char* words[] = {"ignore", "count", "stop"};
+  const std::string word = t.choice("action", {"ignore", "count", "stop"}, words[static_cast<int>(fallback)]);
+  return word == "stop" ? GuardAction::stop : word == "count" ? GuardAction::count : GuardAction::ignore;
+}
+
+/// Why the mechanical energy of a scene may grow; empty when it may not.
+std::string driven_by(const System3& s) {
+  for (int k = 0; k < 3; ++k) {
+    if (norm2(s.cell.velocity_gradient[k]) > 0.0) return "the cell is deformed";
+    if (s.cell.periodic[at(k)] && s.gravity[k] != 0.0) return "gravity points along a periodic axis";
+  }
+  const auto& p = s.particles;
+  for (Slot i = 0; i < p.size(); ++i)
+    if ((p.inverse_mass[at(i)] == 0.0 && norm2(p.velocity[at(i)]) > 0.0) ||
+        (p.inverse_inertia[at(i)] == 0.0 && norm2(p.spin[at(i)]) > 0.0))
+      return "a body is moved at a given velocity";
+  return "";
+}
+
+/// Of gravity and of the loads on planes [J].
+double potential_energy(const System3& s) {
+  const auto& p = s.particles;
+  double sum = 0.0;
+  for (Slot i = 0; i < p.first_plane(); ++i)
+    if (p.inverse_mass[at(i)] > 0.0) sum -= dot(s.gravity, p.sphere[at(i)].x) / p.inverse_mass[at(i)];
+  for (Slot w = p.first_plane(); w < p.size(); ++w)
+    if (p.inverse_mass[at(w)] > 0.0)
+      sum -= p.plane_load[at(w - p.first_plane())] * dot(p.normal_of(w), p.sphere[at(w)].x);
+  return sum;
+}
+
+/// Twice the longest way of a wall moved by forces through all grains; infinite without such walls or grains.
+double default_travel(const System3& s) {
+  const auto& p = s.particles;
+  double longest = 0.0;
+  for (Slot w = p.first_plane(); w < p.size(); ++w) {
+    if (!(p.inverse_mass[at(w)] > 0.0)) continue;
+    for (Slot i = 0; i < p.grains; ++i)
+      longest =
+          std::max(longest, std::abs(dot(p.sphere[at(i)].x - p.sphere[at(w)].x, p.normal_of(w))) + p.sphere[at(i)].r);
+  }
+  return longest > 0.0 ? 2.0 * longest : kInfinite;
+}
+
+std::string body(const System3& s, Slot slot) {
+  if (slot >= s.particles.grains) return "wall " + std::to_string(slot - s.particles.grains);
+  const auto& id = s.particles.id;
+  return "particle " + std::to_string(id.empty() ? slot : id[at(slot)]);
+}
+
+void write_record(const h5::Group& g, const std::string& name, const GuardRecord& r) {
+  g.write(name, std::vector<double>{r.worst, static_cast<double>(r.count), r.first_time});
+}
+
+GuardRecord read_record(const h5::Group& g, const std::string& name) {
+  const std::vector<double> v = g.doubles(name);
+  if (v.size() != 3) throw FileTrouble("checkpoint: guard '" + name + "' has a wrong size");
+  return {v[0], static_cast<std::int64_t>(v[1]), v[2]};
+}
+
+}  // namespace
+
+GuardSpec read_guards(const SceneTable& t) {
+  GuardSpec out;
+  const SceneTable overlap = t.table_or_empty("overlap");
+  out.overlap.limit = overlap.number("limit", Unit::none, Range::positive(), out.overlap.limit);
+  out.overlap.action = read_action(overlap, out.overlap.action);
+  const SceneTable energy = t.table_or_empty("energy");
+  out.energy.limit = energy.number("limit", Unit::none, Range::positive(), out.energy.limit);
+  out.energy.action = read_action(energy, out.energy.action);
+  const SceneTable escape = t.table_or_empty("escape");
+  if (escape.has("low")) out.low = escape.vector3("low", Unit::length);
+  if (escape.has("high")) out.high = escape.vector3("high", Unit::length);
+  for (int k = 0; out.low && out.high && k < 3; ++k)
+    if (!((*out.low)[k] < (*out.high)[k])) escape.reject("high", "must be above low along every axis");
+  out.escape.action = read_action(escape, out.escape.action);
+  const SceneTable wall = t.table_or_empty("wall");
+  out.wall_travel.limit = wall.number("travel", Unit::length, Range::positive(), 0.0);
+  out.wall_travel.action = read_action(wall, out.wall_travel.action);
+  return out;
+}
+
+Guards::Guards(const GuardSpec& spec, const System3& start) : spec_(spec) {
+  const auto& p = start.particles;
+  report_.every = p.grains <= kFewGrains ? 64 : 512;
+  report_.energy_unwatched = driven_by(start);
+  if (spec_.energy.action == GuardAction::ignore) report_.energy_unwatched = "the scene asks for that";
+  report_.wall_travel_limit = spec.wall_travel.limit > 0.0 ? spec.wall_travel.limit : default_travel(start);
+  for (Slot w = p.first_plane(); w < p.size(); ++w) wall_start_.push_back(p.sphere[at(w)].x);
+  least_ = kInfinite;
+}
+
+void Guards::note(const GuardRule& rule, double value, double time, GuardRecord& record, const std::string& what) {
+  record.worst = std::max(record.worst, value);
+  if (!(value > rule.limit)) return;
+  if (record.count++ == 0) record.first_time = time;
+  if (rule.action == GuardAction::stop) throw NotUsable(what);
+}
+
+void Guards::look_at_energy(const System3& s, const ContactWatch<3>& watch) {
+  if (!report_.energy_unwatched.empty()) return;
+  if (!watch.energy_known) {
+    report_.energy_unwatched = "a contact law has no energy of its own";
+    return;
+  }
+  const double moved = kinetic_energy(s.particles) + watch.stored;
+  const double energy = moved + potential_energy(s);
+  scale_ = std::max(scale_, moved);
+  if (energy < least_) least_ = energy;
+  if (!(scale_ > 0.0)) return;
+  const double growth = (energy - least_) / scale_;
+  std::ostringstream what;
+  what << "energy grows although nothing drives the scene: by " << 100.0 * growth
+       << " % of the most that moved or was stored (guards.energy.limit " << 100.0 * spec_.energy.limit
+       << " %); take a shorter step, or tangential = \"rescaled\"";
+  note(spec_.energy, growth, s.time, report_.energy, what.str());
+}
+
+void Guards::look_at_grains(const System3& s, const ContactWatch<3>& watch) {
+  const auto& p = s.particles;
+  if (spec_.overlap.action != GuardAction::ignore && watch.i >= 0) {
+    std::ostringstream what;
+    what << body(s, watch.i) << " and " << body(s, watch.j) << " overlap by " << watch.overlap
+         << " of the smaller radius (guards.overlap.limit " << spec_.overlap.limit << ")";
+    note(spec_.overlap, watch.overlap, s.time, report_.overlap, what.str());
+  }
+  if (spec_.escape.action == GuardAction::ignore) return;
+  std::int64_t outside = watch.behind_planes;
+  Slot first = watch.behind;
+  for (Slot i = 0; (spec_.low || spec_.high) && i < p.grains; ++i) {
+    const Vec3& x = p.sphere[at(i)].x;
+    bool in = true;
+    for (int k = 0; k < 3; ++k)
+      in = in && !(spec_.low && x[k] < (*spec_.low)[k]) && !(spec_.high && x[k] > (*spec_.high)[k]);
+    if (in) continue;
+    ++outside;
+    first = i;
+  }
+  note(spec_.escape, static_cast<double>(outside), s.time, report_.escape,
+       first < 0 ? ""
+                 : body(s, first) + " has escaped: " +
+                       (first == watch.behind ? "its centre is behind a wall" : "it is outside guards.escape"));
+}
+
+void Guards::look_at_walls(const System3& s) {
+  if (spec_.wall_travel.action == GuardAction::ignore) return;
+  const auto& p = s.particles;
+  for (Slot w = p.first_plane(); w < p.size(); ++w) {
+    if (!(p.inverse_mass[at(w)] > 0.0)) continue;
+    const double travel = norm(p.sphere[at(w)].x - wall_start_[at(w - p.first_plane())]);
+    std::ostringstream what;
+    what << body(s, w) << ", which its load moves, runs away: it has gone " << travel << " m (guards.wall.travel "
+         << report_.wall_travel_limit << " m)";
+    note({report_.wall_travel_limit, spec_.wall_travel.action}, travel, s.time, report_.wall_travel, what.str());
+  }
+}
+
+void Guards::look(const System3& s) {
+  const ContactWatch<3> watch = watch_contacts(s);
+  ++report_.looks;
+  report_.laws += watch.laws;
+  look_at_grains(s, watch);
+  look_at_walls(s);
+  look_at_energy(s, watch);
+  if (watch.laws.refused > 0) throw NotUsable("soft contacts: " + law_use_text(watch.laws));
+}
+
+void Guards::save(const h5::Group& g) const {
+  write_record(g, "overlap", report_.overlap);
+  write_record(g, "energy", report_.energy);
+  write_record(g, "escape", report_.escape);
+  write_record(g, "wall_travel", report_.wall_travel);
+  const LawUse& l = report_.laws;
+  g.write("laws", std::vector<std::int64_t>{report_.looks, l.asked, l.beyond, l.refused, l.clamped});
+  g.write("numbers", std::vector<double>{least_, scale_, l.largest});
+  g.attribute("energy_unwatched", report_.energy_unwatched);
+}
+
+void Guards::load(const h5::Group& g) {
+  report_.overlap = read_record(g, "overlap");
+  report_.energy = read_record(g, "energy");
+  report_.escape = read_record(g, "escape");
+  report_.wall_travel = read_record(g, "wall_travel");
+  const std::vector<std::int64_t> l = g.integers("laws");
+  const std::vector<double> n = g.doubles("numbers");
+  if (l.size() != 5 || n.size() != 3) throw FileTrouble("checkpoint: guards have a wrong size");
+  report_.looks = l[0];
+  report_.laws = {l[1], l[2], n[2], l[3], l[4]};
+  least_ = n[0];
+  scale_ = n[1];
+  report_.energy_unwatched = g.text("energy_unwatched");
+}
+
+}  // namespace softgrain
