@@ -76,9 +76,10 @@ TEST(GrainBoxResume, InterruptedRunsEndInTheSameBits) {
   int status = 0;
   for (int n = 0; n < 200; ++n) {
     status = signal_after(start_program(arguments), 0.1 + 0.03 * n, SIGTERM);
+    if (ended_before_it_listened(status)) continue;
     if (!ended_with(status, 130)) break;
     ++stops;
-    if (n == 0) arguments.push_back("--resume");
+    if (stops == 1) arguments.push_back("--resume");
   }
   ASSERT_TRUE(ended_with(status, 0));
   EXPECT_GE(stops, 2);
