@@ -34,6 +34,7 @@ struct LawSources {
   RangePolicy range = RangePolicy::reject;                       ///< of solid fractions outside the table
   std::optional<double> friction;                                ///< mu_soft of the table's laws; empty: as measured
   bool unloading = false;                                        ///< with the measured unloading branch
+  std::string text;                                              ///< of the files that they come from
 };
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
