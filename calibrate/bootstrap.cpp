@@ -5,6 +5,7 @@
 
 #include "calibrate/joint_fit.h"
 #include "common/core/random.h"
+#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -41,8 +42,11 @@ Replicate refit(const BootstrapInput& input, std::uint64_t seed, std::uint64_t i
 BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint64_t seed, std::uint64_t stream) {
   std::vector<Replicate> all(static_cast<std::size_t>(replicates));
 #pragma omp parallel for schedule(dynamic)
-  for (int r = 0; r < replicates; ++r)
+  for (int r = 0; r < replicates; ++r) {
+    if (interrupt_requested()) continue;  // an exception must not leave the region
     all[static_cast<std::size_t>(r)] = refit(input, seed, (stream << 32) + static_cast<std::uint64_t>(r));
+  }
+  stop_if_interrupted("refitting to drawn packings");
   BootstrapResult out;
   for (const Replicate& one : all) {
     if (one.outcome == Outcome::failed) {

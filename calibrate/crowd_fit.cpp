@@ -12,6 +12,7 @@
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
 #include "common/core/random.h"
+#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -99,6 +100,7 @@ std::vector<std::vector<double>> bootstrap_form(const CrowdMeasurements& data, c
                                                 const FormFit& full, const CrowdFitOptions& options) {
   std::vector<std::vector<double>> columns(all_parameters(full).size());
   for (int r = 0; r < options.replicates; ++r) {
+    stop_if_interrupted("refitting to drawn packings");
     RandomStream random(options.seed, RandomPurpose::bootstrap, static_cast<std::uint64_t>(r));
     std::vector<double> weight(data.packings.size(), 0.0);
     for (std::size_t k = 0; k < weight.size(); ++k) weight[random.below(weight.size())] += 1.0;

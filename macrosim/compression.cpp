@@ -9,6 +9,7 @@
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/io/interrupt.h"
+#include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 
 namespace softgrain {
@@ -119,6 +120,18 @@ void record(CompressionState& state, const MacroSpec& spec, double strain, const
            std::to_string(rest.residual) + " of the mean contact force, wanted " + std::to_string(spec.tolerance) + ")";
 }
 
+/// Strains the box and relaxes; what it cost goes to the curve.
+RelaxationResult counted_step(DampedRelaxation<3>& relaxation, CompressionState& state, const Vec3& strain) {
+  const auto start = std::chrono::steady_clock::now();
+  const Cost before = state.macro.system.cost;
+  if (strain != Vec3{}) strain_box(state.macro.system, state.macro.box, strain);
+  const RelaxationResult rest = relaxation.relax(state.macro.system);
+  const Cost& now = state.macro.system.cost;
+  state.curve.cost += {now.loop_passes - before.loop_passes, now.contact_evaluations - before.contact_evaluations,
+                       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  return rest;
+}
+
 }  // namespace
 
 MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,
@@ -138,30 +151,36 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
 
 std::int64_t recorded_points(const MacroSpec& spec) { return preload_points(spec) + spec.steps + 1; }
 
-void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer) {
-  System3& s = state.macro.system;
+void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer,
+              double checkpoint_seconds) {
   DampedRelaxation<3> relaxation(relaxation_options(spec, state.macro));
   const std::int64_t points = recorded_points(spec);
+  CheckpointClock due(checkpoint_seconds);
+  const auto share = [&](std::int64_t point) {
+    const auto way = static_cast<double>(state.increments) / static_cast<double>(spec.increments_per_step);
+    return (static_cast<double>(point) + way) / static_cast<double>(points);
+  };
+  if (!state.curve.usable && watch_contacts(state.macro.system).laws.refused > 0) return;  // had ended here before
   while (static_cast<std::int64_t>(state.curve.strain.size()) < points) {
     const auto point = static_cast<std::int64_t>(state.curve.strain.size());
-    const auto start = std::chrono::steady_clock::now();
-    const Cost before = s.cost;
     RelaxationResult rest;
-    if (point == 0) rest = relaxation.relax(s);
-    for (std::int64_t k = 1; point > 0 && k <= spec.increments_per_step; ++k) {
-      strain_box(s, state.macro.box, increment(spec, point, k));
-      rest = relaxation.relax(s);
+    if (point == 0) rest = counted_step(relaxation, state, {});
+    while (point > 0 && state.increments < spec.increments_per_step) {
+      rest = counted_step(relaxation, state, increment(spec, point, state.increments + 1));
+      ++state.increments;
+      // After the last one the point is recorded, which needs what the relaxation said.
+      if (state.increments == spec.increments_per_step || !(interrupt_requested() || due.due())) continue;
+      observer(state, share(point));
+      stop_if_interrupted("straining; all up to here is saved");
     }
+    state.increments = 0;
     record(state, spec, strain_at(spec, point), rest);
     const LawUse use = record_law_use(state);
     const bool last = point + 1 == points;
     if (last || use.refused > 0) note_law_use(state.curve, use, strain_at(spec, point));
-    state.curve.cost +=
-        {s.cost.loop_passes - before.loop_passes, s.cost.contact_evaluations - before.contact_evaluations,
-         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-    observer(state, static_cast<double>(point + 1) / static_cast<double>(points));
+    observer(state, share(point + 1));
     if (use.refused > 0) return;
-    if (interrupt_requested()) throw Interrupted("stopped by a signal; finished points are saved");
+    stop_if_interrupted("straining; all up to here is saved");
   }
 }
 

@@ -4,17 +4,20 @@
 #include <functional>
 
 #include "common/data/macro_result.h"
+#include "common/state/checkpoint.h"
 #include "macrosim/macro_system.h"
 
 namespace softgrain {
 
-/// Everything a compression needs to go on after a recorded point.
+/// Everything a compression needs to go on.
 struct CompressionState {
   MacroSystem macro;
-  MacroCurve curve;  ///< what was recorded so far; curve.strain.size() says where to go on
+  MacroCurve curve;             ///< what was recorded so far; curve.strain.size() says where to go on
+  std::int64_t increments = 0;  ///< done since, on the way to the next point
 };
 
-/// Called after each recorded point.
+/// Called after each recorded point, and between two of them when that takes long or a signal came: to save, to report
+/// progress (the share of the test done).
 using CompressionObserver = std::function<void(const CompressionState&, double share_done)>;
 
 /// Number of points that a test records, the unstrained one included.
@@ -27,7 +30,9 @@ std::int64_t recorded_points(const MacroSpec& spec);
 /// forces between bodies of the last point.
 /// Points that did not converge make the curve not usable, with a note; so does a law asked beyond its range that does
 /// not allow it, and the test ends there. Throws NotUsable (lost grain) and Interrupted.
-void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer);
+/// Between two recorded points the observer is called after `checkpoint_seconds` of wall time, or for a signal.
+void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer,
+              double checkpoint_seconds = kCheckpointSeconds);
 
 /// A curve with the facts of the packing filled in.
 MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,

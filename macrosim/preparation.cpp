@@ -7,6 +7,7 @@
 #include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/damped_relaxation.h"
+#include "common/io/interrupt.h"
 #include "macrosim/box.h"
 
 namespace softgrain {
@@ -27,6 +28,7 @@ bool collides(const std::vector<MacroBody>& bodies, std::size_t placed, const Ve
 bool place(std::vector<MacroBody>& bodies, double edge, RandomStream& random) {
   constexpr int kTrials = 100000;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
+    stop_if_interrupted("placing bodies");
     const double r = bodies[k].r;
     int trial = 0;
     do {

@@ -1,12 +1,9 @@
 #include "microsim/crowd_experiment.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
-#include "common/core/error.h"
 #include "common/data/slide_direction.h"
-#include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/residual.h"
@@ -47,67 +44,6 @@ double present_overlap(const CrowdExperiment& e, std::size_t k) {
   const CrowdPartner& partner = e.configuration.partners[k];
   const double distance = partner.kind == PartnerKind::plane ? dot(apart, partner.direction) : norm(apart);
   return 1.0 + partner.ratio - distance / e.spec.shell_radius;
-}
-
-RelaxationResult relax(CrowdExperiment& e, const CrowdOptions& options, double tolerance) {
-  DampedOptions damped;
-  damped.tolerance = tolerance;
-  damped.force_floor = force_floor(e.spec);
-  damped.max_passes = options.max_passes;
-  damped.least_stiffness = options.least_stiffness * e.spec.youngs_modulus;
-  return DampedRelaxation<3>(damped).relax(e.system);
-}
-
-/// Prescribed position: overlaps and slide [Rs].
-struct Target {
-  std::vector<double> overlap;
-  double slide = 0.0;
-};
-
-/// `share` of the way from one to the other; exactly `to` at 1.
-Target between(const Target& from, const Target& to, double share) {
-  if (share == 1.0) return to;
-  Target t{from.overlap, from.slide + share * (to.slide - from.slide)};
-  for (std::size_t k = 0; k < t.overlap.size(); ++k) t.overlap[k] += share * (to.overlap[k] - from.overlap[k]);
-  return t;
-}
-
-double distance(const Target& a, const Target& b) {
-  double most = std::abs(a.slide - b.slide);
-  for (std::size_t k = 0; k < a.overlap.size(); ++k) most = std::max(most, std::abs(a.overlap[k] - b.overlap[k]));
-  return most;
-}
-
-std::int64_t steps_for(double length, double increment) {
-  constexpr double kRounding = 1e-9;
-  return std::max(std::int64_t{1}, static_cast<std::int64_t>(std::ceil(length / increment - kRounding)));
-}
-
-void advance(CrowdExperiment& e, const Target& to, const CrowdOptions& options) {
-  const Target from{e.overlap, e.slide};
-  const double length = distance(from, to);
-  if (length <= 0.0) return;
-  const std::int64_t steps = steps_for(length, options.increment);
-  for (std::int64_t k = 1; k <= steps; ++k) {
-    const Target next = between(from, to, static_cast<double>(k) / static_cast<double>(steps));
-    e.move_to(next.overlap, next.slide);
-    relax(e, options, options.tolerance_between);
-  }
-}
-
-Target end_of(const CrowdStage& stage, double slide_before) { return {stage.overlap, slide_before + stage.slide}; }
-
-CrowdPoint recorded(CrowdExperiment& e, const CrowdOptions& options, std::size_t stage) {
-  const RelaxationResult rest = relax(e, options, options.tolerance);
-  CrowdPoint point = e.observe();
-  point.stage = static_cast<std::int64_t>(stage);
-  point.residual = rest.residual;
-  point.converged = rest.end == RelaxationEnd::converged;
-  return point;
-}
-
-void require_plan(const CrowdConfiguration& c, const CrowdPlan& plan) {
-  if (plan.size() != c.stages.size()) throw BadInput(c.name + ": the plan has another number of stages");
 }
 
 }  // namespace
@@ -162,44 +98,6 @@ CrowdPoint CrowdExperiment::observe() const {
   point.slide = slide;
   point.centre = system.particles.sphere[static_cast<std::size_t>(centre_shell)].x * (1.0 / spec.shell_radius);
   return point;
-}
-
-CrowdRun run_crowd(CrowdExperiment& e, const CrowdPlan& plan, const CrowdOptions& options,
-                   const CrowdObserver& observer) {
-  require_plan(e.configuration, plan);
-  const auto start = std::chrono::steady_clock::now();
-  CrowdRun run;
-  for (std::size_t k = 0; k < plan.size(); ++k) {
-    const Target from{e.overlap, e.slide};
-    const Target to = end_of(e.configuration.stages[k], e.slide);
-    for (const double share : plan[k]) {
-      advance(e, between(from, to, share), options);
-      run.points.push_back(recorded(e, options, k));
-      if (observer) observer(run.points.back());
-    }
-    advance(e, to, options);  // nothing left to do when the end was recorded
-  }
-  run.cost = e.system.cost;
-  run.cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return run;
-}
-
-std::int64_t count_increments(const CrowdConfiguration& configuration, const CrowdPlan& plan,
-                              const CrowdOptions& options) {
-  require_plan(configuration, plan);
-  std::int64_t count = 0;
-  Target from{std::vector<double>(configuration.partners.size(), 0.0), 0.0};
-  for (std::size_t k = 0; k < plan.size(); ++k) {
-    const Target to = end_of(configuration.stages[k], from.slide);
-    double done = 0.0;
-    for (const double share : plan[k]) {
-      count += steps_for((share - done) * distance(from, to), options.increment);
-      done = share;
-    }
-    if (done < 1.0) count += steps_for((1.0 - done) * distance(from, to), options.increment);
-    from = to;
-  }
-  return count;
 }
 
 }  // namespace softgrain

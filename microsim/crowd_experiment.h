@@ -9,6 +9,7 @@
 #include "common/data/crowd_measurements.h"
 #include "common/data/shell_packing.h"
 #include "common/data/slide_direction.h"
+#include "common/state/checkpoint.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -94,10 +95,34 @@ CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguratio
 /// Called after each recorded point.
 using CrowdObserver = std::function<void(const CrowdPoint&)>;
 
+/// Prescribed position: overlaps and slide [Rs].
+struct CrowdTarget {
+  std::vector<double> overlap;
+  double slide = 0.0;
+};
+
+/// Where in its plan a run stands; with the experiment it is all that the run needs to go on.
+struct CrowdPlace {
+  CrowdRun run;                 ///< what was recorded so far
+  std::size_t stage = 0;        ///< under way
+  std::size_t leg = 0;          ///< of the stage: on the way to this record, or to the end after all of them
+  std::int64_t increments = 0;  ///< of the leg that are done
+  CrowdTarget stage_from;       ///< where the stage began
+  CrowdTarget leg_from;         ///< where the leg began
+};
+
+/// How a run that takes long is kept from being lost. `save` is called between increments, now and then and when a
+/// signal came; `start` is where an earlier run was saved, with the experiment as it was then.
+struct CrowdKeeper {
+  CrowdPlace start;
+  std::function<void(const CrowdPlace&, const CrowdExperiment&)> save;
+  double seconds = kCheckpointSeconds;  ///< of wall time between two calls
+};
+
 /// Goes through all stages: straight lines in overlap, a relaxation after each increment. Throws NotUsable (a grain is
-/// lost) and what the observer throws. `configuration` and `packing` of the run are left to the caller.
+/// lost), Interrupted and what the observer throws. `configuration` and `packing` of the run are left to the caller.
 CrowdRun run_crowd(CrowdExperiment& experiment, const CrowdPlan& plan, const CrowdOptions& options,
-                   const CrowdObserver& observer = {});
+                   const CrowdObserver& observer = {}, const CrowdKeeper& keeper = {});
 
 /// Number of relaxations of a path, for progress.
 std::int64_t count_increments(const CrowdConfiguration& configuration, const CrowdPlan& plan,

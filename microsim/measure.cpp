@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/io/interrupt.h"
+
 namespace softgrain {
 
 namespace {
@@ -56,11 +58,24 @@ std::vector<double> visiting_order(const MeasurementPlan& plan) {
   return order;
 }
 
-void rotate_through(MeasurementState& state, double delta, const MeasurementPlan& plan, const Protocol& protocol) {
+/// Tangential points of this overlap that are recorded, the one without rotation included.
+std::size_t recorded_rotations(const MeasurementState& state, double delta) {
+  const auto& points = state.run.tangential;
+  return static_cast<std::size_t>(
+      std::count_if(points.begin(), points.end(), [delta](const TangentialPoint& p) { return p.delta == delta; }));
+}
+
+/// Goes on after the angles that are recorded. `between` is called where the next angle starts from the relaxed state.
+void rotate_through(MeasurementState& state, double delta, const MeasurementPlan& plan, const Protocol& protocol,
+                    const std::function<void()>& between) {
+  if (recorded_rotations(state, delta) == 0) state.run.tangential.push_back(as_tangential(*state.rotating, delta, 0.0));
+  const std::vector<double> order = visiting_order(plan);
   SoftExperiment e = state.experiment;
   double from = 0.0;
-  for (const double angle : visiting_order(plan)) {
+  for (std::size_t k = recorded_rotations(state, delta) - 1; k < order.size(); ++k) {
+    const double angle = order[k];
     if (!plan.cumulative || angle * from <= 0.0) {
+      between();
       e = state.experiment;
       from = 0.0;
     }
@@ -76,16 +91,20 @@ bool is_among(const std::vector<double>& values, double x) {
 }  // namespace
 
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
-             const MeasurementObserver& observer) {
+             const MeasurementObserver& observer, double checkpoint_seconds) {
+  CheckpointClock due(checkpoint_seconds);
+  const auto share = [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(plan.deltas.size()); };
   for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
     const double delta = plan.deltas[k];
-    const SettleResult rest = normal_state(state, delta, protocol);
-    if (is_among(plan.tangential_deltas, delta)) {
-      state.run.tangential.push_back(as_tangential(rest, delta, 0.0));
-      rotate_through(state, delta, plan, protocol);
-    }
+    if (!state.rotating) state.rotating = normal_state(state, delta, protocol);
+    if (is_among(plan.tangential_deltas, delta))
+      rotate_through(state, delta, plan, protocol, [&] {
+        if (interrupt_requested() || due.due()) observer(state, share(k));
+      });
+    const SettleResult rest = *state.rotating;
+    state.rotating.reset();
     state.run.normal.push_back({delta, rest.force[0], rest.residual, rest.max_overlap, rest.converged});
-    observer(state, static_cast<double>(k + 1) / static_cast<double>(plan.deltas.size()));
+    observer(state, share(k + 1));
   }
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/data/measurements.h"
+#include "common/state/checkpoint.h"
 #include "microsim/protocol.h"
 #include "microsim/soft_experiment.h"
 
@@ -22,18 +24,22 @@ struct MeasurementPlan {
   bool cumulative = false;          ///< each angle goes on from the one before of its sign: cheaper, another path
 };
 
-/// Everything a measurement needs to go on after the last recorded overlap.
+/// Everything a measurement needs to go on.
 struct MeasurementState {
   SoftExperiment experiment;
   PackingRun run;  ///< what was recorded so far; run.normal.size() says where to go on
+  /// The relaxed state at the next overlap while the first body is rotated there; its tangential points that are
+  /// recorded say how far that has come.
+  std::optional<SettleResult> rotating;
 };
 
-/// Called after each recorded overlap with its tangential points: to save, to report progress (the share of the plan
-/// done).
+/// Called after each recorded overlap with its tangential points, and between two rotations when that takes long or a
+/// signal came: to save, to report progress (the share of the plan done).
 using MeasurementObserver = std::function<void(const MeasurementState&, double share_done)>;
 
-/// Goes through the plan from where `state` stands. Throws NotUsable (lost grain...) and Interrupted.
+/// Goes through the plan from where `state` stands. Between two rotations the observer is called after
+/// `checkpoint_seconds` of wall time, or for a signal. Throws NotUsable (lost grain...) and Interrupted.
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
-             const MeasurementObserver& observer);
+             const MeasurementObserver& observer, double checkpoint_seconds = kCheckpointSeconds);
 
 }  // namespace softgrain

@@ -6,6 +6,7 @@
 #include "common/dynamics/scaled_masses.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
+#include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
 #include "common/statics/least_work_step.h"
 #include "microsim/protocol.h"
@@ -33,7 +34,10 @@ void run_dynamics(SoftExperiment& e, double speed, double duration, double step_
     e.add_approach_speed(speed);
     VelocityVerlet<3> integrator(dt);
     integrator.initialise(e.system);
-    for (std::int64_t k = 0; k < steps; ++k) integrator.step(e.system);
+    for (std::int64_t k = 0; k < steps; ++k) {
+      stop_if_interrupted("relaxing");
+      integrator.step(e.system);
+    }
     e.add_approach_speed(-speed);
   }
   e.set_damping(false);

@@ -5,6 +5,7 @@
 #include "common/dynamics/residual.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
+#include "common/io/interrupt.h"
 #include "microsim/protocol.h"
 
 namespace softgrain {
@@ -75,7 +76,10 @@ class PublishedProtocol : public Protocol {
   static void run(SoftExperiment& e, std::int64_t steps, double dt) {
     VelocityVerlet<3> integrator(dt);
     integrator.initialise(e.system);
-    for (std::int64_t k = 0; k < steps; ++k) integrator.step(e.system);
+    for (std::int64_t k = 0; k < steps; ++k) {
+      stop_if_interrupted("relaxing");
+      integrator.step(e.system);
+    }
   }
 
   PublishedOptions options_;

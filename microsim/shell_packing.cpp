@@ -5,8 +5,9 @@
 
 #include "common/core/error.h"
 #include "common/core/random.h"
-#include "microsim/shell_placement.h"
+#include "common/io/interrupt.h"
 #include "common/packing/size_distribution.h"
+#include "microsim/shell_placement.h"
 
 namespace softgrain {
 
@@ -45,6 +46,7 @@ ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t 
   VoidPlacement voids(spec.rmax_over_shell / spec.polydispersity);
   RandomStream random(seed, RandomPurpose::positions, index);
   for (const double r : draw_radii(spec, seed, index)) {
+    stop_if_interrupted("packing");
     const std::optional<Vec3> x = spec.placement == Placement::voids ? voids.place(grains, r, spec.trials, random)
                                                                      : place_by_trials(grains, r, spec.trials, random);
     if (x) grains.add(*x, r);

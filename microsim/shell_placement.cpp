@@ -5,11 +5,15 @@
 #include <limits>
 #include <numbers>
 
+#include "common/io/interrupt.h"
+
 namespace softgrain {
 
 namespace {
 
 constexpr int kLevels = 12;  // cubes of 2/2^11 are as small as it makes sense
+/// Blind trials between two looks for a signal.
+constexpr std::int64_t kTrialsPerLook = 4096;
 constexpr double kShellVolume = 4.0 / 3.0 * std::numbers::pi;
 
 Vec3 random_point_in_shell(RandomStream& random) {
@@ -68,6 +72,7 @@ double PlacedGrains::clearance(const Vec3& x) const {
 
 std::optional<Vec3> place_by_trials(const PlacedGrains& grains, double r, std::int64_t trials, RandomStream& random) {
   for (std::int64_t trial = 0; trial < trials; ++trial) {
+    if (trial % kTrialsPerLook == 0) stop_if_interrupted("packing");
     const Vec3 x = random_point_in_shell(random);
     if (grains.has_room(x, r)) return x;
   }

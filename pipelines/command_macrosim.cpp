@@ -106,7 +106,7 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(macro.seed);
   const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed);
+  const TaskStore store(context, scene, seed, macro.law.text);
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, seed);
   const NamedLaws law = law_of(macro, contents);

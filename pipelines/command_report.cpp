@@ -1,6 +1,8 @@
 // softgrain report DIR: writes DIR/report.html. Makes no run directory of its own, so that the run's summary stays as
 // it is.
 #include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "pipelines/report/report.h"
@@ -8,10 +10,24 @@
 
 namespace softgrain {
 
+namespace {
+
+/// Not beside a run that writes there; what is no directory is for write_report to complain about.
+std::unique_ptr<DirectoryLock> lock_of(const std::string& directory) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(directory, ignored)) return nullptr;
+  return std::make_unique<DirectoryLock>(directory);
+}
+
+}  // namespace
+
 ExitStatus command_report(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("report: needs one run directory");
   const std::string& directory = options.inputs.front();
-  write_report(directory);
+  {
+    const std::unique_ptr<DirectoryLock> alone = lock_of(directory);
+    write_report(directory);
+  }
   const std::string path = directory + "/report.html";
   if (options.json) {
     const nlohmann::json summary{{"command", "report"}, {"status", "good"}, {"files", {{"report", path}}}};

@@ -1,7 +1,5 @@
 #include "pipelines/crowd_cache.h"
 
-#include "common/io/short_hash.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -9,6 +7,8 @@
 
 #include "common/core/error.h"
 #include "common/data/spec_io.h"
+#include "common/io/file_seal.h"
+#include "common/io/short_hash.h"
 #include "pipelines/task_store.h"
 
 namespace softgrain {
@@ -69,6 +69,7 @@ std::optional<CrowdRun> CrowdCache::find(const std::string& key) const {
   if (path.empty() || !std::filesystem::exists(path)) return std::nullopt;
   try {
     const std::lock_guard lock(hdf5_mutex());
+    if (check_seal(path) != Seal::sound) throw FileTrouble(path + ": damaged, or written by an earlier version");
     const h5::Group root = h5::open_file(path);
     require_format(root, kFormat, path);
     if (root.text("key") != key) throw FileTrouble(path + ": belongs to another measurement");
@@ -87,7 +88,7 @@ void CrowdCache::keep(const std::string& key, const CrowdRun& run) const {
   const std::string own = file(key) + "." + std::to_string(::getpid());
   {
     const std::lock_guard lock(hdf5_mutex());
-    h5::AtomicFile out(own);
+    h5::AtomicFile out(own, false, true);
     write_format(out.root(), kFormat);
     out.root().attribute("key", key);
     write_crowd_runs(out.root(), {run});

@@ -12,6 +12,7 @@
 #include "pipelines/crowd_cache.h"
 #include "pipelines/crowd_plan.h"
 #include "pipelines/crowd_summary.h"
+#include "pipelines/kept_crowd.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
@@ -96,7 +97,7 @@ class CrowdRunner {
     if (run) {
       progress.advance(weight);
     } else {
-      run = measured(task, options, weight, progress);
+      run = measured(task, name, options, weight, progress);
       store_.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {*run}); });
       cache_.keep(key, *run);
     }
@@ -105,7 +106,8 @@ class CrowdRunner {
     return *run;
   }
 
-  CrowdRun measured(const CrowdTask& task, const CrowdOptions& options, double weight, Progress& progress) const {
+  CrowdRun measured(const CrowdTask& task, const std::string& name, const CrowdOptions& options, double weight,
+                    Progress& progress) const {
     const auto packings = packings_of(task, static_cast<std::int64_t>(contents_.size()));
     std::vector<const SoftContent*> others;
     for (std::size_t k = 1; k < packings.size(); ++k)
@@ -115,11 +117,8 @@ class CrowdRunner {
     try {
       CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
                                      others, level_ != nullptr ? &level_->laws : nullptr);
-      return run_crowd(e, *task.plan, options, [&](const CrowdPoint&) {
-        progress.advance(weight / static_cast<double>(points));
-        if (interrupt_requested())
-          throw Interrupted("stopped by a signal; finished runs are saved, go on with --resume");
-      });
+      const auto advance = [&](const CrowdPoint&) { progress.advance(weight / static_cast<double>(points)); };
+      return run_kept_crowd(store_, name, e, *task.plan, options, advance);
     } catch (const NotUsable& e) {
       throw NotUsable(fmt::format("{}, packing {}: {}", task.configuration->name, task.packing, e.what()));
     }
@@ -249,7 +248,8 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& stor
   std::vector<SoftContent> filled(pool.size());
   parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
     const ShellPacking& packing = pool[static_cast<std::size_t>(k)];
-    filled[static_cast<std::size_t>(k)] = level != nullptr && level->fill ? level->fill(packing, k) : SoftContent{packing, {}, {}};
+    filled[static_cast<std::size_t>(k)] =
+        level != nullptr && level->fill ? level->fill(packing, k) : SoftContent{packing, {}, {}};
   });
   CrowdMeasurements data;
   data.spec = setup.spec;

@@ -25,6 +25,7 @@ GrainBoxResult run_pack(const GrainBoxSpec& spec, std::uint64_t seed, const Task
   store.load(spec.name, [&](const h5::Group& group) { state = read_state(group); });
   double reported = 0.0;
   GrainBoxControl control;
+  control.checkpoint_seconds = store.seconds();
   control.save = [&](const GrainBoxState& now) {
     store.save(spec.name, [&](const h5::Group& group) { write_state(group, now); });
   };

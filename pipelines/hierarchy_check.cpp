@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/kept_crowd.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
@@ -111,10 +111,7 @@ CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& 
       known = true;
     });
     if (!known) {
-      runs[u] = run_crowd(e, plan, setup.crowd.options, [](const CrowdPoint&) {
-        if (interrupt_requested())
-          throw Interrupted("stopped by a signal; finished runs are saved, go on with --resume");
-      });
+      runs[u] = run_kept_crowd(store, task, e, plan, setup.crowd.options, {});
       store.save(task, [&](const h5::Group& g) { write_crowd_runs(g, {runs[u]}); });
     }
     progress.advance();

@@ -95,7 +95,7 @@ SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& 
                       const RunContext& context, const Provenance& provenance) {
   SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, true};
   const auto packings =
-      make_macro_packings(scene.setup, seed, context, provenance, "macro_initial_" + scene.name + ".h5");
+      make_macro_packings(scene.setup, seed, store, context, provenance, "macro_initial_" + scene.name + ".h5");
   for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
   const auto laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
   const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, laws, store, context);
@@ -201,7 +201,7 @@ ExitStatus run_macro_comparison(const CommonOptions& options, const Scene& scene
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.seed);
   const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed);
+  const TaskStore store(context, scene, seed, setup.laws.text);
   const auto contents = make_contents(setup.spec, setup.contents, seed);
   std::vector<SceneResult> results;
   context.guard([&] {

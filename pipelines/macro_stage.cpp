@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
@@ -16,11 +17,13 @@ namespace softgrain {
 namespace {
 
 void write_progress(const h5::Group& group, const CompressionState& state) {
+  group.attribute("increments", state.increments);
   write_macro_curve(group.create("curve"), state.curve);
   write_system(group.create("system"), state.macro.system);
 }
 
 void read_progress(const h5::Group& group, CompressionState& state) {
+  state.increments = group.integer("increments");
   state.curve = read_macro_curve(group.open("curve"));
   read_system(group.open("system"), state.macro.system);
 }
@@ -64,16 +67,31 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& e
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
   double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
   progress.advance(done);
-  compress(state, spec, [&](const CompressionState& s, double share) {
-    stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
-    progress.advance(share - done);
-    done = share;
-  });
+  compress(
+      state, spec,
+      [&](const CompressionState& s, double share) {
+        stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
+        progress.advance(share - done);
+        done = share;
+      },
+      stage.store.seconds());
   if (laws != nullptr && laws->note && state.curve.usable) {
     const std::string note = laws->note(state.macro.system);
     state.curve.note += (state.curve.note.empty() || note.empty() ? "" : "; ") + note;
   }
   return state.curve;
+}
+
+/// Made by an earlier part of this run, or now.
+MacroPacking kept_packing(const MacroSpec& spec, std::uint64_t seed, std::int64_t sample, const TaskStore& store,
+                          const std::string& file_name) {
+  const std::string task = file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample);
+  std::optional<MacroPacking> packing;
+  store.load(task, [&](const h5::Group& g) { packing = read_macro_packing(g); });
+  if (packing) return std::move(*packing);
+  packing = make_packing(spec, seed, static_cast<std::uint64_t>(sample));
+  store.save(task, [&](const h5::Group& g) { write_macro_packing(g, *packing); });
+  return std::move(*packing);
 }
 
 struct Engine {
@@ -114,12 +132,13 @@ std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64
   return contents;
 }
 
-std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
-                                              const Provenance& provenance, const std::string& file_name) {
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                              const RunContext& context, const Provenance& provenance,
+                                              const std::string& file_name) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
-    packings[static_cast<std::size_t>(k)] = make_packing(setup.spec, seed, static_cast<std::uint64_t>(k));
+    packings[static_cast<std::size_t>(k)] = kept_packing(setup.spec, seed, k, store, file_name);
     progress.advance();
   });
   h5::AtomicFile file(context.path(file_name));
@@ -147,7 +166,7 @@ std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws
                                         const std::vector<ShellPacking>& contents, std::uint64_t seed,
                                         const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance) {
-  const auto packings = make_macro_packings(setup, seed, context, provenance, "macro_initial.h5");
+  const auto packings = make_macro_packings(setup, seed, store, context, provenance, "macro_initial.h5");
   const auto curves = run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context);
   save_macro(curves, context.path("macro.h5"), provenance);
   return curves;

@@ -35,9 +35,11 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
 /// Packings number 0 .. count-1 of a seed, to fill soft particles with.
 std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed);
 
-/// The starting states of all samples, the same for all engines; saved to DIR/`file`.
-std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const RunContext& context,
-                                              const Provenance& provenance, const std::string& file);
+/// The starting states of all samples, the same for all engines; saved to DIR/`file`. Those that are made are kept in
+/// the store until the run has ended.
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                              const RunContext& context, const Provenance& provenance,
+                                              const std::string& file);
 
 /// Of the contents, their mean; 1 without any.
 double mean_solid_fraction(const std::vector<ShellPacking>& contents);

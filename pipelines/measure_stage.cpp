@@ -77,6 +77,11 @@ void write_run(const h5::Group& group, const MeasurementState& state) {
                                           static_cast<double>(run.tangential_cost.contact_evaluations),
                                           run.tangential_cost.seconds});
   group.attribute("normal_overlap", state.experiment.normal_overlap);
+  std::vector<double> rotating;  // empty: no rotations under way
+  if (const auto& rest = state.rotating)
+    rotating = {rest->force[0], rest->force[1],    rest->force[2],
+                rest->residual, rest->max_overlap, rest->converged ? 1.0 : 0.0};
+  group.write("rotating", rotating);
   write_system(group.create("system"), state.experiment.system);
 }
 
@@ -92,6 +97,8 @@ void read_run(const h5::Group& group, MeasurementState& state) {
   run.normal_cost = {static_cast<std::int64_t>(cost.at(0)), static_cast<std::int64_t>(cost.at(1)), cost.at(2)};
   run.tangential_cost = {static_cast<std::int64_t>(cost.at(3)), static_cast<std::int64_t>(cost.at(4)), cost.at(5)};
   state.experiment.normal_overlap = group.number("normal_overlap");
+  if (const auto r = group.doubles("rotating"); r.size() == 6)
+    state.rotating = SettleResult{{{r[0], r[1], r[2]}}, r[3], r[4], r[5] != 0.0};
   read_system(group.open("system"), state.experiment.system);
 }
 
@@ -139,12 +146,16 @@ PackingRun run_task(const Stage& stage, const Task& task) {
   const MeasurementPlan& plan = task.series->plan(task.kind);
   double done = static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size());
   stage.progress.advance(done * task.weight());
-  measure(state, plan, *protocol, [&](const MeasurementState& s, double share) {
-    stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
-    stage.progress.advance((share - done) * task.weight());
-    done = share;
-    if (interrupt_requested()) throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
-  });
+  measure(
+      state, plan, *protocol,
+      [&](const MeasurementState& s, double share) {
+        stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
+        stage.progress.advance((share - done) * task.weight());
+        done = share;
+        if (interrupt_requested())
+          throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
+      },
+      stage.store.seconds());
   return state.run;
 }
 

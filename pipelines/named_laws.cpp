@@ -9,6 +9,7 @@
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/short_hash.h"
+#include "common/io/text_file.h"
 
 namespace softgrain {
 
@@ -135,8 +136,14 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   LawSources out;
-  if (law.has("card")) out.card = load_card(scene.resolve(law.text("card")));
-  if (law.has("table")) out.table = load_law_table(scene.resolve(law.text("table")));
+  if (law.has("card")) {
+    out.card = load_card(scene.resolve(law.text("card")));
+    out.text += read_text(scene.resolve(law.text("card")));
+  }
+  if (law.has("table")) {
+    out.table = load_law_table(scene.resolve(law.text("table")));
+    out.text += read_text(scene.resolve(law.text("table")));
+  }
   if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = law.texts("forms");
   for (const std::string& form : out.forms) {
@@ -165,6 +172,7 @@ void read_law_choices(const SceneTable& root, LawSources& out) {
 LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   LawSources out;
   read_law_choices(root, out);
+  out.text = read_text(path);
   if (law_file_kind(path) == LawFileKind::table) {
     out.table = load_law_table(path);
     return out;

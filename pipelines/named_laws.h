@@ -36,6 +36,7 @@ struct LawSources {
   std::optional<double> friction;                                ///< mu_soft of the table's laws; empty: as measured
   bool unloading = false;                                        ///< with the measured unloading branch
   std::optional<Beyond> beyond{};                                ///< instead of what card or table say
+  std::string text;                                              ///< of the files that they come from
 };
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.

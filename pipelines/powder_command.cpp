@@ -78,6 +78,7 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
     if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
   });
   sample.state.system.cost.seconds = seconds_before + seconds_since(start);
+  stop_if_interrupted("analysing packs");
   sample.analysis =
       analyse_powder(sample.state.system, setup.spec, imposed_pressure(phases, sample.state), setup.rigidity);
   progress.advance(1.0 - reported);

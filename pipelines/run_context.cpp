@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "common/io/text_file.h"
 
@@ -40,6 +42,9 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
       directory_(options.out.empty() ? "results/" + default_name : options.out),
       threads_(options.threads > 0 ? options.threads : omp_get_max_threads()) {
   require_writable_directory(directory_);
+  lock_ = std::make_shared<DirectoryLock>(directory_);
+  std::error_code ignored;
+  if (!options_.resume) std::filesystem::remove(path("summary.json"), ignored);
   try {
     logger_ = make_logger(path("log.txt"), options_);
   } catch (const spdlog::spdlog_ex& e) {

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/io/directory_lock.h"
 #include "common/io/provenance.h"
 #include "common/io/scene.h"
+#include "common/state/checkpoint.h"
 
 namespace spdlog {
 class logger;
@@ -25,19 +27,23 @@ struct CommonOptions {
   int threads = 0;                  ///< --threads N (>= 1); 0 = not given: all cores
   std::uint64_t seed = 0;           ///< --seed N
   bool seed_given = false;
-  std::vector<std::string> overrides;  ///< --set key=value
-  bool resume = false;                 ///< --resume
-  bool quiet = false;                  ///< --quiet
-  bool json = false;                   ///< --json
-  std::string law;                     ///< --law law.toml (macrosim)
-  std::string law_cache;               ///< --law-cache DIR; empty: nothing is kept between runs
-  std::string command_line;            ///< as given, for provenance
+  std::vector<std::string> overrides;              ///< --set key=value
+  bool resume = false;                             ///< --resume
+  bool quiet = false;                              ///< --quiet
+  bool json = false;                               ///< --json
+  double checkpoint_seconds = kCheckpointSeconds;  ///< --checkpoint-every S
+  std::string law;                                 ///< --law law.toml (macrosim)
+  std::string law_cache;                           ///< --law-cache DIR; empty: nothing is kept between runs
+  std::string command_line;                        ///< as given, for provenance
 };
 
-/// A run directory in use: made and proved writable, with a log file; writes the summary at the end.
+/// A run directory in use: made, proved writable and held against other runs, with a log file; writes the summary at
+/// the end.
 class RunContext {
  public:
-  /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent.
+  /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent. Unless the run
+  /// goes on with an earlier one, the summary of that is removed: the directory must not look like a run that has
+  /// ended. Throws FileTrouble: cannot be written, another run is at work there.
   RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name);
 
   /// A part of this run in a directory of its own below, with its own log and summary, which goes to the file alone.
@@ -48,6 +54,8 @@ class RunContext {
   [[nodiscard]] int threads() const { return threads_; }
   [[nodiscard]] bool quiet() const { return options_.quiet; }
   [[nodiscard]] bool resume() const { return options_.resume; }
+  /// Wall time between two checkpoints of what lies between recorded points [s].
+  [[nodiscard]] double checkpoint_seconds() const { return options_.checkpoint_seconds; }
   /// Directory where measurements are kept for other runs; empty: none.
   [[nodiscard]] const std::string& law_cache() const { return options_.law_cache; }
   /// Seed from --seed, else from the scene (`scene_seed`).
@@ -72,6 +80,7 @@ class RunContext {
   CommonOptions options_;
   std::string command_;
   std::string directory_;
+  std::shared_ptr<DirectoryLock> lock_;
   int threads_ = 1;
   bool shows_ = true;  ///< the summary on standard output
   std::shared_ptr<spdlog::logger> logger_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <new>
@@ -90,6 +91,10 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
   app.add_flag("--resume", o.resume, "Continues from the checkpoint in the run directory");
+  app.add_option("--checkpoint-every", o.checkpoint_seconds,
+                 "Seconds between two checkpoints within a recorded point; default 5, 0: whenever possible")
+      ->option_text("S")
+      ->check(CLI::Range(0.0, 1e9).description(""));
   app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
   app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
   if (command.function == command_run)
@@ -150,6 +155,8 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   if (!options.out.empty()) require_writable_directory(options.out);
   if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
   install_interrupt_handler();
+  // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
+  std::signal(SIGXFSZ, SIG_IGN);
   return chosen->function(options);
 }
 

@@ -11,10 +11,10 @@ std::mutex& hdf5_mutex() {
   return mutex;
 }
 
-TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed)
+TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed, const std::string& beside)
     : context_(context),
       directory_(context.path("work")),
-      fingerprint_(scene.text() + "\n# seed " + std::to_string(seed)) {
+      fingerprint_(scene.text() + "\n# seed " + std::to_string(seed) + "\n" + beside) {
   std::error_code error;
   if (!context.resume()) std::filesystem::remove_all(directory_, error);
   std::filesystem::create_directories(directory_, error);
@@ -33,6 +33,8 @@ void TaskStore::load(const std::string& task, const std::function<void(const h5:
   if (!note.empty()) context_.say(note);
   if (group) read(*group);
 }
+
+void TaskStore::remove(const std::string& task) const { remove_checkpoint(file(task)); }
 
 void TaskStore::clear() const {
   std::error_code error;

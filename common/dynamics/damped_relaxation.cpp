@@ -5,6 +5,7 @@
 
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"
+#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -130,6 +131,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
       else if (result.passes >= options_.max_passes)
         result.end = RelaxationEnd::capped;
       if (result.end != RelaxationEnd::not_run) break;
+      stop_if_interrupted("relaxing");
       scale_masses(s);
     }
     steer(s);

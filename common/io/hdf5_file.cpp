@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/io/atomic_rename.h"
+#include "common/io/file_seal.h"
 #include "common/io/hdf5_handle.h"
 
 namespace softgrain::h5 {
@@ -79,12 +80,13 @@ Group open_file(const std::string& path) {
 struct AtomicFile::Impl {
   std::string path;
   bool keep_previous;
+  bool sealed;
   bool committed = false;
   std::shared_ptr<File> file;
 };
 
-AtomicFile::AtomicFile(const std::string& path, bool keep_previous)
-    : impl_(std::make_unique<Impl>(Impl{path, keep_previous, false, nullptr})) {
+AtomicFile::AtomicFile(const std::string& path, bool keep_previous, bool sealed)
+    : impl_(std::make_unique<Impl>(Impl{path, keep_previous, sealed, false, nullptr})) {
   silence_library();
   impl_->file = std::make_shared<File>(File{create_file(temporary_name(path)), path});
 }
@@ -105,6 +107,7 @@ void AtomicFile::commit() {
   const std::string reason = library_message();
   const bool closed = handle.close();
   if (!flushed || !closed) throw FileTrouble(impl_->path + ": cannot be written" + reason);
+  if (impl_->sealed) seal_file(temporary_name(impl_->path));
   rename_into_place(impl_->path, impl_->keep_previous);
   impl_->committed = true;
 }

@@ -53,8 +53,8 @@ Group open_file(const std::string& path);
 /// commit(). Destruction without commit() removes the temporary file.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::string& path,
-                      bool keep_previous = false);  ///< keep_previous: old file stays as path + ".previous"
+  /// keep_previous: the old file stays as path + ".previous"; sealed: with a checksum over all of it (file_seal.h).
+  explicit AtomicFile(const std::string& path, bool keep_previous = false, bool sealed = false);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

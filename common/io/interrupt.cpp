@@ -1,6 +1,9 @@
 #include "common/io/interrupt.h"
 
 #include <csignal>
+#include <string>
+
+#include "common/core/error.h"
 
 namespace softgrain {
 
@@ -25,5 +28,10 @@ void install_interrupt_handler() {
 bool interrupt_requested() { return requested != 0; }
 void request_interrupt() { requested = 1; }
 void clear_interrupt() { requested = 0; }
+
+void stop_if_interrupted(const char* doing) {
+  if (interrupt_requested())
+    throw Interrupted(std::string("stopped by a signal while ") + doing + "; go on with --resume");
+}
 
 }  // namespace softgrain

@@ -8,4 +8,9 @@ void install_interrupt_handler();
 void request_interrupt();  ///< what the handler does; for tests
 void clear_interrupt();
 
+/// Throws Interrupted when a signal came. For loops that take long between two moments worth saving: what they were
+/// at is lost, what was saved before is not. `doing` completes "stopped by a signal while ...". Not inside a parallel
+/// region, which exceptions must not leave.
+void stop_if_interrupted(const char* doing);
+
 }  // namespace softgrain

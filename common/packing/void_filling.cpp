@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/core/error.h"
+#include "common/io/interrupt.h"
 #include "common/packing/clearance_field.h"
 #include "common/packing/hole_climb.h"
 
@@ -159,6 +160,7 @@ VoidFilling fill_voids(const std::vector<PackedSphere>& placed, const VoidDomain
   if (cap < options.r_min) return out;
   HoleSearch search(placed, domain, options.r_min, cap, options.tolerance);
   while (static_cast<std::int64_t>(out.added.size()) < options.count && out.volume < options.volume) {
+    stop_if_interrupted("filling voids");
     const auto hole = search.find(cap);
     if (!hole) break;
     PackedSphere sphere = *hole;

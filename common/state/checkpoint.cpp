@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "common/core/error.h"
+#include "common/io/file_seal.h"
 
 namespace softgrain {
 
@@ -14,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "softgrain checkpoint";
-constexpr std::int64_t kCheckpointSchema = 1;
+constexpr std::int64_t kCheckpointSchema = 2;
 
 /// FNV-1a, 64 bits: tells scenes apart, protects nothing.
 std::int64_t fingerprint(const std::string& text) {
@@ -23,40 +24,37 @@ std::int64_t fingerprint(const std::string& text) {
   return static_cast<std::int64_t>(hash);
 }
 
-/// Reads every data set below `group`, so that damage shows now. Throws FileTrouble.
-void require_readable(const h5::Group& group) {
-  for (const std::string& name : group.children()) {
-    std::optional<h5::Group> child;
-    try {
-      child = group.open(name);
-    } catch (const FileTrouble&) {
-      (void)group.doubles(name);  // no group, so a data set, or damaged
-    }
-    if (child) require_readable(*child);
-  }
+/// A file of another schema is refused as such even when this program cannot tell whether it is whole.
+void require_schema(const h5::Group& root, const std::string& path) {
+  if (root.integer("schema") != kCheckpointSchema)
+    throw BadInput(path + ": checkpoint of schema " + std::to_string(root.integer("schema")) + ", this program reads " +
+                   std::to_string(kCheckpointSchema) + "; run without --resume");
 }
 
+/// Opens a checkpoint of which every byte is as it was written. Throws FileTrouble.
 h5::Group open_sound(const std::string& path) {
+  const Seal seal = check_seal(path);
+  if (seal == Seal::broken) throw FileTrouble(path + ": damaged, its checksum does not fit its content");
   h5::Group root = h5::open_file(path);
   if (!root.has_attribute("kind") || root.text("kind") != kKind) throw FileTrouble(path + ": is not a checkpoint");
-  require_readable(root);
+  require_schema(root, path);
+  if (seal == Seal::none) throw FileTrouble(path + ": damaged or cut short, it ends without its checksum");
   return root;
 }
 
 void require_match(const h5::Group& root, const std::string& path, const std::string& scene_text) {
-  if (root.integer("schema") != kCheckpointSchema)
-    throw BadInput(path + ": checkpoint of schema " + std::to_string(root.integer("schema")) + ", this program reads " +
-                   std::to_string(kCheckpointSchema) + "; run without --resume");
   if (root.integer("fingerprint") != fingerprint(scene_text))
     throw BadInput(
-        path + ": belongs to another scene (or other --set values); run without --resume, or into another directory");
+        path +
+        ": belongs to another scene (or other --set values, or another file that goes with the scene); run without "
+        "--resume, or into another directory");
 }
 
 }  // namespace
 
 void write_checkpoint(const std::string& path, const std::string& scene_text,
                       const std::function<void(const h5::Group&)>& content) {
-  h5::AtomicFile file(path, true);
+  h5::AtomicFile file(path, true, true);
   {
     const h5::Group root = file.root();
     root.attribute("kind", kKind);
@@ -81,7 +79,9 @@ std::optional<h5::Group> open_checkpoint(const std::string& path, const std::str
       trouble += (trouble.empty() ? "" : "; ") + std::string(e.what());
     }
   }
-  if (!trouble.empty()) throw FileTrouble(trouble);
+  if (!trouble.empty())
+    throw FileTrouble(trouble +
+                      "; no sound checkpoint is left: remove it to do that part again, or run without --resume");
   return std::nullopt;
 }
 

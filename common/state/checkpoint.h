@@ -22,6 +22,9 @@ std::optional<h5::Group> open_checkpoint(const std::string& path, const std::str
 /// Removes the checkpoint and its previous copy after a run has ended well.
 void remove_checkpoint(const std::string& path);
 
+/// Wall time between two checkpoints of what lies between recorded points, unless told otherwise [s].
+inline constexpr double kCheckpointSeconds = 5.0;
+
 /// Says when the next checkpoint is due: after a wall time.
 class CheckpointClock {
  public:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/io/interrupt.h"
 #include "common/statics/anderson.h"
 #include "common/statics/block_jacobi.h"
 #include "common/statics/krylov.h"
@@ -253,6 +254,7 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   Stepper stepper(problem, theta);
   result.stopped_by = "cap";
   for (;; ++result.iterations) {
+    stop_if_interrupted("looking for equilibrium");
     const PackForces& forces = stepper.forces();
     if (rattlers_turn(result.iterations) && result.worst_residual < kMixBelow)
       stepper.relax_rattlers(residual_floor(scales, forces), options.residual_tolerance);

@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"
+#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -171,6 +172,7 @@ RelaxationResult LeastWorkStep::minimise(System3& s) {
   RelaxationResult result;
   evaluate(s, true);
   for (std::int64_t iteration = 0; result.end == RelaxationEnd::not_run; ++iteration) {
+    stop_if_interrupted("relaxing");
     const double scale = std::max(stiffness_.mean_force(), options_.force_floor);
     const double worst = worst_net_force(s.particles);
     result.residual = scale > 0.0 ? worst / scale : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/io/interrupt.h"
 #include "common/statics/minimiser.h"
 
 namespace softgrain::statics {
@@ -98,6 +99,7 @@ LeastWorkResult minimise_published(PackProblem& problem, Unknowns& theta, const 
   bool walls_moved = false;
   result.stopped_by = "cap";
   for (;; ++result.iterations) {
+    stop_if_interrupted("looking for equilibrium");
     walls_moved = applied < parts && result.iterations % options.sub_increment_interval == 0;
     if (walls_moved) {
       descent.move_walls(static_cast<double>(applied) / parts, static_cast<double>(applied + 1) / parts);

@@ -53,6 +53,15 @@ class GrainBoxRun {
   [[nodiscard]] bool loading_over(const BoxPoint& now, double strain) const;
   [[nodiscard]] const BoxPoint& load_start() const;
 
+  /// What an equilibrium that is being looked for changes; the rest of the state only grows when it is found.
+  struct SafePoint {
+    GrainPack pack;
+    std::int64_t growth_passes = 0;
+    BoxPhase phase = BoxPhase::start;
+  };
+  void note_safe_point() { safe_ = {state_.pack, state_.growth_passes, state_.phase}; }
+  void go_back_and_save();
+
   void step(const BoxMove& move);
   void record(bool probe);
   void enter(BoxPhase phase);
@@ -64,6 +73,7 @@ class GrainBoxRun {
   const GrainBoxSpec& spec_;
   std::uint64_t seed_;
   GrainBoxState state_;
+  SafePoint safe_;
   const GrainBoxControl& control_;
   CheckpointClock due_;
   Clock::time_point started_;
@@ -97,6 +107,17 @@ void GrainBoxRun::pause_if_asked() {
   if (stop)
     throw Interrupted(
         fmt::format("interrupted in the {} of {}; go on with --resume", to_string(state_.phase), spec_.name));
+  note_safe_point();
+}
+
+/// A signal came while an equilibrium was looked for: the run goes on from the one before.
+void GrainBoxRun::go_back_and_save() {
+  if (safe_.pack.radius.empty()) return;  // there was none yet
+  count_time();
+  state_.pack = std::move(safe_.pack);
+  state_.growth_passes = safe_.growth_passes;
+  state_.phase = safe_.phase;
+  if (control_.save) control_.save(state_);
 }
 
 void GrainBoxRun::enter(BoxPhase phase) {
@@ -318,6 +339,7 @@ void GrainBoxRun::load() {
 GrainBoxResult GrainBoxRun::run() {
   GrainBoxResult result;
   result.spec = spec_;
+  if (!state_.points.empty()) note_safe_point();
   try {
     if (state_.phase <= BoxPhase::compaction) {
       compact();
@@ -332,6 +354,9 @@ GrainBoxResult GrainBoxRun::run() {
       enter(BoxPhase::done);
     }
     result.usable = true;
+  } catch (const Interrupted&) {
+    go_back_and_save();
+    throw;
   } catch (const NotUsable& e) {
     result.reason = e.what();
     if (control_.say) control_.say(spec_.name + ": " + result.reason);

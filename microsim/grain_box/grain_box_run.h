@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "common/state/checkpoint.h"
 #include "microsim/grain_box/record.h"
 
 namespace softgrain {
@@ -12,7 +13,7 @@ struct GrainBoxControl {
   std::function<void(const GrainBoxState&)> save;              ///< writes a checkpoint
   std::function<void(const GrainBoxState&, double)> progress;  ///< after every equilibrium: share of the run, 0 to 1
   std::function<void(const std::string&)> say;                 ///< a line for people
-  double checkpoint_seconds = 60.0;
+  double checkpoint_seconds = kCheckpointSeconds;
 };
 
 /// Goes on from `state` (a fresh one starts at the beginning) to the end. Depends on spec, seed and state alone: a run

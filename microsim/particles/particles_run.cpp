@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
+#include "common/io/short_hash.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
@@ -31,11 +32,21 @@ constexpr std::int64_t kGrainStepsPerLook = 4'000'000;
 
 using Clock = std::chrono::steady_clock;
 
+/// What a checkpoint belongs to: the scene, and the particles, which may lie in a file of their own.
+std::string identity_of(const ParticlesScene& scene, const System3& start) {
+  const auto& p = start.particles;
+  std::string bytes(reinterpret_cast<const char*>(p.sphere.data()), p.sphere.size() * sizeof p.sphere[0]);
+  bytes.append(reinterpret_cast<const char*>(p.velocity.data()), p.velocity.size() * sizeof p.velocity[0]);
+  bytes.append(reinterpret_cast<const char*>(p.spin.data()), p.spin.size() * sizeof p.spin[0]);
+  return scene.text + "\n# particles " + short_hash(bytes);
+}
+
 class ParticlesRun {
  public:
   ParticlesRun(const ParticlesScene& scene, System3 start, const ParticlesControl& control)
       : scene_(scene),
         control_(control),
+        identity_(control.checkpoint.empty() ? "" : identity_of(scene, start)),
         system_(std::move(start)),
         integrator_(scene.time.step),
         guards_(scene.guards, system_),
@@ -65,6 +76,7 @@ class ParticlesRun {
 
   const ParticlesScene& scene_;
   const ParticlesControl& control_;
+  std::string identity_;
   System3 system_;
   VelocityVerlet<3> integrator_;
   Guards guards_;
@@ -85,7 +97,7 @@ void ParticlesRun::count_time() {
 bool ParticlesRun::restore() {
   if (!control_.resume || control_.checkpoint.empty()) return false;
   std::string note;
-  const auto saved = open_checkpoint(control_.checkpoint, scene_.text, note);
+  const auto saved = open_checkpoint(control_.checkpoint, identity_, note);
   if (control_.say && !note.empty()) control_.say(note);
   if (!saved) {
     if (control_.say) control_.say("no checkpoint, starting from the beginning");
@@ -141,7 +153,7 @@ void ParticlesRun::require_sound() const {
 
 void ParticlesRun::save() {
   count_time();
-  write_checkpoint(control_.checkpoint, scene_.text, [&](const h5::Group& root) {
+  write_checkpoint(control_.checkpoint, identity_, [&](const h5::Group& root) {
     write_system(root.create("system"), system_);
     write_trajectory(root.create("trajectory"), trajectory_);
     monitor_.save(root.create("contacts"));

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
+#include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -111,6 +112,7 @@ class Phase {
     integrator_.initialise(state_.system);
     double next = state_.points.empty() ? 0.0 : state_.points.back().time + options_.record_every;
     for (;;) {
+      stop_if_interrupted("bringing disks together");
       look();
       if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
       const bool done = elapsed() > 0.0 && !stiffening() && at_rest();

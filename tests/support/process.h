@@ -13,8 +13,8 @@
 
 namespace softgrain::test {
 
-/// Starts the program with these arguments, its output discarded.
-inline pid_t start_program(const std::vector<std::string>& arguments) {
+/// Starts the program with these arguments, its output discarded. `in_child` runs in the new process before.
+inline pid_t start_program(const std::vector<std::string>& arguments, const std::function<void()>& in_child = {}) {
   std::vector<char*> words{const_cast<char*>(SOFTGRAIN_PROGRAM)};
   for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
   words.push_back(nullptr);
@@ -23,6 +23,7 @@ inline pid_t start_program(const std::vector<std::string>& arguments) {
   const int quiet = ::open("/dev/null", O_WRONLY);
   ::dup2(quiet, STDOUT_FILENO);
   ::dup2(quiet, STDERR_FILENO);
+  if (in_child) in_child();
   ::execv(SOFTGRAIN_PROGRAM, words.data());
   ::_exit(127);
 }
@@ -58,6 +59,14 @@ inline bool ended_with(int wait_status, int exit_status) {
 /// On a busy machine a SIGTERM may come before the program has asked for it.
 inline bool ended_before_it_listened(int wait_status) {
   return WIFSIGNALED(wait_status) && WTERMSIG(wait_status) == SIGTERM;
+}
+
+/// For start_program: standard error goes to a file.
+inline std::function<void()> errors_to(const std::string& path) {
+  return [path] {
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    ::dup2(file, STDERR_FILENO);
+  };
 }
 
 }  // namespace softgrain::test

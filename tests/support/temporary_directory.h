@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -14,7 +15,8 @@ class TemporaryDirectory {
  public:
   TemporaryDirectory() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    const std::string name = info == nullptr ? "test" : std::string(info->test_suite_name()) + "." + info->name();
+    std::string name = info == nullptr ? "test" : std::string(info->test_suite_name()) + "." + info->name();
+    std::replace(name.begin(), name.end(), '/', '-');  // of tests with parameters
     path_ = std::filesystem::temp_directory_path() / ("softgrain-" + name + "-" + std::to_string(::getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);

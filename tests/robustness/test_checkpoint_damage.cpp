@@ -1,0 +1,168 @@
+// Checkpoints and results with flipped bits or cut short: never taken for what they were not.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/core/error.h"
+#include "common/core/random.h"
+#include "common/state/checkpoint.h"
+#include "tests/support/every_kind.h"
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+#include "tests/support/run_comparison.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+namespace fs = std::filesystem;
+
+void flip(const std::string& path, std::uint64_t byte, unsigned bit) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(byte));
+  const char changed = static_cast<char>(static_cast<unsigned>(file.get()) ^ (1U << bit));
+  file.seekp(static_cast<std::streamoff>(byte));
+  file.put(changed);
+}
+
+class CheckpointDamage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write(1);
+    write(2);
+  }
+  /// Numbers in attributes and in data sets of several chunks, and a text too long for a header.
+  void write(std::int64_t generation) const {
+    write_checkpoint(path_, "scene", [&](const h5::Group& root) {
+      root.attribute("generation", generation);
+      root.attribute("time", 0.25);
+      root.attribute("long", std::string(70000, 'x'));
+      root.create("system").write("position", std::vector<double>(3000, 0.125 * static_cast<double>(generation)));
+      root.write("none", std::vector<double>{});
+    });
+  }
+  /// Whether the newest checkpoint was taken for sound; then the one before it was not looked at.
+  [[nodiscard]] bool newest_is_taken() const {
+    std::string note;
+    const auto group = open_checkpoint(path_, "scene", note);
+    EXPECT_TRUE(group.has_value());
+    EXPECT_EQ(group->integer("generation"), note.empty() ? 2 : 1);
+    return note.empty();
+  }
+
+  TemporaryDirectory directory_;
+  std::string path_ = directory_.file("checkpoint.h5");
+};
+
+TEST_F(CheckpointDamage, AFlippedBitAnywhereIsFound) {
+  ASSERT_TRUE(newest_is_taken());
+  const std::uint64_t size = fs::file_size(path_);
+  RandomStream random(7, RandomPurpose::test, 1);
+  for (int n = 0; n < 1000; ++n) {
+    const std::uint64_t byte = random.below(size);
+    const auto bit = static_cast<unsigned>(random.below(8));
+    flip(path_, byte, bit);
+    EXPECT_FALSE(newest_is_taken()) << "bit " << bit << " of byte " << byte << " of " << size;
+    flip(path_, byte, bit);
+  }
+  EXPECT_TRUE(newest_is_taken());
+}
+
+TEST_F(CheckpointDamage, ACutAnywhereIsFound) {
+  const std::string whole = read_text(path_);
+  RandomStream random(7, RandomPurpose::test, 2);
+  for (int n = 0; n < 200; ++n) {
+    const auto length = n < 40 ? whole.size() - 1 - static_cast<std::size_t>(n) : random.below(whole.size());
+    fs::resize_file(path_, length);
+    EXPECT_FALSE(newest_is_taken()) << "cut to " << length;
+    write_text_atomic(path_, whole);
+  }
+  EXPECT_TRUE(newest_is_taken());
+}
+
+TEST_F(CheckpointDamage, BytesAddedOrExchangedAreFound) {
+  std::string whole = read_text(path_);
+  write_text_atomic(path_, whole + std::string(16, '\0'));
+  EXPECT_FALSE(newest_is_taken());
+  std::swap_ranges(whole.begin(), whole.begin() + 8, whole.begin() + 30000);
+  write_text_atomic(path_, whole);
+  EXPECT_FALSE(newest_is_taken());
+}
+
+TEST_F(CheckpointDamage, BothDamagedIsTrouble) {
+  flip(path_, 500, 3);
+  flip(path_ + ".previous", 600, 3);
+  std::string note;
+  EXPECT_THROW((void)open_checkpoint(path_, "scene", note), FileTrouble);
+}
+
+/// An older file, whole but without the checksum that later ones have, is refused for its schema.
+TEST_F(CheckpointDamage, AnotherSchemaIsRefusedAsSuch) {
+  {
+    h5::AtomicFile file(path_);
+    file.root().attribute("kind", "softgrain checkpoint");
+    file.root().attribute("schema", std::int64_t{1});
+    file.commit();
+  }
+  std::string note;
+  EXPECT_THROW((void)open_checkpoint(path_, "scene", note), BadInput);
+}
+
+TEST_F(CheckpointDamage, AnotherSceneIsRefusedAsSuch) {
+  std::string note;
+  EXPECT_THROW((void)open_checkpoint(path_, "another scene", note), BadInput);
+}
+
+/// Through the program: the one before is taken with a word, and the run ends in the same bits.
+TEST(DamagedRun, GoesOnFromTheCheckpointBefore) {
+  const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("whole"))), 0));
+  const auto both = [&] { return fs::exists(runs.out("out") + "/checkpoint.h5.previous"); };
+  ASSERT_TRUE(ended_with(signal_when(start_program(runs.arguments("out")), both, SIGTERM), 130));
+  RandomStream random(7, RandomPurpose::test, 3);
+  for (int n = 0; n < 8; ++n) {
+    const std::string out = "out" + std::to_string(n);
+    fs::copy(runs.out("out"), runs.out(out), fs::copy_options::recursive);
+    const std::string checkpoint = runs.out(out) + "/checkpoint.h5";
+    if (n % 2 == 0)
+      flip(checkpoint, random.below(fs::file_size(checkpoint)), 5);
+    else
+      fs::resize_file(checkpoint, random.below(fs::file_size(checkpoint)));
+    ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments(out, {"--resume"}))), 0));
+    EXPECT_NE(read_text(runs.out(out) + "/log.txt").find("continuing from the checkpoint before it"),
+              std::string::npos);
+    expect_same_runs(runs.out("whole"), runs.out(out));
+  }
+}
+
+/// A law that was changed between two parts of a run is another run.
+TEST(DamagedRun, DoesNotGoOnWithAnotherLaw) {
+  const KindRuns runs({"macro", "macrosim", kTinyMacro, 0});
+  const auto begun = [&] { return fs::exists(runs.out("out") + "/work/macro-law-0.h5"); };
+  ASSERT_TRUE(ended_with(signal_when(start_program(runs.arguments("out")), begun, SIGTERM), 130));
+  LawCard other = synthetic::card();
+  other.pairs.at(0).normal.a.value *= 2.0;
+  save_card(other, runs.out("law.toml"));
+  const std::string errors = runs.out("errors.txt");
+  EXPECT_TRUE(ended_with(wait_for(start_program(runs.arguments("out", {"--resume"}), errors_to(errors))), 2));
+  EXPECT_NE(read_text(errors).find("another scene"), std::string::npos) << read_text(errors);
+}
+
+/// Result files have no seal of their own; cut short they are refused wherever they are read.
+TEST(DamagedResults, CutShortAreRefused) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("measurements.h5");
+  save(synthetic::measurements(), file, {});
+  const std::string whole = read_text(file);
+  RandomStream random(7, RandomPurpose::test, 4);
+  for (int n = 0; n < 12; ++n) {
+    write_text_atomic(file, whole.substr(0, random.below(whole.size())));
+    const auto outcome = run_the_program("calibrate '" + file + "' --out '" + directory.file("out") + "'");
+    EXPECT_EQ(outcome.status, 4) << outcome.output;
+    EXPECT_NE(outcome.output.find(file), std::string::npos) << outcome.output;
+    EXPECT_FALSE(fs::exists(directory.file("out") + "/law.toml"));
+  }
+}
+
+}  // namespace

@@ -1,0 +1,170 @@
+// Every scene in pipelines/, made small, gives the same bits in every file whatever the number of threads and whatever
+// is shown or recorded on the way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+#include "tests/support/run_comparison.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+namespace fs = std::filesystem;
+
+/// A scene of pipelines/ in a form of about a second. A new scene there needs a row here.
+struct SmallForm {
+  std::string file;
+  std::string command;
+  std::vector<std::string> overrides;
+  int status = 0;  ///< 3 where a small form measures too little for a law
+};
+
+const std::vector<std::string> kSmallPacking{"packing.count=2", "packing.polydispersity=4", "packing.trials=100",
+                                             "packing.beta=8"};
+const std::vector<std::string> kSmallMacro{"macro.bodies=8", "macro.samples=2", "macro.steps=2"};
+const std::vector<std::string> kSmallPowder{"samples=1", "disks.count=60", "contact.kappa=1e3"};
+const std::vector<std::string> kTwoDeltas{"measure.soft_solid.deltas=[0.1,0.2]", "measure.soft_soft.deltas=[0.2,0.3]"};
+
+std::vector<std::string> with(std::vector<std::string> all, const std::vector<std::vector<std::string>>& more) {
+  for (const auto& part : more) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+std::vector<SmallForm> small_forms() {
+  const std::vector<std::string> rotated{"measure.soft_solid.tangential_deltas=[0.2]",
+                                         "measure.soft_solid.angles_deg=[-1.0,0.05]"};
+  const std::vector<std::string> soft_rotated{"measure.soft_soft.tangential_deltas=[0.3]",
+                                              "measure.soft_soft.angles_deg=[0.05]"};
+  const std::vector<std::string> quick_rest{"measure.least_work.settle_time=5", "measure.least_work.path_settle_time=5",
+                                            "measure.least_work.settle_time_rotated=2"};
+  const std::vector<std::string> reference{"reference.count=1", "reference.soft_solid.deltas=[0.1]"};
+  const std::vector<std::string> unrotated_reference{"reference.soft_solid.tangential_deltas=[]"};
+  const std::vector<std::string> method2 = with(kSmallPowder, {{"assembly.time_max=2000"}});
+  const std::string plane = R"({arrangement="one",partner="plane",overlap=0.3})";
+  const std::string two = R"({arrangement="opposite",partner="plane",overlap=0.2})";
+  const std::string soft = R"({arrangement="one",partner="soft",overlap=0.4})";
+  const std::string solid = R"({arrangement="one",partner="solid",overlap=0.4})";
+  const std::vector<std::string> crowd{"packing.polydispersity=3", "packing.trials=100",   "packing.beta=8",
+                                       "crowd.packings_min=4",     "crowd.packings_max=4", "crowd.points=4",
+                                       "crowd.increment=0.025"};
+  const auto box = [](const std::string& variants) {
+    return std::vector<std::string>{"box.grains=60",
+                                    "loading.increment=1e-3",
+                                    "loading.end_strain=0.004",
+                                    "generation.increment=5e-4",
+                                    "generation.window=4",
+                                    "generation.saturation=0.1",
+                                    variants};
+  };
+  return {
+      {"calibration.toml", "run", with(kSmallPacking, {kTwoDeltas, quick_rest, rotated, soft_rotated}), 3},
+      {"four_decades.toml", "run",
+       with(crowd, {{"configuration=[" + plane + "," + solid + "," + soft + "]", "hierarchy.levels=2",
+                     "hierarchy.form=bag", "hierarchy.inner_radius_max=0.2", "hierarchy.inner_radius_min=0.1",
+                     "hierarchy.inner_count=4", "fixed_point.iterations=2", "fixed_point.tolerance=0.9",
+                     "check.packings=1", "check.inner_count=1", "check.overlaps=[0.2,0.3]"}}),
+       3},
+      {"glass_beads.toml", "microsim", box(R"(variant=[{name="4MPa"},{name="rough",wall_mu=0.3}])"), 0},
+      {"glass_beads_comparison.toml", "microsim",
+       box(R"(variant=[{name="frictionless",mu=0.0},{name="reference-rule",coulomb="reference"}])"), 0},
+      {"glass_beads_small.toml",
+       "microsim",
+       {"box.grains=60", "loading.increment=1e-3", "loading.end_strain=0.004", "generation.increment=5e-4",
+        "generation.window=4", "generation.saturation=0.1"},
+       0},
+      {"law_table.toml", "run",
+       with(crowd,
+            {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=4", "variant=[]"}}),
+       0},
+      {"macro_vs_resolved.toml", "run",
+       with(
+           {"packing.polydispersity=4", "packing.trials=300", "packing.count=2", "macro.bodies=8", "macro.samples=2"},
+           {{R"(scene=[{test="oedometric",strain=0.2,steps=2},{test="shear",preload=0.06,preload_steps=1,strain=0.1,steps=1}])",
+             "law.range=clamp"}}),
+       0},
+      {"packing_study.toml", "microsim", with(kSmallPacking, {{"measure.soft_solid.deltas=[0.1,0.2]"}}), 0},
+      {"powder_method1.toml", "microsim", with(kSmallPowder, {{"samples=2", "analysis.mesh=10"}}), 0},
+      {"powder_method2.toml", "microsim", method2, 0},
+      {"powder_method2_variants.toml", "microsim", with(method2, {{"only=[\"p0\",\"rr-p001\"]"}}), 0},
+      {"powder_series_b.toml", "microsim", with(method2, {{"assembly.stiffening_time=20"}}), 0},
+      {"powder_table.toml", "microsim", with(kSmallPowder, {{"only=[\"grains-mu05\",\"rr-mu015\"]"}}), 0},
+      {"powder_variants.toml", "microsim", with(kSmallPowder, {{"only=[\"phi-052\",\"equal-disks\"]"}}), 0},
+      {"published.toml", "run",
+       with(kSmallPacking, {kSmallMacro,
+                            kTwoDeltas,
+                            quick_rest,
+                            rotated,
+                            soft_rotated,
+                            reference,
+                            unrotated_reference,
+                            {"reference.soft_soft.deltas=[0.2]", "reference.soft_soft.tangential_deltas=[]"}}),
+       3},
+      {"quickstart.toml", "run",
+       with(kSmallPacking, {kSmallMacro, kTwoDeltas, quick_rest, rotated, soft_rotated, reference}), 3},
+      {"relaxation_check.toml", "microsim",
+       with(kSmallPacking, {kTwoDeltas, reference, {"reference.soft_soft.deltas=[0.2]"}}), 0},
+      {"relaxation_study.toml", "microsim", with(kSmallPacking, {kTwoDeltas, quick_rest, rotated, soft_rotated}), 0},
+      {"rotation_study.toml", "microsim",
+       with(kSmallPacking, {{"measure.soft_solid.deltas=[0.1,0.2]", "measure.rotation=cumulative"}, rotated}), 0},
+  };
+}
+
+class Determinism : public ::testing::TestWithParam<SmallForm> {
+ protected:
+  void run(const std::string& name, const std::string& threads, bool quiet) const {
+    const SmallForm& form = GetParam();
+    std::vector<std::string> words{form.command, std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/" + form.file,
+                                   "--out",      directory_.file(name),
+                                   "--threads",  threads};
+    if (quiet) words.emplace_back("--quiet");
+    for (const std::string& o : form.overrides) words.insert(words.end(), {"--set", o});
+    const std::string errors = directory_.file(name + ".txt");
+    const int status = wait_for(start_program(words, errors_to(errors)));
+    ASSERT_TRUE(ended_with(status, form.status)) << form.file << ": " << status << "\n" << read_text(errors);
+  }
+  void expect_same(const std::string& a, const std::string& b) const {
+    expect_same_runs(directory_.file(a), directory_.file(b));
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_P(Determinism, ThreeThreadsAndALogChangeNothing) {
+  run("one", "1", true);
+  run("three", "3", false);
+  expect_same("one", "three");
+}
+
+TEST_P(Determinism, SlowAnyNumberOfThreadsWithAndWithoutOutput) {
+  run("one", "1", true);
+  for (const char* threads : {"1", "2", "3", "8"})
+    for (const bool quiet : {true, false}) {
+      const std::string name = std::string(threads) + (quiet ? "-quiet" : "-log");
+      run(name, threads, quiet);
+      expect_same("one", name);
+    }
+}
+
+std::string name_of(const ::testing::TestParamInfo<SmallForm>& info) {
+  std::string name = info.param.file.substr(0, info.param.file.find('.'));
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Pipelines, Determinism, ::testing::ValuesIn(small_forms()), name_of);
+
+TEST(DeterminismTable, HasEveryScene) {
+  std::set<std::string> there;
+  for (const auto& entry : fs::directory_iterator(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines"))
+    if (entry.path().extension() == ".toml") there.insert(entry.path().filename().string());
+  std::set<std::string> listed;
+  for (const SmallForm& form : small_forms()) listed.insert(form.file);
+  EXPECT_EQ(there, listed) << "a scene of pipelines/ has no small form, or a small form no scene";
+}
+
+}  // namespace

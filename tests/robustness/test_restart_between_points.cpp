@@ -1,0 +1,106 @@
+// A run that is taken up at any moment at which it can be saved, between recorded points too, ends in the same bits.
+#include <gtest/gtest.h>
+
+#include "macrosim/compression.h"
+#include "microsim/measure.h"
+#include "microsim/shell_packing.h"
+#include "tests/support/crowd.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+void expect_same(const Cost& a, const Cost& b) {
+  EXPECT_EQ(a.loop_passes, b.loop_passes);
+  EXPECT_EQ(a.contact_evaluations, b.contact_evaluations);
+}
+
+TEST(RestartBetweenPoints, ACrowdGoesOnFromEveryIncrement) {
+  const SoftParticleSpec spec = coarse_spec();
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, {{{1.0, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}}}, 0.2);
+  c.stages.push_back({"unload", {0.1, 0.2}, 0.0});
+  const CrowdPlan plan{{0.6, 1.0}, {0.5}};  // the last leg ends without a record
+  CrowdOptions options;
+  options.increment = 0.02;
+  const CrowdExperiment start = make_crowd(spec, c, content_of(spec, 0), {});
+  std::vector<std::pair<CrowdPlace, CrowdExperiment>> saved;
+  CrowdKeeper keeper;
+  keeper.seconds = 0.0;
+  keeper.save = [&](const CrowdPlace& place, const CrowdExperiment& e) { saved.emplace_back(place, e); };
+  CrowdExperiment whole = start;
+  const CrowdRun run = run_crowd(whole, plan, options, {}, keeper);
+  ASSERT_EQ(run.points.size(), 3U);
+  ASSERT_EQ(saved.size(), 16U);  // ten increments in, six out
+  for (auto& [place, e] : saved) {
+    const CrowdRun resumed = run_crowd(e, plan, options, {}, {place, {}, 0.0});
+    expect_equal(run.points, resumed.points);
+    expect_same(run.cost, resumed.cost);
+    EXPECT_EQ(e.overlap, whole.overlap);
+  }
+}
+
+void expect_same(const PackingRun& a, const PackingRun& b) {
+  ASSERT_EQ(a.normal.size(), b.normal.size());
+  for (std::size_t k = 0; k < a.normal.size(); ++k) {
+    EXPECT_EQ(a.normal[k].force, b.normal[k].force);
+    EXPECT_EQ(a.normal[k].residual, b.normal[k].residual);
+  }
+  ASSERT_EQ(a.tangential.size(), b.tangential.size());
+  for (std::size_t k = 0; k < a.tangential.size(); ++k) {
+    EXPECT_EQ(a.tangential[k].angle_deg, b.tangential[k].angle_deg);
+    EXPECT_EQ(a.tangential[k].force_parallel, b.tangential[k].force_parallel);
+    EXPECT_EQ(a.tangential[k].force_perpendicular, b.tangential[k].force_perpendicular);
+  }
+  expect_same(a.normal_cost, b.normal_cost);
+  expect_same(a.tangential_cost, b.tangential_cost);
+}
+
+TEST(RestartBetweenPoints, AMeasurementGoesOnFromEveryRotation) {
+  const SoftParticleSpec spec = coarse_spec();
+  const auto protocol = make_damped_protocol({});
+  for (const bool cumulative : {false, true}) {
+    const MeasurementPlan plan{{0.15, 0.25}, {0.25}, {-1.0, -0.05, 0.05, 1.0}, 0.01, true, cumulative};
+    std::vector<MeasurementState> saved;
+    MeasurementState whole;
+    whole.experiment = make_soft_solid(spec, generate_shell_packing(spec, 1, 0), false);
+    const auto keep = [&](const MeasurementState& s, double) { saved.push_back(s); };
+    measure(whole, plan, *protocol, keep, 0.0);
+    ASSERT_EQ(whole.run.tangential.size(), 5U);
+    EXPECT_EQ(saved.size(), cumulative ? 4U : 6U);  // two overlaps, before each angle or each sign
+    for (MeasurementState& state : saved) {
+      measure(
+          state, plan, *protocol, [](const MeasurementState&, double) {}, 0.0);
+      expect_same(whole.run, state.run);
+    }
+  }
+}
+
+TEST(RestartBetweenPoints, ACompressionGoesOnFromEveryIncrement) {
+  MacroSpec spec;
+  spec.bodies = 8;
+  spec.soft_share = 0.4;
+  spec.steps = 2;
+  spec.increments_per_step = 3;
+  spec.strain_end = 0.2;
+  const SoftParticleSpec inside = coarse_spec();
+  const MacroPacking packing = make_macro_packing(spec, 1, 0);
+  CompressionState whole;
+  whole.macro = make_shelled_system(spec, packing, {generate_shell_packing(inside, 1, 0)}, 1, 0);
+  whole.curve = begin_curve(spec, packing, whole.macro, "shelled", 0);
+  std::vector<CompressionState> saved;
+  compress(
+      whole, spec, [&](const CompressionState& s, double) { saved.push_back(s); }, 0.0);
+  ASSERT_EQ(saved.size(), 7U);  // three points, twice two increments between
+  for (CompressionState& state : saved) {
+    compress(
+        state, spec, [](const CompressionState&, double) {}, 0.0);
+    EXPECT_EQ(whole.curve.strain, state.curve.strain);
+    EXPECT_EQ(whole.curve.stress_axial, state.curve.stress_axial);
+    EXPECT_EQ(whole.curve.stress_lateral, state.curve.stress_lateral);
+    EXPECT_EQ(whole.curve.residual, state.curve.residual);
+    expect_same(whole.curve.cost, state.curve.cost);
+  }
+}
+
+}  // namespace
