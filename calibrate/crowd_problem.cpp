@@ -90,7 +90,7 @@ LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, d
     start.insert(start.end(), {m.m0, m.m1, m.m2});
     bounds.insert(bounds.end(), 3, ParameterBounds{-3.0, 3.0});
   }
-  const LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, thorough, set_planes);
+  LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, thorough, set_planes);
   set_planes(model, fit.parameters);
   return fit;
 }
@@ -105,7 +105,7 @@ LeastSquaresFit fit_partners(CrowdModel& model, PartnerKind kind, const std::vec
   std::vector<ParameterBounds> bounds(start.size(), {-4.0, 4.0});
   bounds.back() = {0.6, 3.0};
   set(model, start);
-  const LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, false, set);
+  LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, false, set);
   set(model, fit.parameters);
   return fit;
 }

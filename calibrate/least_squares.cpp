@@ -144,8 +144,9 @@ std::vector<double> spread_start(const LeastSquaresProblem& problem, const std::
   constexpr std::array<double, 12> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   std::vector<double> p = start;
   for (std::size_t j = 0; j < p.size(); ++j) {
-    const double x = static_cast<double>(k) * std::sqrt(kPrimes[j % kPrimes.size()]) *
-                     (1.0 + static_cast<double>(j / kPrimes.size()));
+    const std::size_t turn = j / kPrimes.size();
+    const double x =
+        static_cast<double>(k) * std::sqrt(kPrimes[j % kPrimes.size()]) * (1.0 + static_cast<double>(turn));
     p[j] *= std::pow(10.0, 2.0 * (x - std::floor(x)) - 1.0);
     if (!problem.bounds.empty()) p[j] = std::clamp(p[j], problem.bounds[j].low, problem.bounds[j].high);
   }

@@ -145,7 +145,7 @@ void fill(const LeastSquaresFit& found, ScatteringFit& out) {
 std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const ScatteringFitOptions& o) {
   std::vector<std::string> reasons;
   if (found.rank_deficient)
-    reasons.push_back("the data do not determine all parameters");
+    reasons.emplace_back("the data do not determine all parameters");
   else if (found.end != FitEnd::converged)
     reasons.push_back("not converged: " + found.message);
   const double xi = fit.model.length;
@@ -155,7 +155,7 @@ std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const 
   if (o.cell_length > 0.0 && xi > 0.5 * o.cell_length)
     reasons.push_back(fmt::format("xi = {:.3g} is beyond half the cell, {:.3g}", xi, 0.5 * o.cell_length));
   if (!(fit.dimension.high - fit.dimension.low < kWidestInterval))
-    reasons.push_back("the interval of dF is wider than all it can be");
+    reasons.emplace_back("the interval of dF is wider than all it can be");
   if (fit.chi2_per_degree > kWorstChi2)
     reasons.push_back(fmt::format("the curve is another: chi^2 per degree {:.3g}", fit.chi2_per_degree));
   std::string text;

@@ -62,7 +62,7 @@ class Loop {
 
   /// Branch vector and sum of radii; square of the distance against the square of the sum decides. No branch depends on
   /// whether a pair touches: about one in three does, which no processor can guess.
-  void find_touching(std::int32_t begin, std::int32_t end) {
+  void find_touching(std::int32_t begin, std::int32_t end) {  // NOLINT(readability-function-size): one hot loop
     const Slot* const first = list_.i.data();
     const Slot* const second = list_.j.data();
     const Sphere<D>* const spheres = s_.particles.sphere.data();
@@ -384,6 +384,7 @@ bool has_fast_loop(const LawSet& laws, const ContactSection& section) {
 }
 
 template <int D>
+// NOLINTNEXTLINE(readability-function-size): its parameters are those of the passes that call it
 void hertz_loop(System<D>& s, const ContactSection& section, double dt, const PairRange& range, History history,
                 ContactLoad* loads, std::uint8_t* touches, WaitingLoads* waiting) {
   const Target target{history, loads, touches, waiting};

@@ -17,8 +17,8 @@ std::vector<hsize_t> chunk_of(std::vector<hsize_t> extents) {
   const auto elements = [&] {
     return std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>());
   };
-  for (std::size_t k = 0; k < extents.size(); ++k)
-    while (extents[k] > 1 && elements() > kChunkElements) extents[k] = (extents[k] + 1) / 2;
+  for (hsize_t& extent : extents)
+    while (extent > 1 && elements() > kChunkElements) extent = (extent + 1) / 2;
   return extents;
 }
 

@@ -274,6 +274,7 @@ class Search {
     }
   }
 
+  // NOLINTNEXTLINE(readability-function-size): what a run of cells is compared with, by value, in the hottest loop
   void scan(const Level<D>& level, std::int64_t row, const Run& run, bool same_level, Slot i, const Vec<D>& x,
             double reach_i, int image, std::vector<CandidatePair>& out) const {
     const auto begin = static_cast<std::size_t>(level.start[static_cast<std::size_t>(row + run.low)]);
