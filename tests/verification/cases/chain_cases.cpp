@@ -56,7 +56,8 @@ std::vector<double> run_tapered(const TaperedChain& chain) {
   }
   balls[0].velocity[0] = kSpeed;
   // The smallest impact is the shortest: duration goes as the radius.
-  const double smallest = hertz_impact(bead_pair(), 2.0 * kSpeed).duration * std::pow(chain.ratio, static_cast<double>(chain.beads));
+  const double smallest =
+      hertz_impact(bead_pair(), 2.0 * kSpeed).duration * std::pow(chain.ratio, static_cast<double>(chain.beads));
   HertzContact contact;
   contact.restitution = chain.restitution;
   const double end = 2.0 * kGap * static_cast<double>(chain.beads) / kSpeed;

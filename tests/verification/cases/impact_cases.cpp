@@ -51,17 +51,22 @@ CurveDistance distance(const std::vector<double>& xs, const std::vector<double>&
 }  // namespace
 
 ImpactCase two_spheres() {
-  ImpactCase out{"two glass spheres", "two_spheres", "chung_ooi/chung_ooi_test1", 0, 1e-3 / 20.0, 20.0,
-                 {10696.889, 274.1127e-6, 40.33946e-6}, {}};
+  ImpactCase out{"two glass spheres", "two_spheres", "chung_ooi/chung_ooi_test1",           0,
+                 1e-3 / 20.0,         20.0,          {10696.889, 274.1127e-6, 40.33946e-6}, {}};
   const double mass = sphere_mass(0.01, 2800.0);
-  out.closed_form =
-      hertz_impact({hertz_stiffness(effective_modulus(4.8e10, 0.2), 0.005), 0.5 * mass}, out.speed);
+  out.closed_form = hertz_impact({hertz_stiffness(effective_modulus(4.8e10, 0.2), 0.005), 0.5 * mass}, out.speed);
   return out;
 }
 
 ImpactCase sphere_on_rigid_plane() {
-  ImpactCase out{"sphere on a rigid plane", "sphere_on_rigid_plane", "chung_ooi/chung_ooi_test2", 2, 1e-4 / 0.2, 0.2,
-                 {11369.858, 49.7172e-6, 731.6566e-6}, {}};
+  ImpactCase out{"sphere on a rigid plane",
+                 "sphere_on_rigid_plane",
+                 "chung_ooi/chung_ooi_test2",
+                 2,
+                 1e-4 / 0.2,
+                 0.2,
+                 {11369.858, 49.7172e-6, 731.6566e-6},
+                 {}};
   const double modulus = 7e10 / (1.0 - 0.3 * 0.3);
   out.closed_form = hertz_impact({hertz_stiffness(modulus, 0.1), sphere_mass(0.1, 2699.0)}, out.speed);
   return out;

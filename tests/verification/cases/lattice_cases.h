@@ -42,8 +42,8 @@ double run_shear_modulus(const LatticeState& state);
 /// With k = (3/2) K sqrt(h), kt = Dt sqrt(R h/2), f = K h^(3/2), l = 2R - h, V = volume per grain, and sums over the
 /// bonds of a grain (each counted once) S1 = sum n_x^2, S4 = sum n_x^4, S22 = sum n_x^2 n_y^2:
 /// c11 = [k l^2 S4 + f l (S4 - S1)]/V, c12 = [k l^2 S22 + f l (S22 + S1)]/V,
-/// c44 = [k l^2 S22 + kt l^2 (S1/2 - S22) + f l (S22 - S1)]/V. Without prestress and for fcc these are those of Duffy
-/// and Mindlin (1957), c44 = (k + kt)/(sqrt(2) l).
+/// c44 = [k l^2 S22 + kt l^2 (S1/2 - S22) + f l (S22 - S1)]/V. For fcc and without the terms with f this is c44 = (k +
+/// kt)/(sqrt(2) l) [Duffy and Mindlin 1957].
 Moduli moduli_closed_form(const LatticeState& state);
 
 }  // namespace softgrain::verification

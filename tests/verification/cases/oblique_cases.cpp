@@ -22,9 +22,9 @@ Vec3 velocity_at(double incidence) {
 
 /// Duration of the elastic impact at normal incidence, times (cos)^(-1/5) [s].
 double duration_at(double incidence) {
-  const HertzPair pair{hertz_stiffness(effective_modulus(kOxide.youngs_modulus, kOxide.poisson_ratio),
-                                       kPublished.radius),
-                       sphere_mass(kPublished.radius, kOxide.density)};
+  const HertzPair pair{
+      hertz_stiffness(effective_modulus(kOxide.youngs_modulus, kOxide.poisson_ratio), kPublished.radius),
+      sphere_mass(kPublished.radius, kOxide.density)};
   return hertz_impact(pair, kPublished.speed * std::cos(incidence * kRadian)).duration;
 }
 
@@ -62,8 +62,8 @@ std::string oblique_scene(double incidence, TangentialOption option) {
   ball.radius = kPublished.radius;
   ball.position[2] = kPublished.radius + kGap;
   ball.velocity = velocity_at(incidence);
-  return heading("Oblique impact of an aluminium oxide sphere") + text_of(kOxide) + contact_of(option) +
-         text_of(ball) + plane({}, {{0.0, 0.0, 1.0}}, "grain") +
+  return heading("Oblique impact of an aluminium oxide sphere") + text_of(kOxide) + contact_of(option) + text_of(ball) +
+         plane({}, {{0.0, 0.0, 1.0}}, "grain") +
          timing(duration / 400.0, static_cast<std::int64_t>(400.0 * (1.5 + flight / duration)));
 }
 
@@ -79,9 +79,7 @@ ObliqueOutcome sliding_all_the_time(double incidence) {
   return outcome(incidence, {{before[0] - impulse, 0.0, -kPublished.restitution * before[2]}}, 2.5 * impulse);
 }
 
-double least_sliding_incidence() {
-  return std::atan(3.5 * kPublished.mu * (1.0 + kPublished.restitution)) / kRadian;
-}
+double least_sliding_incidence() { return std::atan(3.5 * kPublished.mu * (1.0 + kPublished.restitution)) / kRadian; }
 
 std::vector<std::vector<double>> digitised_restitution() {
   return reference_table("chung_ooi/chung_ooi_test4_tangential_restitution.dat");

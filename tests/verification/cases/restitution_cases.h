@@ -12,8 +12,8 @@ struct RestitutionCase {
   NormalLaw law = NormalLaw::hertz;
   double restitution = 0.5;
   double ratio = 1.0;
-  double speed = 1.0;  ///< [m/s]
-  double phase = 0.5;  ///< share of a step that is over when the bodies touch
+  double speed = 1.0;               ///< [m/s]
+  double phase = 0.5;               ///< share of a step that is over when the bodies touch
   double steps_per_impact = 400.0;  ///< of the duration of the elastic impact
 };
 

@@ -63,8 +63,8 @@ std::vector<PublishedSliding> published_sliding() {
   const auto spins = reference_table("mfix_dem/DEM04_POST_AVEL.dat");
   std::vector<PublishedSliding> out;
   for (std::size_t k = 0; k < times.size(); ++k)
-    out.push_back({{times[k][0], times[k][1], speeds[k][1], spins[k][1]},
-                   {times[k][0], times[k][2], speeds[k][2], spins[k][2]}});
+    out.push_back(
+        {{times[k][0], times[k][1], speeds[k][1], spins[k][1]}, {times[k][0], times[k][2], speeds[k][2], spins[k][2]}});
   return out;
 }
 

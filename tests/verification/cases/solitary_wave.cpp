@@ -121,9 +121,7 @@ const DiscreteWave& discrete_wave() {
 
 SolitaryWave run_solitary(double striker) { return wave_of(run_struck(striker), striker); }
 
-double long_wave_speed(double amplitude) {
-  return std::pow(16.0 / 25.0 * std::pow(chain_speed(), 4) * amplitude, 0.2);
-}
+double long_wave_speed(double amplitude) { return std::pow(16.0 / 25.0 * std::pow(chain_speed(), 4) * amplitude, 0.2); }
 
 double discrete_wave_speed(double amplitude) {
   const DiscreteWave& w = discrete_wave();
