@@ -37,14 +37,21 @@ TEST(VerifiedLattices, ElasticConstantsWithAndWithoutTangentialSprings) {
 }
 
 TEST(VerifiedLattices, FaceCentredCubicIsThatOfDuffyAndMindlin) {
-  // c44 = (4 - 3 nu)/(2 (2 - nu)) [3 G^2 p/(2 (1 - nu)^2)]^(1/3), without the terms of prestress.
-  const LatticeState state{Lattice::face_centred, 1e-5, true};
+  // Without the terms of prestress, X = [3 G^2 p/(2 (1 - nu)^2)]^(1/3):
+  // c11 = (4 - 3 nu)/(2 - nu) X, c12 = nu/(2 (2 - nu)) X, c44 = c11/2.
   const double nu = 0.25;
   const double g = 7e10 / (2.0 * (1.0 + nu));
-  const double pressure = -run_stretched(state, {})[0][0];
-  const double c44 =
-      (4.0 - 3.0 * nu) / (2.0 * (2.0 - nu)) * std::cbrt(3.0 * g * g * pressure / (2.0 * (1.0 - nu) * (1.0 - nu)));
-  EXPECT_NEAR(run_shear_modulus(state) / c44, 1.0, 2e-5);
+  const LatticeState straight{Lattice::face_centred, 1e-5, true};
+  const LatticeState turned{Lattice::face_centred_turned, 1e-5, true};
+  const double pressure = -run_stretched(straight, {})[0][0];
+  const double x = std::cbrt(3.0 * g * g * pressure / (2.0 * (1.0 - nu) * (1.0 - nu)));
+  const double c11 = (4.0 - 3.0 * nu) / (2.0 - nu) * x;
+  const double c12 = nu / (2.0 * (2.0 - nu)) * x;
+  EXPECT_NEAR(run_shear_modulus(straight) / (0.5 * c11), 1.0, 3e-5);
+  EXPECT_NEAR(run_shear_modulus(turned) / (0.5 * (c11 - c12)), 1.0, 3e-5);
+  // Tangential springs do not resist pressure: the bulk modulus without them is that with them.
+  const Moduli bare = run_moduli({Lattice::face_centred, 1e-5, false});
+  EXPECT_NEAR((bare.c11 + 2.0 * bare.c12) / (c11 + 2.0 * c12), 1.0, 3e-5);
 }
 
 TEST(VerifiedLattices, TheProgram) {

@@ -31,6 +31,14 @@ TEST(VerifiedOblique, EveryTangentialLawBeyondThirtyDegrees) {
     const ObliqueErrors e = oblique_errors(option, 30.0);
     EXPECT_LT(e.restitution, 0.004) << name_of(option);
     EXPECT_LT(e.rebound_angle, 0.005) << name_of(option);
+    for (const auto& row : digitised_restitution())
+      if (row[0] > 30.0) {
+        EXPECT_NEAR(run_oblique(row[0], option).tangential_restitution / row[1], 1.0, 0.005) << row[0];
+      }
+    for (const auto& row : digitised_rebound_angle())
+      if (row[0] > 29.0) {
+        EXPECT_NEAR(run_oblique(row[0], option).rebound_angle, row[1], 0.4) << row[0];
+      }
   }
 }
 

@@ -1,5 +1,6 @@
 #include "tests/verification/cases/lattice_cases.h"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -15,28 +16,36 @@ namespace {
 constexpr double kRadius = 0.01;
 const SceneMaterial kGlass{};
 
-/// A conventional cube: places of its grains and bonds (one of each pair of opposite ones) over the bond length.
+/// A box that repeats itself: edges over the bond length, places over the edges, bonds (one of each pair of opposite
+/// ones) over the bond length.
 struct LatticeShape {
-  double edge = 1.0;
-  int repeats = 2;  ///< per axis: the cell holds more than two diameters
+  Vec3 edges;
+  std::array<int, 3> repeats;  ///< per axis: the cell holds more than two diameters
   std::vector<Vec3> places;
   std::vector<Vec3> bonds;
-  [[nodiscard]] double volume() const { return edge * edge * edge / static_cast<double>(places.size()); }
+  [[nodiscard]] double volume() const { return edges[0] * edges[1] * edges[2] / static_cast<double>(places.size()); }
 };
 
 LatticeShape shape_of(Lattice lattice) {
   if (lattice == Lattice::simple_cubic)
-    return {1.0, 3, {{{0.5, 0.5, 0.5}}}, {{{1.0, 0.0, 0.0}}, {{0.0, 1.0, 0.0}}, {{0.0, 0.0, 1.0}}}};
+    return {
+        {{1.0, 1.0, 1.0}}, {3, 3, 3}, {{{0.5, 0.5, 0.5}}}, {{{1.0, 0.0, 0.0}}, {{0.0, 1.0, 0.0}}, {{0.0, 0.0, 1.0}}}};
   if (lattice == Lattice::body_centred) {
     const double s = 1.0 / std::sqrt(3.0);
-    return {2.0 * s,
-            2,
+    return {{{2.0 * s, 2.0 * s, 2.0 * s}},
+            {2, 2, 2},
             {{{0.25, 0.25, 0.25}}, {{0.75, 0.75, 0.75}}},
             {{{s, s, s}}, {{s, s, -s}}, {{s, -s, s}}, {{-s, s, s}}}};
   }
   const double s = 1.0 / std::sqrt(2.0);
-  return {2.0 * s,
-          2,
+  if (lattice == Lattice::face_centred_turned)
+    return {
+        {{1.0, 1.0, 2.0 * s}},
+        {3, 3, 2},
+        {{{0.25, 0.25, 0.25}}, {{0.75, 0.75, 0.75}}},
+        {{{1.0, 0.0, 0.0}}, {{0.0, 1.0, 0.0}}, {{0.5, 0.5, s}}, {{0.5, -0.5, s}}, {{-0.5, 0.5, s}}, {{0.5, 0.5, -s}}}};
+  return {{{2.0 * s, 2.0 * s, 2.0 * s}},
+          {2, 2, 2},
           {{{0.25, 0.25, 0.25}}, {{0.75, 0.75, 0.25}}, {{0.75, 0.25, 0.75}}, {{0.25, 0.75, 0.75}}},
           {{{s, s, 0.0}}, {{s, -s, 0.0}}, {{s, 0.0, s}}, {{s, 0.0, -s}}, {{0.0, s, s}}, {{0.0, s, -s}}}};
 }
@@ -50,16 +59,19 @@ double stiffness() {
 /// Grains of a block stretched by `strain`; velocities and spins of a shear with `rate`.
 std::string grains(const LatticeState& s, const Vec3& strain, double rate, Vec3& size) {
   const LatticeShape shape = shape_of(s.lattice);
-  const double edge = shape.edge * bond_length(s);
-  for (int k = 0; k < 3; ++k) size[k] = shape.repeats * edge * (1.0 + strain[k]);
+  Vec3 edge;
+  for (int k = 0; k < 3; ++k) {
+    edge[k] = shape.edges[k] * bond_length(s) * (1.0 + strain[k]);
+    size[k] = shape.repeats[static_cast<std::size_t>(k)] * edge[k];
+  }
   std::string text;
-  const int n = shape.repeats;
-  for (int cube = 0; cube < n * n * n; ++cube)
+  const auto& n = shape.repeats;
+  for (int box = 0; box < n[0] * n[1] * n[2]; ++box)
     for (const Vec3& place : shape.places) {
       Ball b;
       b.radius = kRadius;
-      const Vec3 at = place + Vec3{{double(cube % n), double(cube / n % n), double(cube / (n * n))}};
-      for (int k = 0; k < 3; ++k) b.position[k] = edge * (1.0 + strain[k]) * at[k];
+      const Vec3 at = place + Vec3{{double(box % n[0]), double(box / n[0] % n[1]), double(box / (n[0] * n[1]))}};
+      for (int k = 0; k < 3; ++k) b.position[k] = edge[k] * at[k];
       b.velocity[0] = rate * b.position[1];
       b.spin[2] = -0.5 * rate;
       text += text_of(b);
@@ -86,7 +98,8 @@ struct BondSums {
 BondSums sums_of(Lattice lattice) {
   if (lattice == Lattice::simple_cubic) return {1.0, 1.0, 0.0};
   if (lattice == Lattice::body_centred) return {4.0 / 3.0, 4.0 / 9.0, 4.0 / 9.0};
-  return {2.0, 1.0, 0.5};
+  if (lattice == Lattice::face_centred) return {2.0, 1.0, 0.5};
+  return {2.0, 1.25, 0.25};
 }
 
 /// Volume per grain over l^3.
@@ -99,7 +112,8 @@ double volume_of(Lattice lattice) {
 
 std::string name_of(Lattice lattice) {
   if (lattice == Lattice::simple_cubic) return "simple cubic";
-  return lattice == Lattice::body_centred ? "body-centred cubic" : "face-centred cubic";
+  if (lattice == Lattice::body_centred) return "body-centred cubic";
+  return lattice == Lattice::face_centred ? "face-centred cubic" : "face-centred cubic, turned by 45°";
 }
 
 std::string stretched_scene(const LatticeState& s, const Vec3& strain) { return scene_of(s, strain, 0.0, 1); }

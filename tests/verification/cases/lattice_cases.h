@@ -8,8 +8,10 @@
 
 namespace softgrain::verification {
 
-enum class Lattice { simple_cubic, body_centred, face_centred };
-inline constexpr std::array<Lattice, 3> kLattices{Lattice::simple_cubic, Lattice::body_centred, Lattice::face_centred};
+/// `turned`: the face-centred lattice with x and y along its [110] and [1-10], where c44 is (c11 - c12)/2 of the cube.
+enum class Lattice { simple_cubic, body_centred, face_centred, face_centred_turned };
+inline constexpr std::array<Lattice, 4> kLattices{Lattice::simple_cubic, Lattice::body_centred, Lattice::face_centred,
+                                                  Lattice::face_centred_turned};
 std::string name_of(Lattice lattice);
 
 /// A lattice under isotropic pressure and what its contacts are made of.

@@ -172,9 +172,11 @@ PageSection restitution_section() {
   PageSection out;
   out.title = "Restitution";
   out.text =
-      R"(Normal impacts with e = 0.1 to 1 against a plane and spheres of 1, 3, 10 and 100 times the radius at 0.01 and 10
-m/s, the first touch anywhere within a step: the largest error of them all. Neither size nor speed matters. The
-dashpot of the linear spring sets in at once at first touch, so its error falls with the step and not with its square.)";
+      R"(Normal impacts with e = 0.1 to 1 against a plane and spheres of 1, 3, 10 and 100 times the radius at 0.01 and 10 m/s,
+the first touch anywhere within a step: the largest error of them all. Neither size nor speed matters. Without damping
+the error falls with the square of the step; with it only with the step, as the dashpot sets in at once (linear
+spring) or with `h^(1/4)`. For the linear spring it vanishes where the contact lasts a whole number of steps, as it happens to at
+e = 0.8 with 400.)";
   double hertz = 0.0;
   double linear = 0.0;
   for (double e = 0.1; e < 0.96; e += 0.1) {

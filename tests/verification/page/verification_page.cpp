@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/io/provenance.h"
 #include "pipelines/text_table.h"
 #include "tests/verification/page/page.h"
 
@@ -22,9 +23,7 @@ This page and its pictures are written by
     cmake --preset release && cmake --build build/release --target verification_page
     build/release/tests/verification_page results/verification
 
-Errors are relative unless they carry a unit.
-
-)";
+Errors are relative unless they carry a unit. No random numbers are drawn.)";
 
 void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
@@ -50,7 +49,7 @@ void write_page(const std::filesystem::path& directory) {
   const std::vector<PageSection> sections{impact_section(), oblique_section(), rolling_section(), restitution_section(),
                                           chain_section(),  lattice_section(), energy_section()};
   std::filesystem::create_directories(directory);
-  std::string page = kHead + table_of(sections);
+  std::string page = kHead + (" Version " + build_provenance().version + ".\n\n") + table_of(sections);
   for (const PageSection& s : sections) {
     page += text_of(s);
     for (const PageFigure& f : s.figures) write(directory / (f.file + ".svg"), f.svg + "\n");
