@@ -1,0 +1,74 @@
+// Writes the page of results/verification: runs every outside case, README.md with a table, and a plot of each.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "common/io/provenance.h"
+#include "pipelines/text_table.h"
+#include "tests/verification/page/page.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::verification;
+
+constexpr const char* kHead = R"(# Outside cases
+
+Scenes of kind `particles` against closed forms and what others measured or computed. The cases are `tests/verification/cases/`, and
+`tests/verification/test_*.cpp` hold them to bounds close to what is printed here; in every family the built program runs one of them too.
+This page and its pictures are written by
+
+    cmake --preset release && cmake --build build/release --target verification_page
+    build/release/tests/verification_page results/verification
+
+Errors are relative unless they carry a unit. No random numbers are drawn.)";
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(file.string() + " cannot be written");
+}
+
+std::string table_of(const std::vector<PageSection>& sections) {
+  TextTable table{{"case", "quantity", "closed form, or by others", "here", "error", "step"}, {}};
+  for (const PageSection& s : sections)
+    for (const PageRow& r : s.rows) table.rows.push_back({r.what, r.quantity, r.reference, r.here, r.error, r.step});
+  return as_markdown(table);
+}
+
+std::string text_of(const PageSection& section) {
+  std::string out = "\n## " + section.title + "\n\n" + section.text + "\n";
+  for (const PageFigure& f : section.figures) out += "\n![" + f.says + "](" + f.file + ".svg)\n";
+  return out;
+}
+
+void write_page(const std::filesystem::path& directory) {
+  const std::vector<PageSection> sections{impact_section(), oblique_section(), rolling_section(), restitution_section(),
+                                          chain_section(),  lattice_section(), energy_section()};
+  std::filesystem::create_directories(directory);
+  std::string page = kHead + (" Version " + build_provenance().version + ".\n\n") + table_of(sections);
+  for (const PageSection& s : sections) {
+    page += text_of(s);
+    for (const PageFigure& f : s.figures) write(directory / (f.file + ".svg"), f.svg + "\n");
+  }
+  write(directory / "README.md", page);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "verification_page DIR: writes README.md and its pictures\n");
+    return 2;
+  }
+  try {
+    write_page(argv[1]);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 3;
+  }
+  return 0;
+}
