@@ -69,11 +69,16 @@ void record_bodies(const MacroSystem& macro, MacroCurve& c) {
   for (const BodyContact& b : between) c.body_forces.push_back(b.normal_force);
 }
 
-/// Soft particles of a law run against the range of their law. Twins have no fitted law and record nothing.
-LawUse record_law_use(CompressionState& state) {
+/// Nobody has gone through a wall; soft particles of a law run against the range of their law (twins have no fitted law
+/// and record nothing).
+LawUse watch(CompressionState& state) {
   MacroCurve& c = state.curve;
+  const ContactWatch<3> seen = watch_contacts(state.macro.system);
+  if (seen.behind_planes > 0)
+    throw NotUsable("macro run '" + c.engine + "': the centre of body " + std::to_string(seen.behind) +
+                    " is behind a wall at strain " + std::to_string(c.strain.back()));
   if (c.grains > 0 || c.soft == 0) return {};
-  const LawUse use = watch_contacts(state.macro.system).laws;
+  const LawUse& use = seen.laws;
   c.law_asked.push_back(static_cast<double>(use.asked));
   c.law_beyond.push_back(static_cast<double>(use.beyond));
   c.law_largest.push_back(use.largest);
@@ -175,7 +180,7 @@ void compress(CompressionState& state, const MacroSpec& spec, const CompressionO
     }
     state.increments = 0;
     record(state, spec, strain_at(spec, point), rest);
-    const LawUse use = record_law_use(state);
+    const LawUse use = watch(state);
     const bool last = point + 1 == points;
     if (last || use.refused > 0) note_law_use(state.curve, use, strain_at(spec, point));
     observer(state, share(point + 1));
