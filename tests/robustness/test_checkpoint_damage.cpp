@@ -143,6 +143,7 @@ TEST(DamagedRun, DoesNotGoOnWithAnotherLaw) {
   ASSERT_TRUE(ended_with(signal_when(start_program(runs.arguments("out")), begun, SIGTERM), 130));
   LawCard other = synthetic::card();
   other.pairs.at(0).normal.a.value *= 2.0;
+  other.pairs.at(0).normal.c.value *= 2.0;
   save_card(other, runs.out("law.toml"));
   const std::string errors = runs.out("errors.txt");
   EXPECT_TRUE(ended_with(wait_for(start_program(runs.arguments("out", {"--resume"}), errors_to(errors))), 2));
