@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/io/interrupt.h"
+
 namespace softgrain {
 
 namespace {
@@ -32,6 +34,7 @@ LeastSquaresFit fit_model(const CrowdModel& model, const StateSelection& selecti
   LeastSquaresOptions options;
   options.thorough = thorough;
   options.max_iterations = 300;
+  stop_if_interrupted("fitting");
   return fit_least_squares(problem, {start}, options);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "common/core/error.h"
 #include "pipelines/compare/compare_measurements.h"
 
 namespace softgrain {
@@ -49,6 +50,16 @@ json cost_json(const PointCost& c) {
           {"loop_passes_per_point", c.loop_passes},
           {"contact_evaluations_per_point", c.contact_evaluations},
           {"seconds_per_point", c.seconds}};
+}
+
+json to_json(const RelaxationComparison& c) {
+  return {{"normal", rows_json(c.normal)},
+          {"kt_initial", rows_json(c.stiffness_initial)},
+          {"kt_secant", rows_json(c.stiffness_secant)},
+          {"reference_cost", cost_json(c.reference_normal_cost)},
+          {"candidate_cost", cost_json(c.candidate_normal_cost)},
+          {"reference_tangential_cost", cost_json(c.reference_tangential_cost)},
+          {"candidate_tangential_cost", cost_json(c.candidate_tangential_cost)}};
 }
 
 }  // namespace
@@ -118,14 +129,11 @@ json relaxations_json(const Measurements& data, const std::string& reference, co
       both[1] = both[1] || run.relaxation == candidate;
     }
     if (!both[0] || !both[1]) continue;
-    const RelaxationComparison c = compare_relaxations(data, reference, candidate, kind);
-    out[to_string(kind)] = {{"normal", rows_json(c.normal)},
-                            {"kt_initial", rows_json(c.stiffness_initial)},
-                            {"kt_secant", rows_json(c.stiffness_secant)},
-                            {"reference_cost", cost_json(c.reference_normal_cost)},
-                            {"candidate_cost", cost_json(c.candidate_normal_cost)},
-                            {"reference_tangential_cost", cost_json(c.reference_tangential_cost)},
-                            {"candidate_tangential_cost", cost_json(c.candidate_tangential_cost)}};
+    try {
+      out[to_string(kind)] = to_json(compare_relaxations(data, reference, candidate, kind));
+    } catch (const BadInput& e) {  // what was measured is kept when not a point of it can be compared
+      out[to_string(kind)] = {{"reason", e.what()}};
+    }
   }
   return out;
 }

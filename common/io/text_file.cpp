@@ -69,6 +69,14 @@ void require_writable_directory(const std::string& path) {
   fs::create_directories(path, trouble);
   if (trouble) throw FileTrouble(path + ": the directory cannot be made: " + trouble.message());
   if (!fs::is_directory(path, trouble)) throw FileTrouble(path + ": is not a directory");
+  if (const int nameless = ::open(path.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); nameless >= 0) {
+    const bool good = write_all(nameless, "test\n");
+    const std::string reason = system_message();
+    ::close(nameless);
+    if (!good) throw FileTrouble(path + ": cannot be written: " + reason);
+    return;
+  }
+  // Not every file system knows files without a name; one with a name is left behind when the process is killed now.
   const std::string probe = path + "/.write-test-" + std::to_string(::getpid());
   write_file(probe, "test\n");
   fs::remove(probe, trouble);

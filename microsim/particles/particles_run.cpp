@@ -35,9 +35,13 @@ using Clock = std::chrono::steady_clock;
 /// What a checkpoint belongs to: the scene, and the particles, which may lie in a file of their own.
 std::string identity_of(const ParticlesScene& scene, const System3& start) {
   const auto& p = start.particles;
-  std::string bytes(reinterpret_cast<const char*>(p.sphere.data()), p.sphere.size() * sizeof p.sphere[0]);
-  bytes.append(reinterpret_cast<const char*>(p.velocity.data()), p.velocity.size() * sizeof p.velocity[0]);
-  bytes.append(reinterpret_cast<const char*>(p.spin.data()), p.spin.size() * sizeof p.spin[0]);
+  std::string bytes;
+  const auto add = [&bytes](double x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof x); };
+  for (std::size_t u = 0; u < p.sphere.size(); ++u) {
+    add(p.sphere[u].r);
+    for (int k = 0; k < 3; ++k)
+      for (const double x : {p.sphere[u].x[k], p.velocity[u][k], p.spin[u][k]}) add(x);
+  }
   return scene.text + "\n# particles " + short_hash(bytes);
 }
 

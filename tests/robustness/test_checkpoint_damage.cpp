@@ -138,11 +138,13 @@ TEST(DamagedRun, GoesOnFromTheCheckpointBefore) {
 
 /// A law that was changed between two parts of a run is another run.
 TEST(DamagedRun, DoesNotGoOnWithAnotherLaw) {
-  const KindRuns runs({"macro", "macrosim", kTinyMacro, 0});
-  const auto begun = [&] { return fs::exists(runs.out("out") + "/work/macro-law-0.h5"); };
+  const KindRuns runs({"macro-comparison", "run", kTinyComparison, 0});
+  const std::string work = runs.out("out") + "/work";
+  const auto begun = [&] { return fs::exists(work) && !fs::is_empty(work); };
   ASSERT_TRUE(ended_with(signal_when(start_program(runs.arguments("out")), begun, SIGTERM), 130));
   LawCard other = synthetic::card();
   other.pairs.at(0).normal.a.value *= 2.0;
+  other.pairs.at(0).normal.c.value *= 2.0;
   save_card(other, runs.out("law.toml"));
   const std::string errors = runs.out("errors.txt");
   EXPECT_TRUE(ended_with(wait_for(start_program(runs.arguments("out", {"--resume"}), errors_to(errors))), 2));

@@ -51,11 +51,24 @@ class RestartEverywhere : public ::testing::TestWithParam<KindScene> {
 };
 
 TEST_P(RestartEverywhere, TerminatedAtRandomItEndsInTheSameBits) {
-  const double whole = run_whole();
-  EXPECT_GE(disturb("stopped", {SIGTERM, 2, 0.8 * whole, 100}), 1);
+  double longest = 0.8 * run_whole();
+  // On a machine that others use as well a run may be much quicker than the one before.
+  for (std::uint64_t round = 0; round < 8; ++round, longest *= 0.6)
+    if (disturb("stopped" + std::to_string(round), {SIGTERM, 2, longest, 100 + round}) > 0) return;
+  ADD_FAILURE() << "every run ended before the signal came";
 }
 
-TEST_P(RestartEverywhere, SlowKilledFiftyTimesItEndsInTheSameBits) { kill_fifty_times(0.2 * run_whole()); }
+using SlowRestartEverywhere = RestartEverywhere;
+
+TEST_P(SlowRestartEverywhere, TerminatedAtRandomItEndsInTheSameBits) {
+  const double whole = run_whole();
+  int stops = 0;
+  for (std::uint64_t round = 0; round < 6; ++round)
+    stops += disturb("stopped" + std::to_string(round), {SIGTERM, 3, 0.6 * whole, 200 + round});
+  EXPECT_GE(stops, 3);
+}
+
+TEST_P(SlowRestartEverywhere, KilledFiftyTimesItEndsInTheSameBits) { kill_fifty_times(0.2 * run_whole()); }
 
 std::string name_of(const ::testing::TestParamInfo<KindScene>& info) {
   std::string name = info.param.name;
@@ -63,7 +76,15 @@ std::string name_of(const ::testing::TestParamInfo<KindScene>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, RestartEverywhere, ::testing::ValuesIn(every_kind()), name_of);
+/// Law tables and hierarchies take several seconds; they have tests of a stop of their own among the default ones.
+std::vector<KindScene> quick_kinds() {
+  std::vector<KindScene> kinds = every_kind();
+  std::erase_if(kinds, [](const KindScene& k) { return k.name == "law-table" || k.name == "hierarchy"; });
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RestartEverywhere, ::testing::ValuesIn(quick_kinds()), name_of);
+INSTANTIATE_TEST_SUITE_P(Kinds, SlowRestartEverywhere, ::testing::ValuesIn(every_kind()), name_of);
 
 /// Of the default tests, the one with fifty kills: each engine of the others is killed as often by the slow tests.
 using FiftyKills = RestartEverywhere;

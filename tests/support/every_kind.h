@@ -40,15 +40,14 @@ deltas = [0.15, 0.25]
 
 inline constexpr const char* kTinyMacro = R"(kind = "macro"
 seed = 1
-contents = 2
+contents = 1
 law = "law.toml"
 [macro]
-bodies = 10
-steps = 3
-strain = 0.2
-samples = 2
+bodies = 6
+steps = 1
+strain = 0.05
 increments_per_step = 3
-resolved = ["shelled", "free"]
+resolved = ["shelled"]
 )";
 
 inline constexpr const char* kTinyPowder = R"(kind = "cohesive-powder"

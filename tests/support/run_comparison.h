@@ -23,7 +23,8 @@ inline const std::set<std::string> kFilesOfCircumstance{"log.txt", "report.html"
 /// Names of data sets, attributes, keys and columns that say how a run went and not what came out: anything with one of
 /// these words. "provenance" and "files" are whole tables or groups. Numbers of loop passes and contact evaluations are
 /// results: they must agree.
-inline const std::vector<std::string> kCircumstances{"provenance", "seconds", "memory", "files", "command", "cpu"};
+inline const std::vector<std::string> kCircumstances{"provenance", "seconds", "memory", "files",
+                                                     "command",    "cpu",     "faster"};
 
 /// Parts of the stepping loop that only the last of several processes has gone through.
 inline const std::set<std::string> kPartsOfLoop{"warm_up", "measured"};
