@@ -1,10 +1,10 @@
 // Tables of a scene: finding keys, places for messages, keys that nobody asked for.
-#include <toml++/toml.h>
 #include <algorithm>
 #include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
+#include "common/io/toml.h"
 
 namespace softgrain {
 

@@ -1,11 +1,11 @@
 // Values of a scene: numbers with units and ranges, counts, flags, words, vectors and lists.
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
+#include "common/io/toml.h"
 
 namespace softgrain {
 
