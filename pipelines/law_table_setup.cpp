@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pipelines/measure_setup.h"
+
 namespace softgrain {
 
 namespace {
@@ -12,6 +14,7 @@ LawTableVariant read_variant(const SceneTable& t, const CrowdSetup& base) {
   LawTableVariant v{base.spec, 0};
   v.spec.beta = t.number("beta", Unit::none, Range::positive(), v.spec.beta);
   v.spec.trials = t.count("trials", 1, 1000000000000, v.spec.trials);
+  require_drawable(t, v.spec);
   v.packings = t.count("packings", 2, base.packings_max, std::min(base.packings_min, kVariantPackings));
   if (v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
     t.reject("beta", "a variant needs another beta or another number of trials than [packing]");

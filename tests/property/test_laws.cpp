@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/contact/crowd_from_table.h"
+#include "common/core/error.h"
 #include "common/core/monotone_curve.h"
 #include "tests/property/random_cloud.h"
 #include "tests/support/synthetic_crowd.h"

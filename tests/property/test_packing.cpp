@@ -4,7 +4,9 @@
 #include <omp.h>
 
 #include <array>
+#include <optional>
 
+#include "common/core/error.h"
 #include "common/packing/void_filling.h"
 #include "microsim/shell_packing.h"
 #include "tests/property/random_cloud.h"

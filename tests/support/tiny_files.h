@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "common/contact/crowd_from_table.h"
 #include "common/data/macro_result.h"
 #include "common/dynamics/verlet.h"
 #include "common/state/checkpoint.h"
