@@ -1,5 +1,7 @@
 #include "pipelines/powder_setup.h"
 
+#include "common/io/hdf5_file.h"
+
 namespace softgrain {
 
 namespace {
@@ -79,6 +81,7 @@ PowderSetup read_powder(const Scene& scene) {
   const SceneTable analysis = root.table_or_empty("analysis");
   setup.rigidity = analysis.flag("rigidity", setup.rigidity);
   setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
+  if (!setup.states.empty()) (void)h5::open_file(setup.states);  // what is not there shows before any work
   read_structure(analysis, setup.structure);
   root.finish();
   return setup;

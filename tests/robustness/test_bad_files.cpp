@@ -93,6 +93,7 @@ class BadFiles : public ::testing::Test {
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << name << ": " << outcome.output;
     EXPECT_TRUE(outcome.output.starts_with("softgrain: ")) << name << ": " << outcome.output;
     EXPECT_TRUE(!fs::exists(out()) || fs::is_empty(out())) << name;
+    fs::remove_all(out());
   }
   void expect_cases(const std::string& file, std::size_t least) {
     const std::vector<Case> cases = read_cases(file);
