@@ -13,7 +13,7 @@ const Range kShare{0.0, 1.0, true, true};
 
 void read_crowd(const SceneTable& t, CrowdSetup& setup) {
   CrowdOptions& o = setup.options;
-  o.increment = t.number("increment", Unit::none, Range{0.0, 0.1, true, false}, o.increment);
+  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
   o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
   o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);

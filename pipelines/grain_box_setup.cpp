@@ -16,7 +16,7 @@ namespace {
 
 const Range kPoisson = Range::closed(-0.9, 0.499);
 const Range kScatter{0.0, 0.3, false, false};
-const Range kIncrement{0.0, 0.1, true, false};
+const Range kIncrement = Range::closed(1e-9, 0.1);
 
 /// A coefficient of friction, or "infinite".
 double read_friction(const SceneTable& t, const std::string& key, double fallback) {
@@ -52,7 +52,8 @@ void read_box(const SceneTable& t, GrainBoxSpec& spec) {
   spec.grains = t.count("grains", 8, 10000000, spec.grains);
   spec.aspect = t.vector3("aspect", Unit::none, spec.aspect);
   for (int k = 0; k < 3; ++k)
-    if (!(spec.aspect[k] > 0.0)) t.reject("aspect", "the box is not closed: all three sides must be above 0");
+    if (!(spec.aspect[k] > 0.0 && spec.aspect[k] <= 1e6))
+      t.reject("aspect", "the box is not closed: all three sides must be above 0 (and at most 1e6)");
   spec.solid_fraction = t.number("solid_fraction", Unit::none, Range::closed(0.01, 0.36), spec.solid_fraction);
 }
 

@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "common/contact/crowd_table_file.h"
-#include "pipelines/crowd_law_fit.h"
 #include "pipelines/crowd_plan.h"
 #include "pipelines/crowd_stage.h"
 #include "pipelines/crowd_summary.h"
+#include "pipelines/law_table_setup.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_summary.h"
 
@@ -18,54 +18,8 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::int64_t kVariantPackings = 8;
-
-/// The same measurement on looser or denser packings.
-struct Variant {
-  SoftParticleSpec spec;
-  std::int64_t packings = 0;
-};
-
-struct LawTableScene {
-  std::string title;
-  CrowdSetup crowd;
-  std::vector<Variant> variants;
-  CrowdFitOptions fit;
-};
-
-Variant read_variant(const SceneTable& t, const CrowdSetup& base) {
-  Variant v{base.spec, 0};
-  v.spec.beta = t.number("beta", Unit::none, Range::positive(), v.spec.beta);
-  v.spec.trials = t.count("trials", 1, 1000000000000, v.spec.trials);
-  v.packings = t.count("packings", 2, base.packings_max, std::min(base.packings_min, kVariantPackings));
-  if (v.spec.beta == base.spec.beta && v.spec.trials == base.spec.trials)
-    t.reject("beta", "a variant needs another beta or another number of trials than [packing]");
-  return v;
-}
-
-LawTableScene read_law_table(const Scene& scene) {
-  const SceneTable root = scene.root();
-  (void)root.choice("kind", {"law-table"});
-  LawTableScene out{
-      root.text("title", ""), read_crowd_setup(root), {}, read_crowd_fit(root.table_or_empty("calibrate"))};
-  for (const SceneTable& t : root.tables("variant")) {
-    out.variants.push_back(read_variant(t, out.crowd));
-    if (out.variants.back().packings < out.fit.min_packings)
-      t.reject("packings", "fewer than calibrate.min_packings: there would be no fit");
-  }
-  if (out.crowd.packings_max < out.fit.min_packings)
-    root.table_or_empty("crowd").reject("packings_max", "below calibrate.min_packings: there would be no fit");
-  const auto& all = out.crowd.configurations;
-  if (std::none_of(all.begin(), all.end(), [](const CrowdConfiguration& c) {
-        return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;
-      }))
-    root.reject("configuration", "a law table needs one plane alone (arrangement \"one\", partner \"plane\")");
-  root.finish();
-  return out;
-}
-
 /// Configurations that only test the law are left to the main measurement.
-CrowdSetup setup_of(const Variant& variant, const CrowdSetup& base) {
+CrowdSetup setup_of(const LawTableVariant& variant, const CrowdSetup& base) {
   CrowdSetup setup = base;
   setup.spec = variant.spec;
   setup.packings_min = setup.packings_max = variant.packings;
@@ -83,7 +37,7 @@ struct LawTableRun {
   CrowdLawFit fit;
 };
 
-LawTableRun measure_and_fit(const LawTableScene& setup, const TaskStore& store, const RunContext& context,
+LawTableRun measure_and_fit(const LawTableSetup& setup, const TaskStore& store, const RunContext& context,
                             const Provenance& provenance) {
   LawTableRun run;
   CrowdFitOptions fit = setup.fit;
@@ -91,7 +45,7 @@ LawTableRun measure_and_fit(const LawTableScene& setup, const TaskStore& store, 
   run.data = run_crowd_stage(setup.crowd, store, context, provenance, nullptr);
   add_entry(run.fit, run.data, fit, setup.crowd.target);
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
-    const Variant& v = setup.variants[k];
+    const LawTableVariant& v = setup.variants[k];
     context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
     CrowdLevel named;  // nothing inside the soft particles, but a file of its own
     named.file = fmt::format("crowd_variant_{}.h5", k + 1);
@@ -102,7 +56,7 @@ LawTableRun measure_and_fit(const LawTableScene& setup, const TaskStore& store, 
   return run;
 }
 
-nlohmann::json summarise(const LawTableScene& setup, const LawTableRun& run, const RunContext& context,
+nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& run, const RunContext& context,
                          const Provenance& provenance, double seconds) {
   nlohmann::json summary;
   summary["status"] = run.fit.usable ? "good" : "not usable";
@@ -130,7 +84,7 @@ std::string people_text(const LawTableRun& run, const RunContext& context, doubl
 
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const LawTableScene setup = read_law_table(scene);
+  const LawTableSetup setup = read_law_table(scene);
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
   const std::uint64_t seed = context.seed(setup.crowd.seed);
   const Provenance provenance = context.provenance(scene, seed);

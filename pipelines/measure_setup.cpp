@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "common/core/error.h"
 
@@ -34,10 +35,11 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   spec.trials = t.count("trials", 1, 1000000000, spec.trials);
   spec.placement =
       t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
+  require_drawable(t, spec);
 }
 
 void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
-  o.increment = t.number("increment", Unit::none, Range{0.0, 0.1, true, false}, o.increment);
+  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
   o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
   o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
   o.tolerance_rotated = t.number("tolerance_rotated", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance_rotated);
@@ -45,7 +47,7 @@ void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
 }
 
 void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
-  o.increment = t.number("increment", Unit::none, Range{0.0, 0.1, true, false}, o.increment);
+  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
   o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
   o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
   o.increment_passes = t.count("increment_passes", 0, 1000000, o.increment_passes);
@@ -119,6 +121,21 @@ MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, st
 
 }  // namespace
 
+void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
+  constexpr double kMost = 1e7;
+  const double b = spec.exponent;
+  const double p = spec.polydispersity;
+  const double third_moment = b == 4.0
+                                  ? 3.0 * std::log(p) / (std::pow(p, 3.0) - 1.0)
+                                  : (b - 1.0) / (b - 4.0) * (std::pow(p, b - 4.0) - 1.0) / (std::pow(p, b - 1.0) - 1.0);
+  const double grains = spec.beta / (third_moment * std::pow(spec.rmax_over_shell, 3.0));
+  if (grains <= kMost) return;
+  std::ostringstream problem;
+  problem << "beta = " << spec.beta << " with rmax_over_shell = " << spec.rmax_over_shell << ", polydispersity = " << p
+          << " and exponent = " << b << " draws about " << grains << " grains per packing, allowed are at most 1e7";
+  t.reject(t.has("polydispersity") ? "polydispersity" : "beta", problem.str());
+}
+
 std::int64_t MeasureSetup::packings() const {
   std::int64_t most = 0;
   for (const MeasureSeries& s : series) most = std::max(most, s.packings);
@@ -143,7 +160,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   read_least_work(measure.table_or_empty("least_work"), setup.least_work);
   MeasurementPlan common;
   common.rotation_step_deg =
-      measure.number("rotation_step_deg", Unit::angle_degree, Range{0.0, 5.0, true, false}, common.rotation_step_deg);
+      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), common.rotation_step_deg);
   common.shell_turns = measure.flag("shell_turns", common.shell_turns);
   common.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
   setup.series.push_back(read_series(measure, read_relaxation(measure, "least-work"), count, common));

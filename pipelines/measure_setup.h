@@ -40,6 +40,10 @@ struct MeasureSetup {
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
 };
 
+/// Throws BadInput at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or from a
+/// law whose mean volume is no number).
+void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
+
 /// Reads [material] and what [packing] says of the soft particle (not `count`). Throws BadInput.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
 

@@ -1,5 +1,7 @@
 #include "pipelines/powder_setup.h"
 
+#include "common/io/hdf5_file.h"
+
 namespace softgrain {
 
 namespace {
@@ -12,7 +14,7 @@ void read_disks(const SceneTable& t, PowderSpec& spec) {
 
 void read_contact(const SceneTable& t, PowderSpec& spec) {
   spec.cohesive = t.flag("cohesive", spec.cohesive);
-  spec.stiffness = t.number("kappa", Unit::none, Range::positive(), spec.stiffness);
+  spec.stiffness = t.number("kappa", Unit::none, Range::closed(1.0, 1e12), spec.stiffness);
   spec.stiffness_ratio = t.number("kt_ratio", Unit::none, Range::positive(), spec.stiffness_ratio);
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.damping = t.number("zeta", Unit::none, Range::not_negative(), spec.damping);
@@ -48,7 +50,7 @@ void read_assembly(const SceneTable& t, PowderSetup& setup) {
       setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
   read_protocol(t, setup);
   setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
-  setup.options.step = t.number("step", Unit::none, Range{0.0, 0.5, true, false}, setup.options.step);
+  setup.options.step = t.number("step", Unit::none, Range::closed(1e-6, 0.5), setup.options.step);
   setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
   setup.options.settle_kinetic =
       t.number("settle_kinetic", Unit::none, Range::not_negative(), setup.options.settle_kinetic);
@@ -79,6 +81,7 @@ PowderSetup read_powder(const Scene& scene) {
   const SceneTable analysis = root.table_or_empty("analysis");
   setup.rigidity = analysis.flag("rigidity", setup.rigidity);
   setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
+  if (!setup.states.empty()) (void)h5::open_file(setup.states);  // what is not there shows before any work
   read_structure(analysis, setup.structure);
   root.finish();
   return setup;

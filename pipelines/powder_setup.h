@@ -24,7 +24,7 @@ struct PowderSetup {
   [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, protocol); }
 };
 
-/// Reads the scene to the last key. Throws BadInput.
+/// Reads the scene to the last key. Throws BadInput; FileTrouble when there are no `states` to be read.
 PowderSetup read_powder(const Scene& scene);
 
 }  // namespace softgrain

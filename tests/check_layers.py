@@ -22,6 +22,8 @@ MAY_INCLUDE = {
 OTHER_FOLDERS = {"tests", "results", "cmake", "build"}
 ONLY_IN_SOURCES = {"ceres": "Ceres", "glog": "glog", "Eigen": "Eigen", "unsupported": "Eigen", "toml++": "toml++", "CLI": "CLI11",
                    "SuiteSparseQR.hpp": "SuiteSparse", "cholmod.h": "SuiteSparse", "fftw3.h": "FFTW"}
+# Headers of ours that stand for a library: they may include it, and including them counts as including it.
+STANDS_FOR = {"common/io/toml.h": "toml++"}
 ONLY_IN_CALIBRATE = {"ceres", "glog"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 
@@ -55,10 +57,11 @@ def violation(path, target):
     source = path.endswith((".cpp", ".cc"))
     if first in OTHER_FOLDERS or (first in MAY_INCLUDE and first not in MAY_INCLUDE[layer]):
         return f"{layer} must not include {first}/"
+    library = STANDS_FOR.get(target, first)
     if first in ONLY_IN_CALIBRATE and layer != "calibrate":
         return f"{ONLY_IN_SOURCES[first]} belongs to calibrate only"
-    if first in ONLY_IN_SOURCES and not source:
-        return f"{ONLY_IN_SOURCES[first]} must not be included by a header"
+    if library in ONLY_IN_SOURCES and not source and STANDS_FOR.get(path) != library:
+        return f"{ONLY_IN_SOURCES[library]} must not be included by a header"
     return None
 
 
@@ -116,6 +119,7 @@ BAD = [
     ("pipelines/x.cpp", '#include "ceres/ceres.h"\n', "pipelines/x.cpp:1:"),
     ("microsim/x.h", "#include <Eigen/Sparse>\n", "microsim/x.h:1:"),
     ("common/io/x.h", "#include <toml++/toml.h>\n", "common/io/x.h:1:"),
+    ("common/io/x.h", '#include "common/io/toml.h"\n', "common/io/x.h:1:"),
     ("pipelines/x.h", "#include <CLI/CLI.hpp>\n", "pipelines/x.h:1:"),
     ("microsim/x.h", "#include <SuiteSparseQR.hpp>\n", "microsim/x.h:1:"),
     ("microsim/x.h", "#include <fftw3.h>\n", "microsim/x.h:1:"),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -33,6 +34,16 @@ void read_doubles(const h5::Group& group, const std::string& name, std::vector<R
   const std::vector<double> values = group.doubles(name);
   if (values.size() != records.size()) throw FileTrouble("data set '" + name + "' has a wrong length");
   for (std::size_t k = 0; k < records.size(); ++k) set(records[k], values[k]);
+}
+/// The same for numbers that everything else is worked out from. Throws FileTrouble also when one is not finite.
+template <class Record, class Set>
+void read_finite(const h5::Group& group, const std::string& name, std::vector<Record>& records, Set set) {
+  read_doubles(group, name, records, [&](Record& r, double value) {
+    if (!std::isfinite(value))
+      throw FileTrouble("data set '" + name + "' holds a number that is not finite, in row " +
+                        std::to_string(&r - records.data()));
+    set(r, value);
+  });
 }
 template <class Record, class Set>
 void read_integers(const h5::Group& group, const std::string& name, std::vector<Record>& records, Set set) {

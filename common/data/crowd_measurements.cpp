@@ -29,7 +29,7 @@ template <class Record, class Field>
 void read_vector(const h5::Group& group, const std::string& name, std::vector<Record>& records, Field field) {
   constexpr const char* kAxis[] = {"_x", "_y", "_z"};
   for (int k = 0; k < 3; ++k)
-    read_doubles(group, name + kAxis[k], records, [&](Record& r, double v) { field(r)[k] = v; });
+    read_finite(group, name + kAxis[k], records, [&](Record& r, double v) { field(r)[k] = v; });
 }
 
 void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration>& configurations) {
@@ -47,7 +47,7 @@ std::vector<CrowdPartner> read_partners(const h5::Group& group) {
   std::vector<CrowdPartner> all(column_length(g, "kind"));
   read_integers(g, "kind", all,
                 [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
-  read_doubles(g, "ratio", all, [](auto& p, double v) { p.ratio = v; });
+  read_finite(g, "ratio", all, [](auto& p, double v) { p.ratio = v; });
   read_vector(g, "direction", all, [](auto& p) -> Vec3& { return p.direction; });
   return all;
 }
@@ -69,7 +69,7 @@ std::vector<CrowdStage> read_stages(const h5::Group& group) {
   const h5::Group g = group.open("stages");
   std::vector<CrowdStage> all(column_length(g, "overlaps"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
-  read_doubles(g, "slide", all, [](auto& s, double v) { s.slide = v; });
+  read_finite(g, "slide", all, [](auto& s, double v) { s.slide = v; });
   const std::vector<double> overlaps = g.doubles("overlap");
   Slices slices(overlaps.size());
   read_integers(g, "overlaps", all, [&](auto& s, auto v) { s.overlap = take(overlaps, slices, v); });
@@ -136,8 +136,8 @@ void write_points(const h5::Group& group, const std::vector<CrowdPoint>& points)
 std::vector<NeighbourRow> read_neighbours(const h5::Group& group) {
   const h5::Group g = group.open("neighbours");
   std::vector<NeighbourRow> rows(g.doubles("overlap").size());
-  read_doubles(g, "overlap", rows, [](auto& r, double v) { r.overlap = v; });
-  read_doubles(g, "normal", rows, [](auto& r, double v) { r.normal = v; });
+  read_finite(g, "overlap", rows, [](auto& r, double v) { r.overlap = v; });
+  read_finite(g, "normal", rows, [](auto& r, double v) { r.normal = v; });
   read_vector(g, "tangential", rows, [](auto& r) -> Vec3& { return r.tangential; });
   return rows;
 }
@@ -158,7 +158,7 @@ std::vector<CrowdPoint> read_points(const h5::Group& group) {
   Slices slices(rows.size());
   read_integers(g, "neighbours", points, [&](auto& p, auto v) { append_neighbours(p, take(rows, slices, v)); });
   slices.finish();
-  read_doubles(g, "slide", points, [](auto& p, double v) { p.slide = v; });
+  read_finite(g, "slide", points, [](auto& p, double v) { p.slide = v; });
   read_vector(g, "centre", points, [](auto& p) -> Vec3& { return p.centre; });
   read_doubles(g, "residual", points, [](auto& p, double v) { p.residual = v; });
   read_doubles(g, "max_overlap", points, [](auto& p, double v) { p.max_overlap = v; });

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "common/core/error.h"
 #include "common/data/spec_io.h"
 
@@ -109,6 +111,11 @@ void save_macro(const std::vector<MacroCurve>& curves, const std::string& path, 
 
 namespace {
 
+void require_finite(const MacroCurve& curve, const Column& c, const std::string& where) {
+  for (const double x : curve.*c.values)
+    if (!std::isfinite(x)) throw FileTrouble(fmt::format("{}/{}: holds a number that is not finite", where, c.name));
+}
+
 void require_length(const MacroCurve& curve, const Column& c, bool optional, const std::string& where) {
   const std::size_t n = (curve.*c.values).size();
   if (n == curve.strain.size() || (optional && n == 0)) return;
@@ -125,6 +132,8 @@ std::vector<MacroCurve> load_macro(const std::string& path) {
   for (const std::string& name : group.children()) {
     curves.push_back(read_macro_curve(group.open(name)));
     for (const Column& c : kColumns) require_length(curves.back(), c, false, path + ": " + name);
+    for (const Column& c : {kColumns[0], kColumns[1], kColumns[2]})
+      require_finite(curves.back(), c, path + ": " + name);
     for (const Column& c : kOptionalColumns) require_length(curves.back(), c, true, path + ": " + name);
   }
   return curves;

@@ -26,8 +26,8 @@ void write_normal(const h5::Group& root, const std::vector<NormalPoint>& points)
 std::vector<NormalPoint> read_normal(const h5::Group& root) {
   const h5::Group group = root.open("normal");
   std::vector<NormalPoint> points(column_length(group, "converged"));
-  read_doubles(group, "delta", points, [](auto& p, double v) { p.delta = v; });
-  read_doubles(group, "force", points, [](auto& p, double v) { p.force = v; });
+  read_finite(group, "delta", points, [](auto& p, double v) { p.delta = v; });
+  read_finite(group, "force", points, [](auto& p, double v) { p.force = v; });
   read_doubles(group, "residual", points, [](auto& p, double v) { p.residual = v; });
   read_doubles(group, "max_overlap", points, [](auto& p, double v) { p.max_overlap = v; });
   read_integers(group, "converged", points, [](auto& p, auto v) { p.converged = v != 0; });
@@ -47,10 +47,10 @@ void write_tangential(const h5::Group& root, const std::vector<TangentialPoint>&
 std::vector<TangentialPoint> read_tangential(const h5::Group& root) {
   const h5::Group group = root.open("tangential");
   std::vector<TangentialPoint> points(column_length(group, "converged"));
-  read_doubles(group, "delta", points, [](auto& p, double v) { p.delta = v; });
-  read_doubles(group, "angle", points, [](auto& p, double v) { p.angle_deg = v; });
-  read_doubles(group, "force_parallel", points, [](auto& p, double v) { p.force_parallel = v; });
-  read_doubles(group, "force_perpendicular", points, [](auto& p, double v) { p.force_perpendicular = v; });
+  read_finite(group, "delta", points, [](auto& p, double v) { p.delta = v; });
+  read_finite(group, "angle", points, [](auto& p, double v) { p.angle_deg = v; });
+  read_finite(group, "force_parallel", points, [](auto& p, double v) { p.force_parallel = v; });
+  read_finite(group, "force_perpendicular", points, [](auto& p, double v) { p.force_perpendicular = v; });
   read_doubles(group, "residual", points, [](auto& p, double v) { p.residual = v; });
   read_integers(group, "converged", points, [](auto& p, auto v) { p.converged = v != 0; });
   return points;

@@ -1,12 +1,14 @@
 // From text to a document: syntax, overrides, and back to text.
-#include <toml++/toml.h>
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
 #include "common/io/text_file.h"
+#include "common/io/toml.h"
 
 namespace softgrain {
 
@@ -27,13 +29,17 @@ std::string trimmed(const std::string& text) {
 /// A table with the one key "value". What is not TOML and does not begin like a TOML container or string is a bare
 /// word.
 toml::table parse_value(const std::string& value, const std::string& setting) {
+  std::string problem;
   try {
     toml::table table = toml::parse("value = " + value);
     if (table.size() == 1) return table;
   } catch (const toml::parse_error& e) {
-    if (!value.empty() && std::string("[{\"'").find(value.front()) != std::string::npos)
-      throw BadInput("--set " + setting + ": " + std::string(e.description()));
+    problem = e.description();
+  } catch (const TomlAssertion&) {
+    problem = "not valid TOML";
   }
+  if (!problem.empty() && !value.empty() && std::string("[{\"'").find(value.front()) != std::string::npos)
+    throw BadInput("--set " + setting + ": " + problem);
   return toml::table{{"value", value}};
 }
 
@@ -77,6 +83,27 @@ void note_overridden(SceneDocument& document, const toml::node& node) {
     for (const toml::node& child : *array) note_overridden(document, child);
 }
 
+bool meets_assertion(std::string_view text) {
+  try {
+    (void)toml::parse(text);
+  } catch (const TomlAssertion&) {
+    return true;
+  } catch (const toml::parse_error&) {  // cut off too early
+  }
+  return false;
+}
+
+/// Where a text stands that toml++ meets with an assertion: the first line with which the text up to there does.
+std::size_t line_of_assertion(const std::string& text) {
+  std::vector<std::size_t> ends;
+  for (std::size_t k = 0; k < text.size(); ++k)
+    if (text[k] == '\n') ends.push_back(k + 1);
+  const auto found = std::partition_point(ends.begin(), ends.end(), [&](std::size_t end) {
+    return !meets_assertion(std::string_view(text).substr(0, end));
+  });
+  return static_cast<std::size_t>(found - ends.begin()) + 1;
+}
+
 /// Parses TOML; syntax errors become BadInput with file and line.
 toml::table parse_toml(const std::string& text, const std::string& name) {
   try {
@@ -84,6 +111,9 @@ toml::table parse_toml(const std::string& text, const std::string& name) {
   } catch (const toml::parse_error& e) {
     throw BadInput(name + ":" + std::to_string(e.source().begin.line) +
                    ": not valid TOML: " + std::string(e.description()));
+  } catch (const TomlAssertion&) {
+    throw BadInput(name + ":" + std::to_string(line_of_assertion(text)) +
+                   ": not valid TOML: a key must begin with a letter, a digit, '_', '-' or a quotation mark");
   }
 }
 

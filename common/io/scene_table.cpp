@@ -1,10 +1,10 @@
 // Tables of a scene: finding keys, places for messages, keys that nobody asked for.
-#include <toml++/toml.h>
 #include <algorithm>
 #include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
+#include "common/io/toml.h"
 
 namespace softgrain {
 
@@ -25,10 +25,25 @@ std::string number_text(double value) {
   return out.str();
 }
 
+std::string cut(std::string text) {
+  return text.size() <= kLongestShown ? text : text.substr(0, kLongestShown) + "...";
+}
+
+/// As much as there is room for.
+std::string shown_list(const toml::array& list) {
+  std::string text = "[";
+  for (const toml::node& element : list) {
+    text += (text.size() > 1 ? ", " : " ") + shown(element);
+    if (text.size() > kLongestShown) return cut(text);
+  }
+  return text + " ]";
+}
+
 }  // namespace
 
 std::string shown(const toml::node& node) {
   if (const auto number = node.as_floating_point()) return number_text(number->get());
+  if (const auto list = node.as_array(); list != nullptr && !list->empty()) return shown_list(*list);
   std::ostringstream out;
   if (const auto text = node.as_string()) {
     out << '"' << text->get() << '"';
@@ -37,7 +52,7 @@ std::string shown(const toml::node& node) {
   }
   std::string text = out.str();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.size() <= kLongestShown ? text : text.substr(0, kLongestShown) + "...";
+  return cut(text);
 }
 
 const toml::node* SceneTable::Impl::find(const std::string& key) {

@@ -1,11 +1,11 @@
 // Values of a scene: numbers with units and ranges, counts, flags, words, vectors and lists.
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
+#include "common/io/toml.h"
 
 namespace softgrain {
 
@@ -19,6 +19,10 @@ std::string plain(double value) {
   out << value;
   return out.str();
 }
+
+/// A number with a unit outside this is no quantity of this world, and its powers are no numbers.
+constexpr double kLeast = 1e-30;
+constexpr double kMost = 1e30;
 
 /// "must be above 1", "must be from 0 to 0.5", "must be at least 0 and below 1".
 std::string describe(const Range& range) {
@@ -38,44 +42,50 @@ bool holds(const Range& range, double value) {
          (range.high_open ? value < range.high : value <= range.high);
 }
 
-/// Number of a node in SI, before any range: a number, or text with a unit.
-double raw_number(const Table& table, const std::string& key, const toml::node& node, Unit unit) {
+/// ", must be above 0" after another complaint; nothing when all numbers are allowed.
+std::string also(const Range& range) {
+  return std::isfinite(range.low) || std::isfinite(range.high) ? ", and " + describe(range) : "";
+}
+
+/// Number of a node in SI, before its range, which goes into the message: a number, or text with a unit.
+double raw_number(const Table& table, const std::string& key, const toml::node& node, Unit unit, const Range& range) {
   if (const auto integer = node.as_integer()) return static_cast<double>(integer->get());
   if (const auto number = node.as_floating_point()) return number->get();
   const auto text = node.as_string();
-  if (text == nullptr) table.reject(key, node, "must be a number");
+  if (text == nullptr) table.reject(key, node, "must be a number" + also(range));
   try {
     return parse_quantity(text->get(), unit);
   } catch (const BadInput& e) {
-    table.reject(key, node, e.what());
+    table.reject(key, node, e.what() + also(range));
   }
 }
 
 double number_of(const Table& table, const std::string& key, const toml::node& node, Unit unit, const Range& range) {
-  const double value = raw_number(table, key, node, unit);
-  if (!std::isfinite(value)) table.reject(key, node, "must be a finite number");
+  const double value = raw_number(table, key, node, unit, range);
+  if (!std::isfinite(value)) table.reject(key, node, "must be a finite number" + also(range));
   if (!holds(range, value)) table.reject(key, node, describe(range));
+  if (unit != Unit::none && value != 0.0 && (std::abs(value) < kLeast || std::abs(value) > kMost))
+    table.reject(key, node, "must be 0 or from 1e-30 to 1e30 in SI units, either sign" + also(range));
   return value;
 }
 
 /// An integer, also written as 1e4.
 std::int64_t count_of(const Table& table, const std::string& key, const toml::node& node, std::int64_t low,
                       std::int64_t high) {
+  const bool open = high == std::numeric_limits<std::int64_t>::max();
+  const std::string problem =
+      open ? "must be a whole number, at least " + std::to_string(low)
+           : "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   std::int64_t value = 0;
   if (const auto integer = node.as_integer()) {
     value = integer->get();
   } else {
     const auto number = node.as_floating_point();
     if (number == nullptr || std::trunc(number->get()) != number->get() || std::abs(number->get()) > 0x1p53)
-      table.reject(key, node, "must be a whole number");
+      table.reject(key, node, problem);
     value = static_cast<std::int64_t>(number->get());
   }
-  if (value < low || value > high) {
-    const bool open = high == std::numeric_limits<std::int64_t>::max();
-    table.reject(key, node,
-                 open ? "must be at least " + std::to_string(low)
-                      : "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-  }
+  if (value < low || value > high) table.reject(key, node, problem);
   return value;
 }
 

@@ -1,10 +1,9 @@
 // A scene with one of its variants laid over it.
-#include <toml++/toml.h>
-
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
+#include "common/io/toml.h"
 
 namespace softgrain {
 
@@ -20,7 +19,7 @@ void lay_over(SceneDocument& document, toml::table& base, toml::table& over) {
       continue;
     }
     const bool overridden = document.overridden.contains(&node);
-    node.visit([&](auto& concrete) { base.insert_or_assign(key, std::move(concrete)); });
+    node.visit([&base, &name = key](auto& concrete) { base.insert_or_assign(name, std::move(concrete)); });
     if (overridden) document.overridden.insert(base.get(key.str()));
   }
 }

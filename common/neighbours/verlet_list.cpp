@@ -243,13 +243,13 @@ void require_sound(const Particles<D>& p) {
 }
 
 /// Edge c loses whole edges r until its component along axis r is within half an edge: another basis of the same
-/// lattice.
+/// lattice. At once: a cell that is sheared out of all proportion has no end of edges to lose.
 template <int D>
 void reduce_tilt(Cell<D>& cell, int r, int c) {
-  while (std::abs(cell.edges[r][c]) > 0.5000001 * cell.edges[r][r]) {
-    const double sign = std::copysign(1.0, cell.edges[r][c]);
-    for (int k = 0; k <= r; ++k) cell.edges[k][c] -= sign * cell.edges[k][r];
-  }
+  const double tilt = cell.edges[r][c] / cell.edges[r][r];
+  if (!(std::abs(tilt) > 0.5000001)) return;
+  const double whole = std::round(tilt);
+  for (int k = 0; k <= r; ++k) cell.edges[k][c] -= whole * cell.edges[k][r];
 }
 
 /// Brings positions home into a periodic cell; a body that crosses a moving boundary takes the velocity of its new

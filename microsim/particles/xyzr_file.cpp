@@ -6,8 +6,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string_view>
+#include <system_error>
 
 #include "common/core/error.h"
 
@@ -23,6 +25,8 @@ class LineReader {
  public:
   explicit LineReader(const std::string& path) : path_(path), file_(gzopen(path.c_str(), "rb"), gzclose) {
     if (!file_) throw FileTrouble(path + ": no such file, or it cannot be read");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) throw FileTrouble(path + ": is a directory, not a file");
     gzbuffer(file_.get(), 1U << 17U);
   }
 

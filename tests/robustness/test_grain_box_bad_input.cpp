@@ -82,7 +82,7 @@ TEST_F(GrainBoxBadInput, Loading) {
          "stresses = [\"-1 MPa\", \"1 MPa\", 0]",
          {"stresses", "cannot be pulled"});
   expect("test = \"uniaxial\"", "test = \"isotropic\"\naxis = \"x\"", {"unknown key 'axis'"});
-  expect("increment = 1e-3", "increment = 0.0", {"scene.toml:22: increment", "above 0"});
+  expect("increment = 1e-3", "increment = 0.0", {"scene.toml:22: increment", "from 1e-09 to 0.1"});
   expect("increment = 1e-3", "increment = 0.09\n[[variant]]\nname = \"a\"\ngrains = 4000", {"smallest grain", "below"});
   expect("test = \"uniaxial\"", "test = \"triaxial\"\nlateral_stress = \"90 GPa\"", {"overlap"});
   expect("increment = 1e-3", "increments = [1e-3, 1e-4]", {"scene.toml:22: increments", "stage_strains"});

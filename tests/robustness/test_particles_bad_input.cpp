@@ -96,7 +96,7 @@ TEST_F(ParticlesBadInput, Particles) {
   expect("radius = 0.01", "radius = 0.0", {"scene.toml:21: radius", "above 0"});
   expect("radius = 0.01", "radius = -0.01", {"scene.toml:21: radius", "above 0"});
   expect("radius = 0.01", "radius = nan", {"scene.toml:21: radius", "finite"});
-  expect("radius = 0.01", "radius = 1e-120", {"scene.toml:22", "radius", "mass"});
+  expect("radius = 0.01", "radius = 1e-120", {"scene.toml:21: radius = 1e-120", "1e-30"});
   expect("radius = 0.01", "radius = \"1 kg\"", {"scene.toml:21: radius"});
   expect("radius = 0.01", "radus = 0.01", {"radius", "radus", "scene.toml:"});
   expect("position = [0.0, 0.0, 0.05]", "position = [0.0, inf, 0.05]", {"scene.toml:22: position", "finite"});
@@ -221,6 +221,7 @@ TEST_F(ParticlesBadInput, FilesOfManySpheres) {
   expect_file("1 1 1 1\n0 0 1 1e400\n", {"many.xyzr:2", "finite"});
   expect_file("1 1 1 1\n0 0 1 0.01" + std::string(5000, ' ') + "\n", {"many.xyzr:2", "longer"});
   expect_file("1 1 1 1\n0 0 0.1 0.01\n", {"many.xyzr:2", "same centre", "scene.toml:26"});
+  expect_file("1 1 1 1\n0 0 1 1e-120\n", {"many.xyzr:2", "radius", "mass"});
   expect("[time]", "[particles]\nfile = \"nothing.xyzr\"\n[time]", {"material"});
 }
 

@@ -105,7 +105,7 @@ TEST_F(PipelineBadInput, Measurements) {
          {"scene.toml:21: angles_deg", "0 is recorded anyway"});
   expect("angles_deg = [-0.05, 0.05]", "angles_deg = [-91.0]", {"scene.toml:21: angles_deg", "-90"});
   expect("relaxation = \"damped\"", "relaxation = \"dampd\"", {"scene.toml:15: relaxation", "damped"});
-  expect("increment = 0.02", "increment = 0", {"scene.toml:17: increment = 0", "above 0"});
+  expect("increment = 0.02", "increment = 0", {"scene.toml:17: increment = 0", "from 1e-07 to 0.1"});
   expect("increment = 0.02", "tolerance = -1", {"scene.toml:17: tolerance = -1", "above 0"});
   const auto least_work = [&](const std::string& line, const std::vector<std::string>& words) {
     expect("[measure.damped]", "[measure.least_work]\n" + line + "\n[measure.damped]", words);

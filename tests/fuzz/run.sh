@@ -1,0 +1,36 @@
+#!/bin/bash
+# Runs one fuzz target for so many seconds of processor time:
+#   tests/fuzz/run.sh PROGRAM SECONDS DIRECTORY [options of libFuzzer]
+# PROGRAM is .../fuzz_scene, fuzz_law, fuzz_particles or fuzz_hdf5. DIRECTORY takes the seeds, the corpus that grows and
+# what was found (crash-*, leak-*, timeout-*).
+set -eu
+program=$(realpath "$1") seconds=$2 directory=$3
+shift 3
+source=$(realpath "$(dirname "$0")/../..")
+mkdir -p "$directory/seeds" "$directory/corpus"
+cd "$directory"
+target=$(basename "$program")
+case $target in
+  fuzz_scene) cp "$source"/pipelines/*.toml "$source"/tests/reference/scenes/*.toml "$source"/tests/bench/scenes/*.toml seeds ;;
+  fuzz_law) cp "$source"/tests/fuzz/seeds/law_*.toml seeds ;;
+  fuzz_particles) # the first byte says whether zlib packs the rest, the second how much is cut off
+    printf ' 2 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/plain
+    printf '\001\0002 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/packed
+    printf '\001\0602 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/cut ;;
+  fuzz_hdf5) for kind in 16 17 18 19 20 21 22; do
+               for byte in 0 40 80 120 160 200; do
+                 printf "\\x$(printf %x $kind)\\x$(printf %x $((byte % 8)))\\x00\\x$(printf %x $byte)\\x01\\x05\\x01" > seeds/$kind-$byte
+               done
+             done ;;
+esac
+dictionary=()
+[[ $target == fuzz_scene || $target == fuzz_law ]] && dictionary=("-dict=$source/tests/fuzz/words.dict")
+nice -n 5 "$program" "${dictionary[@]}" -max_len=8192 -timeout=20 -rss_limit_mb=3000 -print_final_stats=1 "$@" corpus seeds &
+child=$!
+ticks=$(getconf CLK_TCK)
+while kill -0 $child 2>/dev/null; do
+  read -r -a stat < <(sed 's/.*) //' /proc/$child/stat 2>/dev/null) || break
+  (( (stat[11] + stat[12]) / ticks >= seconds )) && { kill -INT $child; break; }
+  sleep 1
+done
+wait $child

@@ -1,0 +1,308 @@
+// The cases of tests/robustness/bad, and result files and files of spheres that are damaged in many ways: one message
+// in one line that names the file, the status that says whose fault it is, nothing written, no signal.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <sstream>
+
+#include "tests/support/hdf5_edit.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_files.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+namespace fs = std::filesystem;
+
+struct Case {
+  std::string name;
+  std::string command = "check FILE";
+  std::string file = "case.toml";
+  int status = 2;
+  std::vector<std::string> words;
+  std::string text;
+};
+
+/// "\x41" to "A".
+std::string unescaped(const std::string& text) {
+  std::string out;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (text.compare(k, 2, "\\x") != 0) {
+      out += text[k];
+      continue;
+    }
+    out += static_cast<char>(std::stoi(text.substr(k + 2, 2), nullptr, 16));
+    k += 3;
+  }
+  return out;
+}
+
+/// Whether the line is "# KEY: value"; puts the value there.
+bool takes(const std::string& line, const std::string& key, std::string& value) {
+  const std::string start = "# " + key + ": ";
+  if (!line.starts_with(start)) return false;
+  value = line.substr(start.size());
+  return true;
+}
+
+std::vector<Case> read_cases(const std::string& name) {
+  std::istringstream in(read_text(std::string(SOFTGRAIN_SOURCE_DIR) + "/tests/robustness/bad/" + name));
+  std::vector<Case> cases;
+  bool head = false;
+  bool escapes = false;
+  for (std::string line, value; std::getline(in, line);) {
+    if (line.starts_with("=== ")) {
+      if (escapes) cases.back().text = unescaped(cases.back().text);
+      cases.emplace_back().name = line.substr(4);
+      escapes = false;
+      head = true;
+    } else if (head && takes(line, "expect", value)) {
+      cases.back().words.push_back(value);
+    } else if (head && takes(line, "status", value)) {
+      cases.back().status = std::stoi(value);
+    } else if (head && (takes(line, "command", cases.back().command) || takes(line, "file", cases.back().file))) {
+    } else if (head && line == "# escapes") {
+      escapes = true;
+    } else {
+      head = false;
+      cases.back().text += line + "\n";
+    }
+  }
+  return cases;
+}
+
+std::string replaced(std::string text, const std::string& word, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += by.size())
+    text.replace(at, word.size(), by);
+  return text;
+}
+
+class BadFiles : public ::testing::Test {
+ protected:
+  void expect(const std::string& arguments, int status, const std::vector<std::string>& words,
+              const std::string& name) {
+    const ProgramOutcome outcome = run_the_program(arguments);
+    EXPECT_EQ(outcome.status, status) << name << ": " << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << name << ": " << word << " not in: " << outcome.output;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << name << ": " << outcome.output;
+    EXPECT_TRUE(outcome.output.starts_with("softgrain: ")) << name << ": " << outcome.output;
+    EXPECT_TRUE(!fs::exists(out()) || fs::is_empty(out())) << name;
+    fs::remove_all(out());
+  }
+  void expect_cases(const std::string& file, std::size_t least) {
+    const std::vector<Case> cases = read_cases(file);
+    EXPECT_GE(cases.size(), least);
+    for (const Case& c : cases) {
+      const std::string path = directory_.file(c.file);
+      write_text_atomic(path, c.text);
+      ASSERT_FALSE(c.words.empty()) << c.name;
+      expect(replaced(replaced(c.command, "FILE", "'" + path + "'"), "OUT", "'" + out() + "'"), c.status, c.words,
+             c.name);
+    }
+  }
+  [[nodiscard]] std::string out() const { return directory_.file("out"); }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(BadFiles, TextThatIsNoScene) { expect_cases("text.cases", 30); }
+
+TEST_F(BadFiles, ScenesCardsAndCommands) { expect_cases("kinds.cases", 60); }
+
+TEST_F(BadFiles, NestingBeyondReason) {
+  const std::string path = directory_.file("case.toml");
+  const auto many = [](const char* part) {
+    std::string text;
+    for (int k = 0; k < 100000; ++k) text += part;
+    return text;
+  };
+  for (const std::string& text : {"x = " + many("["), "x = " + many("{a="), many("a.") + "b = 1"}) {
+    write_text_atomic(path, text + "\n");
+    expect("check '" + path + "'", 2, {"case.toml:1: "}, text.substr(0, 10));
+  }
+}
+
+/// A file that is good before it is edited.
+class BadResults : public BadFiles {
+ protected:
+  using Writer = void (*)(const std::string&);
+  using Edit = std::function<void(Hdf5Edit&)>;
+
+  void expect_refused(Writer write, const Edit& edit, const std::vector<std::string>& words) {
+    const std::string path = directory_.file("case.h5");
+    write(path);
+    {
+      Hdf5Edit file(path);
+      ASSERT_TRUE(file.good());
+      edit(file);
+    }
+    std::vector<std::string> all = words;
+    all.push_back("case.h5");
+    expect("check '" + path + "'", 4, all, words.front());
+  }
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+};
+
+TEST_F(BadResults, TheGoodOnesAreGood) {
+  for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
+    write(directory_.file("good.h5"));
+    EXPECT_EQ(run_the_program("check '" + directory_.file("good.h5") + "'").status, 0);
+  }
+}
+
+TEST_F(BadResults, Measurements) {
+  const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
+    expect_refused(tiny_measurements, edit, words);
+  };
+  bad([](Hdf5Edit& f) { f.remove("runs/packing"); }, {"packing: missing or damaged data set"});
+  bad([](Hdf5Edit& f) { f.remove("spec"); }, {"spec: missing or damaged group"});
+  bad([](Hdf5Edit& f) { f.remove("normal"); }, {"normal: missing or damaged group"});
+  bad([](Hdf5Edit& f) { f.resize("normal/force", 2); }, {"'force' has a wrong length"});
+  bad([](Hdf5Edit& f) { f.set("normal/force", 1, kNan); }, {"'force' holds a number that is not finite, in row 1"});
+  bad([](Hdf5Edit& f) { f.set("tangential/angle", 0, HUGE_VAL); }, {"'angle' holds a number that is not finite"});
+  bad([](Hdf5Edit& f) { f.set("runs/kind", 0, 7); }, {"kind of a run out of range"});
+  bad([](Hdf5Edit& f) { f.set("runs/packing", 1, 99); }, {"packing of a run out of range"});
+  bad([](Hdf5Edit& f) { f.set("runs/relaxation", 0, -1); }, {"relaxation of a run out of range"});
+  bad([](Hdf5Edit& f) { f.set("runs/normal_points", 0, 1e6); }, {"counts do not fit the data"});
+  bad([](Hdf5Edit& f) { f.set("packings/radius_count", 0, 0); }, {"counts do not fit the data"});
+  bad([](Hdf5Edit& f) { f.replace("normal/converged", std::vector<double>(9, 1.0)); }, {"another type than expected"});
+  bad([](Hdf5Edit& f) { f.set_attribute("/", "schema_version", 99LL); },
+      {"schema version 99, this program reads version 1"});
+  bad([](Hdf5Edit& f) { f.set_attribute("/", "format", std::string("macro curves")); },
+      {"holds no soft-particle measurements"});
+  bad([](Hdf5Edit& f) { f.remove_attribute("/", "approach_speed"); }, {"approach_speed: missing attribute"});
+  bad([](Hdf5Edit& f) { f.set_attribute("spec", "friction", std::string("0.3")); }, {"friction: attribute of another"});
+  bad([](Hdf5Edit& f) { f.set_attribute("runs", "relaxations", 5LL); }, {"relaxation_1: missing attribute"});
+}
+
+TEST_F(BadResults, Crowds) {
+  const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
+    expect_refused(tiny_crowd, edit, words);
+  };
+  bad([](Hdf5Edit& f) { f.set("configurations/partners/kind", 0, 5); }, {"kind of a neighbour out of range"});
+  bad([](Hdf5Edit& f) { f.set("configurations/partner_count", 0, 2); }, {"counts do not fit the data"});
+  bad([](Hdf5Edit& f) { f.set("configurations/stages/overlaps", 0, -1); }, {"counts do not fit the data"});
+  bad([](Hdf5Edit& f) { f.remove_attribute("configurations", "name_1"); }, {"name_1: missing attribute"});
+  bad([](Hdf5Edit& f) { f.set("runs/configuration", 0, 9); }, {"configuration of a run out of range"});
+  bad([](Hdf5Edit& f) { f.set("runs/packing", 0, -3); }, {"packing of a run out of range"});
+  bad([](Hdf5Edit& f) { f.set("runs/points/stage", 0, 4); }, {"stage of a point out of range"});
+  bad([](Hdf5Edit& f) { f.set("runs/neighbours/normal", 2, kNan); }, {"'normal' holds a number that is not finite"});
+  bad([](Hdf5Edit& f) { f.resize("runs/neighbours/overlap", 1); }, {"wrong length"});
+  bad([](Hdf5Edit& f) { f.remove("runs"); }, {"runs: missing or damaged group"});
+}
+
+TEST_F(BadResults, MacroCurvesAndGrainBoxes) {
+  const auto macro = [&](const Edit& edit, const std::vector<std::string>& words) {
+    expect_refused(tiny_macro, edit, words);
+  };
+  macro([](Hdf5Edit& f) { f.resize("curves/curve_000001/stress_axial", 3); }, {"stress_axial: another length"});
+  macro([](Hdf5Edit& f) { f.set("curves/curve_000000/strain", 2, kNan); }, {"strain: holds a number that is not"});
+  macro([](Hdf5Edit& f) { f.remove_attribute("curves/curve_000000", "usable"); }, {"usable: missing attribute"});
+  macro([](Hdf5Edit& f) { f.replace("curves/odd", std::vector<double>{1.0}); }, {"odd: missing or damaged group"});
+  const auto boxes = [&](const Edit& edit, const std::vector<std::string>& words) {
+    expect_refused(tiny_grain_boxes, edit, words);
+  };
+  boxes([](Hdf5Edit& f) { f.set("packs/pack_000/points/phase", 0, 9); }, {"a phase that is not known"});
+  boxes([](Hdf5Edit& f) { f.set("packs/pack_000/pack/contact_pair_sliding", 1, 99); }, {"a body that is not there"});
+  boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/pack/wall_E_nu_mu", 9); }, {"'wall_point' has a wrong length"});
+  boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/fits/ranges", 3); }, {"'ranges' has a wrong length"});
+  boxes([](Hdf5Edit& f) { f.set_attribute("packs/pack_000", "phase", -1LL); }, {"a phase that is not known"});
+}
+
+/// The report draws contacts of stored states.
+TEST_F(BadResults, PowdersOfAReport) {
+  const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
+    const std::string path = directory_.file("powder.h5");
+    tiny_powder(path);
+    {
+      Hdf5Edit file(path);
+      edit(file);
+    }
+    expect("report '" + directory_.path() + "'", 4, words, words.front());
+  };
+  const std::string system = "sample_0/system/";
+  bad([&](Hdf5Edit& f) { f.resize(system + "bodies/sphere", 10); }, {"'sphere' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "bodies/material", 3, 4); }, {"'material' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "bodies/counts", 0, 1e9); }, {"'counts' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "dimension", 3LL); }, {"'dimension' does not fit"});
+  bad([&](Hdf5Edit& f) { f.resize("sample_0/snapshots/0/radii", 3); }, {"snapshot 0 has arrays"});
+}
+
+TEST_F(BadResults, CutAnywhere) {
+  const std::string path = directory_.file("case.h5");
+  RandomStream random(11, RandomPurpose::test, 0);
+  for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
+    write(path);
+    const auto whole = fs::file_size(path);
+    for (int k = 0; k < 4; ++k) {
+      write(path);
+      fs::resize_file(path, random.below(whole));
+      expect("check '" + path + "'", 4, {"case.h5"}, "cut to " + std::to_string(fs::file_size(path)));
+    }
+  }
+}
+
+/// A wrong byte is found, or lies where nobody looks.
+TEST_F(BadResults, WrongBytes) {
+  const std::string path = directory_.file("case.h5");
+  RandomStream random(12, RandomPurpose::test, 0);
+  for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
+    write(path);
+    const std::string good = read_text(path);
+    for (int k = 0; k < 6; ++k) {
+      std::string text = good;
+      text[random.below(text.size())] ^= static_cast<char>(1 + random.below(255));
+      write_text_atomic(path, text);
+      const ProgramOutcome outcome = run_the_program("check '" + path + "'");
+      EXPECT_TRUE(outcome.status == 0 || outcome.status == 4) << outcome.status << ": " << outcome.output;
+    }
+  }
+}
+
+/// What a list of particles may look like when it did not come through.
+TEST_F(BadFiles, FilesOfSpheres) {
+  const std::string scene = R"(kind = "particles"
+[material.glass]
+density = 2500.0
+E = 1e6
+nu = 0.2
+[[contact]]
+pair = ["glass", "glass"]
+law = "hertz-tsuji"
+restitution = 0.9
+mu = 0.3
+[particles]
+file = "many.xyzr"
+material = "glass"
+[time]
+end = 1e-3
+)";
+  write_text_atomic(directory_.file("case.toml"), scene);
+  const auto bad = [&](const std::string& content, int status, const std::string& word) {
+    write_text_atomic(directory_.file("many.xyzr"), content);
+    expect("check '" + directory_.file("case.toml") + "'", status, {"many.xyzr", word}, word);
+  };
+  bad("\xef\xbb\xbf"
+      "1 1 1 1\n0 0 1 0.01\n",
+      2, ":1: must be four finite numbers, N Lx Ly Lz");
+  bad("1,1,1,1\n0,0,1,0.01\n", 2, ":1: must be four finite numbers");
+  bad(std::string("1 1 1 1\n0 0\0 1 0.01\n", 20), 2, ":2: must be four");
+  bad("1 1 1 1\n0 0 1 0x1p-3\n", 2, ":2: ");
+  bad("1 1 1 1\n0 0 1 0\n", 2, ":2: r = 0.000000: must be above 0");
+  bad("1 1 1 1\n0 0 1 1e-120\n", 2, ":2: radius = ");
+  bad("-1 1 1 1\n", 2, ":1: N must be a whole number from 1 to 1e8");
+  bad("nan 1 1 1\n", 2, ":1: must be four finite numbers");
+  bad("\x1f\x8b\x08", 4, "damaged or cut short");
+  bad(std::string("\x1f\x8b\x08\0\0\0\0\0\0\x03xyz", 13), 4, "damaged or cut short");
+  fs::remove(directory_.file("many.xyzr"));
+  fs::create_directory(directory_.file("many.xyzr"));
+  expect("check '" + directory_.file("case.toml") + "'", 4, {"many.xyzr"}, "a directory");
+}
+
+}  // namespace
