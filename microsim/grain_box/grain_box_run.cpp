@@ -101,13 +101,13 @@ double GrainBoxRun::share_done() const {
 /// After every equilibrium: progress, checkpoint when due, and the end when a signal came.
 void GrainBoxRun::pause_if_asked() {
   count_time();
+  note_safe_point();
   if (control_.progress) control_.progress(state_, share_done());
   const bool stop = interrupt_requested();
   if (control_.save && (stop || due_.due())) control_.save(state_);
   if (stop)
     throw Interrupted(
         fmt::format("interrupted in the {} of {}; go on with --resume", to_string(state_.phase), spec_.name));
-  note_safe_point();
 }
 
 /// A signal came while an equilibrium was looked for: the run goes on from the one before.

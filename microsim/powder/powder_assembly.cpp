@@ -116,7 +116,7 @@ class Phase {
       look();
       if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
       const bool done = elapsed() > 0.0 && !stiffening() && at_rest();
-      picture(done);
+      if (!recorded()) picture(done);  // a run that goes on from here has been pictured before it was saved
       if ((state_.system.time >= next || done) && !recorded()) {
         state_.points.push_back(point_of(state_, spec_, integrator_.stress()));
         next = state_.system.time + options_.record_every;

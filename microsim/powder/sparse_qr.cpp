@@ -1,17 +1,58 @@
 #include "microsim/powder/sparse_qr.h"
 
+#include <dlfcn.h>
+#include <malloc.h>
+
 #include <SuiteSparseQR.hpp>
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 
 namespace softgrain {
 
 namespace {
 
+constexpr std::size_t kAlignment = 64;
+
+void* aligned(std::size_t bytes) {
+  return std::aligned_alloc(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment);
+}
+
+/// Vector loops treat the first elements up to an aligned address apart, so that sums depend on where memory happens
+/// to lie, which differs from thread to thread: the library gets aligned memory only.
+void align_memory() {
+  SuiteSparse_config.malloc_func = aligned;
+  SuiteSparse_config.calloc_func = [](std::size_t count, std::size_t size) {
+    void* const memory = aligned(count * size);
+    return memory == nullptr ? nullptr : std::memset(memory, 0, count * size);
+  };
+  SuiteSparse_config.realloc_func = [](void* old, std::size_t bytes) {
+    void* const memory = aligned(bytes);
+    if (memory == nullptr || old == nullptr) return memory;
+    std::memcpy(memory, old, std::min(bytes, ::malloc_usable_size(old)));
+    std::free(old);
+    return memory;
+  };
+}
+
+/// A BLAS with threads of its own splits its sums by how many of them are free at the moment, and the last bits follow.
+/// OpenBLAS is asked to work alone where it is the one in use; samples share the threads of the program anyway.
+void one_thread_for_blas() {
+  static const bool asked = [] {
+    auto* const set = reinterpret_cast<void (*)(int)>(::dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+    if (set != nullptr) set(1);
+    align_memory();
+    return set != nullptr;
+  }();
+  (void)asked;
+}
+
 /// The workspace of CHOLMOD and what was made with it, freed together.
 class Workspace {
  public:
   Workspace() {
+    one_thread_for_blas();
     cholmod_l_start(&common_);
     common_.print = 0;
   }

@@ -24,7 +24,7 @@ inline const std::set<std::string> kFilesOfCircumstance{"log.txt", "report.html"
 /// these words. "provenance" and "files" are whole tables or groups. Numbers of loop passes and contact evaluations are
 /// results: they must agree.
 inline const std::vector<std::string> kCircumstances{"provenance", "seconds", "memory", "files",
-                                                     "command",    "cpu",     "faster"};
+                                                     "command",    "cpu",     "faster", "commit"};
 
 /// Parts of the stepping loop that only the last of several processes has gone through.
 inline const std::set<std::string> kPartsOfLoop{"warm_up", "measured"};
