@@ -1,6 +1,7 @@
 #include "common/state/system_io.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "common/core/error.h"
@@ -103,6 +104,22 @@ std::vector<std::int32_t> read_ids(const h5::Group& g, std::int32_t grains) {
   return id;
 }
 
+/// Lengths that the neighbour search can work with; what a run saved always is.
+constexpr double kLeastLength = 1e-30;
+constexpr double kMostLength = 1e30;
+
+bool is_length(double x) { return x >= kLeastLength && x <= kMostLength; }
+
+template <int D>
+void require_places(const Particles<D>& p) {
+  for (Slot k = 0; k < p.size(); ++k) {
+    const Sphere<D>& sphere = p.sphere[static_cast<std::size_t>(k)];
+    for (const double x : sphere.x.v)
+      if (!(std::abs(x) <= kMostLength)) damaged("sphere");
+    if (k < p.first_plane() && !is_length(sphere.r)) damaged("sphere");
+  }
+}
+
 template <int D>
 void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
   constexpr int kTurns = static_cast<int>(sizeof(Rot<D>) / sizeof(double));
@@ -114,6 +131,7 @@ void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
     for (int k = 0; k < D; ++k) p.sphere[u].x[k] = spheres[u][k];
     p.sphere[u].r = spheres[u][D];
   }
+  require_places(p);
   p.velocity = read_vectors<D, Stored<D>>(g, "velocity", n);
   p.spin = read_vectors<kTurns, Stored<kTurns>>(g, "spin", n);
   p.force = read_vectors<D, Stored<D>>(g, "force", n);
@@ -150,6 +168,9 @@ void write_cell(const h5::Group& g, const Cell<D>& cell) {
 template <int D>
 void read_cell(const h5::Group& g, Cell<D>& cell) {
   cell.edges = read_matrix<D>(g, "edges");
+  for (int r = 0; r < D; ++r)
+    for (int c = 0; c < D; ++c)
+      if (r == c ? !is_length(cell.edges[r][c]) : !(std::abs(cell.edges[r][c]) <= kMostLength)) damaged("edges");
   cell.velocity_gradient = read_matrix<D>(g, "velocity_gradient");
   const auto periodic = read_slots(g, "periodic", D, 0, 2);
   for (std::size_t k = 0; k < D; ++k) cell.periodic[k] = periodic[k] != 0;
@@ -171,6 +192,7 @@ void read_neighbours(const h5::Group& g, NeighbourState<D>& n, std::size_t bodie
   if (listed != 0 && listed != bodies) damaged("skin");
   n.reference = read_vectors<D>(g, "reference", listed);
   n.skin = read_numbers(g, "skin", listed);
+  if (!std::all_of(n.skin.begin(), n.skin.end(), is_length)) damaged("skin");
   n.reference_edges = read_matrix<D>(g, "reference_edges");
   n.rebuilds = g.integer("rebuilds");
   n.passes_at_build = g.integer("passes_at_build");
@@ -206,6 +228,19 @@ void read_sections(const h5::Group& g, std::vector<ContactSection>& sections, Co
   if (end != pairs) damaged("sections");
 }
 
+/// The second body of every pair is of the kind that its section says.
+template <int D>
+void require_partners(const ContactList<D>& list, const Particles<D>& p) {
+  for (const ContactSection& s : list.sections)
+    for (auto c = static_cast<std::size_t>(s.begin); c < static_cast<std::size_t>(s.end); ++c) {
+      const Slot j = list.j[c];
+      const Geometry found = j < p.grains          ? Geometry::sphere_sphere
+                             : j < p.first_plane() ? Geometry::sphere_shell
+                                                   : Geometry::sphere_plane;
+      if (found != s.geometry || list.i[c] == j) damaged("sections");
+    }
+}
+
 template <int D>
 void read_contacts(const h5::Group& g, System<D>& s) {
   ContactList<D>& list = s.contacts;
@@ -214,6 +249,7 @@ void read_contacts(const h5::Group& g, System<D>& s) {
   list.j = read_slots(g, "j", pairs, 0, s.particles.size());
   list.image = read_slots(g, "image", pairs, 0, image_count<D>());
   read_sections(g, list.sections, list.size(), s.laws.size());
+  require_partners(list, s.particles);
   adopt_list(s);
   list.spring = read_vectors<D, Stored<D>>(g, "spring", list.has_spring ? pairs : 0);
   list.memory = read_numbers(g, "memory", list.has_memory ? pairs : 0);

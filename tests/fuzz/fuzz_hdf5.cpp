@@ -10,7 +10,7 @@
 #include "common/data/law_card.h"
 #include "common/data/law_card_format.h"
 #include "pipelines/report/powder_data.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/input_file.h"
 #include "tests/support/hdf5_edit.h"
 #include "tests/support/tiny_files.h"
 
@@ -119,12 +119,12 @@ void change(test::Hdf5Edit& file, Script& script) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
   if (data[0] < 16) {
-    const fuzz::MemoryFile file(data + 1, size - 1);
+    const fuzz::InputFile file(data + 1, size - 1);
     read(file.path());
     return 0;
   }
   const Bytes& good = good_files()[data[0] % good_files().size()];
-  const fuzz::MemoryFile file(good.data(), good.size());
+  const fuzz::InputFile file(good.data(), good.size());
   Script script{data + 1, data + size};
   for (int k = 0; k < 4 && script.at < script.end; ++k) {
     test::Hdf5Edit edit(file.path());

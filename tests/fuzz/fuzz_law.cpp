@@ -5,11 +5,11 @@
 #include "common/core/error.h"
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softgrain;
-  const fuzz::MemoryFile file(data, size);
+  const fuzz::InputFile file(data, size);
   try {
     (void)load_card(file.path());
   } catch (const Error&) {

@@ -8,7 +8,7 @@
 
 #include "common/core/error.h"
 #include "microsim/particles/xyzr_file.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/input_file.h"
 
 namespace {
 
@@ -17,7 +17,7 @@ using namespace softgrain;
 constexpr std::int64_t kMost = 100000;
 
 void read(const std::vector<std::uint8_t>& bytes) {
-  const fuzz::MemoryFile file(bytes.data(), bytes.size());
+  const fuzz::InputFile file(bytes.data(), bytes.size());
   try {
     (void)read_xyzr(file.path(), [](std::int64_t n) {
       if (n > kMost) throw BadInput("too many");  // as a scene refuses what does not fit into the memory

@@ -228,6 +228,11 @@ TEST_F(BadResults, PowdersOfAReport) {
   };
   const std::string system = "sample_0/system/";
   bad([&](Hdf5Edit& f) { f.resize(system + "bodies/sphere", 10); }, {"'sphere' does not fit"});
+  // Found by fuzzing: the neighbour search went out of bounds.
+  bad([&](Hdf5Edit& f) { f.set(system + "bodies/sphere", 4, kNan); }, {"'sphere' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "bodies/sphere", 5, -1.0); }, {"'sphere' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "cell/edges", 0, 0.0); }, {"'edges' does not fit"});
+  bad([&](Hdf5Edit& f) { f.set(system + "neighbours/skin", 2, kNan); }, {"'skin' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/material", 3, 4); }, {"'material' does not fit"});
   bad([&](Hdf5Edit& f) { f.set(system + "bodies/counts", 0, 1e9); }, {"'counts' does not fit"});
   bad([&](Hdf5Edit& f) { f.set_attribute("sample_0/system", "dimension", 3LL); }, {"'dimension' does not fit"});

@@ -5,7 +5,7 @@
 
 #include "common/contact/crowd_from_table.h"
 #include "common/data/macro_result.h"
-#include "common/dynamics/verlet.h"
+#include "common/neighbours/verlet_list.h"
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
 #include "microsim/grain_box/record.h"
@@ -67,16 +67,14 @@ inline GrainBoxResult tiny_box() {
 
 inline void tiny_grain_boxes(const std::string& path) { save_grain_boxes(path, {tiny_box()}, build_provenance()); }
 
-/// Twenty disks, ten steps after the start.
+/// Twenty disks at the start.
 inline void tiny_powder(const std::string& path) {
   PowderSpec spec;
   spec.disks = 20;
   spec.solid_fraction = 0.3;
   spec.stiffness = 1e3;
   PowderState state = start_powder(spec, 1, 0);
-  VelocityVerlet<2> integrator(1e-3);
-  integrator.initialise(state.system);
-  for (int k = 0; k < 10; ++k) integrator.step(state.system);
+  rebuild_neighbours(state.system);
   state.points.resize(2);
   state.snapshots = {powder_snapshot(state.system)};
   h5::AtomicFile file(path);
@@ -97,7 +95,7 @@ inline System3 tiny_system() {
   return s;
 }
 
-/// Three grains in a row, the outer ones in contact with the inner one, on a plane, a few steps after the start.
+/// Three grains in a row, the outer ones in contact with the inner one, on a plane; springs as after some steps.
 inline void tiny_checkpoint(const std::string& path) {
   System3 s = tiny_system();
   for (int k = 0; k < 3; ++k) {
@@ -110,9 +108,8 @@ inline void tiny_checkpoint(const std::string& path) {
     add_grain(s.particles, grain);
   }
   add_plane(s.particles, NewBody<3>{}, Vec3{{0.0, 0.0, 1.0}});
-  VelocityVerlet<3> integrator(1e-5);
-  integrator.initialise(s);
-  for (int k = 0; k < 10; ++k) integrator.step(s);
+  rebuild_neighbours(s);
+  for (auto& spring : s.contacts.spring) spring = Vec3{{1e-6, 2e-6, -1e-6}};
   write_checkpoint(path, kTinyCheckpointScene, [&](const h5::Group& root) { write_system(root.create("system"), s); });
 }
 

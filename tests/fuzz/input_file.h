@@ -1,0 +1,35 @@
+// The bytes of an input as a file with a path, for readers that want one (HDF5 refuses files without a name).
+#pragma once
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace softgrain::fuzz {
+
+/// In memory where the system has /dev/shm; removed at the end.
+class InputFile {
+ public:
+  InputFile(const void* data, std::size_t size) {
+    const std::filesystem::path memory("/dev/shm");
+    const auto folder = std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
+    path_ = (folder / ("fuzz-input-" + std::to_string(::getpid()))).string();
+    const int descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (descriptor < 0 || ::write(descriptor, data, size) != static_cast<ssize_t>(size)) std::abort();
+    ::close(descriptor);
+  }
+  ~InputFile() { ::unlink(path_.c_str()); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace softgrain::fuzz
