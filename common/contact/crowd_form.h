@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/contact/law_range.h"
+#include "common/core/law_range.h"
 #include "common/core/vec.h"
 
 namespace softgrain {

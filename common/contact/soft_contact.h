@@ -7,7 +7,7 @@
 
 #include "common/contact/contact_state.h"
 #include "common/contact/coulomb_spring.h"
-#include "common/contact/law_range.h"
+#include "common/core/law_range.h"
 
 namespace softgrain {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/contact/law_range.h"
+#include "common/core/law_range.h"
 #include "common/data/measurements.h"
 #include "common/data/pair_kind.h"
 #include "common/io/provenance.h"
