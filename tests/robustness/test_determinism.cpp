@@ -25,6 +25,9 @@ struct SmallForm {
   bool by_default = true;  ///< false: even so small it takes several seconds
 };
 
+/// Names of tests, instead of their bytes.
+inline void PrintTo(const SmallForm& s, std::ostream* out) { *out << s.file; }
+
 const std::vector<std::string> kSmallPacking{"packing.count=2", "packing.polydispersity=4", "packing.trials=100",
                                              "packing.beta=8"};
 const std::vector<std::string> kSmallMacro{"macro.bodies=8", "macro.samples=2", "macro.steps=2"};

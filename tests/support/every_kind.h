@@ -1,6 +1,7 @@
 // One tiny scene of every kind that a command runs, each about a second: for tests that hold for all of them.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -159,6 +160,9 @@ struct KindScene {
   std::string text;
   int status = 0;  ///< of the undisturbed run: 3 where so little was measured that a law stays underdetermined
 };
+
+/// Names of tests, instead of their bytes.
+inline void PrintTo(const KindScene& s, std::ostream* out) { *out << s.name; }
 
 inline std::vector<KindScene> every_kind() {
   return {{"pipeline", "run", kTinyPipeline, 3},
