@@ -64,6 +64,14 @@ double default_travel(const System3& s) {
   return longest > 0.0 ? 2.0 * longest : kInfinite;
 }
 
+/// Whether some law was measured over a range that it can leave.
+bool has_measured_law(const LawSet& laws) {
+  for (std::int32_t k = 0; k < laws.size(); ++k)
+    if (std::visit([](const auto& law) { return requires { law.range; } || requires { law.form; }; }, laws.law(k)))
+      return true;
+  return false;
+}
+
 std::string body(const System3& s, Slot slot) {
   if (slot >= s.particles.grains) return "wall " + std::to_string(slot - s.particles.grains);
   const auto& id = s.particles.id;
@@ -108,6 +116,9 @@ Guards::Guards(const GuardSpec& spec, const System3& start) : spec_(spec) {
   report_.energy_unwatched = driven_by(start);
   if (spec_.energy.action == GuardAction::ignore) report_.energy_unwatched = "the scene asks for that";
   report_.wall_travel_limit = spec.wall_travel.limit > 0.0 ? spec.wall_travel.limit : default_travel(start);
+  const auto active = [](const GuardRule& rule) { return rule.action != GuardAction::ignore; };
+  watches_ = active(spec.overlap) || active(spec.energy) || active(spec.escape) || active(spec.wall_travel) ||
+             has_measured_law(start.laws);
   for (Slot w = p.first_plane(); w < p.size(); ++w) wall_start_.push_back(p.sphere[at(w)].x);
   least_ = kInfinite;
 }
@@ -178,6 +189,7 @@ void Guards::look_at_walls(const System3& s) {
 }
 
 void Guards::look(const System3& s) {
+  if (!watches_) return;
   const ContactWatch<3> watch = watch_contacts(s);
   ++report_.looks;
   report_.laws += watch.laws;

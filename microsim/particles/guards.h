@@ -82,6 +82,7 @@ class Guards {
   void look_at_walls(const System3& s);
 
   GuardSpec spec_;
+  bool watches_ = true;  ///< false: every guard is ignored and no law has a range
   GuardReport report_;
   std::vector<Vec3> wall_start_;
   double least_ = 0.0;  ///< smallest energy so far [J]

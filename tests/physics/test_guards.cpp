@@ -150,6 +150,8 @@ TEST(Guards, ChangeNoBit) {
     EXPECT_EQ(a.system.particles.sphere[u].x, b.system.particles.sphere[u].x);
     EXPECT_EQ(a.system.particles.spin[u][2], b.system.particles.spin[u][2]);
   }
+  EXPECT_GT(a.guards.looks, 0);
+  EXPECT_EQ(b.guards.looks, 0) << "nobody looks when nobody asks";
 }
 
 TEST(Guards, WhatWasSeenSurvivesAFile) {

@@ -14,6 +14,7 @@
 #include "common/core/random.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
+#include "tests/support/every_kind.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -22,51 +23,6 @@ namespace {
 using namespace softgrain;
 using namespace softgrain::test;
 namespace fs = std::filesystem;
-
-/// 60 grains fall into a sphere cut by a rising plane; about a second.
-std::string scene_text() {
-  std::string text = R"(kind = "particles"
-gravity = [0.0, 0.0, -9.81]
-[material.glass]
-density = 2500.0
-E = "1 MPa"
-nu = 0.2
-[[contact]]
-pair = ["glass", "glass"]
-law = "hertz-tsuji"
-restitution = 0.8
-mu = 0.4
-tangential = "rescaled"
-[[wall]]
-shape = "sphere-inside"
-center = [0.0, 0.0, 0.0]
-radius = 0.1
-material = "glass"
-[[wall]]
-shape = "plane"
-point = [0.0, 0.0, -0.06]
-normal = [0.0, 0.0, 1.0]
-material = "glass"
-motion = "velocity"
-velocity = [0.0, 0.0, 0.01]
-[time]
-end = 1.2
-step = 2e-5
-[output]
-every = 0.01
-[checkpoint]
-every_steps = 2500
-)";
-  RandomStream random(4, RandomPurpose::test, 0);
-  for (int n = 0; n < 60; ++n) {
-    std::string position;
-    for (const int k : {n % 4, n / 4 % 4, n / 16})
-      position += (position.empty() ? "" : ", ") + std::to_string(0.026 * (k - 1.5) + 1e-3 * random.uniform());
-    text += "[[particle]]\nmaterial = \"glass\"\nradius = " + std::to_string(0.010 + 0.002 * random.uniform()) +
-            "\nposition = [" + position + "]\n";
-  }
-  return text;
-}
 
 pid_t start(const std::string& scene, const std::string& out, bool resume) {
   const pid_t child = ::fork();
@@ -139,7 +95,7 @@ nlohmann::json summary_of(const std::string& directory) {
 class ParticlesKill : public ::testing::Test {
  protected:
   void SetUp() override {
-    write_text_atomic(scene_, scene_text());
+    write_text_atomic(scene_, tiny_particles("1.2"));
     ASSERT_TRUE(ended_well(end_after(start(scene_, directory_.file("whole"), false), kPatience, SIGKILL)));
   }
   /// A run that is asked to end once `file` exists.
