@@ -77,7 +77,7 @@ TEST(Conservation, ActionAndReactionOfAState) {
 // ---- force = -dE/dx
 // -------------------------------------------------------------------------------------------------------
 
-const SoftContact kSoft{{0.6, 2.2, -0.6 * std::pow(0.05, 2.2)}, {}, 0.05, 1e8, 0.0, 0.0, true, true};
+const SoftContact kSoft{{0.6, 2.2, -0.6 * std::pow(0.05, 2.2)}, {}, 0.05, 1e8, 0.0, 0.0, true, true, {}};
 
 /// Energy of a contact under its law.
 double contact_energy(const AnyLaw& law, const ContactRecord<3>& c, double radius) {
