@@ -237,12 +237,12 @@ class Search {
     const auto k = static_cast<std::size_t>(axis);
     const auto n = static_cast<double>(level.cells[k]);
     const double half = reach / frame_.width[axis] * (1.0 + 1e-12);  // rounding must not cut off a partner
-    Range r{static_cast<std::int64_t>(std::floor((unit - half) * n)),
-            static_cast<std::int64_t>(std::floor((unit + half) * n))};
-    if (!cell_.periodic[k]) {
-      r.low = std::clamp(r.low, std::int64_t{0}, level.cells[k] - 1);
-      r.high = std::clamp(r.high, std::int64_t{0}, level.cells[k] - 1);
-    }
+    // Clamped before the conversion: a box without extent along an open axis makes numbers that no integer holds.
+    const auto cell_at = [&](double place) {
+      const double cell = std::floor(place * n);
+      return static_cast<std::int64_t>(cell_.periodic[k] ? cell : std::clamp(cell, 0.0, n - 1.0));
+    };
+    const Range r{cell_at(unit - half), cell_at(unit + half)};
     return r;
   }
 
