@@ -7,6 +7,7 @@
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
+#include "common/data/card_text.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/short_hash.h"
 #include "common/io/text_file.h"
@@ -92,7 +93,7 @@ void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
 constexpr std::array kTableKeys{"form", "range", "mu", "unloading"};
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
-  if (t.has("beyond")) out.beyond = beyond_of(t.choice("beyond", {"error", "clamp", "extrapolate"}));
+  out.beyond = read_beyond(t);
   out.range = t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
   if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
   out.unloading = t.flag("unloading", false);

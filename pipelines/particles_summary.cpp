@@ -57,8 +57,7 @@ json contacts_json(const ParticlesScene& scene, const ParticlesResult& result) {
 }
 
 json record_json(const GuardRecord& r, const GuardRule& rule, double limit) {
-  const char* actions[] = {"ignore", "count", "stop"};
-  json out = {{"action", actions[static_cast<int>(rule.action)]},
+  json out = {{"action", to_string(rule.action)},
               {"limit", std::isfinite(limit) ? json(limit) : json(nullptr)},
               {"worst", r.worst},
               {"count", r.count}};

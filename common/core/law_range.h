@@ -18,11 +18,6 @@ inline std::string to_string(Beyond beyond) {
   return beyond == Beyond::clamp ? "clamp" : "extrapolate";
 }
 
-inline Beyond beyond_of(const std::string& word) {
-  if (word == "error") return Beyond::error;
-  return word == "clamp" ? Beyond::clamp : Beyond::extrapolate;
-}
-
 /// End of the measured range in the variable of the law (Delta of a pair law, lost volume of a crowd law).
 struct LawRange {
   double end = std::numeric_limits<double>::infinity();

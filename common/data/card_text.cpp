@@ -28,6 +28,13 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+std::optional<Beyond> read_beyond(const SceneTable& table) {
+  if (!table.has("beyond")) return std::nullopt;
+  const std::string word = table.choice("beyond", {"error", "clamp", "extrapolate"});
+  if (word == "error") return Beyond::error;
+  return word == "clamp" ? Beyond::clamp : Beyond::extrapolate;
+}
+
 std::string spec_text(const SoftParticleSpec& s) {
   std::string text;
   const auto out = std::back_inserter(text);

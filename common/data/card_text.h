@@ -2,6 +2,7 @@
 // estimates.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/data/law_card.h"
@@ -16,6 +17,9 @@ std::string real(double value);
 std::string quoted(const std::string& text);
 /// A number, or what was not known at the time of writing: "nan", "inf", "-inf".
 double read_real(const SceneTable& table, const std::string& key, const Range& range);
+
+/// Key `beyond`, of cards and of scenes that overrule them; empty when it is not there.
+std::optional<Beyond> read_beyond(const SceneTable& table);
 
 /// "key = value" lines of a soft particle, and back.
 std::string spec_text(const SoftParticleSpec& spec);

@@ -141,7 +141,7 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.relaxation = t.text("relaxation");
   e.best = t.choice("best", {"pair", "bag", "directional"});
   e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
-  e.beyond = beyond_of(t.choice("beyond", {"error", "clamp", "extrapolate"}, "extrapolate"));
+  e.beyond = read_beyond(t).value_or(Beyond::extrapolate);
   e.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
   e.grain_overlap_max = t.number("grain_overlap_max", Unit::none, Range::not_negative());
   for (const SlideName& slide : kSlides) {

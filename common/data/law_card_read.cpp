@@ -60,7 +60,7 @@ void read_validity(const SceneTable& table, PairLaw& law) {
   law.delta_max = table.number("delta_max", Unit::none, Range::not_negative());
   if (law.delta_max < law.delta_min) table.reject("delta_max", "must not be below delta_min");
   law.max_overlap = read_real(table, "max_overlap", Range::not_negative());
-  law.beyond = beyond_of(table.choice("beyond", {"error", "clamp", "extrapolate"}, "extrapolate"));
+  law.beyond = read_beyond(table).value_or(Beyond::extrapolate);
 }
 
 void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& angle, bool& fitted, bool good) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <type_traits>
 
 #include "common/dynamics/pair_loop.h"
@@ -35,7 +34,7 @@ class Watcher {
       detail::with_types(s_, section,
                          [&](const auto& law, auto geometry, auto) { look<decltype(geometry)::value>(section, law); });
     for (std::size_t u = 0; u < sums_.size(); ++u)
-      if (sums_[u].square > 0.0) out_.laws.add(volume_[u](sums_[u]) / range_[u].end, range_[u].beyond);
+      if (sums_[u].square > 0.0) add_volume(form_[u]->equivalent_volume(sums_[u]), *form_[u]);
     return out_;
   }
 
@@ -99,32 +98,27 @@ class Watcher {
 
   template <class Law>
   void note_crowd(const Law& law, const ContactState<D>& state, bool of_i, std::size_t body) {
-    const LawRange& range = law.form.pressure.range;
     if constexpr (!Law::needs_particle_pass) {
       CrowdSum<D> own;
       law.share(state, of_i, own);
-      if (own.square > 0.0) out_.laws.add(own.volume / range.end, range.beyond);
+      if (own.square > 0.0) add_volume(own.volume, law.form);
     } else {
-      make_sums();
-      CrowdSum<D>& sum = sums_[body];
-      law.share(state, of_i, sum);
-      range_[body] = range;
-      volume_[body] = [form = law.form](const CrowdSum<D>& all) { return form.equivalent_volume(all); };
+      if (sums_.empty()) {
+        sums_.resize(s_.particles.sphere.size());
+        form_.resize(sums_.size());
+      }
+      law.share(state, of_i, sums_[body]);
+      form_[body] = &law.form;
     }
   }
-  void make_sums() {
-    if (!sums_.empty()) return;
-    const std::size_t bodies = s_.particles.sphere.size();
-    sums_.resize(bodies);
-    range_.resize(bodies);
-    volume_.resize(bodies);
+  void add_volume(double volume, const CrowdForm& form) {
+    out_.laws.add(volume / form.pressure.range.end, form.pressure.range.beyond);
   }
 
   const System<D>& s_;
   ContactWatch<D> out_;
-  std::vector<CrowdSum<D>> sums_;  ///< per body; empty without laws of crowds
-  std::vector<LawRange> range_;
-  std::vector<std::function<double(const CrowdSum<D>&)>> volume_;
+  std::vector<CrowdSum<D>> sums_;       ///< per body; empty without laws of crowds
+  std::vector<const CrowdForm*> form_;  ///< of the law that serves it
 };
 
 }  // namespace

@@ -20,8 +20,7 @@ constexpr Slot kFewGrains = 1000;
 std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
 
 GuardAction read_action(const SceneTable& t, GuardAction fallback) {
-  const char* words[] = {"ignore", "count", "stop"};
-  const std::string word = t.choice("action", {"ignore", "count", "stop"}, words[static_cast<int>(fallback)]);
+  const std::string word = t.choice("action", {"ignore", "count", "stop"}, to_string(fallback));
   return word == "stop" ? GuardAction::stop : word == "count" ? GuardAction::count : GuardAction::ignore;
 }
 
@@ -67,7 +66,12 @@ double default_travel(const System3& s) {
 /// Whether some law was measured over a range that it can leave.
 bool has_measured_law(const LawSet& laws) {
   for (std::int32_t k = 0; k < laws.size(); ++k)
-    if (std::visit([](const auto& law) { return requires { law.range; } || requires { law.form; }; }, laws.law(k)))
+    if (std::visit(
+            [](const auto& law) {
+              return requires { law.range; }
+              || requires { law.form; };
+            },
+            laws.law(k)))
       return true;
   return false;
 }
@@ -89,6 +93,11 @@ GuardRecord read_record(const h5::Group& g, const std::string& name) {
 }
 
 }  // namespace
+
+const char* to_string(GuardAction action) {
+  if (action == GuardAction::stop) return "stop";
+  return action == GuardAction::count ? "count" : "ignore";
+}
 
 GuardSpec read_guards(const SceneTable& t) {
   GuardSpec out;

@@ -19,6 +19,8 @@ enum class GuardAction {
   stop     ///< the run ends, not usable, with the state as it is
 };
 
+const char* to_string(GuardAction action);
+
 /// One guard: the run is looked at every so many steps, and what exceeds `limit` is answered by `action`.
 struct GuardRule {
   double limit = 0.0;

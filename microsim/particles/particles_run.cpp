@@ -32,8 +32,10 @@ constexpr std::int64_t kGrainStepsPerLook = 4'000'000;
 
 using Clock = std::chrono::steady_clock;
 
-/// What a checkpoint belongs to: the scene, and the particles, which may lie in a file of their own.
+/// What a checkpoint belongs to: the scene, and the particles, which may lie in a file of their own. Hashed piece by
+/// piece: large scenes are not in memory twice.
 std::string identity_of(const ParticlesScene& scene, const System3& start) {
+  constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes
   const auto& p = start.particles;
   std::string bytes;
   const auto add = [&bytes](double x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof x); };
@@ -41,6 +43,7 @@ std::string identity_of(const ParticlesScene& scene, const System3& start) {
     add(p.sphere[u].r);
     for (int k = 0; k < 3; ++k)
       for (const double x : {p.sphere[u].x[k], p.velocity[u][k], p.spin[u][k]}) add(x);
+    if (bytes.size() > kPiece) bytes = short_hash(bytes);
   }
   return scene.text + "\n# particles " + short_hash(bytes);
 }

@@ -5,6 +5,7 @@
 
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
+#include "common/data/card_text.h"
 #include "common/data/law_card.h"
 
 namespace softgrain {
@@ -81,8 +82,7 @@ SoftContact read_card_law(const Scene& scene, const SceneTable& t, PairKind kind
   const double friction = read_friction(t);
   const double damping = t.number("damping", Unit::none, Range::closed(0.0, 1.0));
   const bool secant = t.choice("kt", {"initial", "secant"}) == "secant";
-  std::optional<Beyond> beyond;
-  if (t.has("beyond")) beyond = beyond_of(t.choice("beyond", {"error", "clamp", "extrapolate"}));
+  const std::optional<Beyond> beyond = read_beyond(t);
   const LawCard card = load_card(scene.resolve(t.text("file")));
   try {
     return make_soft_contact(card, kind, modulus, friction, damping, secant, beyond);
