@@ -1,6 +1,6 @@
 // Cohesive disks in two dimensions [CP 3.1]: linear spring, constant adhesion in contact and a linear ramp of short
 // range outside it, friction and rolling resistance that follow the elastic repulsion alone.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
 #include <cmath>

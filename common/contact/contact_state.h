@@ -1,6 +1,6 @@
 // What the loop hands to a law and what the law hands back. A law never commits history: it returns the new one, the
 // caller decides (minimisers try states that are thrown away).
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include "common/contact/crowd_form.h"
 #include "common/core/vec.h"

@@ -1,5 +1,5 @@
 // Tangential spring with Coulomb limit, shared by every law with friction.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
 

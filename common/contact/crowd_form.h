@@ -1,7 +1,7 @@
 // The mechanics of a soft particle with several contacts, dimensionless and free of any loop: what volume each contact
 // takes from its shell, how the contacts add up, and what pressure answers [SP 1.7.1]. Shared by the law of the contact
 // loop and by the fits.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
 #include <array>

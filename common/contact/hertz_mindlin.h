@@ -1,5 +1,5 @@
 // Hertz normal force, Mindlin no-slip tangential spring with Coulomb limit, Tsuji damping [SP 1.3].
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
 #include <numbers>

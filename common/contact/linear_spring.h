@@ -1,5 +1,5 @@
 // Linear spring and dashpot with a Coulomb-limited tangential spring.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
 #include <numbers>

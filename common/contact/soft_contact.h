@@ -1,6 +1,6 @@
 // The fitted law of a soft contact, ready for the loop: threshold power law in Delta = h/R, R the smaller shell
 // [SP 1.5, 1.6].
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/contact/threshold_term.h"
 #include "common/core/error.h"
 
 namespace softgrain {
@@ -12,12 +13,7 @@ namespace {
   throw BadInput("law card: no usable " + to_string(kind) + " law: " + problem);
 }
 
-/// The offset follows from a, b and delta, so that the law is zero at its threshold to the last bit.
-PowerTerm term(const ThresholdPowerLaw& law) {
-  const double a = law.a.value;
-  const double b = law.b.value;
-  return {a, b, -a * std::pow(law.delta.value, b)};
-}
+PowerTerm term(const ThresholdPowerLaw& law) { return threshold_term(law.a.value, law.b.value, law.delta.value); }
 
 void require_sound(const ThresholdPowerLaw& law, PairKind kind, const char* part) {
   const bool sound = std::isfinite(law.a.value) && law.a.value > 0.0 && std::isfinite(law.b.value) &&

@@ -1,5 +1,5 @@
 // What a fitted law does beyond the range it was measured in.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <limits>
 #include <string>

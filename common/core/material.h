@@ -1,5 +1,5 @@
 // Elastic materials.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // Small fixed-size vectors of the kernels. Dimension is a template argument; rotations are a vector in 3D, a number in
 // 2D.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
 #include <cmath>

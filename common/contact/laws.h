@@ -1,0 +1,19 @@
+// All contact laws that need nothing but the C++ standard library (C++20). Installed as one file, <softgrain/laws.h>,
+// with a licence that lets programs under other licences include it; the program evaluates the very same functions.
+//
+//   law            normal force                                    files of the tree
+//   HertzMindlin   sqrt(R12) h^(3/2)/D - eta vn                    hertz_mindlin.h
+//   LinearSpring   kn h - eta vn                                   linear_spring.h
+//   SoftContact    E R^2 (a Delta^b + c), Delta = h/R > delta      soft_contact.h, threshold_term.h
+//   CohesiveDisk   K_N h - F0 - eta vn, attraction at a distance   cohesive_disk.h
+//   CrowdForm      E R^2 dnu/dx p(S)/S B: several contacts         crowd_form.h
+//
+// How to use one: pair_constants(PairBodies) once per pair, evaluate(ContactState) as often as wanted. SI units.
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
+
+#include "common/contact/cohesive_disk.h"
+#include "common/contact/crowd_form.h"
+#include "common/contact/hertz_mindlin.h"
+#include "common/contact/linear_spring.h"
+#include "common/contact/soft_contact.h"
+#include "common/contact/threshold_term.h"
