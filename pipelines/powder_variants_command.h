@@ -6,7 +6,7 @@
 
 namespace softgrain {
 
-/// Runs each variant in DIR/<name> like a scene of its own; writes table.csv, table.md and summary.json. Variants that
+/// Runs each variant in DIR/NAME like a scene of its own; writes table.csv, table.md and summary.json. Variants that
 /// have ended before are not run again with --resume. Status not_usable when one of them has a sample not at rest.
 ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options);
 

@@ -21,7 +21,7 @@ struct PowderAnalysis {
   PowderPercolation percolation;
   std::optional<PowderRigidity> rigidity;  ///< when asked for
   double solid_fraction_3d = 0.0;     ///< of spheres that look the same: 4/(3 sqrt(pi)) Phi^(3/2) = 0.752 Phi^(3/2)
-  std::optional<double> rumpf_ratio;  ///< Rumpf's pressure z Phi <N> <d>/(pi <d^2>) over the one imposed, P > 0
+  std::optional<double> rumpf_ratio;  ///< Rumpf's pressure, z Phi N d/(pi d^2) of means, over the one imposed, P > 0
 };
 
 /// `pressure`: imposed on the state. Changes nothing in the system.

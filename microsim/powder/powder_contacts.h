@@ -19,11 +19,11 @@ struct PowderContacts {
   std::int64_t repulsive = 0;
   std::int64_t tensile = 0;
   std::int64_t unstressed = 0;  ///< |N| below `zero`
-  double mean_normal = 0.0;     ///< <N> over all interactions
+  double mean_normal = 0.0;     ///< mean N over all interactions
   double mean_repulsive = 0.0;
   double mean_tensile = 0.0;        ///< negative
-  double square_mean_normal = 0.0;  ///< sqrt(<N^2>)
-  double rumpf_pressure = 0.0;      ///< z Phi <N> <d>/(pi <d^2>)
+  double square_mean_normal = 0.0;  ///< root of the mean of N^2
+  double rumpf_pressure = 0.0;      ///< z Phi mean(N) mean(d)/(pi mean(d^2))
   double branch_pressure =
       0.0;  ///< sum of N |branch|/(2 A): what Rumpf's means leave out is that large disks touch more
 };

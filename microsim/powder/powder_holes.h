@@ -24,12 +24,12 @@ struct PowderHoles {
   double void_fraction = 0.0;    ///< area of all holes over that of the cell
   double largest_radius = 0.0;   ///< NaN when a hole percolates
   double largest_share = 0.0;    ///< of the void, in the hole of the largest area
-  double mean_radius = 0.0;      ///< <R>_w = sum A_H R_H/sum A_H over all holes [a]; NaN when a hole percolates
+  double mean_radius = 0.0;      ///< mean of R_H weighted by A_H over all holes [a]; NaN when a hole percolates
   std::int64_t percolating = 0;  ///< holes that percolate
 };
 
 /// Gaps below about a cell between disks that do not interact count as closed or open as the mesh falls: in dense
-/// packs of 200 disks <R>_w at a/100 is 2 % below its value at a/200.
+/// packs of 200 disks the mean radius at a/100 is 2 % below its value at a/200.
 /// Finds the holes by joining runs of void cells, row by row: time in proportion to the cells. `smallest_area` [a^2]
 /// only divides the number of holes into holes and fragments.
 PowderHoles powder_holes(const PowderMesh& mesh, double smallest_area = 0.0);

@@ -11,7 +11,7 @@ struct Figure {
   std::string svg;   ///< complete document
 };
 
-/// Every <svg> of an HTML body, in order; names are made unique by a number.
+/// Every svg element of an HTML body, in order; names are made unique by a number.
 std::vector<Figure> figures_of(const std::string& html);
 
 }  // namespace softgrain::report

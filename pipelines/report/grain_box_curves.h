@@ -29,7 +29,7 @@ Series over_pressure(const GrainBoxResult& result, double BoxPoint::*y, double u
 Series fitted_line(const PowerFit& fit, const std::array<double, 2>& range, double unit, const std::string& label,
                    const SeriesStyle& style);
 
-/// Grains and contact forces in a slice through the middle of the pack, as one <svg>.
+/// Grains and contact forces in a slice through the middle of the pack, as one svg element.
 std::string pack_view(const GrainBoxResult& result);
 
 }  // namespace softgrain::report

@@ -13,7 +13,7 @@ enum class PowderLines {
   stressed  ///< all contacts as thin lines: who carries force and who does not
 };
 
-/// The packing at the end of a sample as one <svg>: compressive forces red, tensile green, distant pairs blue (dashed);
+/// The packing at the end of a sample as an svg: compressive forces red, tensile green, distant pairs blue (dashed);
 /// with PowderLines::stressed unstressed contacts blue. Disks without a force above `zero` grey. Disks and lines that
 /// cross the boundary are drawn on both sides and cut there.
 std::string packing_view(const PowderSample& sample, PowderLines lines, double zero, const std::string& title);

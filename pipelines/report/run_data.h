@@ -67,7 +67,7 @@ const ThresholdPowerLaw& part_of(const PairLaw& law, LawPart part);
 /// Whether the part was measured and could be fitted.
 bool has_part(const PairLaw& law, LawPart part);
 
-/// Band from group "band/<kind>" of law.h5 (`delta`, `<part>_low`, `<part>_high`) when it is there, else from the
+/// Band from group "band/KIND" of law.h5 (`delta`, `PART_low`, `PART_high`) when it is there, else from the
 /// covariance of the parameters by linearised error propagation; empty when neither exists.
 std::optional<LawBand> law_band(const RunData& run, const PairLaw& law, LawPart part);
 

@@ -78,7 +78,7 @@ class Plot {
   void add(Series series);
   [[nodiscard]] bool empty() const { return series_.empty(); }
 
-  /// The drawing as one <svg> element, scalable through its viewBox.
+  /// The drawing as one svg element, scalable through its viewBox.
   [[nodiscard]] std::string svg() const;
 
  private:

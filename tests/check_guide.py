@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""Holds the guide to the sources: every key that a reader of scenes asks for stands in a table of the page of its kind, every
+key in those tables is asked for by a reader, every link and picture is there.
+
+Keys are found in the sources by the calls that read them (t.number("key", ...), read_range(t, "key", ...)); which page a
+source belongs to is written down below, and a source that reads scenes and is in no list is an error.
+
+    check_guide.py ROOT | --self-test
+"""
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+GUIDE = "pipelines/guide"
+
+# Page: its sources, keys that go through a variable there, and words that look like keys of scenes and are none.
+PAGES = {
+    "scene_pipeline.md": (
+        ["pipelines/measure_setup.cpp", "pipelines/pipeline_setup.cpp", "pipelines/macro_setup.cpp",
+         "pipelines/command_macrosim.cpp", "pipelines/macro_comparison_setup.cpp", "pipelines/named_laws.cpp",
+         "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp"],
+        {"beyond"}, {"entry", "pair"}),
+    "scene_law_table.md": (
+        ["pipelines/law_table_setup.cpp", "pipelines/crowd_setup.cpp", "pipelines/crowd_law_fit.cpp",
+         "pipelines/hierarchy_setup.cpp"],
+        {"material", "packing"}, set()),
+    "scene_particles.md": (
+        ["microsim/particles/guards.cpp", "microsim/particles/particles_scene.cpp", "microsim/particles/scene_bodies.cpp",
+         "microsim/particles/scene_cell.cpp", "microsim/particles/scene_materials.cpp",
+         "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
+        {"beyond"}, {"energy_unwatched"}),
+    "scene_powder.md": (
+        ["pipelines/powder_setup.cpp", "pipelines/powder_variants.cpp", "pipelines/variant_name.cpp"],
+        {"Phi", "z", "Phi_error", "z_error"}, set()),
+    "scene_grain_box.md": (["pipelines/grain_box_setup.cpp", "pipelines/variant_name.cpp"], set(), set()),
+}
+
+# Sources that read cards and tables, or a scene only to see what it is.
+NO_SCENES = {
+    "common/data/card_text.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
+    "pipelines/command_check.cpp", "pipelines/command_microsim.cpp", "pipelines/command_run.cpp",
+    "pipelines/calibrate_crowd.cpp", "pipelines/powder_command.cpp", "pipelines/powder_variants_command.cpp",
+}
+
+READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"
+CALL = re.compile(r'(?:\.|->)\s*(?:%s)\(\s*"([A-Za-z_]\w*)"' % READERS)
+# A table and a key handed to a helper: read_friction(t, "wall_mu", ...).
+HANDED = re.compile(r'\b(?:t|root|table|scene|macro|law|walls|material|loading)\s*,\s*"([A-Za-z_]\w*)"')
+KEY = re.compile(r"`\[{0,2}([A-Za-z_][\w.]*)\]{0,2}`")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def keys_read(path):
+    text = path.read_text()
+    return set(CALL.findall(text)) | set(HANDED.findall(text))
+
+
+def reads_scenes(path):
+    return re.search(r"\bSceneTable\b|\bScene(?:::|&)", path.read_text()) is not None and keys_read(path)
+
+
+def rows(page):
+    """Rows of the tables whose first column is called `key`, without their heads."""
+    inside = False
+    for line in page.read_text().splitlines():
+        if not line.startswith("|"):
+            inside = False
+            continue
+        cells = [c.strip() for c in line.strip("|").split("|")]
+        if cells[0] == "key":
+            inside = True
+        elif inside and not set(line) <= set("|-: "):
+            yield cells
+
+
+def words(cell):
+    """Keys in backquotes: `key`, `[table]`, `[[tables]]`, `[table.below]`; NAME stands for any word."""
+    found = set()
+    for word in KEY.findall(cell):
+        found |= {part for part in word.split(".") if part != "NAME"}
+    return found
+
+
+def check_page(root, name, sources, extra, no_keys=frozenset()):
+    page = root / GUIDE / name
+    read = set(extra)
+    for source in sources:
+        read |= keys_read(root / source) - no_keys
+    first, anywhere = set(), set()
+    for cells in rows(page):
+        first |= words(cells[0])
+        anywhere |= set().union(*map(words, cells))
+    problems = [f"{name}: key '{k}' of the sources is in no table of the page" for k in sorted(read - anywhere)]
+    return problems + [f"{name}: no reader asks for key '{k}'" for k in sorted(first - read)]
+
+
+def check_sources(root):
+    known = NO_SCENES | {s for sources, *_ in PAGES.values() for s in sources}
+    problems = []
+    for folder in ("common/data", "common/contact", "microsim", "macrosim", "calibrate", "pipelines"):
+        for path in sorted((root / folder).rglob("*.cpp")):
+            name = path.relative_to(root).as_posix()
+            if name not in known and reads_scenes(path):
+                problems.append(f"{name} reads scenes: give it a page in tests/check_guide.py, and its keys "
+                                f"({', '.join(sorted(keys_read(path)))}) a place there")
+    return problems
+
+
+def check_links(root):
+    problems = []
+    for page in [root / "README.md", *sorted((root / GUIDE).glob("*.md"))]:
+        for target in LINK.findall(page.read_text()):
+            if not re.match(r"[a-z]+:|#", target) and not (page.parent / target.split("#")[0]).exists():
+                problems.append(f"{page.relative_to(root)}: {target} is not there")
+    return problems
+
+
+def check(root):
+    problems = check_sources(root) + check_links(root)
+    for name, page in PAGES.items():
+        problems += check_page(root, name, *page)
+    return problems
+
+
+def self_test():
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        (root / GUIDE).mkdir(parents=True)
+        (root / "a.cpp").write_text('t.number("radius", x); t.table_or_empty(\n "box"); read_range(t, "low", 1);')
+        page = root / GUIDE / "p.md"
+        table = "| key | meaning |\n|---|---|\n| `[box]` `radius` | from `low`, `\"word\"` |\n"
+        page.write_text(table)
+        assert check_page(root, "p.md", ["a.cpp"], set()) == [], check_page(root, "p.md", ["a.cpp"], set())
+        page.write_text(table.replace("`low`", "low"))
+        assert "'low'" in check_page(root, "p.md", ["a.cpp"], set())[0]
+        page.write_text(table + "| `colour` | none |\n")
+        assert "no reader asks for key 'colour'" in check_page(root, "p.md", ["a.cpp"], set())[0]
+        page.write_text("[x](nowhere.md) [y](p.md#z) [z](https://example.org)")
+        (root / "README.md").write_text("")
+        assert check_links(root) == [f"{GUIDE}/p.md: nowhere.md is not there"]
+        (root / "pipelines/new.cpp").write_text('int f(const SceneTable& t) { return t.flag("new", true); }')
+        assert "pipelines/new.cpp reads scenes" in check_sources(root)[0]
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return self_test()
+    problems = check(Path(sys.argv[1]))
+    print("\n".join(problems))
+    sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()
