@@ -75,63 +75,85 @@ CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<Cro
   return p;
 }
 
+/// One loading and what was inside.
+struct CheckRun {
+  Task task;
+  CrowdRun run;
+  double grains = 0.0;  ///< of the resolved system
+  double inside = 0.0;  ///< inner soft particles
+};
+
+std::vector<CheckRun> check_tasks(std::size_t packings) {
+  std::vector<CheckRun> runs;
+  for (const Engine engine : kEngines)
+    for (std::size_t p = 0; p < packings; ++p) runs.push_back({{engine, p}, {}});
+  return runs;
+}
+
+/// Loads the stored run, or measures and stores it.
+void measure(CheckRun& check, const HierarchySetup& setup, std::uint64_t seed, const InnerLaws& laws,
+             const std::vector<ShellPacking>& inner, const CrowdPlan& plan, const TaskStore& store) {
+  const ShellPacking packing = generate_shell_packing(setup.crowd.spec, seed, check.task.packing);
+  const SoftContent content = content_of(setup, packing, check.task.engine, inner);
+  CrowdExperiment e = make_crowd(setup.crowd.spec, one_plane(setup.check_overlaps), content, {}, &laws);
+  check.grains = static_cast<double>(e.system.particles.grains);
+  check.inside = static_cast<double>(content.inner.size());
+  const std::string name = fmt::format("check-{}-{}", name_of(check.task.engine), check.task.packing);
+  bool known = false;
+  store.load(name, [&](const h5::Group& g) {
+    check.run = read_crowd_runs(g).at(0);
+    known = true;
+  });
+  if (known) return;
+  check.run = run_kept_crowd(store, name, e, plan, setup.crowd.options, {});
+  store.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {check.run}); });
+}
+
+std::vector<CrowdRun> runs_of(const std::vector<CheckRun>& checks, Engine engine) {
+  std::vector<CrowdRun> runs;
+  for (const CheckRun& c : checks)
+    if (c.task.engine == engine) runs.push_back(c.run);
+  return runs;
+}
+
+CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup& setup) {
+  CheckResult result;
+  result.packings = setup.check_packings;
+  const auto resolved = runs_of(checks, Engine::resolved);
+  const auto law = runs_of(checks, Engine::law);
+  const auto empty = runs_of(checks, Engine::empty);
+  for (std::size_t k = 0; k < setup.check_overlaps.size(); ++k)
+    result.points.push_back(point_of(resolved, law, empty, k));
+  for (const CheckRun& c : checks) {
+    if (c.task.engine == Engine::resolved) {
+      result.resolved_cost += c.run.cost;
+      result.grains += c.grains / static_cast<double>(setup.check_packings);
+      result.inner += c.inside / static_cast<double>(setup.check_packings);
+    }
+    if (c.task.engine == Engine::law) result.law_cost += c.run.cost;
+    for (const CrowdPoint& p : c.run.points) result.converged = result.converged && p.converged;
+  }
+  return result;
+}
+
 }  // namespace
 
 CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const TaskStore& store,
                               const RunContext& context) {
   const std::uint64_t seed = context.seed(setup.crowd.seed);
-  const auto n = static_cast<std::size_t>(setup.check_packings);
   std::vector<ShellPacking> inner;
   for (std::size_t k = 0; k < kDifferentInner; ++k)
     inner.push_back(generate_shell_packing(setup.crowd.spec, seed, kInnerPackings + k));
   const InnerLaws laws = inner_laws(setup, finest);
-  const CrowdConfiguration configuration = one_plane(setup.check_overlaps);
   CrowdPlan plan(1);
   for (const double x : setup.check_overlaps) plan[0].push_back(x / setup.check_overlaps.back());
-  std::vector<Task> tasks;
-  for (const Engine engine : kEngines)
-    for (std::size_t p = 0; p < n; ++p) tasks.push_back({engine, p});
-  std::vector<CrowdRun> runs(tasks.size());
-  CheckResult result;
-  result.packings = setup.check_packings;
-  std::vector<double> grains(tasks.size());
-  std::vector<double> inside(tasks.size());
-  Progress progress("two decades, resolved", static_cast<double>(tasks.size()), context.quiet());
-  parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t t) {
-    const auto u = static_cast<std::size_t>(t);
-    const ShellPacking packing = generate_shell_packing(setup.crowd.spec, seed, tasks[u].packing);
-    const SoftContent content = content_of(setup, packing, tasks[u].engine, inner);
-    CrowdExperiment e = make_crowd(setup.crowd.spec, configuration, content, {}, &laws);
-    grains[u] = static_cast<double>(e.system.particles.grains);
-    inside[u] = static_cast<double>(content.inner.size());
-    const std::string task = fmt::format("check-{}-{}", name_of(tasks[u].engine), tasks[u].packing);
-    bool known = false;
-    store.load(task, [&](const h5::Group& g) {
-      runs[u] = read_crowd_runs(g).at(0);
-      known = true;
-    });
-    if (!known) {
-      runs[u] = run_kept_crowd(store, task, e, plan, setup.crowd.options, {});
-      store.save(task, [&](const h5::Group& g) { write_crowd_runs(g, {runs[u]}); });
-    }
+  std::vector<CheckRun> checks = check_tasks(static_cast<std::size_t>(setup.check_packings));
+  Progress progress("two decades, resolved", static_cast<double>(checks.size()), context.quiet());
+  parallel_tasks(static_cast<std::int64_t>(checks.size()), [&](std::int64_t t) {
+    measure(checks[static_cast<std::size_t>(t)], setup, seed, laws, inner, plan, store);
     progress.advance();
   });
-  const auto of = [&](std::size_t engine) {
-    const auto first = runs.begin() + static_cast<std::ptrdiff_t>(engine * n);
-    return std::vector<CrowdRun>(first, first + static_cast<std::ptrdiff_t>(n));
-  };
-  for (std::size_t k = 0; k < setup.check_overlaps.size(); ++k)
-    result.points.push_back(point_of(of(0), of(1), of(2), k));
-  for (std::size_t u = 0; u < runs.size(); ++u) {
-    if (tasks[u].engine == Engine::resolved) {
-      result.resolved_cost += runs[u].cost;
-      result.grains += grains[u] / static_cast<double>(n);
-      result.inner += inside[u] / static_cast<double>(n);
-    }
-    if (tasks[u].engine == Engine::law) result.law_cost += runs[u].cost;
-    for (const CrowdPoint& p : runs[u].points) result.converged = result.converged && p.converged;
-  }
-  return result;
+  return result_of(checks, setup);
 }
 
 }  // namespace softgrain

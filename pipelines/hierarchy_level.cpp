@@ -75,6 +75,30 @@ Cost cost_of(const CrowdMeasurements& data) {
   return cost;
 }
 
+/// What a level's soft particles hold: grains only on the lowest one, soft particles with the law of `below` above.
+CrowdLevel crowd_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
+                       const HierarchyLevel* below) {
+  CrowdLevel crowd;
+  crowd.file = fmt::format("crowd_level_{}.h5", number);
+  if (below == nullptr) return crowd;
+  crowd.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
+  crowd.laws = inner_laws(setup, below->entry);
+  crowd.tag = tag_of(setup, below->entry);
+  return crowd;
+}
+
+/// How far the law has moved from one level to the next, and how much of that packings alone would make.
+void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, const CrowdMeasurements& data,
+                        const CrowdMeasurements& data_below, const std::string& form) {
+  double noise = 0.0;
+  for (std::size_t c = 0; c < data.configurations.size(); ++c) {
+    level.changes.push_back(change_of(data, data_below, static_cast<std::int64_t>(c)));
+    noise += level.changes.back().error * level.changes.back().error;
+  }
+  level.distance = law_distance(level.entry, below.entry, form);
+  level.distance_noise = std::sqrt(noise / static_cast<double>(level.changes.size()));
+}
+
 }  // namespace
 
 SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing) {
@@ -140,19 +164,9 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   HierarchyLevel level;
   level.number = number;
   std::vector<ShellPacking> pool;
-  if (below == nullptr) {
-    CrowdLevel grains;  // nothing inside, but a file of its own
-    grains.file = "crowd_level_0.h5";
-    data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &grains);
-  } else {
-    CrowdLevel crowd;
-    crowd.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
-    crowd.laws = inner_laws(setup, below->entry);
-    crowd.tag = tag_of(setup, below->entry);
-    crowd.file = fmt::format("crowd_level_{}.h5", number);
-    data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &crowd);
-    describe_inner(contents, pool, level);
-  }
+  const CrowdLevel crowd = crowd_level(setup, contents, number, below);
+  data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &crowd);
+  if (below != nullptr) describe_inner(contents, pool, level);
   CrowdFitOptions fit;
   fit.seed = context.seed(setup.crowd.seed);
   fit.replicates = 0;
@@ -161,15 +175,7 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   for (const ShellPacking& p : pool) grains += static_cast<double>(p.radius.size()) / static_cast<double>(pool.size());
   level.grains = grains + (below != nullptr ? level.inner_mean * below->grains : 0.0);
   level.cost = cost_of(data);
-  if (below != nullptr) {
-    double noise = 0.0;
-    for (std::size_t c = 0; c < data.configurations.size(); ++c) {
-      level.changes.push_back(change_of(data, *data_below, static_cast<std::int64_t>(c)));
-      noise += level.changes.back().error * level.changes.back().error;
-    }
-    level.distance = law_distance(level.entry, below->entry, setup.form);
-    level.distance_noise = std::sqrt(noise / static_cast<double>(level.changes.size()));
-  }
+  if (below != nullptr) compare_with_below(level, *below, data, *data_below, setup.form);
   level.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return level;
 }

@@ -82,22 +82,37 @@ StiffnessAngles angles_of(const CompareSide& side, PairKind kind) {
   return {law->initial_angle_deg, law->secant_angle_deg};
 }
 
+void compare_relaxed(CompareResult& result, const CompareSide& candidate, const CompareSide& reference, PairKind kind) {
+  const auto pairs =
+      match_names(relaxations_of(*candidate.measurements, kind), relaxations_of(*reference.measurements, kind));
+  for (const auto& [a, b] : pairs) {
+    attempt(result, "measurements, " + to_string(kind), [&, &a = a, &b = b] {
+      result.measurements.push_back(compare_measurements(*candidate.measurements, a, *reference.measurements, b, kind,
+                                                         angles_of(reference, kind)));
+    });
+  }
+}
+
 void compare_kinds(CompareResult& result, const CompareSide& candidate, const CompareSide& reference) {
   for (const PairKind kind : kKinds) {
-    if (candidate.measurements && reference.measurements) {
-      const auto pairs =
-          match_names(relaxations_of(*candidate.measurements, kind), relaxations_of(*reference.measurements, kind));
-      for (const auto& [a, b] : pairs) {
-        attempt(result, "measurements, " + to_string(kind), [&, &a = a, &b = b] {
-          result.measurements.push_back(compare_measurements(*candidate.measurements, a, *reference.measurements, b,
-                                                             kind, angles_of(reference, kind)));
-        });
-      }
-    }
+    if (candidate.measurements && reference.measurements) compare_relaxed(result, candidate, reference, kind);
     if (candidate.card && reference.card && candidate.card->find(kind) != nullptr &&
         reference.card->find(kind) != nullptr) {
       result.laws.push_back({kind, compare_laws(*candidate.card, *reference.card, kind)});
     }
+  }
+}
+
+/// Every other relaxation of the same measurements against the published protocol, where that was run.
+void compare_with_published(CompareResult& result, const CompareSide& side, PairKind kind) {
+  const auto names = relaxations_of(*side.measurements, kind);
+  if (std::find(names.begin(), names.end(), "published") == names.end()) return;
+  for (const std::string& name : names) {
+    if (name == "published") continue;
+    attempt(result, "relaxations, " + to_string(kind), [&] {
+      result.relaxations.push_back(
+          compare_relaxations(*side.measurements, "published", name, kind, angles_of(side, kind)));
+    });
   }
 }
 
@@ -134,18 +149,8 @@ CompareResult compare_within(const CompareSide& side) {
   const auto engines = engines_of(side.macro);
   const auto has = [&](const char* name) { return std::find(engines.begin(), engines.end(), name) != engines.end(); };
   if (has("law") && has("shelled")) compare_engines(result, side.macro, side.macro, {{"law", "shelled"}});
-  for (const PairKind kind : kKinds) {
-    if (!side.measurements) break;
-    const auto names = relaxations_of(*side.measurements, kind);
-    if (std::find(names.begin(), names.end(), "published") == names.end()) continue;
-    for (const std::string& name : names) {
-      if (name == "published") continue;
-      attempt(result, "relaxations, " + to_string(kind), [&] {
-        result.relaxations.push_back(
-            compare_relaxations(*side.measurements, "published", name, kind, angles_of(side, kind)));
-      });
-    }
-  }
+  for (const PairKind kind : kKinds)
+    if (side.measurements) compare_with_published(result, side, kind);
   require_something(result);
   return result;
 }
