@@ -53,6 +53,7 @@ void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member
     for (const double v : c.*member) s.y.push_back(v / unit);
     s.style = engine_style(c.engine);
     if (!c.usable) s.style.opacity = 0.4;
+    s.group = engine_name(c.engine);
     plot.add(std::move(s));
   }
 }

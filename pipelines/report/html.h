@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace softgrain::report {
@@ -32,8 +33,15 @@ std::string figure(const std::string& svg, const std::string& caption);
 /// Figures side by side where the page is wide enough.
 std::string figure_row(const std::vector<std::string>& figures);
 
-/// A section with a heading; empty when the body is empty, so that a section without data leaves no trace.
+/// A section with a heading; empty when the body is empty, so that a section without data leaves no trace. With figures
+/// it begins a page in print.
 std::string section(const std::string& id, const std::string& heading, const std::string& body);
+
+/// Links to the sections of a body.
+std::string contents(const std::string& body);
+
+/// A script of our own (ASCII, without "</script").
+std::string script(std::string_view source);
 
 /// The whole page around a body: style for screen and print, no network.
 std::string page(const std::string& title, const std::string& body);

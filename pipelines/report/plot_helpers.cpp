@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pipelines/compare/statistics.h"
 #include "pipelines/report/number_format.h"
 
 namespace softgrain::report {
+
+/// How far plots reach beyond the last overlap, to show what a law does there.
+constexpr double kBeyond = 1.12;
 
 std::string describe(PairKind kind) {
   return kind == PairKind::soft_solid ? "soft particle on a solid plane" : "two equal soft particles";
@@ -45,17 +50,33 @@ std::vector<Series> packing_series(const Measurements& data, const ValuesByDelta
     s.label = result.empty() ? label : "";
     s.hover = packing_name(data, packing);
     s.style = {.color = palette::grey, .width = 0.8, .opacity = 0.6};
+    s.group = label;
     result.push_back(std::move(s));
   }
   return result;
 }
+
+namespace {
+
+Series law_line(const PairLaw& law, LawPart part, double unit, double low, double high) {
+  Series s{.label = "", .hover = "", .x = spread(low, high, 161), .y = {}};
+  for (const double overlap : s.x) {
+    // as contacts use it: a clamped law stays at the force of the end of its range
+    const double asked = law.beyond == Beyond::clamp ? std::min(overlap, law.delta_max) : overlap;
+    s.y.push_back(part_of(law, part).value(asked) * unit);
+  }
+  s.sets_range = false;
+  return s;
+}
+
+}  // namespace
 
 void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, double unit, const std::string& label,
              const char* color) {
   if (!has_part(law, part) || law.delta_max <= 0.0) return;
   if (const auto band = law_band(run, law, part)) {
     Series s{.label = "95 % interval (" + band->origin + ")",
-             .hover = "95 % interval of " + label,
+             .hover = "95 % interval of the " + label,
              .x = band->delta,
              .y = {}};
     for (std::size_t i = 0; i < band->delta.size(); ++i) {
@@ -66,11 +87,27 @@ void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, d
     s.sets_range = false;
     plot.add(std::move(s));
   }
-  Series s{.label = label, .hover = "", .x = spread(0.0, law.delta_max, 161), .y = {}};
-  for (const double overlap : s.x) s.y.push_back(part_of(law, part).value(overlap) * unit);
+  Series s = law_line(law, part, unit, 0.0, law.delta_max);
+  s.label = label;
   s.style = {.color = color, .width = 2.0};
-  s.sets_range = false;
   plot.add(std::move(s));
+  if (law.beyond == Beyond::error) return;
+  Series beyond = law_line(law, part, unit, law.delta_max, kBeyond * law.delta_max);
+  beyond.hover =
+      label + (law.beyond == Beyond::clamp ? ", clamped beyond its range" : ", extrapolated beyond its range");
+  beyond.style = {.color = color, .width = 1.6, .dash = "2 3"};
+  beyond.group = label;
+  plot.add(std::move(beyond));
+}
+
+std::optional<ShadedRange> fitted_range(const PairLaw* law, LawPart part) {
+  if (law == nullptr || !has_part(*law, part) || !(law->delta_max > law->delta_min)) return std::nullopt;
+  return ShadedRange{law->delta_min, law->delta_max,
+                     "fitted: Δ = " + format_number(law->delta_min) + " to " + format_number(law->delta_max)};
+}
+
+AxisOptions overlap_axis(double last) {
+  return {.label = "normal overlap Δ = hn/Rs", .low = 0.0, .high = kBeyond * last};
 }
 
 double last_delta(const ValuesByDelta& values) { return values.empty() ? 0.0 : key_delta(values.rbegin()->first); }

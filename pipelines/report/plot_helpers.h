@@ -1,6 +1,7 @@
 // Series that several sections draw alike.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,16 @@ Series mean_series(const ValuesByDelta& values, double unit, const std::string& 
 std::vector<Series> packing_series(const Measurements& data, const ValuesByDelta& values, double unit,
                                    const std::string& label);
 
-/// A fitted law over (0, delta_max], times `unit`, with its 95 % band when there is one.
+/// A fitted law over (0, delta_max], times `unit`, with its 95 % band when there is one; dotted a little beyond its
+/// range, as it is used there (not at all when that is an error).
 void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, double unit, const std::string& label,
              const char* color);
+
+/// The overlaps that a law was fitted in, to be shaded; nothing without such a law.
+std::optional<ShadedRange> fitted_range(const PairLaw* law, LawPart part);
+
+/// The axis of overlaps up to a little beyond the last measured one.
+AxisOptions overlap_axis(double last);
 
 /// Largest overlap of some values.
 double last_delta(const ValuesByDelta& values);

@@ -12,14 +12,12 @@ namespace softgrain {
 void write_report(const std::string& run_directory) {
   using namespace report;
   const RunData run = load_run(run_directory);
-  std::string body = heading_section(run);
-  body += remarks_section(run);
-  body += laws_section(run);
-  body += law_table_section(run);
+  std::string body = law_table_section(run);
   body += hierarchy_section(run);
   body += normal_section(run);
   body += tangential_section(run);
   body += stiffness_section(run);
+  body += laws_section(run);
   body += relaxations_section(run);
   body += macro_section(run);
   body += macro_scenes_section(run);
@@ -30,6 +28,7 @@ void write_report(const std::string& run_directory) {
   body += powder_section(run);
   body += cost_section(run);
   body += provenance_section(run);
+  body = heading_section(run) + contents(body) + remarks_section(run) + body;
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
   write_text_atomic(run_directory + "/report.html", page("softgrain: " + name, body));
   std::filesystem::create_directories(run_directory + "/figures");

@@ -1,6 +1,7 @@
 // What each stage cost, and the speed-ups.
 #include <fmt/format.h>
 
+#include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
@@ -84,9 +85,12 @@ std::string cost_section(const RunData& run) {
   add_macro(table, run.macro);
   add_summary(table, run);
   const std::string tail = speedups(run.summary);
-  if (table.empty()) return section("cost", "Cost", tail);
+  // comparisons of laws show it first thing
+  const std::string plot = run.macro_scenes.empty() ? error_cost_figure(run) : "";
+  const std::string figures = plot.empty() ? "" : figure_row({plot});
+  if (table.empty()) return section("cost", "Cost", figures + tail);
   return section("cost", "Cost",
-                 table.html() + tail +
+                 figures + table.html() + tail +
                      paragraph("A loop pass evaluates all contacts of a system once; times are wall times of the "
                                "threads that did the work, added up."));
 }

@@ -111,7 +111,7 @@ std::string summary_table(const nlohmann::json& summary) {
 
 std::string laws_section(const RunData& run) {
   const std::string body = run.card && !run.card->pairs.empty() ? card_tables(*run.card) : summary_table(run.summary);
-  return section("laws", "Laws", body);
+  return section("laws", "Laws: parameters", body);
 }
 
 }  // namespace softgrain::report

@@ -25,6 +25,13 @@ double largest_stress(const std::vector<MacroCurve>& curves) {
   return largest;
 }
 
+double last_strain(const std::vector<MacroCurve>& curves) {
+  double last = 0.0;
+  for (const MacroCurve& c : curves)
+    if (!c.strain.empty()) last = std::max(last, c.strain.back());
+  return last;
+}
+
 std::vector<MacroCurve> of_test(const std::vector<MacroCurve>& curves, const std::string& test) {
   std::vector<MacroCurve> result;
   std::copy_if(curves.begin(), curves.end(), std::back_inserter(result),
@@ -40,18 +47,22 @@ double first_strain(const std::vector<MacroCurve>& curves) {
   return first;
 }
 
-std::string stress_figure(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
+/// Shorter plots that stand above each other in one figure, with the same horizontal axis.
+constexpr double kStressHeight = 310.0;
+constexpr double kDifferenceHeight = 210.0;
+constexpr double kLeftMargin = 66.0;  // [px] for labels of either
+
+Plot stress_plot(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
   const SiPrefix prefix = si_prefix(largest_stress(curves));
   const double first = first_strain(curves);
   Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral"),
              .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + test,
-             .x = {.label = "strain [%]", .low = 100.0 * first},
-             .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)}});
-  const Stress member = axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral;
-  add_curves(plot, curves, member, prefix.factor);
-  return plot.empty() ? ""
-                      : figure(plot.svg(), axial ? "Stress from the wall forces; one line per sample."
-                                                 : "Mean of both lateral directions.");
+             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 100.0 * last_strain(curves)},
+             .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)},
+             .height = kStressHeight,
+             .left_margin = kLeftMargin});
+  add_curves(plot, curves, axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral, prefix.factor);
+  return plot;
 }
 
 /// (law - twin)/twin at the strains of the twin, where the twin's stress is above 2 % of its largest.
@@ -71,37 +82,54 @@ bool complete(const MacroCurve& c, Stress member) {
   return c.strain.size() > 1 && (c.*member).size() == c.strain.size();
 }
 
+/// One line per sample, each compared with its own twin.
 void add_differences(Plot& plot, const std::vector<MacroCurve>& laws, const std::vector<MacroCurve>& twins,
-                     Stress member, bool axial) {
-  bool first = true;
+                     Stress member) {
+  static constexpr Marker markers[] = {Marker::circle, Marker::triangle, Marker::square, Marker::diamond};
+  std::size_t index = 0;
   for (const MacroCurve& law : laws) {
     for (const MacroCurve& twin : twins) {
       if (law.sample != twin.sample || !complete(law, member) || !complete(twin, member)) continue;
       Series s = difference_series(law, twin, member);
       if (s.x.empty()) continue;
-      s.label = first ? (axial ? "axial" : "lateral") : "";
-      s.hover = fmt::format("sample {}, {}", law.sample, axial ? "axial" : "lateral");
-      s.style = {.color = axial ? palette::black : palette::green,
-                 .width = 1.4,
-                 .dash = axial ? "" : "5 3",
-                 .marker = axial ? Marker::circle : Marker::triangle,
-                 .marker_size = 2.6};
+      s.label = fmt::format("sample {}", law.sample);
+      s.style = {.color = palette::black, .width = 1.3, .marker = markers[index++ % 4], .marker_size = 2.6};
       plot.add(std::move(s));
-      first = false;
     }
   }
 }
 
-std::string difference_figure(const std::vector<MacroCurve>& laws, const std::vector<MacroCurve>& twins,
-                              const std::string& test) {
-  Plot plot({.id = "macro-" + test + "-difference",
-             .title = "Law minus resolved twin, " + test,
-             .x = {.label = "strain [%]", .low = 0.0},
-             .y = {.label = "difference of stress [%]"}});
-  add_differences(plot, laws, twins, &MacroCurve::stress_axial, true);
-  add_differences(plot, laws, twins, &MacroCurve::stress_lateral, false);
-  return plot.empty() ? ""
-                      : figure(plot.svg(), "Relative to the twin, where its stress exceeds 2 % of its largest value.");
+Plot difference_plot(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
+  const auto laws = curves_of(curves, "law");
+  const auto twins = curves_of(curves, "shelled");
+  const double first = first_strain(curves);
+  const double last = last_strain(curves);
+  Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral") + "-difference",
+             .title = std::string("Law minus resolved twin, ") + (axial ? "axial" : "lateral"),
+             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 100.0 * last},
+             .y = {.label = "difference [%]"},
+             .height = kDifferenceHeight,
+             .left_margin = kLeftMargin});
+  add_differences(plot, laws, twins, axial ? &MacroCurve::stress_axial : &MacroCurve::stress_lateral);
+  if (plot.empty()) return plot;
+  plot.add({.label = "",
+            .hover = "no difference",
+            .x = {100.0 * first, 100.0 * last},
+            .y = {0.0, 0.0},
+            .style = {.color = palette::vermillion, .width = 1.0, .dash = "6 3"}});
+  return plot;
+}
+
+/// Stress above, and below how far the law is from the twin.
+std::string stress_figure(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
+  const Plot stress = stress_plot(curves, test, axial);
+  if (stress.empty()) return "";
+  const Plot difference = difference_plot(curves, test, axial);
+  std::string caption =
+      axial ? "Stress from the wall forces; one line per sample." : "Mean of both lateral directions.";
+  if (!difference.empty())
+    caption += " Below: relative to the twin of the same sample, where its stress exceeds 2 % of its largest value.";
+  return figure(stress.svg() + (difference.empty() ? "" : difference.svg()), caption);
 }
 
 std::string mean_text(const MeanError& m, double unit) { return format_with_error(m.mean * unit, m.error * unit); }
@@ -163,8 +191,7 @@ std::string macro_section(const RunData& run) {
     const auto laws = curves_of(curves, "law");
     const auto twins = curves_of(curves, "shelled");
     if (tests.size() > 1) body += "<h3>" + escape(test) + "</h3>\n";
-    body += figure_row(
-        {stress_figure(curves, test, true), stress_figure(curves, test, false), difference_figure(laws, twins, test)});
+    body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
     body += comparison_part(laws, twins) + bodies_table(curves);
   }
   return section("macro", "Macro scene", body);

@@ -8,6 +8,7 @@
 
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/report/engine_style.h"
+#include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"
@@ -104,34 +105,6 @@ std::string facts_of(const RunData& run, const std::string& name) {
   return html.empty() ? "" : html.html();
 }
 
-/// One point per engine and scene: cost over that of the shelled twin, error against it.
-void add_points(Plot& plot, const std::vector<MacroScene>& scenes) {
-  std::map<std::string, Series> series;
-  for (const MacroScene& scene : scenes)
-    for (const EngineScore& s : score_engines(scene.curves)) {
-      if (s.shelled.axial.n == 0 || !(s.shelled.speedup_evaluations > 0.0)) continue;
-      Series& one = series[s.engine];
-      one.x.push_back(1.0 / s.shelled.speedup_evaluations);
-      one.y.push_back(100.0 * s.shelled.axial.mean);
-    }
-  for (auto& [engine, one] : series) {
-    one.label = engine_name(engine);
-    one.style = engine_style(engine);
-    one.style.width = 0.0;
-    one.style.marker_size = 4.0;
-    plot.add(std::move(one));
-  }
-}
-
-std::string cost_figure(const std::vector<MacroScene>& scenes) {
-  Plot plot({.id = "macro-error-cost",
-             .title = "Error against cost",
-             .x = {.label = "contact evaluations over those of the shelled twin", .scale = Scale::logarithmic},
-             .y = {.label = "error of the axial stress [%]", .scale = Scale::logarithmic}});
-  add_points(plot, scenes);
-  return plot.empty() ? "" : figure(plot.svg(), "Against the shelled twin, mean over samples; one point per scene.");
-}
-
 std::string scene_part(const RunData& run, const MacroScene& scene) {
   const bool shear = !scene.curves.empty() && scene.curves.front().test == "shear";
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
@@ -146,7 +119,7 @@ std::string scene_part(const RunData& run, const MacroScene& scene) {
 
 std::string macro_scenes_section(const RunData& run) {
   std::string body;
-  if (!run.macro_scenes.empty()) body += figure_row({cost_figure(run.macro_scenes)});
+  if (!run.macro_scenes.empty()) body += figure_row({error_cost_figure(run)});
   for (const MacroScene& scene : run.macro_scenes) body += scene_part(run, scene);
   if (!body.empty())
     body += paragraph(

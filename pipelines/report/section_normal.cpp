@@ -50,10 +50,13 @@ std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
   const bool linear = scale == Scale::linear;
   // the logarithmic axis has room for the Hertz line, the linear one keeps to the measured forces
   const auto top = linear ? std::nullopt : std::optional(1.5 * hertz_force(last_delta(forces), data.spec, kind));
-  Plot plot({.id = "normal-" + to_string(kind) + (linear ? "-linear" : "-log"),
-             .title = "Fn(Δ), " + describe(kind) + (linear ? "" : ", logarithmic"),
-             .x = {.label = "normal overlap Δ = hn/Rs", .low = 0.0},
-             .y = {.label = "normal force Fn [N]", .scale = scale, .high = top}});
+  PlotOptions options{.id = "normal-" + to_string(kind) + (linear ? "-linear" : "-log"),
+                      .title = "Fn(Δ), " + describe(kind) + (linear ? "" : ", logarithmic"),
+                      .x = {},
+                      .y = {.label = "normal force Fn [N]", .scale = scale, .high = top}};
+  options.x = overlap_axis(last_delta(forces));
+  options.shaded = fitted_range(run.law(kind), LawPart::normal);
+  Plot plot(std::move(options));
   for (Series& s : packing_series(data, forces, 1.0, fmt::format("one packing ({})", runs.size())))
     plot.add(std::move(s));
   if (const PairLaw* law = run.law(kind))
@@ -64,7 +67,7 @@ std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
   plot.add(mean_series(forces, 1.0, "mean ± standard error",
                        {.color = palette::black, .width = 0.0, .marker = Marker::circle, .marker_size = 3.2}));
   return figure(plot.svg(),
-                linear ? "Rest the pointer on a thin line to see which packing it is."
+                linear ? "Grey: every packing. Shaded: where the law was fitted; dotted: what it does beyond."
                        : "The same data with a logarithmic force axis: the start of the force near the threshold.");
 }
 

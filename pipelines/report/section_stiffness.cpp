@@ -20,11 +20,14 @@ std::string stiffness_figure(const RunData& run, PairKind kind, bool initial) {
   const LawPart part = initial ? LawPart::tangential_initial : LawPart::tangential_secant;
   const std::string what = initial ? fmt::format("initial slope (up to {}°)", angles.initial_deg)
                                    : fmt::format("secant at {}°", angles.secant_deg);
-  Plot plot({.id = "stiffness-" + to_string(kind) + (initial ? "-initial" : "-secant"),
-             .title = "kt(Δ), " + what + ", " + to_string(kind),
-             .x = {.label = "normal overlap Δ = hn/Rs", .low = 0.0},
-             .y = {.label = "tangential stiffness kt [N/m]"},
-             .right = RightAxis{"kt [N/degree]", 1.0 / per_metre}});
+  PlotOptions options{.id = "stiffness-" + to_string(kind) + (initial ? "-initial" : "-secant"),
+                      .title = "kt(Δ), " + what + ", " + to_string(kind),
+                      .x = {},
+                      .y = {.label = "tangential stiffness kt [N/m]"},
+                      .right = RightAxis{"kt [N/degree]", 1.0 / per_metre}};
+  options.x = overlap_axis(last_delta(values));
+  options.shaded = fitted_range(run.law(kind), part);
+  Plot plot(std::move(options));
   for (Series& s : packing_series(data, values, 1.0, fmt::format("one packing ({})", runs.size())))
     plot.add(std::move(s));
   if (const PairLaw* law = run.law(kind)) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/svg_draw.h"
 
@@ -82,7 +83,36 @@ std::string draw_right(const Frame& f, const RightAxis& right) {
   return stroke(marks, "#333333", 1.0) + labels;
 }
 
+std::string axis_text(const Axis& axis) {
+  const bool logarithmic = axis.scale() == Scale::logarithmic;
+  std::string text = fmt::format("{},{:.6g},{:.6g}", logarithmic ? "log" : "linear", axis.low(), axis.high());
+  std::erase(text, '+');
+  return text;
+}
+
 }  // namespace
+
+std::string axis_data(const Frame& frame, const PlotOptions& options) {
+  return fmt::format(
+      " data-frame=\"{},{},{},{}\" data-x-axis=\"{}\" data-y-axis=\"{}\" data-x-label=\"{}\" data-y-label=\"{}\"",
+      number(frame.left), number(frame.top), number(frame.width), number(frame.height), axis_text(frame.x),
+      axis_text(frame.y), escape(options.x.label), escape(options.y.label));
+}
+
+std::string draw_shaded(const Frame& frame, const ShadedRange& range) {
+  const double low = std::clamp(frame.px(range.low), frame.left, frame.right());
+  const double high = std::clamp(frame.px(range.high), frame.left, frame.right());
+  if (!(high > low)) return "";
+  std::string out = fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#f0f4f8\"/>\n", number(low),
+                                number(frame.top), number(high - low), number(frame.height));
+  for (const double px : {low, high}) {
+    if (px <= frame.left || px >= frame.right()) continue;
+    out += fmt::format("<path d=\"M{} {}V{}\" stroke=\"#9fb3c4\" stroke-width=\"1\" stroke-dasharray=\"2 3\"/>\n",
+                       number(px), number(frame.top), number(frame.bottom()));
+  }
+  return out + "<g fill=\"#56606a\">" +
+         text(low + 6.0, frame.top + 14.0, range.label, {.size = 11.0, .anchor = "start"}) + "</g>\n";
+}
 
 double tick_label_width(const Axis& axis) {
   double widest = 0.0;

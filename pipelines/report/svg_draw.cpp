@@ -59,8 +59,9 @@ std::string draw_line(const Series& s, const Frame& frame) {
   const std::string data = path_data(s.x, s.y, frame);
   if (data.empty()) return "";
   const std::string dash = s.style.dash.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", s.style.dash);
-  const std::string visible = fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{}\"{}/>",
-                                          data, s.style.color, number(s.style.width), number(s.style.opacity), dash);
+  const std::string visible =
+      fmt::format("<path class=\"line\" d=\"{}\" stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{}\"{}/>", data,
+                  s.style.color, number(s.style.width), number(s.style.opacity), dash);
   const std::string hover = title(hover_of(s));
   const std::string hit = hover.empty() ? "" : fmt::format("<path d=\"{}\" class=\"hit\"/>", data);
   return "<g fill=\"none\" stroke-linejoin=\"round\">" + hover + visible + hit + "</g>\n";
@@ -115,6 +116,31 @@ std::string draw_points(const Series& s, const Frame& frame) {
   return out;
 }
 
+/// A value with five digits for the script; nothing for what cannot be shown.
+std::string data_value(double value) {
+  if (!std::isfinite(value)) return "";
+  std::string text = fmt::format("{:.5g}", value);
+  std::erase(text, '+');
+  return text;
+}
+
+std::string data_list(const std::string& name, const std::vector<double>& values) {
+  if (values.empty()) return "";
+  std::string out = " data-" + name + "=\"";
+  for (std::size_t i = 0; i < values.size(); ++i) out += (i > 0 ? "," : "") + data_value(values[i]);
+  return out + "\"";
+}
+
+/// The legend entry that hides and shows it.
+std::string entry_of(const Series& s) { return s.group.empty() ? s.label : s.group; }
+
+/// Values are separated by commas, so that those that cannot be shown leave a gap.
+std::string series_data(const Series& s) {
+  std::string out = " data-entry=\"" + escape(entry_of(s)) + "\" data-name=\"" + escape(hover_of(s)) + "\"";
+  return out + data_list("x", s.x) + data_list("y", s.y) + data_list("error", s.y_error) +
+         data_list("low", s.band_low) + data_list("high", s.band_high);
+}
+
 /// What stands for a series in the legend, 26 px wide, centred on y.
 std::string legend_sample(const Series& s, double x, double y) {
   std::string out;
@@ -163,7 +189,7 @@ std::string text(double x, double y, const std::string& content, const TextStyle
 std::string draw_series(const Series& series, const Frame& frame) {
   std::string out = draw_band(series, frame) + draw_line(series, frame);
   if (series.style.marker != Marker::none || !series.y_error.empty()) out += draw_points(series, frame);
-  return out;
+  return "<g class=\"series\"" + series_data(series) + ">\n" + out + "</g>\n";
 }
 
 Legend draw_legend(const std::vector<Series>& series, double left, double top, double width) {
@@ -179,7 +205,8 @@ Legend draw_legend(const std::vector<Series>& series, double left, double top, d
       x = left;
       y += row;
     }
-    legend.drawing += legend_sample(s, x, y) + text(x + 32.0, y + 4.0, s.label, {.size = size, .anchor = "start"});
+    legend.drawing += "<g class=\"entry\" data-entry=\"" + escape(s.label) + "\">" + legend_sample(s, x, y) +
+                      text(x + 32.0, y + 4.0, s.label, {.size = size, .anchor = "start"}) + "</g>\n";
     x += need + 16.0;
     legend.height = y + 0.5 * row - top;
   }

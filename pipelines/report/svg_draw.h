@@ -39,7 +39,13 @@ struct TextStyle {
 };
 std::string text(double x, double y, const std::string& content, const TextStyle& style = {});
 
-/// Band, line, error bars and markers of a series, each with its tooltip.
+/// Where the axes lie and what they mean, as attributes data-frame, data-x-axis, data-x-label ... of the drawing.
+std::string axis_data(const Frame& frame, const PlotOptions& options);
+
+/// A range of x behind everything else, with its label at the top.
+std::string draw_shaded(const Frame& frame, const ShadedRange& range);
+
+/// Band, line, error bars and markers of a series, each with its tooltip, in one group that holds the values as data-*.
 std::string draw_series(const Series& series, const Frame& frame);
 
 /// Grid, frame, ticks and labels. `right` may be absent.

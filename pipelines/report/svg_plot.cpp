@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -83,10 +84,14 @@ Axis Plot::make_axis(bool horizontal) const {
   return with_fixed_ends(Axis::around(options.scale, values), options);
 }
 
+double Plot::left_margin() const {
+  return std::max(options_.left_margin, 34.0 + svg::tick_label_width(make_axis(false)));
+}
+
 std::string Plot::svg() const {
   const Axis x = make_axis(true);
   const Axis y = make_axis(false);
-  const double left = 34.0 + svg::tick_label_width(y);
+  const double left = left_margin();
   double right = 16.0;
   if (options_.right) {
     right =
@@ -94,17 +99,19 @@ std::string Plot::svg() const {
   }
   const svg::Frame frame{
       left, kTitleHeight, options_.width - left - right, options_.height - kTitleHeight - kBottomMargin, x, y};
-  const svg::Legend legend = svg::draw_legend(series_, left, options_.height + 2.0, options_.width - left - 8.0);
+  const std::vector<Series> listed = options_.legend ? series_ : std::vector<Series>{};
+  const svg::Legend legend = svg::draw_legend(listed, left, options_.height + 2.0, options_.width - left - 8.0);
   const double height = options_.height + legend.height + 8.0;
 
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2}\" "
-      "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" fill=\"#1a1a1a\">\n",
-      svg::number(options_.width), svg::number(height), escape(options_.title));
+      "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" fill=\"#1c2126\" class=\"plot\"{3}>\n",
+      svg::number(options_.width), svg::number(height), escape(options_.title), svg::axis_data(frame, options_));
   out += "<style>.hit{stroke:#000;stroke-opacity:0;stroke-width:9;pointer-events:stroke}</style>\n";
   out += fmt::format("<clipPath id=\"{0}-clip\"><rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\"/></clipPath>\n",
                      escape(options_.id), svg::number(frame.left), svg::number(frame.top), svg::number(frame.width),
                      svg::number(frame.height));
+  if (options_.shaded) out += svg::draw_shaded(frame, *options_.shaded);
   out += svg::text(frame.left, 16.0, options_.title, {.size = 13.5, .anchor = "start", .bold = true});
   out += svg::draw_axes(frame, options_);
   out += fmt::format("<g clip-path=\"url(#{}-clip)\">\n", escape(options_.id));

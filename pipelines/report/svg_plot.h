@@ -45,6 +45,7 @@ struct Series {
   std::vector<double> band_high = {};
   SeriesStyle style = {};
   bool sets_range = true;  ///< whether the axes make room for it; otherwise it is cut at the frame
+  std::string group = {};  ///< label of the legend entry that it goes with (hidden and shown together); empty: its own
 };
 
 struct AxisOptions {
@@ -60,6 +61,13 @@ struct RightAxis {
   double factor = 1.0;
 };
 
+/// A range of x that is shaded behind the curves.
+struct ShadedRange {
+  double low = 0.0;
+  double high = 0.0;
+  std::string label;  ///< written at its top
+};
+
 struct PlotOptions {
   std::string id;  ///< unique in the page: letters, digits, '-'
   std::string title;
@@ -68,6 +76,9 @@ struct PlotOptions {
   std::optional<RightAxis> right = {};
   double width = 560.0;   ///< of the whole drawing [px of the view box]
   double height = 370.0;  ///< without the legend, which is added below
+  std::optional<ShadedRange> shaded = {};
+  double left_margin = 0.0;  ///< [px] at least; plots above each other share one
+  bool legend = true;
 };
 
 class Plot {
@@ -78,8 +89,12 @@ class Plot {
   void add(Series series);
   [[nodiscard]] bool empty() const { return series_.empty(); }
 
-  /// The drawing as one svg element, scalable through its viewBox.
+  /// The drawing as one svg element, scalable through its viewBox. Its attributes data-* hold axes and values, for
+  /// the script of the page (assets/report.js).
   [[nodiscard]] std::string svg() const;
+
+  /// Space [px] that the vertical axis takes on the left.
+  [[nodiscard]] double left_margin() const;
 
  private:
   [[nodiscard]] Axis make_axis(bool horizontal) const;

@@ -20,6 +20,8 @@ inline std::string unbalanced_tags(const std::string& markup) {
     if (voids.count(name) != 0 || (!closing && markup[end - 1] == '/')) continue;
     if (!closing) {
       open.push_back(name);
+      // What stands in these is no markup.
+      if (name == "script" || name == "style") at = markup.find("</" + name, at) - 1;
     } else if (open.empty() || open.back() != name) {
       return "</" + name + ">";
     } else {

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
+#include "pipelines/report/error_cost.h"
 #include "pipelines/report/reference_curves.h"
 #include "pipelines/report/report.h"
 #include "pipelines/report/run_data.h"
@@ -70,7 +71,52 @@ TEST_F(Report, AWholeRunHasAllSections) {
   EXPECT_EQ(unbalanced_tags(html), "");
   for (const char* bad : {">nan", " nan", "\"nan", "inf "}) EXPECT_FALSE(contains(html, bad)) << bad;
   remove_all(html, "xmlns=\"http://www.w3.org/2000/svg\"");
+  remove_all(html, "http-equiv=\"Content-Security-Policy\"");
   EXPECT_FALSE(contains(html, "http"));
+}
+
+TEST_F(Report, CurvesCarryTheirValuesForTheScript) {
+  save(synthetic::measurements(), path("measurements.h5"));
+  save_card(synthetic::card(), path("law.toml"));
+  save_macro(synthetic::macro(), path("macro.h5"));
+  const std::string html = written();
+  EXPECT_TRUE(contains(html, "data-y-label=\"normal force Fn [N]\""));
+  EXPECT_TRUE(contains(html, "data-entry=\"one packing (12)\" data-name=\"packing 4 (seed 104)\" data-x=\"0.05,0.1,"));
+  EXPECT_TRUE(contains(html, "class=\"entry\" data-entry=\"one packing (12)\""));
+  EXPECT_TRUE(contains(html, "fitted: Δ = 0.05 to 0.3"));
+  EXPECT_TRUE(contains(html, "Law minus resolved twin, axial"));
+  EXPECT_TRUE(contains(html, "Error against cost"));
+  EXPECT_TRUE(contains(html, "default-src 'none'"));
+}
+
+TEST_F(Report, TheHeadSaysWhatCameOutAndLinksToTheSections) {
+  save(synthetic::measurements(), path("measurements.h5"));
+  save_card(synthetic::card(), path("law.toml"));
+  save_macro(synthetic::macro(), path("macro.h5"));
+  write_text_atomic(path("summary.json"), kSummary);
+  std::string html = written();
+  const std::string head = html.substr(html.find("<h1>"), html.find("<section") - html.find("<h1>"));
+  for (const char* part : {"status-good", "Rs = 16 mm", "12 packings at solid fraction", "soft-solid: Fn = a",
+                           "stress by the law differs", "href=\"#normal\"", "href=\"#macro\"", "href=\"#cost\""})
+    EXPECT_TRUE(contains(head, part)) << part;
+  EXPECT_FALSE(contains(head, "Do not use"));
+  write_text_atomic(path("summary.json"), R"({"status": "not usable", "remarks": ["no law was found"]})");
+  html = written();
+  EXPECT_TRUE(contains(html, "status-bad"));
+  EXPECT_TRUE(contains(html, "Do not use this result as it is:</strong> no law was found"));
+}
+
+TEST(ErrorCosts, LawAndRelaxationAgainstTheirReferences) {
+  report::RunData run;
+  run.macro = synthetic::macro();
+  run.measurements = synthetic::measurements();
+  const auto points = report::error_costs(run);
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].engine, "law");
+  EXPECT_NEAR(points[0].error, 0.5 * (0.2 + (1.05 - 0.86) / 1.05), 0.01);
+  EXPECT_NEAR(points[0].cost, 6.0e6 / 2.4e9, 1e-6);
+  EXPECT_NEAR(points[1].error, 1.0 / 0.96 - 1.0, 0.02);
+  EXPECT_NEAR(points[1].cost, 1.9e6 / 1.9e8, 1e-4);
 }
 
 TEST_F(Report, TextsOfOthersAreEscaped) {

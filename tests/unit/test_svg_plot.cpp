@@ -102,6 +102,24 @@ TEST(Plot, DrawsWellFormedMarkupWithClipLegendAndTooltips) {
   EXPECT_NE(svg.find("viewBox"), std::string::npos);
 }
 
+TEST(Plot, HoldsAxesAndValuesForTheScript) {
+  PlotOptions with_range = options();
+  with_range.shaded = ShadedRange{0.5, 1.0, "fitted"};
+  with_range.x = {.label = "a [m]", .low = 0.0, .high = 2.0};
+  Plot plot(with_range);
+  Series series;
+  series.label = "c";
+  series.x = {0, 1, 2};
+  series.y = {1, NAN, 9};
+  series.group = "d";
+  plot.add(series);
+  const std::string svg = plot.svg();
+  EXPECT_NE(svg.find("data-x-axis=\"linear,0,2\""), std::string::npos);
+  EXPECT_NE(svg.find("data-x-label=\"a [m]\""), std::string::npos);
+  EXPECT_NE(svg.find("data-entry=\"d\" data-name=\"c\" data-x=\"0,1,2\" data-y=\"1,,9\""), std::string::npos);
+  EXPECT_NE(svg.find(">fitted</text>"), std::string::npos);
+}
+
 TEST(Plot, NeverWritesNumbersThatAreNotFinite) {
   Plot plot(options(Scale::logarithmic));
   plot.add({.label = "gap",

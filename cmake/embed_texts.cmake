@@ -1,0 +1,25 @@
+# Script: writes OUTPUT, a C++ source that holds the text files FILES (separated by commas) as the functions that HEADER
+# declares: "report.js" becomes std::string_view NAMESPACE::report_js(). Pieces of raw strings, because compilers limit the
+# length of one.
+string(REPLACE "," ";" files "${FILES}")
+set(text "// Written at build time out of the files of the same names.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
+foreach(file IN LISTS files)
+  get_filename_component(name "${file}" NAME)
+  string(REPLACE "." "_" function "${name}")
+  file(READ "${file}" content)
+  if(content MATCHES "[^\t\n -~]")
+    message(FATAL_ERROR "${file}: only ASCII, because pieces are cut at any byte (write others as escapes)")
+  endif()
+  # Brackets and semicolons have a meaning in lists of CMake: the text stays one string throughout.
+  string(LENGTH "${content}" length)
+  string(APPEND text "\nstd::string_view ${function}() {\n  static constexpr char kText[] =")
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${content}" ${at} 8000 piece)
+    string(APPEND text "\n      R\"embedded_text(${piece})embedded_text\"")
+    math(EXPR at "${at} + 8000")
+  endwhile()
+  string(APPEND text ";\n  return {kText, sizeof(kText) - 1};\n}\n")
+endforeach()
+string(APPEND text "\n}  // namespace ${NAMESPACE}\n")
+file(WRITE "${OUTPUT}" "${text}")
