@@ -13,11 +13,13 @@ namespace {
 // Grains and inner soft particles of every soft particle have materials of their own, so that neighbours can be made
 // blind to each other: kGrain and kInner of the centre, then two for each soft neighbour.
 constexpr std::int32_t kGrain = 0;
-constexpr std::int32_t kInner = 1;
-constexpr std::int32_t kSolid = 2;  ///< solid spheres as neighbours
-constexpr std::int32_t kWall = 3;   ///< planes and shells: neither meets the other, both meet grains
+constexpr std::int32_t kInner = kGrain + 1;  ///< so for every soft particle: the material behind that of its grains
+constexpr std::int32_t kSolid = 2;           ///< solid spheres as neighbours
+constexpr std::int32_t kWall = 3;            ///< planes and shells: neither meets the other, both meet grains
 constexpr std::int32_t kPlane = 4;
 constexpr std::int32_t kFirstOther = 5;
+
+std::int32_t inner_of(std::int32_t grain) { return grain + kInner - kGrain; }
 
 /// Laws are added once and shared by many pairs of materials.
 class ContentLaws {
@@ -42,19 +44,19 @@ class ContentLaws {
   /// Two contents meet (or one with itself).
   void contents(std::int32_t grain1, std::int32_t grain2) {
     solids(grain1, grain2);
-    soft_with_solid(grain1 + 1, grain2);
-    soft_with_solid(grain2 + 1, grain1);
-    softs(grain1 + 1, grain2 + 1);
+    soft_with_solid(inner_of(grain1), grain2);
+    soft_with_solid(inner_of(grain2), grain1);
+    softs(inner_of(grain1), inner_of(grain2));
   }
   /// A content meets a solid sphere.
   void content_with(std::int32_t grain, std::int32_t solid) {
     solids(grain, solid);
-    soft_with_solid(grain + 1, solid);
+    soft_with_solid(inner_of(grain), solid);
   }
   /// A content meets a plane or the inside of a shell.
   void content_with_plane(std::int32_t grain, std::int32_t plane) {
     solids(grain, plane);
-    if (soft_plane_ != LawSet::kNoContact) laws_.use(grain + 1, plane, soft_plane_);
+    if (soft_plane_ != LawSet::kNoContact) laws_.use(inner_of(grain), plane, soft_plane_);
   }
   [[nodiscard]] const LawSet& laws() const { return laws_; }
 
@@ -125,7 +127,8 @@ void add_content(System3& s, const SoftParticleSpec& spec, const SoftContent& co
   for (std::size_t k = 0; k < content.grains.radius.size(); ++k)
     add(content.grains.position[k], content.grains.radius[k], spec.density, at.material);
   if (content.inner_packings.empty())
-    for (const InnerSoft& inner : content.inner) add(inner.x, inner.r, spec.density * inner_fraction, at.material + 1);
+    for (const InnerSoft& inner : content.inner)
+      add(inner.x, inner.r, spec.density * inner_fraction, inner_of(at.material));
 }
 
 /// Grains of the packing that inner soft particle k holds.
