@@ -9,6 +9,7 @@
 #include "common/io/scene_impl.h"
 #include "common/io/text_file.h"
 #include "common/io/toml.h"
+#include "common/io/toml_keys.h"
 
 namespace softgrain {
 
@@ -106,6 +107,9 @@ std::size_t line_of_assertion(const std::string& text) {
 
 /// Parses TOML; syntax errors become BadInput with file and line.
 toml::table parse_toml(const std::string& text, const std::string& name) {
+  if (const std::size_t line = line_of_long_key(text); line > 0)
+    throw BadInput(name + ":" + std::to_string(line) + ": a key of more than " + std::to_string(kMostKeyParts) +
+                   " parts");
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
@@ -125,6 +129,9 @@ void apply_override(SceneDocument& document, const std::string& setting) {
   const std::vector<std::string> parts = split(path);
   for (const std::string& part : parts)
     if (part.empty() || path.back() == '.') throw BadInput("--set " + setting + ": a part of the key is empty");
+  if (parts.size() > kMostKeyParts)
+    throw BadInput("--set " + path.substr(0, 20) + "...: a key of more than " + std::to_string(kMostKeyParts) +
+                   " parts");
   toml::table value = parse_value(trimmed(setting.substr(mark + 1)), setting);
   toml::node* parent = document.content.get();
   for (std::size_t k = 0; k + 1 < parts.size(); ++k) parent = &descend(*parent, parts[k], setting);

@@ -122,7 +122,8 @@ TEST_F(BadFiles, NestingBeyondReason) {
     for (int k = 0; k < 100000; ++k) text += part;
     return text;
   };
-  for (const std::string& text : {"x = " + many("["), "x = " + many("{a="), many("a.") + "b = 1"}) {
+  for (const std::string& text : {"x = " + many("["), "x = " + many("{a="), many("a.") + "b = 1",
+                                  many(many("a.").substr(0, 40).c_str()) + "b = 1"}) {
     write_text_atomic(path, text + "\n");
     expect("check '" + path + "'", 2, {"case.toml:1: "}, text.substr(0, 10));
   }
