@@ -27,10 +27,11 @@ License: BSD-3-clause
   execute_process(COMMAND date -R OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE)
   file(WRITE ${doc}/changelog.Debian "softgrain (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium
 
-  * Package of version ${CPACK_PACKAGE_VERSION}; changes are in CHANGELOG.md.
+  * Package of version ${CPACK_PACKAGE_VERSION}; changes are in changelog.gz.
 
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
-  execute_process(COMMAND gzip -9n -f ${doc}/changelog.Debian ${root}/usr/share/man/man1/softgrain.1
+  file(RENAME ${doc}/CHANGELOG.md ${doc}/changelog)  # the name that Debian looks for
+  execute_process(COMMAND gzip -9n -f ${doc}/changelog ${doc}/changelog.Debian ${root}/usr/share/man/man1/softgrain.1
     COMMAND_ERROR_IS_FATAL ANY)
 endforeach()

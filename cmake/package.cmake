@@ -5,11 +5,11 @@ set(CPACK_PACKAGE_NAME softgrain)
 set(CPACK_PACKAGE_VENDOR "softgrain")
 set(CPACK_PACKAGE_CONTACT "The softgrain authors <softgrain@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "contact laws of soft particles for extremely polydisperse packings")
-set(CPACK_PACKAGE_DESCRIPTION "Resolves granular packings one decade of grain radii at a time: packs small grains into a shell,
-measures how such a soft particle resists being pressed and turned, fits a
-contact law, and runs larger packings with that law beside fully resolved
-twins that tell the error. Contains the program, scenes to begin with, and
-the contact laws as one C++ header with a CMake package.")
+set(CPACK_PACKAGE_DESCRIPTION "Resolves granular packings one decade of grain radii at a time: packs small
+grains into a shell, measures how such a soft particle resists being pressed
+and turned, fits a contact law, and runs larger packings with that law beside
+fully resolved twins that tell the error. Contains the program, scenes to
+begin with, and the contact laws as one C++ header with a CMake package.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
