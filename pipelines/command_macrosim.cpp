@@ -9,6 +9,7 @@
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
 #include "pipelines/run_summary.h"
+#include "pipelines/scene_kind.h"
 
 namespace softgrain {
 
@@ -50,6 +51,7 @@ const SoftParticleSpec& measured_spec(const LawSources& law) {
 
 MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   const SceneTable root = scene.root();
+  refuse_other_commands(root, "macrosim");
   (void)root.choice("kind", {"macro"});
   MacroScene out;
   out.title = root.text("title", "");

@@ -17,6 +17,7 @@
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
 #include "pipelines/run_summary.h"
+#include "pipelines/scene_kind.h"
 
 namespace softgrain {
 
@@ -156,6 +157,7 @@ ExitStatus command_run(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("run: give one pipeline file");
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
+  refuse_other_commands(scene.root(), "run");
   const std::string kind = scene.root().choice("kind", {"pipeline", "macro-comparison", "law-table", "hierarchy"});
   if (kind == "law-table") return run_law_table(scene, options);
   if (kind == "hierarchy") return run_hierarchy(scene, options);

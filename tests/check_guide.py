@@ -20,7 +20,7 @@ PAGES = {
         ["pipelines/measure_setup.cpp", "pipelines/pipeline_setup.cpp", "pipelines/macro_setup.cpp",
          "pipelines/command_macrosim.cpp", "pipelines/macro_comparison_setup.cpp", "pipelines/named_laws.cpp",
          "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp"],
-        {"beyond"}, {"entry", "pair"}),
+        {"beyond"}, {"entry", "pair", "macrosim"}),
     "scene_law_table.md": (
         ["pipelines/law_table_setup.cpp", "pipelines/crowd_setup.cpp", "pipelines/crowd_law_fit.cpp",
          "pipelines/hierarchy_setup.cpp"],
@@ -41,6 +41,7 @@ NO_SCENES = {
     "common/data/card_text.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
     "pipelines/command_check.cpp", "pipelines/command_microsim.cpp", "pipelines/command_run.cpp",
     "pipelines/calibrate_crowd.cpp", "pipelines/powder_command.cpp", "pipelines/powder_variants_command.cpp",
+    "pipelines/scene_kind.cpp",
 }
 
 READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"
