@@ -30,10 +30,10 @@ class CostMeter {
   Clock::time_point start_;
 };
 
-SettleResult normal_state(MeasurementState& state, double delta, const Protocol& protocol) {
+SettleResult normal_state(MeasurementState& state, double delta, const Protocol& protocol, const RecordedState& look) {
   const CostMeter meter(state.experiment.system, state.run.normal_cost);
   protocol.approach(state.experiment, delta * state.experiment.spec.shell_radius);
-  return protocol.settle(state.experiment, false);
+  return protocol.settle(state.experiment, false, look);
 }
 
 TangentialPoint as_tangential(const SettleResult& rest, double delta, double angle) {
@@ -91,12 +91,14 @@ bool is_among(const std::vector<double>& values, double x) {
 }  // namespace
 
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
-             const MeasurementObserver& observer, double checkpoint_seconds) {
+             const MeasurementObserver& observer, double checkpoint_seconds, const PointPicture& picture) {
   CheckpointClock due(checkpoint_seconds);
   const auto share = [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(plan.deltas.size()); };
   for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
     const double delta = plan.deltas[k];
-    if (!state.rotating) state.rotating = normal_state(state, delta, protocol);
+    RecordedState look;
+    if (picture) look = [&](const SoftExperiment& e) { picture(e, k); };
+    if (!state.rotating) state.rotating = normal_state(state, delta, protocol, look);
     if (is_among(plan.tangential_deltas, delta))
       rotate_through(state, delta, plan, protocol, [&] {
         if (interrupt_requested() || due.due()) observer(state, share(k));

@@ -37,9 +37,13 @@ struct MeasurementState {
 /// signal came: to save, to report progress (the share of the plan done).
 using MeasurementObserver = std::function<void(const MeasurementState&, double share_done)>;
 
+/// Is shown the relaxed state at overlap number `point` of the plan, as recorded, before any rotation.
+using PointPicture = std::function<void(const SoftExperiment&, std::size_t point)>;
+
 /// Goes through the plan from where `state` stands. Between two rotations the observer is called after
 /// `checkpoint_seconds` of wall time, or for a signal. Throws NotUsable (lost grain...) and Interrupted.
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
-             const MeasurementObserver& observer, double checkpoint_seconds = kCheckpointSeconds);
+             const MeasurementObserver& observer, double checkpoint_seconds = kCheckpointSeconds,
+             const PointPicture& picture = {});
 
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 // How a measurement comes to rest: the published protocol (the reference) and faster ones, behind one small interface.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -56,6 +57,9 @@ struct SettleResult {
   bool converged = false;
 };
 
+/// Is shown a recorded state, for pictures; changes nothing.
+using RecordedState = std::function<void(const SoftExperiment&)>;
+
 /// A way of bringing an experiment to a given overlap and to rest.
 class Protocol {
  public:
@@ -66,8 +70,10 @@ class Protocol {
   /// Moves the second body until the overlap is `overlap` [m], at the protocol's own pace.
   virtual void approach(SoftExperiment& experiment, double overlap) const = 0;
   /// Relaxes a state that is to be recorded; `rotated` says that it follows a rotation. What is recorded may be a copy
-  /// that rested longer than the state from which the experiment goes on.
-  virtual SettleResult settle(SoftExperiment& experiment, bool rotated) const = 0;
+  /// that rested longer than the state from which the experiment goes on; `look`, when given, is shown what is
+  /// recorded.
+  virtual SettleResult settle(SoftExperiment& experiment, bool rotated, const RecordedState& look) const = 0;
+  SettleResult settle(SoftExperiment& experiment, bool rotated) const { return settle(experiment, rotated, {}); }
 };
 
 /// Six times { molecular dynamics for an interval; all velocities to zero }, one more interval [SP 1.4]. Name

@@ -27,9 +27,11 @@ class DampedProtocol : public Protocol {
     e.normal_overlap = overlap;
   }
 
-  SettleResult settle(SoftExperiment& e, bool rotated) const override {
+  using Protocol::settle;
+  SettleResult settle(SoftExperiment& e, bool rotated, const RecordedState& look) const override {
     const RelaxationResult result = relax(e, rotated ? options_.tolerance_rotated : options_.tolerance);
     const Residual r = residual(e.system);
+    if (look) look(e);
     return {e.force_on_second(), result.residual, r.max_overlap, result.end == RelaxationEnd::converged};
   }
 

@@ -76,15 +76,19 @@ class LeastWorkProtocol : public Protocol {
 
   /// Increments of least work leave half of all contacts at the Coulomb limit, slow dynamics next to none though close
   /// to it; settling loosens springs, and kt follows the springs. So the path may be given less of it than the record.
-  SettleResult settle(SoftExperiment& e, bool rotated) const override {
+  using Protocol::settle;
+  SettleResult settle(SoftExperiment& e, bool rotated, const RecordedState& look) const override {
     if (rotated) {
       rest(e, options_.settle_time_rotated, options_.step_factor_rotated);
-      return polish(e);
+      const SettleResult turned = polish(e);
+      if (look) look(e);
+      return turned;
     }
     rest(e, std::min(options_.path_settle_time, options_.settle_time), options_.step_factor);
     SoftExperiment recorded = e;
     rest(recorded, options_.settle_time - options_.path_settle_time, options_.step_factor);
     const SettleResult result = polish(recorded);
+    if (look) look(recorded);
     e.system.cost = recorded.system.cost;
     return result;
   }

@@ -36,7 +36,8 @@ class PublishedProtocol : public Protocol {
     e.normal_overlap = overlap;
   }
 
-  SettleResult settle(SoftExperiment& e, bool) const override {
+  using Protocol::settle;
+  SettleResult settle(SoftExperiment& e, bool, const RecordedState& look) const override {
     const double dt = step(e, options_);
     const auto steps = static_cast<std::int64_t>(std::ceil(interval(e.spec) / dt));
     for (int k = 0; k < options_.stops; ++k) {
@@ -45,6 +46,7 @@ class PublishedProtocol : public Protocol {
     }
     run(e, steps, dt);
     const Residual r = residual(e.system);
+    if (look) look(e);
     const double relative = r.relative(force_floor(e.spec));
     return {e.force_on_second(), relative, r.max_overlap, relative <= options_.tolerance};
   }

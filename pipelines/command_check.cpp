@@ -21,6 +21,7 @@
 #include "pipelines/grain_box_check.h"
 #include "pipelines/hierarchy_command.h"
 #include "pipelines/law_table_command.h"
+#include "pipelines/kept_states.h"
 #include "pipelines/macro_comparison.h"
 #include "pipelines/named_laws.h"
 #include "pipelines/particles_check.h"
@@ -164,6 +165,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
     read_law_choices(root, choices);
     (void)root.count("seed", 0, 1000000000000, 1);
     (void)root.count("contents", 1, 100000, 7);
+    (void)read_kept_states(root);
     const MacroSetup macro = read_macro_setup(root.table("macro"), SoftParticleSpec{});
     root.finish();
     check_macro(macro, 400.0, out);

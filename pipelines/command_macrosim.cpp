@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "pipelines/compare/compare.h"
+#include "pipelines/kept_states.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
@@ -60,6 +61,7 @@ MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   out.law = read_scene_law(root, out.law_file);
   out.spec = measured_spec(out.law);
   out.setup = read_macro_setup(root.table("macro"), out.spec);
+  out.setup.kept_states = read_kept_states(root);
   out.contents = root.count("contents", 1, 100000, out.contents);
   root.finish();
   return out;

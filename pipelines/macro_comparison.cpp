@@ -98,7 +98,8 @@ SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& 
       make_macro_packings(scene.setup, seed, store, context, provenance, "macro_initial_" + scene.name + ".h5");
   for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
   const auto laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
-  const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, laws, store, context);
+  const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, laws, store, context, provenance,
+                                  "states_macro_" + scene.name + ".h5");
   save_macro(curves, context.path(r.file), provenance);
   r.scores = score_engines(curves);
   for (const MacroCurve& c : curves) {

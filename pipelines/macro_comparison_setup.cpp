@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "pipelines/kept_states.h"
 #include "pipelines/macro_comparison.h"
 #include "pipelines/measure_setup.h"
 
@@ -43,6 +44,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
   MacroSetup base = read_macro_setup(root.table("macro"), setup.spec);
   if (!root.table("macro").has("resolved")) base.twins = {"shelled", "free"};
+  base.kept_states = read_kept_states(root);
   for (const SceneTable& t : root.tables("scene")) setup.scenes.push_back(read_scene(t, base, setup.scenes));
   if (setup.scenes.empty()) root.reject("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
   const SceneTable law = root.table("law");

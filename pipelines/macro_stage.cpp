@@ -1,15 +1,19 @@
 #include "pipelines/macro_stage.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
+#include "macrosim/macro_snapshot.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/kept_states.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
@@ -56,7 +60,26 @@ MacroSystem make_system(const Stage& stage, std::int64_t sample, const std::stri
   return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
 }
 
-MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws,
+/// What is recorded last, with the names that people and files give it.
+Snapshot named_state(const MacroRuns& runs, const CompressionState& state) {
+  Snapshot s = macro_snapshot(state.macro, runs.packings[static_cast<std::size_t>(state.curve.sample)]);
+  const MacroCurve& c = state.curve;
+  const bool twin = c.engine == "shelled" || c.engine == "free";
+  s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
+  s.strain = c.strain.back();
+  s.series = fmt::format("{}{}-{}", runs.name == "macro" ? "" : runs.name + "/", c.engine, c.sample);
+  s.label = fmt::format("{}{} {}, sample {}, strain {:.4g}", runs.name == "macro" ? "" : runs.name + ": ", c.engine,
+                        twin ? "twin" : "run", c.sample, s.strain);
+  return s;
+}
+
+/// A run and the states of it that are kept.
+struct RunOutcome {
+  MacroCurve curve;
+  std::vector<Snapshot> states;
+};
+
+RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws,
                    Progress& progress) {
   const MacroSpec& spec = stage.runs.setup.spec;
   CompressionState state;
@@ -65,11 +88,14 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& e
   const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
   const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
+  KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
   double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
   progress.advance(done);
   compress(
       state, spec,
       [&](const CompressionState& s, double share) {
+        const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
+        if (s.increments == 0 && states.wants(point)) states.add(named_state(stage.runs, s), point);
         stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
         progress.advance(share - done);
         done = share;
@@ -79,7 +105,7 @@ MacroCurve run_one(const Stage& stage, std::int64_t sample, const std::string& e
     const std::string note = laws->note(state.macro.system);
     state.curve.note += (state.curve.note.empty() || note.empty() ? "" : "; ") + note;
   }
-  return state.curve;
+  return {state.curve, states.take()};
 }
 
 /// Made by an earlier part of this run, or now.
@@ -101,16 +127,16 @@ struct Engine {
 
 /// All samples of all engines, in that order: engines of a kind cost about the same, and share the threads.
 void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std::string& title,
-              const RunContext& context, std::vector<MacroCurve>& curves) {
+              const RunContext& context, std::vector<RunOutcome>& runs) {
   const std::int64_t samples = stage.runs.setup.samples;
   const auto tasks = static_cast<std::int64_t>(engines.size()) * samples;
   if (tasks == 0) return;
-  const std::size_t first = curves.size();
-  curves.resize(first + static_cast<std::size_t>(tasks));
+  const std::size_t first = runs.size();
+  runs.resize(first + static_cast<std::size_t>(tasks));
   Progress progress(stage.runs.name + title, static_cast<double>(tasks), context.quiet());
   over_samples(tasks, [&](std::int64_t k) {
     const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
-    curves[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine.name, engine.laws, progress);
+    runs[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine.name, engine.laws, progress);
   });
 }
 
@@ -150,15 +176,23 @@ std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint
 }
 
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
-                                    const RunContext& context) {
+                                    const RunContext& context, const Provenance& provenance,
+                                    const std::string& states_file) {
   const Stage stage{runs, store, mean_solid_fraction(runs.contents)};
   std::vector<Engine> with_laws;
   std::vector<Engine> twins;
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
   for (const std::string& name : runs.setup.twins) twins.push_back({name});
+  std::vector<RunOutcome> outcomes;
+  run_kind(stage, with_laws, " with laws", context, outcomes);
+  run_kind(stage, twins, ": resolved twins", context, outcomes);
   std::vector<MacroCurve> curves;
-  run_kind(stage, with_laws, " with laws", context, curves);
-  run_kind(stage, twins, ": resolved twins", context, curves);
+  std::vector<Snapshot> states;
+  for (RunOutcome& o : outcomes) {
+    curves.push_back(std::move(o.curve));
+    std::move(o.states.begin(), o.states.end(), std::back_inserter(states));
+  }
+  save_kept_states(states, context.path(states_file), provenance);
   return curves;
 }
 
@@ -167,7 +201,8 @@ std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws
                                         const TaskStore& store, const RunContext& context,
                                         const Provenance& provenance) {
   const auto packings = make_macro_packings(setup, seed, store, context, provenance, "macro_initial.h5");
-  auto curves = run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context);
+  auto curves =
+      run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context, provenance, "states_macro.h5");
   save_macro(curves, context.path("macro.h5"), provenance);
   return curves;
 }

@@ -20,6 +20,7 @@ struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;
   std::vector<std::string> twins{"shelled"};  ///< of "shelled", "free": resolved beside every sample
+  std::int64_t kept_states = 0;               ///< of the first sample of every engine, for pictures
 };
 
 [[nodiscard]] inline bool has_twin(const MacroSetup& setup, const std::string& name) {
@@ -53,12 +54,14 @@ struct MacroRuns {
   std::string name;  ///< of checkpoints and of progress: "macro", or that of the scene
 };
 
-/// Every law, then every twin, each on all samples; goes on from checkpoints of recorded points.
+/// Every law, then every twin, each on all samples; goes on from checkpoints of recorded points. States that are kept
+/// for pictures go to DIR/`states_file`.
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
-                                    const RunContext& context);
+                                    const RunContext& context, const Provenance& provenance,
+                                    const std::string& states_file);
 
-/// Runs all samples with `law` and the twins asked for, filled with `contents`; saves DIR/macro.h5 and
-/// DIR/macro_initial.h5 (the common starting states).
+/// Runs all samples with `law` and the twins asked for, filled with `contents`; saves DIR/macro.h5,
+/// DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5.
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
                                         const std::vector<ShellPacking>& contents, std::uint64_t seed,
                                         const TaskStore& store, const RunContext& context,

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/core/error.h"
+#include "pipelines/kept_states.h"
 
 namespace softgrain {
 
@@ -171,6 +172,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
       reference.reject("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, name, reference.count("count", 1, 100000, count), common));
   }
+  setup.kept_states = read_kept_states(root);
   return setup;
 }
 

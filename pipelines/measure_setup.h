@@ -36,6 +36,7 @@ struct MeasureSetup {
   std::vector<MeasureSeries>
       series;  ///< the first one feeds the fit; a second one is the reference it is compared with
   std::uint64_t seed = 1;
+  std::int64_t kept_states = 0;  ///< of the first packing of every kind and relaxation, for pictures
 
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
 };
@@ -47,7 +48,7 @@ void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
 /// Reads [material] and what [packing] says of the soft particle (not `count`). Throws BadInput.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
 
-/// Reads [material], [packing], [measure] and [reference]. Throws BadInput.
+/// Reads [material], [packing], [measure], [reference] and [output]. Throws BadInput.
 MeasureSetup read_measure_setup(const SceneTable& root);
 
 /// The protocol of a name.

@@ -1,13 +1,18 @@
 #include "pipelines/measure_stage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <iterator>
 
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "microsim/shell_packing.h"
+#include "microsim/soft_snapshot.h"
+#include "pipelines/kept_states.h"
 #include "pipelines/parallel_tasks.h"
 
 namespace softgrain {
@@ -122,6 +127,12 @@ std::int64_t packings_of_kind(const MeasureSetup& setup, PairKind kind) {
   return most;
 }
 
+std::vector<Snapshot> joined(std::vector<std::vector<Snapshot>>& parts) {
+  std::vector<Snapshot> all;
+  for (auto& part : parts) std::move(part.begin(), part.end(), std::back_inserter(all));
+  return all;
+}
+
 /// Everything the tasks share.
 struct Stage {
   const MeasureSetup& setup;
@@ -131,7 +142,22 @@ struct Stage {
   Progress& progress;
 };
 
-PackingRun run_task(const Stage& stage, const Task& task) {
+/// What is recorded at this overlap, with the names that people and files give it.
+Snapshot named_state(const SoftExperiment& experiment, const Task& task) {
+  Snapshot s = soft_snapshot(experiment);
+  const std::string kind = to_string(task.kind);
+  s.series = fmt::format("{}-{}-{}", kind, task.series->relaxation, task.packing);
+  s.label = fmt::format("{} by {}, packing {}, Delta {:.4g}", kind, task.series->relaxation, task.packing, s.overlap);
+  return s;
+}
+
+/// A run and the states of it that are kept.
+struct TaskOutcome {
+  PackingRun run;
+  std::vector<Snapshot> states;
+};
+
+TaskOutcome run_task(const Stage& stage, const Task& task) {
   const auto protocol = make_protocol(stage.setup, task.series->relaxation);
   const auto k = static_cast<std::size_t>(task.packing);
   MeasurementState state;
@@ -144,6 +170,8 @@ PackingRun run_task(const Stage& stage, const Task& task) {
   state.run.relaxation = task.series->relaxation;
   stage.store.load(task.name(), [&](const h5::Group& g) { read_run(g, state); });
   const MeasurementPlan& plan = task.series->plan(task.kind);
+  KeptStates states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
+                    task.packing == 0 ? stage.setup.kept_states : 0);
   double done = static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size());
   stage.progress.advance(done * task.weight());
   measure(
@@ -155,8 +183,12 @@ PackingRun run_task(const Stage& stage, const Task& task) {
         if (interrupt_requested())
           throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
       },
-      stage.store.seconds());
-  return state.run;
+      stage.store.seconds(),
+      [&](const SoftExperiment& recorded, std::size_t number) {
+        const auto point = static_cast<std::int64_t>(number);
+        if (states.wants(point)) states.add(named_state(recorded, task), point);
+      });
+  return {state.run, states.take()};
 }
 
 }  // namespace
@@ -189,12 +221,16 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& stor
   for (const ShellPacking& p : result.packings) data.packings.push_back(describe(p, setup.spec));
   data.runs.resize(tasks.size());
   const Stage stage{setup, store, result.packings, second, progress};
+  std::vector<std::vector<Snapshot>> states(tasks.size());
   parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
     const std::size_t t = order[static_cast<std::size_t>(k)];
-    data.runs[t] = run_task(stage, tasks[t]);
+    TaskOutcome outcome = run_task(stage, tasks[t]);
+    data.runs[t] = std::move(outcome.run);
+    states[t] = std::move(outcome.states);
   });
   progress.finish();
   save(data, context.path("measurements.h5"), provenance);
+  save_kept_states(joined(states), context.path("states_measurements.h5"), provenance);
   result.wall_seconds = seconds_since(start);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -74,9 +75,8 @@ class ParticlesRun {
   void save_if_due();
   void save();
   void count_time();
-  void record() {
-    if (scene_.record) record_frame(trajectory_, system_);
-  }
+  void record(bool with_contacts = true);
+  [[nodiscard]] std::int64_t frames() const;
   [[nodiscard]] bool watched() const { return scene_.record && system_.particles.grains <= kMostWatched; }
   [[nodiscard]] bool frame_due() const { return scene_.output_stride > 0 && system_.step % scene_.output_stride == 0; }
   ParticlesResult result(bool usable, const std::string& reason);
@@ -88,6 +88,7 @@ class ParticlesRun {
   VelocityVerlet<3> integrator_;
   Guards guards_;
   Trajectory trajectory_;
+  FrameContacts frame_contacts_;
   ContactMonitor monitor_;
   LoopPart warm_up_;
   LoopPart measured_;
@@ -112,6 +113,9 @@ bool ParticlesRun::restore() {
   }
   read_system(saved->open("system"), system_);
   trajectory_ = read_trajectory(saved->open("trajectory"));
+  const auto& p = system_.particles;
+  frame_contacts_ = read_frame_contacts(saved->open("frame_contacts"), static_cast<std::size_t>(p.grains),
+                                        static_cast<std::size_t>(p.size()));
   monitor_.load(saved->open("contacts"));
   guards_.load(saved->open("guards"));
   if (control_.say) control_.say("continuing from step " + std::to_string(system_.step));
@@ -125,6 +129,18 @@ void ParticlesRun::begin() {
   guards_.look(system_);
   if (watched()) monitor_.observe(system_);
   record();
+}
+
+/// Of a run that comes to its end: the first and the last state, and those in between.
+std::int64_t ParticlesRun::frames() const {
+  return 2 + (scene_.output_stride > 0 ? (scene_.time.steps - 1) / scene_.output_stride : 0);
+}
+
+void ParticlesRun::record(bool with_contacts) {
+  if (!scene_.record) return;
+  const auto frame = static_cast<std::int64_t>(trajectory_.time.size());
+  if (with_contacts && is_snapshot(frame, frames(), scene_.snapshots)) record_contacts(frame_contacts_, frame, system_);
+  record_frame(trajectory_, system_);
 }
 
 /// Grains that were neighbours drift apart; watched systems are small and keep their order.
@@ -163,6 +179,7 @@ void ParticlesRun::save() {
   write_checkpoint(control_.checkpoint, identity_, [&](const h5::Group& root) {
     write_system(root.create("system"), system_);
     write_trajectory(root.create("trajectory"), trajectory_);
+    write_frame_contacts(root.create("frame_contacts"), frame_contacts_);
     monitor_.save(root.create("contacts"));
     guards_.save(root.create("guards"));
   });
@@ -219,9 +236,10 @@ ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
   const double peak = peak_memory();  // before the copies that are made for output
   count_time();
   restore_order(system_);
-  record();
+  record(usable);  // who touches whom is not asked where numbers may be lost
   return {std::move(system_),
           std::move(trajectory_),
+          std::move(frame_contacts_),
           watched(),
           monitor_.histories(),
           usable,
@@ -257,6 +275,21 @@ ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesContro
 
 namespace {
 
+/// Materials of soft particles: those that some law takes as the soft body.
+std::vector<std::int64_t> soft_materials(const System3& s) {
+  const auto n = static_cast<std::int32_t>(s.materials.size());
+  std::vector<std::int64_t> soft(s.materials.size(), 0);
+  for (std::int32_t a = 0; a < n; ++a)
+    for (std::int32_t b = 0; b < n; ++b) {
+      const std::int32_t index = s.laws.index(a, b);
+      const auto* law = index == LawSet::kNoContact ? nullptr : std::get_if<SoftContact>(&s.laws.law(index));
+      if (law == nullptr) continue;
+      if (law->partner_is_soft || law->i_is_soft) soft[static_cast<std::size_t>(a)] = 1;
+      if (law->partner_is_soft || !law->i_is_soft) soft[static_cast<std::size_t>(b)] = 1;
+    }
+  return soft;
+}
+
 void write_bodies(const h5::Group& g, const ParticlesScene& scene, const System3& s) {
   const auto& p = s.particles;
   const auto n = static_cast<std::size_t>(p.grains);
@@ -270,7 +303,11 @@ void write_bodies(const h5::Group& g, const ParticlesScene& scene, const System3
   g.attribute_of("radius", "unit", "m");
   g.write("mass", mass);
   g.attribute_of("mass", "unit", "kg");
+  std::vector<std::int64_t> id(n);
+  std::iota(id.begin(), id.end(), std::int64_t{0});
+  g.write("id", id);
   g.write("material", std::vector<std::int64_t>(p.material.begin(), p.material.begin() + p.grains));
+  g.write("material_is_soft", soft_materials(s));
   for (std::size_t m = 0; m < s.materials.size(); ++m)
     g.attribute("material_" + std::to_string(m), s.materials[m].name);
   for (std::size_t w = 0; w < scene.wall_name.size(); ++w) g.attribute("wall_" + std::to_string(w), scene.wall_name[w]);
@@ -300,6 +337,7 @@ void save_particles_run(const std::string& path, const ParticlesScene& scene, co
   write_provenance(root, provenance);
   write_bodies(root.create("bodies"), scene, result.system);
   write_trajectory(root.create("trajectory"), result.trajectory);
+  write_frame_contacts(root.create("frame_contacts"), result.frame_contacts);
   if (result.watched) write_histories(root.create("contacts"), result.contacts);
   write_system(root.create("final"), result.system);
   file.commit();

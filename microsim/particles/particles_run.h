@@ -7,6 +7,7 @@
 
 #include "common/io/provenance.h"
 #include "microsim/particles/contact_monitor.h"
+#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/guards.h"
 #include "microsim/particles/particles_scene.h"
 #include "microsim/particles/trajectory.h"
@@ -36,6 +37,7 @@ struct LoopPart {
 struct ParticlesResult {
   System3 system;  ///< final state
   Trajectory trajectory;
+  FrameContacts frame_contacts;
   bool watched = false;                  ///< contacts were watched
   std::vector<ContactHistory> contacts;  ///< of every pair that touched
   bool usable = false;
@@ -54,7 +56,8 @@ ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesContro
 /// The same from a state that is handed over, so that large scenes are not in memory twice.
 ParticlesResult run_particles(const ParticlesScene& scene, System3 start, const ParticlesControl& control);
 
-/// run.h5: provenance, bodies, trajectory, contacts, and the final state in full. Atomic. Throws FileTrouble.
+/// run.h5: provenance, bodies, trajectory, contacts of some frames and over the whole run, and the final state in full.
+/// Atomic. Throws FileTrouble.
 void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result,
                         const Provenance& provenance);
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/core/error.h"
+#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/scene_bodies.h"
 #include "microsim/particles/scene_cell.h"
 #include "microsim/particles/scene_memory.h"
@@ -96,6 +97,9 @@ void require_resolved(const Scene& scene, const System3& s) {
 
 void read_output(const SceneTable& t, ParticlesScene& out) {
   out.record = t.flag("record", true);
+  if (!out.record && t.has("snapshots"))
+    t.reject("snapshots", "cannot be combined with record = false, which records nothing");
+  out.snapshots = t.count("snapshots", 0, 1'000'000, default_snapshots(out.system.particles.grains));
   if (!t.has("every")) return;
   if (!out.record) t.reject("every", "cannot be combined with record = false, which records nothing");
   const double every = t.number("every", Unit::time, Range::positive());

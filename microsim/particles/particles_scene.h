@@ -20,6 +20,7 @@ struct ParticlesScene {
   SceneTime time;
   bool record = true;                 ///< false: no frames, no watched contacts, no file of the run; the summary alone
   std::int64_t output_stride = 0;     ///< steps between recorded frames; 0: only the first and the last state
+  std::int64_t snapshots = 0;         ///< recorded frames that keep their contacts, evenly spread
   std::int64_t checkpoint_steps = 0;  ///< 0: by wall time alone
   double checkpoint_seconds = 300.0;  ///< wall time between checkpoints [s]
   GuardSpec guards;

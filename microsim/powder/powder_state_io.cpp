@@ -57,4 +57,13 @@ void read_powder_state(const h5::Group& group, PowderState& state) {
   read_system(group.open("system"), state.system);
 }
 
+System<2> read_powder_system(const h5::Group& group, const PowderSpec& spec) {
+  System<2> s;
+  s.materials = {{"disk", 1.0, 1.0, 0.3, false}};
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, powder_law(spec));
+  read_system(group.open("system"), s);
+  return s;
+}
+
 }  // namespace softgrain

@@ -13,4 +13,8 @@ void write_powder_state(const h5::Group& group, const PowderState& state);
 /// Into a state whose system has been made from the same PowderSpec. Throws FileTrouble when something is missing.
 void read_powder_state(const h5::Group& group, PowderState& state);
 
+/// The system of a stored sample (a group with what write_powder_state wrote) with the law of its specification, to be
+/// measured again. Throws FileTrouble.
+System<2> read_powder_system(const h5::Group& group, const PowderSpec& spec);
+
 }  // namespace softgrain

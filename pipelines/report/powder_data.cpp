@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "common/state/system_io.h"
 #include "microsim/powder/powder_spec_io.h"
+#include "microsim/powder/powder_state_io.h"
 
 namespace softgrain::report {
 namespace {
@@ -16,15 +16,6 @@ std::vector<PowderMoment> read_course(const h5::Group& group) {
   for (std::size_t k = 0; k + kCourseColumns <= rows.size(); k += kCourseColumns)
     out.push_back({rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4]});
   return out;
-}
-
-/// An empty system that knows the law of the scene.
-System<2> empty_system(const PowderSpec& spec) {
-  System<2> s;
-  s.materials = {{"disk", 1.0, 1.0, 0.3, false}};
-  s.laws = LawSet(1);
-  s.laws.set(0, 0, powder_law(spec));
-  return s;
 }
 
 std::optional<FittedCurve> read_scattering(const h5::Group& group) {
@@ -43,8 +34,7 @@ PowderSample read_sample(const h5::Group& group, const PowderSpec& spec) {
   PowderSample out;
   out.usable = group.integer("usable") != 0;
   out.course = read_course(group);
-  System<2> system = empty_system(spec);
-  read_system(group.open("system"), system);
+  const System<2> system = read_powder_system(group, spec);
   out.packing = powder_snapshot(system);
   out.contacts = contact_records(system);
   out.snapshots = read_snapshots(group);

@@ -1,0 +1,37 @@
+// States of a run in HDF5, laid out so that ParaView reads them through a small XDMF file beside.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/snapshot.h"
+#include "common/io/hdf5_file.h"
+#include "common/io/provenance.h"
+
+namespace softgrain {
+
+/// Data sets pair (C x 2), ends (2C x 3: from, to), point (C x 3), force (C x 3), normal_force (C), shift (C x 3, when
+/// any is not zero) and segment (S x 2: rows of `ends` that one line joins, S = the largest of `segments`, or C).
+void write_snapshot_contacts(const h5::Group& group, const std::vector<SnapshotContact>& contacts,
+                             const Snapshot& units, std::size_t segments);
+/// Throws FileTrouble when lengths do not fit each other or a contact names a body that is not there: i must be below
+/// `particles`, j below `bodies`, both at least 0.
+std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& group, std::size_t particles, std::size_t bodies);
+
+/// One state: attributes, particles (position, radius, id, role, body, material, index; velocity), walls, cell, and the
+/// group "contacts".
+void write_snapshot(const h5::Group& group, const Snapshot& snapshot);
+/// Throws FileTrouble when arrays do not fit together or a number is not finite.
+Snapshot read_snapshot(const h5::Group& group);
+
+/// Group "states" with one child per state, in order.
+void write_snapshot_list(const h5::Group& group, const std::vector<Snapshot>& snapshots);
+std::vector<Snapshot> read_snapshot_list(const h5::Group& group);
+
+/// A file of states. Atomic. Throws FileTrouble.
+void save_snapshots(const std::vector<Snapshot>& snapshots, const std::string& path, const Provenance& provenance);
+
+/// Opens a file of states and checks its format. Throws FileTrouble.
+h5::Group open_snapshots(const std::string& path);
+
+}  // namespace softgrain

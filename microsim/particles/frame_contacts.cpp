@@ -1,0 +1,58 @@
+#include "microsim/particles/frame_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "common/core/error.h"
+#include "common/data/snapshot_io.h"
+#include "common/dynamics/system_snapshot.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::int64_t kMostSnapshots = 100;
+constexpr std::int64_t kGrainFrames = 200'000;
+
+}  // namespace
+
+void record_contacts(FrameContacts& to, std::int64_t frame, const System3& system) {
+  const std::vector<SnapshotContact> now = snapshot_contacts(system);
+  const auto sound = [](const SnapshotContact& c) {
+    return std::isfinite(norm2(c.force)) && std::isfinite(norm2(c.from)) && std::isfinite(norm2(c.to));
+  };
+  if (!std::all_of(now.begin(), now.end(), sound)) return;  // the run is about to be found lost
+  to.frame.push_back(frame);
+  to.count.push_back(static_cast<std::int64_t>(now.size()));
+  to.contacts.insert(to.contacts.end(), now.begin(), now.end());
+}
+
+void write_frame_contacts(const h5::Group& group, const FrameContacts& c) {
+  group.write("frame", std::span<const std::int64_t>(c.frame));
+  group.write("count", std::span<const std::int64_t>(c.count));
+  const std::int64_t most = c.count.empty() ? 0 : *std::max_element(c.count.begin(), c.count.end());
+  write_snapshot_contacts(group, c.contacts, Snapshot{}, static_cast<std::size_t>(most));
+}
+
+FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles, std::size_t bodies) {
+  FrameContacts c;
+  c.frame = group.integers("frame");
+  c.count = group.integers("count");
+  c.contacts = read_snapshot_contacts(group, particles, bodies);
+  std::int64_t total = 0;
+  for (const std::int64_t n : c.count) {
+    if (n < 0 || n > static_cast<std::int64_t>(c.contacts.size())) throw FileTrouble("contacts of frames do not fit");
+    total += n;
+  }
+  if (c.frame.size() != c.count.size() || total != static_cast<std::int64_t>(c.contacts.size()) ||
+      !std::is_sorted(c.frame.begin(), c.frame.end()))
+    throw FileTrouble("contacts of frames do not fit");
+  return c;
+}
+
+std::int64_t default_snapshots(std::int64_t grains) {
+  return std::clamp<std::int64_t>(kGrainFrames / std::max<std::int64_t>(grains, 1), 1, kMostSnapshots);
+}
+
+}  // namespace softgrain

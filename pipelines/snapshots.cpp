@@ -1,0 +1,99 @@
+#include "pipelines/snapshots.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "common/core/error.h"
+#include "common/data/snapshot_io.h"
+#include "pipelines/snapshots_of_kinds.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Visit = std::function<void(const Snapshot&)>;
+
+bool is_states_file(const std::string& name) { return name.starts_with("states") && name.ends_with(".h5"); }
+
+/// The states of a file made by save_snapshots(); of a series only its last, when that is asked for.
+void visit_states(const std::string& path, SnapshotChoice choice, const Visit& visit) {
+  const h5::Group states = open_snapshots(path).open("states");
+  const std::vector<std::string> names = states.children();
+  std::map<std::string, std::string> last;
+  for (const std::string& name : names) last[states.open(name).text("series")] = name;
+  for (const std::string& name : names) {
+    const h5::Group one = states.open(name);
+    if (choice == SnapshotChoice::all || last[one.text("series")] == name) visit(read_snapshot(one));
+  }
+}
+
+void visit_file(const std::string& path, const std::string& prefix, SnapshotChoice choice, const Visit& visit) {
+  const std::string name = fs::path(path).filename().string();
+  const Visit renamed = [&](const Snapshot& s) {
+    if (prefix.empty()) return visit(s);
+    Snapshot named = s;
+    named.series = prefix + "/" + s.series;
+    named.label = prefix + ": " + s.label;
+    visit(named);
+  };
+  try {
+    if (is_states_file(name)) return visit_states(path, choice, renamed);
+    if (name == "run.h5") return visit_particles(path, choice, renamed);
+    if (name == "powder.h5") return visit_powder(path, choice, renamed);
+    if (name == "grain_box.h5") return visit_grain_boxes(path, renamed);
+  } catch (const FileTrouble& e) {
+    const std::string text = e.what();
+    throw FileTrouble(text.find(path) != std::string::npos ? text : path + ": damaged: " + text);
+  }
+  throw BadInput(path +
+                 ": holds no states: give a run directory, or its run.h5, states_*.h5, powder.h5 or grain_box.h5");
+}
+
+std::vector<std::string> files_of(const fs::path& directory) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string();
+    if (is_states_file(name) || name == "run.h5" || name == "powder.h5" || name == "grain_box.h5")
+      files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Variants of a powder lie in directories of their own.
+std::vector<std::string> variants_of(const fs::path& directory) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (entry.is_directory() && fs::exists(entry.path() / "powder.h5"))
+      files.push_back((entry.path() / "powder.h5").string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::vector<std::string> snapshot_files(const std::string& run) {
+  if (!fs::exists(run)) throw FileTrouble(run + ": no such run directory or file");
+  if (!fs::is_directory(run)) return {run};
+  std::vector<std::string> files = files_of(run);
+  for (const std::string& v : variants_of(run)) files.push_back(v);
+  return files;
+}
+
+void for_each_snapshot(const std::string& run, SnapshotChoice choice, const Visit& visit) {
+  for (const std::string& file : snapshot_files(run)) {
+    const fs::path parent = fs::path(file).parent_path();
+    const bool variant = fs::is_directory(run) && !fs::equivalent(parent, run);
+    visit_file(file, variant ? parent.filename().string() : "", choice, visit);
+  }
+}
+
+std::vector<Snapshot> read_snapshots(const std::string& run, SnapshotChoice choice) {
+  std::vector<Snapshot> out;
+  for_each_snapshot(run, choice, [&](const Snapshot& s) { out.push_back(s); });
+  return out;
+}
+
+}  // namespace softgrain

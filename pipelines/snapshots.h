@@ -1,0 +1,30 @@
+// The states that a run directory holds, whatever kind of run it is, in one form.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/data/snapshot.h"
+
+namespace softgrain {
+
+enum class SnapshotChoice {
+  all,
+  last  ///< of every series the last state
+};
+
+/// What is where: run.h5 (particles: every recorded frame), states_*.h5 (soft particles, macro runs and their twins),
+/// powder.h5 (also one level below, of variants), grain_box.h5. A directory: all of them, a file: that one.
+/// Empty for a directory without any, as older runs left it. Throws FileTrouble (missing, damaged), BadInput for a file
+/// of another kind.
+std::vector<Snapshot> read_snapshots(const std::string& run, SnapshotChoice choice = SnapshotChoice::all);
+
+/// One after another, series by series in their order, without holding all in memory.
+void for_each_snapshot(const std::string& run, SnapshotChoice choice,
+                       const std::function<void(const Snapshot&)>& visit);
+
+/// The files that for_each_snapshot reads of a run, in its order.
+std::vector<std::string> snapshot_files(const std::string& run);
+
+}  // namespace softgrain
