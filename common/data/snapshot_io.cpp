@@ -68,7 +68,7 @@ void write_particles(const h5::Group& g, const Snapshot& s) {
 
 void read_particles(const h5::Group& g, Snapshot& s) {
   using P = SnapshotParticle;
-  s.particles.resize(column_length(g, "radius"));
+  s.particles.resize(column_length(g, "id"));
   auto& all = s.particles;
   read_vectors(g, "position", all, [](P& p, const Vec3& v) { p.position = v; });
   read_finite(g, "radius", all, [](P& p, double v) { p.radius = v; });
@@ -92,7 +92,7 @@ void write_walls(const h5::Group& g, const Snapshot& s) {
 
 void read_walls(const h5::Group& g, Snapshot& s) {
   using W = SnapshotWall;
-  s.walls.resize(column_length(g, "radius"));
+  s.walls.resize(column_length(g, "shape"));
   read_integers(g, "shape", s.walls,
                 [](W& w, std::int64_t v) { w.shape = checked(v, WallShape::sphere_inside, "shape of a wall"); });
   read_vectors(g, "point", s.walls, [](W& w, const Vec3& v) { w.point = v; });

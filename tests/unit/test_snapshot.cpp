@@ -2,8 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
+#include <limits>
 
+#include "common/core/error.h"
 #include "common/core/solid_sphere.h"
 #include "common/data/snapshot_io.h"
 #include "common/dynamics/force_pass.h"
@@ -172,7 +173,7 @@ TEST(Snapshot, KeptPointsAreSpreadAndEndWithTheLast) {
       EXPECT_EQ(k.back(), points - 1);
       std::int64_t widest = 0;
       for (std::size_t n = 1; n < k.size(); ++n) widest = std::max(widest, k[n] - k[n - 1]);
-      if (wanted > 1) EXPECT_LE(widest, (points - 1) / (std::min(points, wanted) - 1) + 1);
+      EXPECT_LE(widest, (points - 1) / std::max<std::int64_t>(std::min(points, wanted) - 1, 1) + 1);
     }
 }
 
