@@ -19,7 +19,7 @@ PAGES = {
     "scene_pipeline.md": (
         ["pipelines/measure_setup.cpp", "pipelines/pipeline_setup.cpp", "pipelines/macro_setup.cpp",
          "pipelines/command_macrosim.cpp", "pipelines/macro_comparison_setup.cpp", "pipelines/named_laws.cpp",
-         "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp"],
+         "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp", "pipelines/kept_states.cpp"],
         {"beyond"}, {"entry", "pair", "macrosim"}),
     "scene_law_table.md": (
         ["pipelines/law_table_setup.cpp", "pipelines/crowd_setup.cpp", "pipelines/crowd_law_fit.cpp",
