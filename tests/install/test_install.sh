@@ -29,7 +29,9 @@ if grep -rlF "$source/" "$prefix/include" "$prefix/share" >told; then fail "name
 for scene in quickstart macro_vs_resolved; do
   "$prefix/bin/softgrain" check --quiet "$prefix/share/softgrain/pipelines/$scene.toml" >/dev/null || fail "check of $scene"
 done
-for command in run microsim calibrate macrosim compare report check; do
+mapfile -t commands < <("$prefix/bin/softgrain" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p')
+((${#commands[@]} >= 7)) || fail "--help lists ${#commands[@]} commands"
+for command in "${commands[@]}"; do
   grep -q "^\.SS softgrain $command$" "$prefix/share/man/man1/softgrain.1" || fail "no $command in the manual page"
 done
 
