@@ -8,6 +8,10 @@ namespace softgrain::report::assets {
 
 std::string_view report_css();  ///< style for screen, phone and print
 std::string_view report_js();   ///< values under the pointer, legend entries that hide and show their curves
-std::string_view packing_js();  ///< the packing in 3D, on top of three.js
+
+// The packing in 3D, on top of three.js, in this order.
+std::string_view packing_data_js();   ///< states and colours
+std::string_view packing_scene_js();  ///< what is drawn
+std::string_view packing_view_js();   ///< what the reader does
 
 }  // namespace softgrain::report::assets

@@ -40,7 +40,7 @@ std::string section(const std::string& id, const std::string& heading, const std
 /// Links to the sections of a body.
 std::string contents(const std::string& body);
 
-/// A script of our own (ASCII, without "</script").
+/// A script element. The source must not hold the end tag of one.
 std::string script(std::string_view source);
 
 /// The whole page around a body: style for screen and print, no network.

@@ -21,6 +21,7 @@ void write_report(const std::string& run_directory) {
   body += relaxations_section(run);
   body += macro_section(run);
   body += macro_scenes_section(run);
+  body += packing_section(run);
   body += radii_section(run);
   body += particles_section(run);
   body += grain_box_section(run);

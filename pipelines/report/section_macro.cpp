@@ -57,7 +57,7 @@ Plot stress_plot(const std::vector<MacroCurve>& curves, const std::string& test,
   const double first = first_strain(curves);
   Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral"),
              .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + test,
-             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 100.0 * last_strain(curves)},
+             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 102.0 * last_strain(curves)},
              .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)},
              .height = kStressHeight,
              .left_margin = kLeftMargin});
@@ -106,7 +106,7 @@ Plot difference_plot(const std::vector<MacroCurve>& curves, const std::string& t
   const double last = last_strain(curves);
   Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral") + "-difference",
              .title = std::string("Law minus resolved twin, ") + (axial ? "axial" : "lateral"),
-             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 100.0 * last},
+             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 102.0 * last},
              .y = {.label = "difference [%]"},
              .height = kDifferenceHeight,
              .left_margin = kLeftMargin});
@@ -114,7 +114,7 @@ Plot difference_plot(const std::vector<MacroCurve>& curves, const std::string& t
   if (plot.empty()) return plot;
   plot.add({.label = "",
             .hover = "no difference",
-            .x = {100.0 * first, 100.0 * last},
+            .x = {100.0 * first, 102.0 * last},
             .y = {0.0, 0.0},
             .style = {.color = palette::vermillion, .width = 1.0, .dash = "6 3"}});
   return plot;

@@ -18,6 +18,7 @@ std::string law_table_section(const RunData& run);     ///< several neighbours a
 std::string hierarchy_section(const RunData& run);     ///< soft particles in soft particles, level by level
 std::string macro_section(const RunData& run);         ///< stress and strain, law against resolved twin
 std::string macro_scenes_section(const RunData& run);  ///< every law and both twins on every scene: error and cost
+std::string packing_section(const RunData& run);       ///< the packing in 3D, from the states that the run kept
 std::string radii_section(const RunData& run);         ///< size distribution of the packed grains
 std::string particles_section(const RunData& run);     ///< final states and contacts of a scene of explicit particles
 std::string grain_box_section(const RunData& run);     ///< packs between six planes: stresses, moduli, contacts

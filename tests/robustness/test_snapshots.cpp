@@ -8,7 +8,7 @@
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
 #include "microsim/grain_box/record.h"
-#include "pipelines/snapshots.h"
+#include "pipelines/snapshots/snapshots.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"

@@ -47,14 +47,27 @@ class PackingState {
     this.series = series;
     this.count = raw.grains;
     this.spheres = packingArray(raw.spheres, Float32Array); // x, y, z, radius
-    this.body = packingArray(raw.body, Int32Array);
-    this.role = packingArray(raw.role, Uint8Array);
+    this.body = raw.body ? packingArray(raw.body, Int32Array) : new Int32Array(this.count);
+    this.role = raw.role ? packingArray(raw.role, Uint8Array) : new Uint8Array(this.count);
     this.ids = packingArray(raw.ids, Int32Array);
     this.pairs = packingArray(raw.pairs, Int32Array); // i, j; j beyond the grains is a wall
-    this.lines = packingArray(raw.lines, Float32Array); // normal force, end of the line (x, y, z)
-    this.contacts = this.lines.length / 4;
+    this.forces = packingArray(raw.forces, Float32Array);
+    this.contacts = this.forces.length;
     this.walls = raw.walls;
+    this.findEnds();
     this.gather();
+  }
+
+  /// Ends of the lines of contacts: centres of the second grains, but for walls and images across the cell.
+  findEnds() {
+    this.ends = new Float32Array(3 * this.contacts);
+    for (let c = 0; c < this.contacts; ++c) {
+      const j = this.pairs[2 * c + 1];
+      if (j < this.count) this.ends.set(this.spheres.subarray(4 * j, 4 * j + 3), 3 * c);
+    }
+    const bent = packingArray(this.raw.bent, Int32Array);
+    const ends = packingArray(this.raw.ends, Float32Array);
+    bent.forEach((c, k) => this.ends.set(ends.subarray(3 * k, 3 * k + 3), 3 * c));
   }
 
   /// Contacts per grain, and the sum of their normal forces.
@@ -62,7 +75,7 @@ class PackingState {
     this.touching = new Uint16Array(this.count);
     this.load = new Float32Array(this.count);
     for (let c = 0; c < this.contacts; ++c) {
-      const force = Math.abs(this.lines[4 * c]);
+      const force = Math.abs(this.forces[c]);
       for (const k of [this.pairs[2 * c], this.pairs[2 * c + 1]]) {
         if (k >= this.count) continue;
         this.touching[k] += 1;
@@ -116,7 +129,7 @@ class PackingSeries {
     if (this.strong === undefined) {
       const forces = [];
       const last = this.state(this.states - 1);
-      for (let c = 0; c < last.contacts; ++c) forces.push(Math.abs(last.lines[4 * c]));
+      for (let c = 0; c < last.contacts; ++c) forces.push(Math.abs(last.forces[c]));
       forces.sort((a, b) => a - b);
       this.strong = forces.length > 0 ? forces[Math.floor(0.98 * (forces.length - 1))] : 0;
     }

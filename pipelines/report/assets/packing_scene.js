@@ -160,12 +160,12 @@ class PackingScene {
       const i = state.pairs[2 * c];
       const j = state.pairs[2 * c + 1];
       if (!shown[i] || (j < state.count && !shown[j])) continue;
-      const force = state.lines[4 * c];
+      const force = state.forces[c];
       const width = widest * Math.min(1.5, Math.abs(force) / strong);
       if (width < 0.004 * widest) continue;
       begin.set(state.spheres.subarray(4 * i, 4 * i + 3), 4 * n);
       begin[4 * n + 3] = width;
-      end.set(state.lines.subarray(4 * c + 1, 4 * c + 4), 3 * n);
+      end.set(state.ends.subarray(3 * c, 3 * c + 3), 3 * n);
       tint.set(force >= 0 ? [0.8, 0.13, 0.12] : [0.0, 0.52, 0.24], 3 * n);
       ++n;
     }
@@ -184,9 +184,9 @@ class PackingScene {
   }
 
   /// Edges of the cell or of a box of six planes; single planes as squares.
-  showFrame(raw, box, walls) {
-    this.frame.clear ? this.frame.clear() : this.frame.remove(...this.frame.children);
-    const planes = walls.filter((w) => w.shape === "plane");
+  showFrame(raw, box) {
+    this.frame.remove(...this.frame.children);
+    const planes = raw.walls.filter((w) => w.shape === "plane");
     if (raw.cell) return this.addEdges([0, 0, 0], raw.cell);
     if (planes.length >= 6) return this.addBox(planes, box);
     for (const plane of planes) this.addSquare(plane, box);

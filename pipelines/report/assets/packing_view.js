@@ -80,7 +80,7 @@ class PackingView {
     this.box = this.series.box();
     this.moment.max = this.series.states - 1;
     this.moment.value = this.series.states - 1;
-    this.momentLabel.hidden = this.series.states < 2;
+    this.moment.hidden = this.series.states < 2;
     this.chains.disabled = this.series.state(this.series.states - 1).contacts === 0;
     this.lookAtAll();
     this.goTo(this.series.states - 1);
@@ -91,7 +91,7 @@ class PackingView {
     this.state = this.series.state(index);
     this.momentText.textContent = this.state.raw.label;
     if (this.picked >= this.state.count) this.picked = -1;
-    this.scene.showFrame(this.state.raw, this.box, this.state.walls);
+    this.scene.showFrame(this.state.raw, this.box);
     this.refill();
     this.tell();
   }
@@ -253,7 +253,7 @@ class PackingView {
     if (state.contacts > 0) {
       let largest = 0;
       for (let c = 0; c < state.contacts; ++c)
-        if (state.pairs[2 * c] === k || state.pairs[2 * c + 1] === k) largest = Math.max(largest, Math.abs(state.lines[4 * c]));
+        if (state.pairs[2 * c] === k || state.pairs[2 * c + 1] === k) largest = Math.max(largest, Math.abs(state.forces[c]));
       rows.push("contacts " + state.touching[k], "normal forces, sum " + packingQuantity(state.load[k], raw.force),
         "largest " + packingQuantity(largest, raw.force));
     }

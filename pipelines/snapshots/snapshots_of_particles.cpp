@@ -6,7 +6,7 @@
 #include "common/core/error.h"
 #include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/trajectory.h"
-#include "pipelines/snapshots_of_kinds.h"
+#include "pipelines/snapshots/snapshots_of_kinds.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/snapshots_of_kinds.h"
+#include "pipelines/snapshots/snapshots_of_kinds.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "pipelines/snapshots.h"
+#include "pipelines/snapshots/snapshots.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/data/snapshot_io.h"
-#include "pipelines/snapshots_of_kinds.h"
+#include "pipelines/snapshots/snapshots_of_kinds.h"
 
 namespace softgrain {
 

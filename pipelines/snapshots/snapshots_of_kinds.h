@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "pipelines/snapshots.h"
+#include "pipelines/snapshots/snapshots.h"
 
 namespace softgrain {
 

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""The pictures of this folder, taken of the report of a quickstart in headless Chromium.
+
+    pictures.py RUN [DIR]     RUN: directory of `softgrain run pipelines/quickstart.toml`; DIR: where to (this folder)
+
+Debian packages: chromium chromium-driver python3-selenium libjs-three.
+"""
+import base64
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent.parent / "tests/browser"))
+
+from browser import PLACE_OF_POINT, missing, start_browser  # noqa: E402
+from selenium.webdriver import ActionChains  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+
+SET = """const s = document.querySelector(`#packing-view [name=${arguments[0]}]`);
+if (s.type === "checkbox") s.checked = arguments[1]; else s.value = arguments[1];
+s.dispatchEvent(new Event("change")); s.dispatchEvent(new Event("input"));"""
+
+
+class Photographer:
+    def __init__(self, page, folder):
+        self.browser = start_browser(1200, 900)
+        self.browser.get(page.as_uri())
+        self.folder = folder
+        time.sleep(1.5)
+
+    def take(self, name, x, y, width, height):
+        """A part of the page, in its own coordinates [px]."""
+        clip = {"x": x, "y": y, "width": width, "height": height, "scale": 1}
+        shot = self.browser.execute_cdp_cmd("Page.captureScreenshot", {"clip": clip, "captureBeyondViewport": False})
+        (self.folder / f"{name}.png").write_bytes(base64.b64decode(shot["data"]))
+
+    def box(self, element):
+        return self.browser.execute_script(
+            "const b = arguments[0].getBoundingClientRect(); return [b.left + scrollX, b.top + scrollY, b.width, b.height]", element)
+
+    def find(self, selector):
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def show(self, element, block="center"):
+        self.browser.execute_script("arguments[0].scrollIntoView({block: arguments[1]})", element, block)
+        time.sleep(0.4)
+
+    def row(self, name, selector, margin=8):
+        element = self.find(selector)
+        self.show(element)
+        x, y, width, height = self.box(element)
+        self.take(name, x - margin, y - margin, width + 2 * margin, height + 2 * margin)
+
+    def head(self):
+        self.show(self.find("h1"), "start")
+        x, y, width, height = self.box(self.find("#remarks"))
+        self.take("head", x - 20, 0, width + 40, y + height + 15)
+
+    def normal(self):
+        plot = self.find("svg.plot[aria-label='Fn(Δ), soft particle on a solid plane']")
+        self.show(plot)
+        series = plot.find_elements(By.CSS_SELECTOR, ".series[data-name^='packing']")
+        there = max(series, key=lambda s: float(s.get_attribute("data-y").split(",")[-3]))
+        x, y = self.browser.execute_script(PLACE_OF_POINT, there, there.get_attribute("data-x").count(",") - 2)
+        ActionChains(self.browser).move_to_element_with_offset(plot, round(x), round(y)).perform()
+        time.sleep(0.4)
+        left, top, width, height = self.box(plot.find_element(By.XPATH, "ancestor::div[@class='row']"))
+        self.take("normal_force", left - 8, top - 8, width + 16, height + 16)
+        ActionChains(self.browser).move_by_offset(-30, -500).perform()
+
+    def packing(self, name, series, click=None, **settings):
+        options = self.browser.execute_script("return [...document.querySelector('#packing-view [name=series]').options].map(o => o.label)")
+        index = next(k for k, label in enumerate(options) if series in label)
+        self.browser.execute_script(SET, "series", str(index))
+        for key, value in {"color": "force", "grains": "solid", "chains": False, "cut": "", **settings}.items():
+            self.browser.execute_script(SET, key, value)
+        canvas = self.find("#packing-view canvas")
+        self.show(canvas)
+        if click:
+            ActionChains(self.browser).move_to_element_with_offset(canvas, *click).click().perform()
+        time.sleep(1.5)
+        x, y, width, height = self.box(self.find("#packing-view"))
+        self.take(name, x - 4, y - 4, width + 8, height + 8)
+
+    def phone(self):
+        self.browser.set_window_size(500, 1000)
+        self.show(self.find("h1"), "start")
+        time.sleep(0.5)
+        self.take("phone", 0, 0, 500, 1000)
+
+
+def main():
+    if missing():
+        sys.exit(missing())
+    run = Path(sys.argv[1]).resolve()
+    folder = Path(sys.argv[2]) if len(sys.argv) > 2 else HERE
+    photographer = Photographer(run / "report.html", folder)
+    photographer.head()
+    photographer.normal()
+    photographer.row("macro", "#macro .row")
+    photographer.row("error_cost", "#cost figure")
+    photographer.row("sizes", "#radii figure")
+    photographer.packing("packing_soft_particle", "soft-solid", cut="1", place="0.5", click=(20, 10))
+    photographer.packing("packing_force_chains", "soft-solid", grains="faint", chains=True)
+    photographer.packing("packing_law", "law", color="body")
+    photographer.packing("packing_twin", "shelled", cut="1", place="0.55")
+    photographer.packing("packing_twin_chains", "shelled", grains="off", chains=True)
+    photographer.phone()
+    photographer.browser.quit()
+
+
+if __name__ == "__main__":
+    main()
