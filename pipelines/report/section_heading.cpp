@@ -109,7 +109,7 @@ std::string macro_line(const std::vector<MacroCurve>& macro) {
   try {
     const Comparison c = compare_curves(laws, twins);
     return fmt::format(
-        "stress by the law differs from the resolved twin by {} % ({} samples); {} times fewer contact "
+        "Stress by the law differs from the resolved twin by {} % ({} samples); {} times fewer contact "
         "evaluations, {} times faster.",
         format_with_error(100 * c.axial_difference.mean, 100 * c.axial_difference.error), c.samples.size(),
         format_number(c.speedup_contact_evaluations, 3), format_number(c.speedup_seconds, 3));

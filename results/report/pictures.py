@@ -67,7 +67,7 @@ class Photographer:
         time.sleep(0.4)
         left, top, width, height = self.box(plot.find_element(By.XPATH, "ancestor::div[@class='row']"))
         self.take("normal_force", left - 8, top - 8, width + 16, height + 16)
-        ActionChains(self.browser).move_by_offset(-30, -500).perform()
+        ActionChains(self.browser).move_to_element(plot.find_element(By.XPATH, "preceding::h3[1]")).perform()
 
     def packing(self, name, series, click=None, **settings):
         options = self.browser.execute_script("return [...document.querySelector('#packing-view [name=series]').options].map(o => o.label)")

@@ -97,7 +97,7 @@ TEST_F(Report, TheHeadSaysWhatCameOutAndLinksToTheSections) {
   std::string html = written();
   const std::string head = html.substr(html.find("<h1>"), html.find("<section") - html.find("<h1>"));
   for (const char* part : {"status-good", "Rs = 16 mm", "12 packings at solid fraction", "soft-solid: Fn = a",
-                           "stress by the law differs", "href=\"#normal\"", "href=\"#macro\"", "href=\"#cost\""})
+                           "Stress by the law differs", "href=\"#normal\"", "href=\"#macro\"", "href=\"#cost\""})
     EXPECT_TRUE(contains(head, part)) << part;
   EXPECT_FALSE(contains(head, "Do not use"));
   write_text_atomic(path("summary.json"), R"({"status": "not usable", "remarks": ["no law was found"]})");
