@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -61,7 +62,8 @@ std::string moment_text(const Snapshot& s) {
 /// The label of a state without what tells it from others of its series, which comes last.
 std::string series_label(const Snapshot& s) {
   const std::string& text = s.label.empty() ? s.series : s.label;
-  return text.substr(0, text.rfind(", "));
+  const std::size_t comma = text.rfind(", ");
+  return text.substr(0, comma == std::string::npos ? text.rfind(" at ") : comma);
 }
 
 /// n of the given numbers, evenly spread, the last among them.
@@ -72,11 +74,19 @@ std::vector<std::size_t> spread_out(const std::vector<std::size_t>& numbers, std
   return out;
 }
 
+/// Of files that take long to read only the last states are looked at.
+SnapshotChoice affordable(const std::string& run) {
+  constexpr std::uintmax_t kLarge = 300'000'000;  // [byte], seconds to read
+  std::uintmax_t size = 0;
+  for (const std::string& file : snapshot_files(run)) size += std::filesystem::file_size(file);
+  return size > kLarge ? SnapshotChoice::last : SnapshotChoice::all;
+}
+
 /// Of every series the numbers of the states that are taken.
-std::map<std::string, std::set<std::size_t>> chosen_states(const std::string& run, std::size_t most) {
+std::map<std::string, std::set<std::size_t>> chosen_states(const std::string& run, SnapshotChoice choice,
+                                                           std::size_t most) {
   std::map<std::string, std::vector<bool>> has_contacts;
-  for_each_snapshot(run, SnapshotChoice::all,
-                    [&](const Snapshot& s) { has_contacts[s.series].push_back(s.has_contacts); });
+  for_each_snapshot(run, choice, [&](const Snapshot& s) { has_contacts[s.series].push_back(s.has_contacts); });
   std::map<std::string, std::set<std::size_t>> out;
   for (const auto& [name, has] : has_contacts) {
     const bool any = std::find(has.begin(), has.end(), true) != has.end();
@@ -232,10 +242,11 @@ PackingState packing_state(const Snapshot& s) {
 }
 
 std::vector<PackingSeries> packing_series_of(const std::string& run, std::size_t states) {
-  const auto chosen = chosen_states(run, states);
+  const SnapshotChoice choice = affordable(run);
+  const auto chosen = chosen_states(run, choice, states);
   std::map<std::string, std::size_t> seen;
   std::vector<PackingSeries> series;
-  for_each_snapshot(run, SnapshotChoice::all, [&](const Snapshot& s) {
+  for_each_snapshot(run, choice, [&](const Snapshot& s) {
     if (!chosen.at(s.series).contains(seen[s.series]++)) return;
     if (series.empty() || series.back().name != s.series)
       series.push_back({s.series, series_label(s), s.length_unit, s.force_unit, {}, s.kind});

@@ -45,7 +45,8 @@ struct PackingSeries {
 PackingState packing_state(const Snapshot& snapshot);
 
 /// All series of a run directory, each with at most `states` evenly spread states, its last among them; states without
-/// contacts give way to those with. Soft particles come first, then macro runs, then their twins. Throws FileTrouble.
+/// contacts give way to those with. Soft particles come first, then macro runs, then their twins. Of files above 300 MB
+/// only the last states. Throws FileTrouble.
 std::vector<PackingSeries> packing_series_of(const std::string& run_directory, std::size_t states);
 
 /// Makes them fit into `budget` bytes: fewer states first, then the weakest contacts of what is still too large, then

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "common/core/error.h"
@@ -121,12 +122,12 @@ std::string macro_line(const std::vector<MacroCurve>& macro) {
 std::string table_line(const LawTableEntry& entry) {
   const CrowdLaw* best = entry.find(entry.best);
   if (best == nullptr) return "";
-  return fmt::format(
-      "Solid fraction {}: the {} law is best, off by {} % where it was fitted and by {} % on what was held out; h/Rs "
-      "up "
-      "to {}.",
-      format_number(entry.solid_fraction, 3), entry.best, format_number(100.0 * best->error_fitted, 2),
-      format_number(100.0 * best->error_held_out, 2), format_number(entry.overlap_max, 2));
+  std::string held_out;
+  if (std::isfinite(best->error_held_out))
+    held_out = fmt::format(" and by {} % on what was held out", format_number(100.0 * best->error_held_out, 2));
+  return fmt::format("Solid fraction {}: the {} law is best, off by {} % where it was fitted{}; h/Rs up to {}.",
+                     format_number(entry.solid_fraction, 3), entry.best, format_number(100.0 * best->error_fitted, 2),
+                     held_out, format_number(entry.overlap_max, 2));
 }
 
 /// The law that comes closest to the shelled twin.

@@ -55,6 +55,7 @@ void add_measured(Plot& plot, const CrowdStates& c, const std::string& color) {
 void add_law(Plot& plot, const CrowdStates& c, const CrowdLaw& law, const std::string& color, const char* dash) {
   Series s;
   s.hover = c.configuration->name + ", " + law.form + " law";
+  s.group = c.configuration->name;
   const CrowdModel model = crowd_model(law);
   const std::vector<double>& end = loading_states(c).back()->overlap;
   for (int k = 1; k <= 60; ++k) {

@@ -194,8 +194,8 @@ function packingColoring(series, name) {
     const shades = packingPalette.map(packingColor).map((c) => c.map((v) => 0.25 + 0.75 * v));
     return { scale, color: (state, k) => (state.role[k] === 0 ? [0.72, 0.74, 0.77] : shades[state.body[k] % shades.length]) };
   }
-  let [low, high] = series.range(way.value);
-  if (way.log && name === "force") low = Math.max(low, 1e-3 * high);
+  const [least, high] = series.range(way.value);
+  let low = name === "force" ? Math.max(least, 1e-3 * high) : least;
   if (!way.log) low = 0;
   const along = way.log ? Math.log : (v) => v;
   const width = along(high) - along(low);
@@ -203,6 +203,6 @@ function packingColoring(series, name) {
   const unit = way.unit(series.raw);
   Object.assign(scale, { low: packingQuantity(low, unit), high: packingQuantity(high, unit), ramp: true,
     middle: way.log && high > 4 * low ? packingQuantity(Math.sqrt(low * high), unit) : "" });
-  if (name === "force") scale.low = "\u2264 " + scale.low;
+  if (low > least) scale.low = "\u2264 " + scale.low;
   return { scale, color: (state, k) => (way.value(state, k) > 0 ? packingRampAt(share(way.value(state, k))) : packingIdle) };
 }
