@@ -86,7 +86,9 @@ SnapshotChoice affordable(const std::string& run) {
 std::map<std::string, std::set<std::size_t>> chosen_states(const std::string& run, SnapshotChoice choice,
                                                            std::size_t most) {
   std::map<std::string, std::vector<bool>> has_contacts;
-  for_each_snapshot(run, choice, [&](const Snapshot& s) { has_contacts[s.series].push_back(s.has_contacts); });
+  for_each_snapshot(run, choice, [&](const Snapshot& s) {
+    if (s.kind != SnapshotKind::powder) has_contacts[s.series].push_back(s.has_contacts);
+  });
   std::map<std::string, std::set<std::size_t>> out;
   for (const auto& [name, has] : has_contacts) {
     const bool any = std::find(has.begin(), has.end(), true) != has.end();
@@ -247,7 +249,7 @@ std::vector<PackingSeries> packing_series_of(const std::string& run, std::size_t
   std::map<std::string, std::size_t> seen;
   std::vector<PackingSeries> series;
   for_each_snapshot(run, choice, [&](const Snapshot& s) {
-    if (!chosen.at(s.series).contains(seen[s.series]++)) return;
+    if (s.kind == SnapshotKind::powder || !chosen.at(s.series).contains(seen[s.series]++)) return;
     if (series.empty() || series.back().name != s.series)
       series.push_back({s.series, series_label(s), s.length_unit, s.force_unit, {}, s.kind});
     series.back().states.push_back(packing_state(s));

@@ -19,17 +19,15 @@ constexpr std::size_t kStates = 6;
 constexpr const char* kThree = "/usr/share/javascript/three/three.min.js";
 constexpr const char* kThreeLicense = "/usr/share/doc/libjs-three/copyright";
 
-/// The library with what its licence asks to go with every copy; nothing when it is not installed.
+/// The library, and with it the licence that has to go with every copy; nothing when they are not installed.
 std::optional<std::string> three_js() {
-  if (!std::filesystem::is_regular_file(kThree)) return std::nullopt;
+  for (const char* file : {kThree, kThreeLicense})
+    if (!std::filesystem::is_regular_file(file)) return std::nullopt;
   const std::string source = read_text(kThree);
   // Such a text would end the element that holds it.
   if (source.find("</script") != std::string::npos) return std::nullopt;
-  std::string license =
-      "three.js, (c) its authors, MIT licence: permission is granted, free of charge, to deal in it without "
-      "restriction.";
-  if (std::filesystem::is_regular_file(kThreeLicense)) license = read_text(kThreeLicense);
-  return "<script type=\"text/plain\" id=\"three-license\">\n" + escape(license) + "</script>\n" + script(source);
+  return "<script type=\"text/plain\" id=\"three-license\">\n" + escape(read_text(kThreeLicense)) + "</script>\n" +
+         script(source);
 }
 
 }  // namespace

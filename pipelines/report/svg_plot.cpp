@@ -84,14 +84,10 @@ Axis Plot::make_axis(bool horizontal) const {
   return with_fixed_ends(Axis::around(options.scale, values), options);
 }
 
-double Plot::left_margin() const {
-  return std::max(options_.left_margin, 34.0 + svg::tick_label_width(make_axis(false)));
-}
-
 std::string Plot::svg() const {
   const Axis x = make_axis(true);
   const Axis y = make_axis(false);
-  const double left = left_margin();
+  const double left = std::max(options_.left_margin, 34.0 + svg::tick_label_width(y));
   double right = 16.0;
   if (options_.right) {
     right =
@@ -99,8 +95,7 @@ std::string Plot::svg() const {
   }
   const svg::Frame frame{
       left, kTitleHeight, options_.width - left - right, options_.height - kTitleHeight - kBottomMargin, x, y};
-  const std::vector<Series> listed = options_.legend ? series_ : std::vector<Series>{};
-  const svg::Legend legend = svg::draw_legend(listed, left, options_.height + 2.0, options_.width - left - 8.0);
+  const svg::Legend legend = svg::draw_legend(series_, left, options_.height + 2.0, options_.width - left - 8.0);
   const double height = options_.height + legend.height + 8.0;
 
   std::string out = fmt::format(

@@ -78,7 +78,6 @@ struct PlotOptions {
   double height = 370.0;  ///< without the legend, which is added below
   std::optional<ShadedRange> shaded = {};
   double left_margin = 0.0;  ///< [px] at least; plots above each other share one
-  bool legend = true;
 };
 
 class Plot {
@@ -92,9 +91,6 @@ class Plot {
   /// The drawing as one svg element, scalable through its viewBox. Its attributes data-* hold axes and values, for
   /// the script of the page (assets/report.js).
   [[nodiscard]] std::string svg() const;
-
-  /// Space [px] that the vertical axis takes on the left.
-  [[nodiscard]] double left_margin() const;
 
  private:
   [[nodiscard]] Axis make_axis(bool horizontal) const;

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from browser import PLACE_OF_POINT, SKIPPED, missing, start_browser
 from selenium.webdriver import ActionChains
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
 
 # The quickstart in seconds: few coarse grains, few points. Its laws are underdetermined, so that it may end with status 3.
@@ -137,7 +138,24 @@ class ReportInABrowser(unittest.TestCase):
         self.assertIn("contacts", card.text)
         self.picture("packing")
 
-    def test_6_every_state_colour_and_cut_can_be_shown(self):
+    def test_6_turns_zooms_and_goes_through_states(self):
+        canvas = self.to_canvas()
+        drawn = "return document.querySelector('#packing-view canvas').toDataURL()"
+        before = self.script(drawn)
+        ActionChains(self.browser).move_to_element(canvas).click_and_hold().move_by_offset(150, 40).release().perform()
+        self.wait_for(lambda: self.script(drawn) != before, "it does not turn")
+        share = self.script(PAINTED)
+        ActionChains(self.browser).scroll_from_origin(ScrollOrigin.from_element(canvas), 0, -300).perform()
+        self.wait_for(lambda: self.script(PAINTED) > 1.1 * share, "it does not zoom")
+        self.browser.find_element(By.CSS_SELECTOR, "#packing-view button").click()
+        self.wait_for(lambda: self.script(PAINTED) < 1.1 * share, "the view is not reset")
+        label = self.browser.find_element(By.CSS_SELECTOR, "#packing-view .below span")
+        last = label.text
+        self.script("const s = document.querySelector('#packing-view [name=state]'); s.value = 0; s.dispatchEvent(new Event('input'))")
+        self.assertRegex(label.text, r"(Δ|strain) = ")
+        self.assertNotEqual(label.text, last)
+
+    def test_7_every_state_colour_and_cut_can_be_shown(self):
         self.to_canvas()
         choose = """const s = document.querySelector(`#packing-view [name=${arguments[0]}]`); s.value = arguments[1];
                     s.dispatchEvent(new Event("change")); s.dispatchEvent(new Event("input"));"""
@@ -167,7 +185,7 @@ class ReportInABrowser(unittest.TestCase):
         self.picture("chains")
         self.assertEqual([e for e in self.browser.get_log("browser") if e["level"] == "SEVERE"], [])
 
-    def test_7_fits_a_phone_and_paper(self):
+    def test_8_fits_a_phone_and_paper(self):
         self.browser.set_window_size(500, 900)  # the narrowest that Chromium takes
         time.sleep(0.5)
         wide, there = self.script("return [document.documentElement.scrollWidth, document.documentElement.clientWidth]")

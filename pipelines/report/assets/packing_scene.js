@@ -78,7 +78,7 @@ function packingInstances(mesh, arrays, count) {
   const geometry = mesh.geometry;
   for (const [name, size, values] of arrays)
     geometry.setAttribute(name, new THREE.InstancedBufferAttribute(values.slice(0, size * count), size));
-  geometry.maxInstancedCount = count;
+  geometry.maxInstancedCount = geometry.instanceCount = count; // the name in r111, and the later one
   mesh.visible = count > 0;
 }
 
