@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "common/data/snapshot_io.h"
+#include "pipelines/export/xdmf.h"
 
 namespace softgrain {
 
@@ -38,10 +39,12 @@ void save_kept_states(const std::vector<Snapshot>& states, const std::string& pa
   if (!states.empty()) {
     const std::lock_guard lock(hdf5_mutex());
     save_snapshots(states, path, provenance);
+    write_states_xdmf(path);
     return;
   }
   std::error_code nothing_there;
   std::filesystem::remove(path, nothing_there);
+  for (const std::string& beside : states_xdmf_files(path)) std::filesystem::remove(beside, nothing_there);
 }
 
 }  // namespace softgrain

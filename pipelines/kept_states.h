@@ -37,7 +37,8 @@ class KeptStates {
   std::vector<Snapshot> states_;
 };
 
-/// Writes them to a file; without any, a file that an earlier run left there goes. Throws FileTrouble.
+/// Writes them to a file, and XDMF files beside it; without any, a file that an earlier run left there goes. Throws
+/// FileTrouble.
 void save_kept_states(const std::vector<Snapshot>& states, const std::string& path, const Provenance& provenance);
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 #include "common/state/checkpoint.h"
 #include "microsim/particles/particles_run.h"
 #include "microsim/particles/scene_memory.h"
+#include "pipelines/export/xdmf.h"
 #include "pipelines/particles_summary.h"
 #include "pipelines/run_summary.h"
 
@@ -42,7 +43,10 @@ ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options)
     for (const json& remark : summary["remarks"]) text += "\nremark: " + remark.get<std::string>();
   if (setup.record) {
     save_particles_run(context.path("run.h5"), setup, result, provenance);
-    summary["files"] = {{"trajectory", context.path("run.h5")}};
+    write_run_xdmf(context.path("run.h5"));
+    summary["files"] = {{"trajectory", context.path("run.h5")},
+                        {"xdmf", context.path("run.xdmf")},
+                        {"xdmf_contacts", context.path("run_contacts.xdmf")}};
     text += "\ntrajectory: " + context.path("run.h5");
   }
   summary["provenance"] = provenance_json(provenance);

@@ -34,6 +34,7 @@ struct CommonOptions {
   double checkpoint_seconds = kCheckpointSeconds;  ///< --checkpoint-every S
   std::string law;                                 ///< --law law.toml (macrosim)
   std::string law_cache;                           ///< --law-cache DIR; empty: nothing is kept between runs
+  std::string to;                                  ///< --to vtp, lammps-dump or csv (export)
   std::string command_line;                        ///< as given, for provenance
 };
 
@@ -94,6 +95,7 @@ ExitStatus command_macrosim(const CommonOptions& options);
 ExitStatus command_compare(const CommonOptions& options);
 ExitStatus command_report(const CommonOptions& options);
 ExitStatus command_check(const CommonOptions& options);
+ExitStatus command_export(const CommonOptions& options);
 
 /// Parses the command line, dispatches, turns errors into messages and exit statuses.
 int run_program(int argc, char** argv);

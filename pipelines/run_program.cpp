@@ -31,7 +31,7 @@ struct Command {
   ExitStatus (*function)(const CommonOptions&);
 };
 
-constexpr std::array<Command, 7> kCommands{{
+constexpr std::array<Command, 8> kCommands{{
     {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
      1, 1, command_run},
     {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml",
@@ -45,6 +45,8 @@ constexpr std::array<Command, 7> kCommands{{
     {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, command_report},
     {"check", "Validates a scene, card or result file and says what follows from it, without running", "FILE",
      "file to check", 1, 1, command_check},
+    {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
+     "run directory, or one of its files with states", 1, 1, command_export},
 }};
 
 constexpr const char* kFooter =
@@ -101,6 +103,8 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
     app.add_option("--law-cache", o.law_cache,
                    "Keeps finished measurements of law tables here and takes from here what is known already")
         ->option_text("DIR");
+  if (command.function == command_export)
+    app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump or csv")->option_text("FORM");
   if (command.function == command_macrosim)
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");

@@ -7,7 +7,7 @@ Of every time: points, cells, and of every array its number of values, sum, smal
 import json
 import sys
 
-from paraview.simple import Delete, OpenDataFile
+from paraview.simple import Delete, OpenDataFile, XDMFReader
 from paraview import servermanager
 from vtkmodules.numpy_interface import dataset_adapter
 
@@ -47,13 +47,19 @@ def moments(reader):
 
 
 def content(path):
-    reader = OpenDataFile(path)
+    # Of the three XDMF readers the plain one knows parts of data sets (hyperslabs).
+    reader = XDMFReader(FileNames=[path]) if path.endswith(".xdmf") else OpenDataFile(path)
     if reader is None:
         return {"error": "no reader"}
     out = []
     for time in moments(reader):
         reader.UpdatePipeline(time)
-        for leaf in leaves(servermanager.Fetch(reader)):
+        try:
+            fetched = servermanager.Fetch(reader)
+        except AttributeError as error:
+            out.append({"time": float(time), "error": str(error)})
+            continue
+        for leaf in leaves(fetched):
             wrapped = dataset_adapter.WrapDataObject(leaf)
             points = wrapped.Points
             extent = [0.0, 0.0]

@@ -1,0 +1,156 @@
+#include "pipelines/export/export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/core/error.h"
+#include "common/io/scene.h"
+#include "common/io/text_file.h"
+#include "pipelines/snapshots/snapshots.h"
+
+namespace softgrain {
+
+namespace {
+
+/// One state in the index of its series.
+struct Entry {
+  double moment = 0.0;
+  std::int64_t frame = 0;
+  std::size_t particles = 0;
+  std::size_t contacts = 0;
+  std::string particles_file;
+  std::string contacts_file;  ///< empty: not kept
+};
+
+struct Series {
+  ExportedSeries facts;
+  std::string moment_name;
+  std::vector<Entry> entries;
+};
+
+/// The index of a series for ParaView: which file is of which moment.
+std::string collection(const std::vector<Entry>& entries, std::string Entry::*file) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+      "  <Collection>\n";
+  for (const Entry& e : entries)
+    if (!(e.*file).empty())
+      text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", e.moment, e.*file);
+  return text + "  </Collection>\n</VTKFile>\n";
+}
+
+std::string table(const Series& s) {
+  std::string text = fmt::format("number,frame,{},particles,contacts,particles_file,contacts_file\n", s.moment_name);
+  for (std::size_t k = 0; k < s.entries.size(); ++k) {
+    const Entry& e = s.entries[k];
+    text += fmt::format("{},{},{},{},{},{},{}\n", k, e.frame, e.moment, e.particles, e.contacts, e.particles_file,
+                        e.contacts_file);
+  }
+  return text;
+}
+
+class Exporter {
+ public:
+  Exporter(ExportFormat format, std::string directory) : format_(format), directory_(std::move(directory)) {}
+
+  void add(const Snapshot& s) {
+    Series& series = series_of(s);
+    const auto number = static_cast<std::int64_t>(series.entries.size());
+    Entry entry{s.moment(), s.frame, s.particles.size(), s.contacts.size(), "", ""};
+    for (const ExportFile& file : files_of(s, number)) {
+      write(file);
+      if (file.holds == "particles") entry.particles_file = file.name;
+      if (file.holds == "contacts") entry.contacts_file = file.name;
+    }
+    series.entries.push_back(entry);
+    ++series.facts.states;
+    if (s.has_contacts) ++series.facts.with_contacts;
+  }
+
+  std::vector<ExportedSeries> finish() {
+    std::vector<ExportedSeries> out;
+    for (Series& s : all_) {
+      write_index(s);
+      out.push_back(s.facts);
+    }
+    return out;
+  }
+
+ private:
+  Series& series_of(const Snapshot& s) {
+    for (Series& known : all_)
+      if (known.facts.name == s.series) return known;
+    all_.push_back({{s.series, s.kind, 0, 0, {}}, s.moment_name(), {}});
+    return all_.back();
+  }
+
+  [[nodiscard]] std::vector<ExportFile> files_of(const Snapshot& s, std::int64_t number) const {
+    if (format_ == ExportFormat::vtp) return vtp_files(s, number);
+    return format_ == ExportFormat::csv ? csv_files(s, number) : dump_files(s, number);
+  }
+
+  void write(const ExportFile& file) const { write_text_atomic(directory_ + "/" + file.name, file.text); }
+
+  void write_index(Series& s) const {
+    const std::string stem = file_name_of(s.facts.name);
+    if (format_ == ExportFormat::vtp) {
+      s.facts.files = {stem + "_particles.pvd"};
+      write({"index", s.facts.files.back(), collection(s.entries, &Entry::particles_file)});
+      if (s.facts.with_contacts == 0) return;
+      s.facts.files.push_back(stem + "_contacts.pvd");
+      write({"index", s.facts.files.back(), collection(s.entries, &Entry::contacts_file)});
+    } else if (format_ == ExportFormat::csv) {
+      s.facts.files = {stem + ".csv"};
+      write({"index", s.facts.files.back(), table(s)});
+    } else {
+      s.facts.files = {s.entries.front().particles_file};
+    }
+  }
+
+  ExportFormat format_;
+  std::string directory_;
+  std::vector<Series> all_;
+};
+
+}  // namespace
+
+ExportFormat export_format(const std::string& name) {
+  const std::vector<std::string> known{"vtp", "lammps-dump", "csv"};
+  for (std::size_t k = 0; k < known.size(); ++k)
+    if (known[k] == name) return static_cast<ExportFormat>(k);
+  if (name.empty()) throw BadInput("export: which form? give --to vtp, --to lammps-dump or --to csv");
+  const std::string near = nearest_word(name, known);
+  throw BadInput(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, csv", name,
+                             near.empty() ? "" : "nearest is " + near + "; "));
+}
+
+std::string file_name_of(const std::string& series) {
+  std::string name = series;
+  for (char& c : name)
+    if (c == '/' || c == '\\' || c == ' ' || c == '"' || c == '<' || c == '&' || c == ',') c = '_';
+  return name;
+}
+
+std::string state_file_name(const Snapshot& snapshot, const std::string& holds, std::int64_t number,
+                            const std::string& extension) {
+  return fmt::format("{}_{}_{:06}.{}", file_name_of(snapshot.series), holds, number, extension);
+}
+
+std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory) {
+  Exporter exporter(format, directory);
+  bool any = false;
+  for_each_snapshot(run, SnapshotChoice::all, [&](const Snapshot& s) {
+    if (!any) require_writable_directory(directory);
+    any = true;
+    exporter.add(s);
+  });
+  if (!any)
+    throw BadInput(run +
+                   ": holds no states (run.h5, states_*.h5, powder.h5 or grain_box.h5): runs of kind particles, "
+                   "soft-particle, pipeline, macro, macro-comparison, cohesive-powder and grain-box keep them, "
+                   "unless [output] says snapshots = 0 or record = false");
+  return exporter.finish();
+}
+
+}  // namespace softgrain

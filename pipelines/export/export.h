@@ -1,0 +1,48 @@
+// States of a run as files for other programs: VTP for ParaView and OVITO, LAMMPS dumps, CSV tables.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/data/snapshot.h"
+
+namespace softgrain {
+
+enum class ExportFormat { vtp, lammps_dump, csv };
+
+/// "vtp", "lammps-dump", "csv". Throws BadInput that names the nearest for anything else.
+ExportFormat export_format(const std::string& name);
+
+/// One file of a state.
+struct ExportFile {
+  std::string holds;  ///< "particles", "contacts", "wall_contacts", "walls"
+  std::string name;   ///< relative to the directory of the export
+  std::string text;
+};
+
+/// The files of one state, number `number` (from 0) of its series as it is exported. Names begin with the series ('/'
+/// becomes '_'), then say what the file holds and the number: shelled-0_particles_000002.vtp.
+std::vector<ExportFile> vtp_files(const Snapshot& snapshot, std::int64_t number);
+std::vector<ExportFile> dump_files(const Snapshot& snapshot, std::int64_t number);
+std::vector<ExportFile> csv_files(const Snapshot& snapshot, std::int64_t number);
+
+/// SERIES_KIND_NUMBER.extension
+std::string state_file_name(const Snapshot& snapshot, const std::string& holds, std::int64_t number,
+                            const std::string& extension);
+std::string file_name_of(const std::string& series);
+
+/// What a series became.
+struct ExportedSeries {
+  std::string name;
+  SnapshotKind kind = SnapshotKind::particles;
+  std::int64_t states = 0;
+  std::int64_t with_contacts = 0;
+  std::vector<std::string> files;  ///< to open: the .pvd of a VTP series, the table of a CSV series, the first dump
+};
+
+/// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; every file atomically.
+/// Throws BadInput when there are none, FileTrouble.
+std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory);
+
+}  // namespace softgrain

@@ -1,0 +1,120 @@
+"""States of a run: particles, walls and contacts with their forces, from run.h5 and states_*.h5.
+
+powder.h5 and grain_box.h5 keep states in forms of their own: `softgrain export RUN --to csv` makes tables of them.
+"""
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+KINDS = ("particles", "soft-particle", "macro", "twin", "powder", "grain-box")
+ROLES = ("solid", "soft", "inner")
+
+
+@dataclass
+class Contacts:
+    """pair (C, 2): indices i of a particle and j of a particle or, from len(radius) on, of a wall; force on i."""
+
+    pair: np.ndarray
+    start: np.ndarray  # (C, 3) centre of i
+    end: np.ndarray  # (C, 3) centre of j in the image that i touches; of a wall the point of contact
+    point: np.ndarray
+    force: np.ndarray
+    normal_force: np.ndarray
+
+    def __len__(self):
+        return len(self.pair)
+
+
+@dataclass
+class Snapshot:
+    kind: str
+    series: str
+    label: str
+    frame: int
+    time: float = np.nan  # [s]
+    strain: float = np.nan
+    overlap: float = np.nan  # Delta of a soft particle
+    position: np.ndarray = None  # (N, 3)
+    radius: np.ndarray = None
+    role: np.ndarray = None  # indices into ROLES
+    body: np.ndarray = None
+    velocity: np.ndarray | None = None
+    walls: dict = field(default_factory=dict)  # shape (0 plane, 1 inside of a sphere), point, normal, radius, body
+    cell_edges: np.ndarray = None  # rows are edge vectors, meaningful where periodic
+    periodic: np.ndarray = None
+    contacts: Contacts | None = None  # None: not kept for this state
+
+
+def _text(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _contacts(group, part=slice(None)):
+    ends = group["ends"][()].reshape(-1, 2, 3)[part]
+    return Contacts(group["pair"][()].reshape(-1, 2)[part], ends[:, 0], ends[:, 1], group["point"][()].reshape(-1, 3)[part],
+                    group["force"][()].reshape(-1, 3)[part], group["normal_force"][()][part])
+
+
+def _state(group):
+    p = group["particles"]
+    return Snapshot(
+        KINDS[int(group.attrs["kind"])], _text(group.attrs["series"]), _text(group.attrs["label"]),
+        int(group.attrs["frame"]), *(float(group.attrs.get(name, np.nan)) for name in ("time", "strain", "overlap")),
+        position=p["position"][()], radius=p["radius"][()], role=p["role"][()], body=p["body"][()],
+        velocity=p["velocity"][()] if "velocity" in p else None,
+        walls={name: group["walls"][name][()] for name in ("shape", "point", "normal", "radius", "body")},
+        cell_edges=group["cell_edges"][()], periodic=group["cell_periodic"][()] != 0,
+        contacts=_contacts(group["contacts"]) if "contacts" in group else None)
+
+
+def _states(path, last):
+    with h5py.File(path, "r") as file:
+        groups = [file["states"][name] for name in sorted(file["states"])]
+        if last:
+            groups = list({_text(g.attrs["series"]): g for g in groups}.values())
+        return [_state(g) for g in groups]
+
+
+def _particles(path, last):
+    """run.h5: every recorded frame, with the contacts of those that kept them."""
+    with h5py.File(path, "r") as file:
+        bodies, trajectory, final = file["bodies"], file["trajectory"], file["final"]
+        radius = bodies["radius"][()]
+        time = trajectory["time"][()]
+        soft = bodies["material_is_soft"][()] if "material_is_soft" in bodies else np.zeros(1 << 16, dtype=int)
+        spheres = final["bodies"]["sphere"][()].reshape(-1, 4)[len(radius):]
+        planes = final["bodies"]["plane_normal"][()].reshape(-1, 3)
+        shells = len(spheres) - len(planes)
+        walls = {"shape": np.r_[np.ones(shells, int), np.zeros(len(planes), int)],
+                 "normal": np.r_[np.zeros((shells, 3)), planes], "radius": spheres[:, 3], "body": np.full(len(spheres), -1)}
+        kept = {}
+        if "frame_contacts" in file:
+            ends = np.cumsum(file["frame_contacts"]["count"][()])
+            kept = {int(f): slice(int(e - n), int(e)) for f, n, e in
+                    zip(file["frame_contacts"]["frame"][()], file["frame_contacts"]["count"][()], ends)}
+        out = []
+        for k in range(len(time) - 1 if last and len(time) else 0, len(time)):
+            matrix = trajectory["cell_edges"][k]
+            out.append(Snapshot(
+                "particles", "particles", f"particles at {time[k]:.4g} s", k, time=float(time[k]),
+                position=trajectory["position"][k], radius=radius, role=soft[bodies["material"][()]],
+                body=np.arange(len(radius)), velocity=trajectory["velocity"][k],
+                walls={**walls, "point": trajectory["wall_position"][k]}, cell_edges=matrix.T,
+                periodic=final["cell"]["periodic"][()] != 0,
+                contacts=_contacts(file["frame_contacts"], kept[k]) if k in kept else None))
+        return out
+
+
+def read_snapshots(run, last=False):
+    """States of a run directory, or of one of its files run.h5 and states_*.h5; an empty list when there are none."""
+    path = Path(run)
+    if not path.exists():
+        raise FileNotFoundError(f"{run}: no such run directory or file")
+    files = sorted(f for f in path.iterdir() if f.name == "run.h5" or (f.name.startswith("states") and f.suffix == ".h5")) \
+        if path.is_dir() else [path]
+    out = []
+    for file in files:
+        out += _particles(file, last) if file.name == "run.h5" else _states(file, last)
+    return out

@@ -1,0 +1,210 @@
+// Exported files, read back: what OVITO and ParaView ask of VTP, dumps as LAMMPS writes them, tables.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "pipelines/export/export.h"
+
+namespace {
+
+using namespace softgrain;
+
+/// Three grains in a cell that is periodic and sheared; 0 and 1 touch inside, 0 and 2 across the boundary, 1 a wall.
+Snapshot a_state() {
+  Snapshot s;
+  s.series = "scene/free-0";
+  s.label = "a -- label";
+  s.frame = 12;
+  s.time = 0.25;
+  s.has_velocity = s.has_contacts = true;
+  s.cell_edges = {Vec3{{1.0, 0.0, 0.0}}, Vec3{{0.25, 1.0, 0.0}}, Vec3{{0.0, 0.0, 1.0}}};
+  s.periodic = {true, true, false};
+  const Vec3 places[] = {{{0.05, 0.5, 0.1}}, {{0.24, 0.5, 0.1}}, {{0.86, 0.5, 0.125}}};
+  for (std::int64_t k = 0; k < 3; ++k) {
+    SnapshotParticle p;
+    p.position = places[k];
+    p.radius = 0.1 + 0.01 * static_cast<double>(k);
+    p.velocity = {{1.0 / 3.0, 0.0, -1e-300}};
+    p.id = k;
+    p.body = 5;
+    p.role = ParticleRole::inner;
+    s.particles.push_back(p);
+  }
+  s.walls.resize(1);
+  s.walls[0].normal = {{0.0, 0.0, 1.0}};
+  const auto contact = [&](std::int32_t i, std::int32_t j, const Vec3& to, const Vec3& force, double normal) {
+    SnapshotContact c;
+    c.i = i;
+    c.j = j;
+    c.from = s.particles[static_cast<std::size_t>(i)].position;
+    c.to = to;
+    c.point = (c.from + to) * 0.5;
+    c.force = force;
+    c.normal_force = normal;
+    s.contacts.push_back(c);
+  };
+  contact(0, 1, places[1], {{-3.0, 4.0, 0.0}}, 3.0);
+  contact(0, 2, places[2] - Vec3{{1.0, 0.0, 0.0}}, {{2.0, 0.0, 0.0}}, 2.0);
+  s.contacts.back().shift = {{-1.0, 0.0, 0.0}};
+  contact(1, 3, {{0.24, 0.5, 0.0}}, {{0.0, 0.0, 1.5}}, 1.5);
+  return s;
+}
+
+std::string text_between(const std::string& text, const std::string& from, const std::string& to, std::size_t at = 0) {
+  const std::size_t begin = text.find(from, at);
+  if (begin == std::string::npos) return "";
+  const std::size_t first = begin + from.size();
+  return text.substr(first, text.find(to, first) - first);
+}
+
+/// The numbers of a DataArray within a section.
+std::vector<double> array_of(const std::string& vtp, const std::string& section, const std::string& name) {
+  const std::string part = text_between(vtp, "<" + section + ">", "</" + section + ">");
+  const std::size_t at = part.find("Name=\"" + name + "\"");
+  if (at == std::string::npos) return {};
+  std::istringstream in(text_between(part, ">", "<", at));
+  std::vector<double> out;
+  for (std::string word; in >> word;) out.push_back(std::stod(word));
+  return out;
+}
+
+const ExportFile& file_of(const std::vector<ExportFile>& files, const std::string& holds) {
+  for (const ExportFile& f : files)
+    if (f.holds == holds) return f;
+  throw std::runtime_error("no file of " + holds);
+}
+
+TEST(ExportFiles, ParticlesOfVtpAreVerticesAlone) {
+  const auto files = vtp_files(a_state(), 3);
+  ASSERT_EQ(files.size(), 2U);
+  const ExportFile& f = file_of(files, "particles");
+  EXPECT_EQ(f.name, "scene_free-0_particles_000003.vtp");
+  for (const char* needed :
+       {"type=\"PolyData\"", "byte_order=\"LittleEndian\"", "NumberOfPoints=\"3\"", "NumberOfVerts=\"3\"",
+        "NumberOfLines=\"0\"", "NumberOfStrips=\"0\"", "NumberOfPolys=\"0\""})
+    EXPECT_NE(f.text.find(needed), std::string::npos) << needed;
+  for (const char* refused : {"compressor", "appended", "a -- label"})
+    EXPECT_EQ(f.text.find(refused), std::string::npos) << refused;
+  EXPECT_EQ(array_of(f.text, "PointData", "radius"),
+            (std::vector<double>{0.1, 0.1 + 0.01, 0.1 + 0.01 * 2.0}));  // to the last bit
+  EXPECT_EQ(array_of(f.text, "PointData", "id"), (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(array_of(f.text, "PointData", "role"), (std::vector<double>{2, 2, 2}));
+  const auto v = array_of(f.text, "PointData", "v");
+  ASSERT_EQ(v.size(), 9U);
+  EXPECT_EQ(v[0], 1.0 / 3.0);  // to the last bit
+  EXPECT_EQ(v[2], -1e-300);
+  EXPECT_EQ(array_of(f.text, "Points", "Points"),
+            (std::vector<double>{0.05, 0.5, 0.1, 0.24, 0.5, 0.1, 0.86, 0.5, 0.125}));
+  EXPECT_EQ(array_of(f.text, "Verts", "connectivity"), (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(array_of(f.text, "Verts", "offsets"), (std::vector<double>{1, 2, 3}));
+}
+
+TEST(ExportFiles, ContactsOfVtpAreLinesThatDoNotSpanTheCell) {
+  const auto files = vtp_files(a_state(), 0);
+  const std::string& text = file_of(files, "contacts").text;
+  EXPECT_NE(text.find("NumberOfPoints=\"6\" NumberOfVerts=\"0\" NumberOfLines=\"3\""), std::string::npos);
+  const auto points = array_of(text, "Points", "Points");
+  ASSERT_EQ(points.size(), 18U);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(std::abs(points[6 * k] - points[6 * k + 3]), 0.2) << k;
+  EXPECT_EQ(array_of(text, "Lines", "connectivity"), (std::vector<double>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(array_of(text, "Lines", "offsets"), (std::vector<double>{2, 4, 6}));
+  EXPECT_EQ(array_of(text, "CellData", "normal_force"), (std::vector<double>{3.0, 2.0, 1.5}));
+  EXPECT_EQ(array_of(text, "CellData", "tangential_force"), (std::vector<double>{4.0, 0.0, 0.0}));
+  EXPECT_EQ(array_of(text, "PointData", "normal_force"), (std::vector<double>{3.0, 3.0, 2.0, 2.0, 1.5, 1.5}));
+  EXPECT_EQ(array_of(text, "CellData", "id2"), (std::vector<double>{1, 2, -1}));
+}
+
+TEST(ExportFiles, StatesThatKeptNoContactsHaveNoFileOfThem) {
+  Snapshot s = a_state();
+  s.has_contacts = false;
+  s.contacts.clear();
+  EXPECT_EQ(vtp_files(s, 0).size(), 1U);
+  EXPECT_EQ(dump_files(s, 0).size(), 1U);
+  EXPECT_THROW((void)file_of(csv_files(s, 0), "contacts"), std::runtime_error);
+}
+
+/// Sections "ITEM: NAME rest" to their lines.
+std::map<std::string, std::vector<std::string>> items_of(const std::string& dump) {
+  std::map<std::string, std::vector<std::string>> out;
+  std::istringstream lines(dump);
+  std::string at;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("ITEM: "))
+      out[at = line.substr(6)];
+    else
+      out[at].push_back(line);
+  }
+  return out;
+}
+
+TEST(ExportFiles, DumpsAreAsLammpsWritesThem) {
+  const auto files = dump_files(a_state(), 0);
+  ASSERT_EQ(files.size(), 3U);
+  auto atoms = items_of(file_of(files, "particles").text);
+  EXPECT_EQ(atoms["TIMESTEP"], std::vector<std::string>{"12"});
+  EXPECT_EQ(atoms["TIME"], std::vector<std::string>{"0.25"});
+  EXPECT_EQ(atoms["NUMBER OF ATOMS"], std::vector<std::string>{"3"});
+  const auto rows = atoms["ATOMS id type mol xu yu zu radius vx vy vz"];
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_TRUE(rows[1].starts_with("2 3 6 0.24 0.5 0.1 0.11 ")) << rows[1];
+  const auto box = atoms["BOX BOUNDS xy xz yz pp pp ff"];
+  ASSERT_EQ(box.size(), 3U);
+  EXPECT_EQ(box[0], "0 1.25 0.25");  // the box around the sheared cell
+  EXPECT_EQ(box[1], "0 1 0");
+  auto contacts = items_of(file_of(files, "contacts").text);
+  EXPECT_EQ(contacts["NUMBER OF ENTRIES"], std::vector<std::string>{"2"});
+  const auto bonds = contacts["ENTRIES index batom1 batom2 normal_force fx fy fz px py pz"];
+  ASSERT_EQ(bonds.size(), 2U);
+  EXPECT_TRUE(bonds[0].starts_with("1 1 2 3 -3 4 0 ")) << bonds[0];
+  EXPECT_TRUE(bonds[1].starts_with("2 1 3 2 2 0 0 ")) << bonds[1];
+  auto walls = items_of(file_of(files, "wall_contacts").text);
+  const auto on_walls = walls["ENTRIES index id wall normal_force fx fy fz px py pz"];
+  ASSERT_EQ(on_walls.size(), 1U);
+  EXPECT_TRUE(on_walls[0].starts_with("1 2 1 1.5 ")) << on_walls[0];
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> out;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    out.emplace_back();
+    std::istringstream in(line + ",");
+    for (std::string cell; std::getline(in, cell, ',');) out.back().push_back(cell);
+  }
+  return out;
+}
+
+TEST(ExportFiles, TablesHaveUnitsAndAsManyCellsAsTheirHeader) {
+  const auto files = csv_files(a_state(), 0);
+  ASSERT_EQ(files.size(), 3U);
+  for (const ExportFile& f : files) {
+    const auto rows = cells_of(f.text);
+    for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size()) << f.name;
+  }
+  const auto particles = cells_of(file_of(files, "particles").text);
+  ASSERT_EQ(particles.size(), 4U);
+  EXPECT_EQ(particles[0][4], "x [m]");
+  EXPECT_EQ(particles[0][8], "vx [m/s]");
+  EXPECT_EQ(particles[3][4], "0.86");
+  const auto contacts = cells_of(file_of(files, "contacts").text);
+  ASSERT_EQ(contacts.size(), 4U);
+  EXPECT_EQ(contacts[0][3], "normal_force [N]");
+  EXPECT_EQ(contacts[1][1], "1");
+  EXPECT_EQ(contacts[3][1], "");
+  EXPECT_EQ(contacts[3][2], "0");
+}
+
+TEST(ExportFiles, UnknownFormsAreRefused) {
+  EXPECT_EQ(export_format("lammps-dump"), ExportFormat::lammps_dump);
+  EXPECT_THROW((void)export_format(""), BadInput);
+  try {
+    (void)export_format("vpt");
+    FAIL();
+  } catch (const BadInput& e) {
+    EXPECT_NE(std::string(e.what()).find("nearest is vtp"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
