@@ -37,7 +37,9 @@ class Photographer:
         shot = self.browser.execute_cdp_cmd("Page.captureScreenshot", {"clip": clip, "captureBeyondViewport": False})
         # 256 colours are enough and take a third of the place.
         image = Image.open(io.BytesIO(base64.b64decode(shot["data"]))).convert("RGB")
-        image.quantize(256, method=Image.Quantize.MAXCOVERAGE).save(self.folder / f"{name}.png", optimize=True)
+        # Plots keep their own few colours, packings the ends of the scale.
+        method = Image.Quantize.MAXCOVERAGE if name.startswith("packing") else Image.Quantize.MEDIANCUT
+        image.quantize(256, method=method).save(self.folder / f"{name}.png", optimize=True)
 
     def box(self, element):
         return self.browser.execute_script(
