@@ -81,6 +81,7 @@ RULES = [
     (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/softgrain_\*\.deb"
      r"|softgrain run /usr/share/softgrain/pipelines/quickstart\.toml",
      Elsewhere("by hand, in a bare Debian root: pipelines/guide/installing.md")),
+    (r"\./softgrain export results/quickstart --to [\w-]+( --out \S+)?", Run()),
     (r"\./softgrain run pipelines/(law_table|macro_vs_resolved)\.toml --out results/my_\w+", Check(slow=True)),
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),
     (r"\./softgrain microsim pipelines/powder_\w+\.toml", Check()),
