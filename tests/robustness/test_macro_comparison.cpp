@@ -65,7 +65,7 @@ TEST_F(MacroComparison, EveryEngineOnEveryScene) {
   EXPECT_EQ(summary["scenes"][0]["samples"].size(), 2U);
   EXPECT_EQ(nlohmann::json::parse(read_text(out() + "/comparison.json"))["scenes"], summary["scenes"]);
   const std::string report = read_text(out() + "/report.html");
-  EXPECT_NE(report.find("macro-error-cost"), std::string::npos);
+  EXPECT_NE(report.find("aria-label=\"Error against cost\""), std::string::npos);
   EXPECT_NE(report.find("oedometric-35"), std::string::npos);
   EXPECT_EQ(unbalanced_tags(report), "");
   EXPECT_NE(read_text(out() + "/table.md").find("| shear-35 | free | 1 |"), std::string::npos);
