@@ -7,6 +7,7 @@
 
 #include "common/io/text_file.h"
 #include "microsim/grain_box/record.h"
+#include "tests/support/disturbed_run.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -68,20 +69,14 @@ TEST(GrainBoxResume, InterruptedRunsEndInTheSameBits) {
   const TemporaryDirectory directory;
   const std::string scene = directory.file("scene.toml");
   write_text_atomic(scene, kScene);
-  (void)run_scene(scene, directory.file("whole"));
+  const double seconds = seconds_of([&] { (void)run_scene(scene, directory.file("whole")); });
   const auto whole = load_grain_boxes(directory.file("whole/grain_box.h5"));
   const std::string out = directory.file("stopped");
-  std::vector<std::string> arguments{"microsim", scene, "--out", out, "--threads", "1", "--quiet"};
-  int stops = 0;
-  int status = 0;
-  for (int n = 0; n < 200; ++n) {
-    status = signal_after(start_program(arguments), 0.1 + 0.03 * n, SIGTERM);
-    if (ended_before_it_listened(status)) continue;
-    if (!ended_with(status, 130)) break;
-    ++stops;
-    if (stops == 1) arguments.push_back("--resume");
-  }
-  ASSERT_TRUE(ended_with(status, 0));
+  const int stops = run_disturbed({SIGTERM, 12, 0.6 * seconds, 6}, out, 0, [&](int part) {
+    std::vector<std::string> arguments{"microsim", scene, "--out", out, "--threads", "1", "--quiet"};
+    if (part > 0) arguments.push_back("--resume");
+    return start_program(arguments);
+  });
   EXPECT_GE(stops, 2);
   const auto stopped = load_grain_boxes(out + "/grain_box.h5");
   ASSERT_EQ(stopped.size(), whole.size());

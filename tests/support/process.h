@@ -56,11 +56,6 @@ inline bool ended_with(int wait_status, int exit_status) {
   return WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == exit_status;
 }
 
-/// On a busy machine a SIGTERM may come before the program has asked for it.
-inline bool ended_before_it_listened(int wait_status) {
-  return WIFSIGNALED(wait_status) && WTERMSIG(wait_status) == SIGTERM;
-}
-
 /// For start_program: standard error goes to a file.
 inline std::function<void()> errors_to(const std::string& path) {
   return [path] {
