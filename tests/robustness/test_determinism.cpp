@@ -97,7 +97,7 @@ std::vector<SmallForm> small_forms() {
       {"law_table.toml", "run",
        with(crowd,
             {{"configuration=[" + plane + "," + two + "," + soft + "]", "calibrate.replicates=2", "variant=[]"}}),
-       0, false},
+       3, false},
       {"macro_vs_resolved.toml", "run",
        with(
            {"packing.polydispersity=4", "packing.trials=300", "packing.count=2", "macro.bodies=8", "macro.samples=2"},
