@@ -25,7 +25,7 @@ std::string number_text(double value) {
   return out.str();
 }
 
-std::string cut(std::string text) {
+std::string cut(const std::string& text) {
   return text.size() <= kLongestShown ? text : text.substr(0, kLongestShown) + "...";
 }
 

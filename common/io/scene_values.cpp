@@ -97,7 +97,7 @@ std::string text_of(const Table& table, const std::string& key, const toml::node
 
 std::string choice_of(const Table& table, const std::string& key, const toml::node& node,
                       std::initializer_list<const char*> words) {
-  const std::string value = text_of(table, key, node);
+  std::string value = text_of(table, key, node);
   const std::vector<std::string> known(words.begin(), words.end());
   if (std::find(known.begin(), known.end(), value) != known.end()) return value;
   std::string problem = "must be ";
