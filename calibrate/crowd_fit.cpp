@@ -12,6 +12,7 @@
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
 #include "common/core/random.h"
+#include "common/data/crowd_replicates.h"
 #include "common/io/interrupt.h"
 
 namespace softgrain {
@@ -188,6 +189,28 @@ class Filler {
   std::vector<std::vector<double>> columns_;
 };
 
+/// The replicates as rows of crowd_numbers() of this law.
+std::vector<std::vector<double>> replicate_rows(const CrowdLaw& law, const FormFit& fit,
+                                                const std::vector<std::vector<double>>& columns) {
+  const std::size_t planes = fit.planes.parameters.size();
+  const std::size_t solids = fit.solid_ratios.size();
+  const std::vector<double> best = crowd_numbers(law);
+  std::vector<std::vector<double>> rows(columns.front().size(), best);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto of = [&](std::size_t j) { return columns[j][r]; };
+    rows[r][0] = std::exp(of(0));
+    for (std::size_t j = 1; j < planes; ++j) rows[r][j] = of(j);
+    for (std::size_t k = 0; k < law.partners.size(); ++k) {
+      const bool soft = law.partners[k].kind == PartnerKind::soft;
+      const std::size_t first = planes + (soft ? fit.solid.parameters.size() : 0);
+      const std::size_t ratios = soft ? fit.soft_ratios.size() : solids;
+      rows[r][kCrowdParameters.size() + 2 * k] = std::exp(of(first + (soft ? k - solids : k)));
+      rows[r][kCrowdParameters.size() + 2 * k + 1] = of(first + ratios);
+    }
+  }
+  return rows;
+}
+
 double end_ratio(const CrowdModel& model, const CrowdStates& c) {
   const CrowdState& last = *loading_states(c).back();
   double law = 0.0;
@@ -278,10 +301,12 @@ CrowdLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>&
   CrowdLaw law;
   law.form = form;
   law.parameters = static_cast<int>(fit.planes.parameters.size());
-  const Filler filler(fit, bootstrap_form(data, form, fit, options));
+  const std::vector<std::vector<double>> columns = bootstrap_form(data, form, fit, options);
+  const Filler filler(fit, columns);
   filler.planes(law);
   filler.partners(law, states, PartnerKind::solid);
   filler.partners(law, states, PartnerKind::soft);
+  law.replicates = replicate_rows(law, fit, columns);
   set_status(law, fit, states);
   judge(law, fit, states);
   law.error_cross = cross_validate(fit, states, options.discrepancy);

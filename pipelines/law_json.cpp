@@ -70,7 +70,57 @@ json pair_json(const PairLaw& law, const SoftParticleSpec& spec) {
   return out;
 }
 
+void put_range(json& out, const LawTableEntry& e) {
+  out["solid_fraction"] = e.solid_fraction;
+  out["solid_fraction_error"] = e.solid_fraction_error;
+  out["packings"] = e.packings;
+  out["relaxation"] = e.relaxation;
+  out["best"] = e.best;
+  out["volume_max"] = e.volume_max;
+  out["overlap_max"] = e.overlap_max;
+  out["grain_overlap_max"] = e.grain_overlap_max;
+  out["beyond"] = to_string(e.beyond);
+}
+
+json slide_json(const SlideLaw& slide) {
+  json out;
+  put(out, "kt_ratio", slide.kt_ratio, 1.0);
+  put(out, "friction", slide.friction, 1.0);
+  return out;
+}
+
+json crowd_json(const CrowdLaw& law) {
+  json out{{"form", law.form}, {"status", law.status}, {"reason", law.reason}, {"partners", json::array()}};
+  for (const CrowdParameterName& p : kCrowdParameters) put(out, p.key, law.*p.estimate, 1.0);
+  for (const PartnerRow& row : law.partners) {
+    json one{
+        {"kind", to_string(row.kind)}, {"ratio", row.ratio}, {"overlap_max", row.overlap_max}, {"error", row.error}};
+    put(one, "weight", row.weight, 1.0);
+    put(one, "exponent", row.exponent, 1.0);
+    out["partners"].push_back(std::move(one));
+  }
+  out["error_fitted"] = number_or_null(law.error_fitted);
+  out["error_held_out"] = number_or_null(law.error_held_out);
+  out["error_cross"] = number_or_null(law.error_cross);
+  return out;
+}
+
 }  // namespace
+
+json law_table_json(const LawTable& table) {
+  json out{{"entries", json::array()}};
+  for (const LawTableEntry& e : table.entries) {
+    json one;
+    put_range(one, e);
+    put(one, "retreat", e.retreat, 1.0);
+    one["slides"] = {
+        {"plane", slide_json(e.slide_plane)}, {"solid", slide_json(e.slide_solid)}, {"soft", slide_json(e.slide_soft)}};
+    one["laws"] = json::array();
+    for (const CrowdLaw& law : e.laws) one["laws"].push_back(crowd_json(law));
+    out["entries"].push_back(std::move(one));
+  }
+  return out;
+}
 
 json laws_json(const LawCard& card) {
   json out = json::object();

@@ -1,8 +1,10 @@
-// Fitted laws as JSON, for summaries: in newtons and metres for the soft particle that was measured, and dimensionless.
+// Fitted laws as JSON, for summaries and for softgrain law: in newtons and metres for the soft particle that was
+// measured, and dimensionless.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
+#include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 
 namespace softgrain {
@@ -15,5 +17,10 @@ namespace softgrain {
 /// initial slope. Every parameter x comes with x_standard_error and x_interval = [low, high] (95 %, bootstrap over
 /// packings); null: not known. A law that was not fitted is null.
 nlohmann::json laws_json(const LawCard& card);
+
+/// { "entries": [ { "solid_fraction", "packings", "best", "volume_max", "overlap_max", "beyond", "retreat", "slides",
+/// "laws": [ { "form", "status", "a", ..., "partners", "error_fitted", ... } ] } ] }, dimensionless; estimates as in
+/// laws_json().
+nlohmann::json law_table_json(const LawTable& table);
 
 }  // namespace softgrain

@@ -13,6 +13,7 @@
 
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
+#include "pipelines/law_options.h"
 #include "pipelines/run_context.h"
 
 namespace softgrain {
@@ -130,6 +131,8 @@ void require_command(int argc, char** argv) {
     names.emplace_back(c.name);
     list += (list.empty() ? "" : ", ") + names.back();
   }
+  names.emplace_back("law");
+  list += ", law";
   const std::string word = argv[1];
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::string near = nearest_word(word, names);
@@ -149,8 +152,11 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     sub->callback([&chosen, &command] { chosen = &command; });
     sub->parse_complete_callback([&options, sub] { options.seed_given = sub->count("--seed") > 0; });
   }
+  LawOptions law;
+  add_law_command(app, law);
   require_command(argc, argv);
   app.parse(argc, argv);
+  if (!law.action.empty()) return command_law(law);
   if (chosen == nullptr) {
     std::fputs(app.help().c_str(), stderr);
     return ExitStatus::bad_input;

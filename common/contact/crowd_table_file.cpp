@@ -6,6 +6,7 @@
 #include <array>
 
 #include "common/contact/crowd_from_table.h"
+#include "common/data/crowd_replicates.h"
 #include "common/data/law_card_format.h"
 #include "common/data/spec_io.h"
 #include "common/io/text_file.h"
@@ -46,6 +47,17 @@ void write_grid(const h5::Group& group, const CrowdLaw& law, double overlap_max)
   group.write("force", force, {partners.size(), kPoints});
 }
 
+/// What the fit gave for packings drawn with replacement; "numbers" says which law they belong to.
+void write_replicates(const h5::Group& group, const CrowdLaw& law) {
+  if (law.replicates.empty()) return;
+  const std::vector<double> numbers = crowd_numbers(law);
+  std::vector<double> all;
+  for (const std::vector<double>& row : law.replicates) all.insert(all.end(), row.begin(), row.end());
+  group.write("numbers", numbers);
+  group.attribute_of("numbers", "columns", "a, b, delta, m0, m1, m2, then weight and exponent of every neighbour");
+  group.write("replicates", all, {law.replicates.size(), numbers.size()});
+}
+
 void write_table_file(const LawTable& table, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
   write_format(file.root(), kFormat);
@@ -62,6 +74,7 @@ void write_table_file(const LawTable& table, const std::string& path, const Prov
         const Estimate& v = law.*p.estimate;
         of_law.write(p.key, std::array<double, 4>{v.value, v.standard_error, v.low, v.high});
       }
+      write_replicates(of_law, law);
       write_grid(of_law, law, e.overlap_max);
     }
   }

@@ -49,6 +49,9 @@ struct CrowdLaw {
   double error_cross = 0.0;  ///< leave one configuration out, mean over configurations
   double criterion = 0.0;    ///< corrected Akaike information criterion: smaller is better
   int parameters = 0;
+  /// Refits to packings drawn with replacement, each as crowd_numbers() gives it; kept in the .h5 beside the table,
+  /// read by read_replicates() alone.
+  std::vector<std::vector<double>> replicates{};
 
   [[nodiscard]] std::vector<PartnerRow> rows(PartnerKind kind) const;
 };

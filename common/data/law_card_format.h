@@ -52,7 +52,8 @@ LawCard read_card_text(const std::string& toml_path);
 /// Name of the table beside a card: the same with extension .h5.
 std::string table_path(const std::string& toml_path);
 void write_table(const LawCard& card, const std::string& path, const Provenance& provenance);
-/// Fills the table rows of the pairs that the file holds. Throws FileTrouble.
+/// Fills the table rows of the pairs that the file holds, and the bands of laws whose numbers are those of the card.
+/// Throws FileTrouble.
 void read_table(LawCard& card, const std::string& path);
 
 }  // namespace softgrain

@@ -1,7 +1,9 @@
 // Layout of law.h5: "spec"; per pair kind a group with attributes, "table" (the measured curve) and, per law, a group
 // of its parameters as rows (value, standard_error, low, high); "covariance" 7 x 7; "band" with the 95 % bands. All
 // dimensionless.
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/core/error.h"
 #include "common/data/law_card_format.h"
@@ -68,6 +70,33 @@ void write_bands(const h5::Group& root, const LawCard& card) {
   }
 }
 
+/// Whether the bands belong to the numbers of the card, which people may have changed.
+bool same_numbers(const h5::Group& law, const ThresholdPowerLaw& card) {
+  return std::all_of(kLawParameters.begin(), kLawParameters.end(), [&](const LawParameterName& p) {
+    if (!law.has(p.key)) return false;
+    const std::vector<double> row = law.doubles(p.key);
+    const double value = (card.*p.estimate).value;
+    return !row.empty() && std::abs(row.front() - value) <= 1e-9 * std::abs(value);
+  });
+}
+
+/// Bands of the laws whose numbers are those of the card.
+void read_bands(const h5::Group& root, PairLaw& pair, const std::string& path) {
+  const std::string name = to_string(pair.kind);
+  if (!root.has("band") || !root.open("band").has(name)) return;
+  const h5::Group group = root.open("band").open(name);
+  pair.band_delta = group.doubles("delta");
+  for (const LawPartName& part : kLawParts) {
+    const std::string key = part.key;
+    if (!group.has(key + "_low") || !group.has(key + "_high")) continue;
+    LawBandRows rows{key, group.doubles(key + "_low"), group.doubles(key + "_high")};
+    if (rows.low.size() != pair.band_delta.size() || rows.high.size() != pair.band_delta.size())
+      throw FileTrouble(path + ": the band of '" + key + "' has a wrong length");
+    const h5::Group fitted = root.open(name);
+    if (fitted.has(key) && same_numbers(fitted.open(key), pair.*part.law)) pair.bands.push_back(std::move(rows));
+  }
+}
+
 LawTableRows read_curve(const h5::Group& table, const std::string& path) {
   LawTableRows rows;
   for (const LawTableColumn& column : kLawTableColumns) {
@@ -99,7 +128,9 @@ void read_table(LawCard& card, const std::string& path) {
   require_format(root, kFormat, path);
   for (PairLaw& pair : card.pairs) {
     const std::string name = to_string(pair.kind);
-    if (root.has(name)) pair.table = read_curve(root.open(name).open("table"), path);
+    if (!root.has(name)) continue;
+    pair.table = read_curve(root.open(name).open("table"), path);
+    read_bands(root, pair, path);
   }
 }
 

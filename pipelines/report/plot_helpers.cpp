@@ -71,10 +71,9 @@ Series law_line(const PairLaw& law, LawPart part, double unit, double low, doubl
 
 }  // namespace
 
-void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, double unit, const std::string& label,
-             const char* color) {
+void add_law(Plot& plot, const PairLaw& law, LawPart part, double unit, const std::string& label, const char* color) {
   if (!has_part(law, part) || law.delta_max <= 0.0) return;
-  if (const auto band = law_band(run, law, part)) {
+  if (const auto band = law_band(law, part)) {
     Series s{.label = "95 % interval (" + band->origin + ")",
              .hover = "95 % interval of the " + label,
              .x = band->delta,

@@ -28,8 +28,7 @@ std::vector<Series> packing_series(const Measurements& data, const ValuesByDelta
 
 /// A fitted law over (0, delta_max], times `unit`, with its 95 % band when there is one; dotted a little beyond its
 /// range, as it is used there (not at all when that is an error).
-void add_law(Plot& plot, const RunData& run, const PairLaw& law, LawPart part, double unit, const std::string& label,
-             const char* color);
+void add_law(Plot& plot, const PairLaw& law, LawPart part, double unit, const std::string& label, const char* color);
 
 /// The overlaps that a law was fitted in, to be shaded; nothing without such a law.
 std::optional<ShadedRange> fitted_range(const PairLaw* law, LawPart part);

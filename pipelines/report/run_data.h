@@ -8,6 +8,7 @@
 
 #include "common/data/crowd_law.h"
 #include "common/data/crowd_measurements.h"
+#include "common/data/law_band.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
@@ -16,14 +17,6 @@
 #include "pipelines/report/powder_data.h"
 
 namespace softgrain::report {
-
-/// 95 % band of a law, dimensionless, over `delta`.
-struct LawBand {
-  std::vector<double> delta;
-  std::vector<double> low;
-  std::vector<double> high;
-  std::string origin;  ///< "bootstrap over packings" or "linearised from the covariance"
-};
 
 /// One scene of a comparison of laws with twins.
 struct MacroScene {
@@ -62,17 +55,9 @@ std::optional<double> find_number(const nlohmann::json& root, const std::string&
 std::string find_text(const nlohmann::json& root,
                       const std::string& path);  ///< empty when absent; numbers and flags as text
 
-enum class LawPart { normal, tangential_initial, tangential_secant };
-const ThresholdPowerLaw& part_of(const PairLaw& law, LawPart part);
-/// Whether the part was measured and could be fitted.
-bool has_part(const PairLaw& law, LawPart part);
-
-/// Band from group "band/KIND" of law.h5 (`delta`, `PART_low`, `PART_high`) when it is there, else from the
-/// covariance of the parameters by linearised error propagation; empty when neither exists.
-std::optional<LawBand> law_band(const RunData& run, const PairLaw& law, LawPart part);
-
-/// Linearised 95 % band at the given overlaps; empty when the covariance is absent or zero.
-std::optional<LawBand> linearised_band(const PairLaw& law, LawPart part, const std::vector<double>& delta);
+/// Band that was read with the card when it is there, else from the covariance of the parameters by linearised error
+/// propagation; empty when neither exists.
+std::optional<LawBand> law_band(const PairLaw& law, LawPart part);
 
 /// n values evenly spread over [low, high].
 std::vector<double> spread(double low, double high, int n);

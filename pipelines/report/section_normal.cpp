@@ -60,7 +60,7 @@ std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
   for (Series& s : packing_series(data, forces, 1.0, fmt::format("one packing ({})", runs.size())))
     plot.add(std::move(s));
   if (const PairLaw* law = run.law(kind))
-    add_law(plot, run, *law, LawPart::normal, force_scale(data.spec), "fitted law", palette::blue);
+    add_law(plot, *law, LawPart::normal, force_scale(data.spec), "fitted law", palette::blue);
   add_reference_curves(plot, data.spec, kind, last_delta(forces));
   Series failed = unconverged(runs);
   if (!failed.x.empty()) plot.add(std::move(failed));

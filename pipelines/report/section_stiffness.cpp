@@ -31,7 +31,7 @@ std::string stiffness_figure(const RunData& run, PairKind kind, bool initial) {
   for (Series& s : packing_series(data, values, 1.0, fmt::format("one packing ({})", runs.size())))
     plot.add(std::move(s));
   if (const PairLaw* law = run.law(kind)) {
-    add_law(plot, run, *law, part, data.spec.youngs_modulus * radius, "fitted law", palette::blue);
+    add_law(plot, *law, part, data.spec.youngs_modulus * radius, "fitted law", palette::blue);
   }
   plot.add(mean_series(values, 1.0, "mean ± standard error",
                        {.color = palette::black, .width = 0.0, .marker = Marker::circle, .marker_size = 3.2}));

@@ -115,6 +115,8 @@ TEST_F(BadFiles, TextThatIsNoScene) { expect_cases("text.cases", 30); }
 
 TEST_F(BadFiles, ScenesCardsAndCommands) { expect_cases("kinds.cases", 60); }
 
+TEST_F(BadFiles, LawCommands) { expect_cases("law.cases", 12); }
+
 TEST_F(BadFiles, NestingBeyondReason) {
   const std::string path = directory_.file("case.toml");
   const auto many = [](const char* part) {

@@ -245,7 +245,7 @@ TEST(LinearisedBand, MatchesFiniteDifferences) {
   PairLaw law = synthetic::pair_law(PairKind::soft_solid, synthetic::kA);
   law.covariance.assign(49, 0.0);
   law.covariance[16] = 1e-4 * 1e-4;  // only delta uncertain
-  const auto band = report::linearised_band(law, report::LawPart::normal, {0.03, 0.2});
+  const auto band = linearised_band(law, LawPart::normal, {0.03, 0.2});
   ASSERT_TRUE(band.has_value());
   EXPECT_EQ(band->low[0], 0.0);
   const auto shifted = [&](double delta) {
@@ -254,7 +254,7 @@ TEST(LinearisedBand, MatchesFiniteDifferences) {
   const double slope = (shifted(synthetic::kDelta + 1e-6) - shifted(synthetic::kDelta - 1e-6)) / 2e-6;
   EXPECT_NEAR(0.5 * (band->high[1] - band->low[1]), 1.96 * std::abs(slope) * 1e-4, 1e-9);
   law.covariance.assign(49, 0.0);
-  EXPECT_FALSE(report::linearised_band(law, report::LawPart::normal, {0.2}).has_value());
+  EXPECT_FALSE(linearised_band(law, LawPart::normal, {0.2}).has_value());
 }
 
 }  // namespace

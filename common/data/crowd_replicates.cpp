@@ -1,0 +1,92 @@
+#include "common/data/crowd_replicates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "common/core/error.h"
+#include "common/data/law_card_format.h"
+#include "common/io/hdf5_file.h"
+
+namespace softgrain {
+
+namespace {
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double x, double y) { return std::abs(x - y) <= 1e-9 * std::abs(y); });
+}
+
+void read_law(const h5::Group& group, CrowdLaw& law, const std::string& path) {
+  if (!group.has("replicates") || !group.has("numbers")) return;
+  const std::vector<double> numbers = crowd_numbers(law);
+  if (!same(group.doubles("numbers"), numbers)) return;
+  const h5::Shape shape = group.shape("replicates");
+  const std::vector<double> all = group.doubles("replicates");
+  if (shape.size() != 2 || shape[1] != numbers.size())
+    throw FileTrouble(path + ": the replicates of the " + law.form + " law have a wrong length");
+  for (std::size_t r = 0; r < shape[0]; ++r) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * shape[1]);
+    law.replicates.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(shape[1]));
+  }
+}
+
+}  // namespace
+
+std::vector<double> crowd_numbers(const CrowdLaw& law) {
+  std::vector<double> out;
+  for (const CrowdParameterName& p : kCrowdParameters) out.push_back((law.*p.estimate).value);
+  for (const PartnerRow& row : law.partners) {
+    out.push_back(row.weight.value);
+    out.push_back(row.exponent.value);
+  }
+  return out;
+}
+
+CrowdLaw with_numbers(const CrowdLaw& law, const std::vector<double>& numbers) {
+  if (numbers.size() != kCrowdParameters.size() + 2 * law.partners.size())
+    throw std::invalid_argument("a row of numbers that is not of this law");
+  CrowdLaw out = law;
+  auto next = numbers.begin();
+  for (const CrowdParameterName& p : kCrowdParameters) (out.*p.estimate).value = *next++;
+  for (PartnerRow& row : out.partners) {
+    row.weight.value = *next++;
+    row.exponent.value = *next++;
+  }
+  return out;
+}
+
+void read_replicates(LawTable& table, const std::string& toml_path) {
+  const std::string path = table_path(toml_path);
+  if (!std::filesystem::exists(path)) return;
+  const h5::Group root = h5::open_file(path);
+  for (std::size_t k = 0; k < table.entries.size(); ++k) {
+    const std::string name = fmt::format("entry_{}", k);
+    if (!root.has(name)) continue;
+    const h5::Group entry = root.open(name);
+    for (CrowdLaw& law : table.entries[k].laws)
+      if (entry.has(law.form)) read_law(entry.open(law.form), law, path);
+  }
+}
+
+LawTable replicate_of(const LawTable& table, const std::string& form, std::size_t r) {
+  LawTable out = table;
+  for (LawTableEntry& e : out.entries)
+    for (CrowdLaw& law : e.laws)
+      if (law.form == form) law = with_numbers(law, law.replicates.at(r));
+  return out;
+}
+
+std::size_t replicate_count(const LawTable& table, const std::string& form) {
+  std::size_t least = table.entries.empty() ? 0 : static_cast<std::size_t>(-1);
+  for (const LawTableEntry& e : table.entries) {
+    const CrowdLaw* law = e.find(form);
+    least = std::min(least, law == nullptr ? 0 : law->replicates.size());
+  }
+  return least;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,72 @@
+// Values of a law card.
+#include <algorithm>
+
+#include "common/contact/soft_contact_from_card.h"
+#include "pipelines/law/law_values.h"
+
+namespace softgrain::law {
+
+namespace {
+
+/// Unit radius and modulus: what the loop computes is dimensionless.
+ContactResponse<3> ask(const SoftContact& contact, double delta) {
+  ContactState<3> state;
+  state.overlap = delta;
+  state.normal[0] = 1.0;
+  state.constants.a = 1.0;
+  return contact.evaluate(state);
+}
+
+Where place(const PairLaw& law, double delta) {
+  if (delta < law.normal.delta.value) return Where::no_contact;
+  constexpr double kRounding = 1e-12;  // 3 * 0.1 is not beyond 0.3
+  if (law.delta_max > 0.0 && delta > law.delta_max * (1.0 + kRounding)) return Where::beyond;
+  return delta < law.delta_min * (1.0 - kRounding) ? Where::below : Where::inside;
+}
+
+/// The interval of a value at the overlap where the law is taken: of a clamped law at the end of its range.
+Quantity quantity(double value, const std::optional<LawInterval>& interval) { return {value, interval}; }
+
+}  // namespace
+
+std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std::vector<double>& deltas,
+                                  std::optional<Beyond> beyond) {
+  const auto contact = [&](bool secant) { return make_soft_contact(card, kind, 1.0, 0.0, 0.0, secant, beyond); };
+  const SoftContact initial = contact(false);
+  const SoftContact secant = contact(true);
+  const PairLaw& law = *card.find(kind);
+  std::vector<LawPoint> out;
+  for (const double delta : deltas) {
+    LawPoint p;
+    p.delta = delta;
+    p.where = place(law, delta);
+    p.refused = p.where == Where::beyond && initial.range.beyond == Beyond::error;
+    const double taken = std::min(delta, initial.range.clamp_at());
+    const ContactResponse<3> r = ask(initial, delta);
+    p.force = quantity(r.elastic_force, value_interval(law, LawPart::normal, taken));
+    p.stiffness = quantity(r.normal_stiffness, slope_interval(law, LawPart::normal, taken));
+    if (has_part(law, LawPart::tangential_initial))
+      p.tangential_initial = quantity(r.tangential_stiffness, value_interval(law, LawPart::tangential_initial, taken));
+    if (has_part(law, LawPart::tangential_secant))
+      p.tangential_secant =
+          quantity(ask(secant, delta).tangential_stiffness, value_interval(law, LawPart::tangential_secant, taken));
+    out.push_back(std::move(p));
+  }
+  return out;
+}
+
+std::string where_text(const LawPoint& point, Beyond beyond) {
+  switch (point.where) {
+    case Where::no_contact:
+      return "no contact";
+    case Where::below:
+      return "below range";
+    case Where::inside:
+      return "";
+    default:
+      if (point.refused) return "beyond range: refused";
+      return beyond == Beyond::clamp ? "beyond range: clamped" : "beyond range: extrapolated";
+  }
+}
+
+}  // namespace softgrain::law

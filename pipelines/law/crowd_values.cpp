@@ -1,0 +1,224 @@
+// Values of a law table: one soft particle of radius 1 and modulus 1 with its neighbours, through the loop's own law.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/bootstrap.h"
+#include "common/contact/crowd_from_table.h"
+#include "common/data/crowd_replicates.h"
+#include "microsim/crowd_arrangements.h"
+#include "pipelines/law/law_values.h"
+
+namespace softgrain::law {
+
+namespace {
+
+constexpr std::size_t kEnough = 10;  ///< replicates for an interval
+
+template <class Law>
+concept CrowdContact = requires(const Law& law) {
+  law.form;
+  law.partner;
+};
+
+struct Neighbours {
+  PartnerKind kind = PartnerKind::plane;
+  double ratio = 0.0;
+  std::vector<Vec3> direction;
+  std::vector<double> share;  ///< of Delta
+};
+
+/// What the loop would find at these overlaps: all contacts of the particle in the middle, one of each soft neighbour.
+template <class Law>
+class Middle {
+ public:
+  Middle(const Law& law, const Neighbours& around, double delta) : law_(law) {
+    const double radius = around.kind == PartnerKind::plane ? 0.0 : around.ratio;
+    const PairConstants constants = law.pair_constants({1.0, radius, 0.0, 0.0});
+    for (std::size_t k = 0; k < around.direction.size(); ++k) {
+      ContactState<3> s;
+      s.overlap = delta * around.share[k];
+      s.normal = -around.direction[k];
+      s.constants = constants;
+      s.radius_i = 1.0;
+      s.radius_j = radius;
+      states_.push_back(s);
+      if (s.overlap > 0.0) law.share(s, true, own_);
+    }
+    if constexpr (Law::needs_particle_pass) law.finish(own_);
+  }
+
+  [[nodiscard]] ContactResponse<3> response(std::size_t k) const {
+    ContactState<3> s = states_[k];
+    if (!(s.overlap > 0.0)) return {};
+    CrowdSum<3> other;
+    if constexpr (Law::needs_particle_pass) {
+      law_.share(s, false, other);
+      law_.finish(other);
+      s.sum_i = &own_;
+      s.sum_j = &other;
+    }
+    return law_.evaluate(s);
+  }
+
+  /// Equivalent volume of the particle in the middle; of the pair law the largest of its contacts.
+  [[nodiscard]] double volume() const {
+    if constexpr (Law::needs_particle_pass) return is_bag_ ? own_.volume : law_.form.equivalent_volume(own_);
+    double largest = 0.0;
+    for (const ContactState<3>& s : states_) {
+      CrowdSum<3> one;
+      if (s.overlap > 0.0) law_.share(s, true, one);
+      largest = std::max(largest, one.volume);
+    }
+    return largest;
+  }
+
+ private:
+  static constexpr bool is_bag_ =
+      std::is_same_v<Law, SoftCrowd<Crowd::bag, false>> || std::is_same_v<Law, SoftCrowd<Crowd::bag, true>>;
+
+  const Law& law_;
+  CrowdSum<3> own_;
+  std::vector<ContactState<3>> states_;
+};
+
+struct Raw {
+  std::vector<double> force;
+  double stiffness = 0.0;   ///< of the first neighbour
+  double tangential = 0.0;  ///< of the first neighbour
+  double friction = 0.0;    ///< mu of this kind of pair
+  double volume = 0.0;
+};
+
+Raw ask(const AnyLaw& any, const Neighbours& around, double delta) {
+  Raw out;
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        if constexpr (CrowdContact<Law>) {
+          const Middle<Law> middle(law, around, delta);
+          for (std::size_t k = 0; k < around.direction.size(); ++k)
+            out.force.push_back(middle.response(k).elastic_force);
+          const ContactResponse<3> first = middle.response(0);
+          out.stiffness = first.normal_stiffness;
+          out.tangential = law.kt_ratio * first.normal_stiffness;
+          out.friction = law.friction;
+          out.volume = middle.volume();
+        }
+      },
+      any);
+  return out;
+}
+
+const AnyLaw& law_for(const CrowdLaws& laws, PartnerKind kind) {
+  if (kind == PartnerKind::plane) return laws.soft_plane;
+  return kind == PartnerKind::solid ? laws.soft_solid : laws.soft_soft;
+}
+
+AnyLaw contact_of(const LawTableEntry& entry, const CrowdQuestion& q, const std::string& form) {
+  CrowdChoices choices;
+  choices.form = form;
+  choices.modulus = 1.0;
+  choices.beyond = q.beyond;
+  return law_for(make_crowd_laws(entry, choices), q.partner);
+}
+
+const SlideLaw& slide_for(const LawTableEntry& entry, PartnerKind kind) {
+  if (kind == PartnerKind::plane) return entry.slide_plane;
+  return kind == PartnerKind::solid ? entry.slide_solid : entry.slide_soft;
+}
+
+double fraction_of(const LawTable& table, const CrowdQuestion& q) {
+  return q.solid_fraction.value_or(table.entries.front().solid_fraction);
+}
+
+/// Largest overlap over Rs that was measured with this neighbour, from the row of the nearest ratio.
+double overlap_max(const CrowdAnswer& answer, const CrowdQuestion& q, std::string& remark) {
+  if (q.partner == PartnerKind::plane) return answer.entry.overlap_max;
+  const std::vector<PartnerRow> rows = answer.entry.find(answer.form)->rows(q.partner);
+  const double ratio = q.partner == PartnerKind::soft ? std::max(q.ratio, 1.0 / q.ratio) : q.ratio;
+  if (ratio < rows.front().ratio || ratio > rows.back().ratio)
+    remark +=
+        fmt::format("{}ratio {:.4g} was not measured with {} neighbours ({:.4g} to {:.4g})", remark.empty() ? "" : "; ",
+                    q.ratio, to_string(q.partner), rows.front().ratio, rows.back().ratio);
+  const auto nearest = std::min_element(rows.begin(), rows.end(), [&](const PartnerRow& a, const PartnerRow& b) {
+    return std::abs(std::log(a.ratio / ratio)) < std::abs(std::log(b.ratio / ratio));
+  });
+  return nearest->overlap_max * std::min(1.0, q.ratio);
+}
+
+std::optional<LawInterval> interval_of(std::vector<double> values) {
+  if (values.size() < kEnough) return std::nullopt;
+  const auto [low, high] = interval95(std::move(values));
+  return LawInterval{low, high, kFromBootstrap};
+}
+
+/// kt = (kt/kn) kn: both are uncertain, each on its own.
+std::optional<LawInterval> tangential_interval(double kt, const Quantity& kn, const Estimate& ratio) {
+  if (!kn.interval || !(kn.value > 0.0) || !(ratio.value > 0.0)) return std::nullopt;
+  constexpr double kNormal95 = 1.96;
+  const double of_kn = 0.5 * (kn.interval->high - kn.interval->low) / kn.value;
+  const double of_ratio = kNormal95 * ratio.standard_error / ratio.value;
+  const double half = kt * std::hypot(of_kn, of_ratio);
+  return LawInterval{std::max(0.0, kt - half), kt + half, kFromBootstrap};
+}
+
+Where place(const CrowdAnswer& answer, const LawPoint& p) {
+  if (!(p.force.value > 0.0)) return Where::no_contact;
+  const bool deep = p.delta > answer.overlap_max * (1.0 + 1e-9);
+  const bool squeezed = answer.entry.volume_max > 0.0 && p.volume > answer.entry.volume_max * (1.0 + 1e-9);
+  return deep || squeezed ? Where::beyond : Where::inside;
+}
+
+/// One law for every replicate, at the solid fraction that was asked for.
+std::vector<AnyLaw> replicate_laws(const LawTable& table, const CrowdQuestion& q, const std::string& form) {
+  std::vector<AnyLaw> out;
+  std::string ignored;
+  const std::size_t n = replicate_count(table, form);
+  for (std::size_t r = 0; r < n; ++r)
+    out.push_back(contact_of(entry_at(replicate_of(table, form, r), fraction_of(table, q), q.range, ignored), q, form));
+  return out;
+}
+
+LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, const Estimate& kt_ratio) {
+  LawPoint p;
+  p.delta = delta;
+  p.forces = raw.force;
+  p.volume = raw.volume;
+  std::vector<double> force;
+  std::vector<double> stiffness;
+  for (const Raw& r : drawn) {
+    force.push_back(r.force.front());
+    stiffness.push_back(r.stiffness);
+  }
+  p.force = {raw.force.front(), interval_of(std::move(force))};
+  p.stiffness = {raw.stiffness, interval_of(std::move(stiffness))};
+  p.tangential_secant = Quantity{raw.tangential, tangential_interval(raw.tangential, p.stiffness, kt_ratio)};
+  p.friction_limit = raw.friction * raw.force.front();
+  return p;
+}
+
+}  // namespace
+
+CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const std::vector<double>& deltas) {
+  CrowdAnswer out;
+  out.entry = entry_at(table, fraction_of(table, q), q.range, out.remark);
+  out.form = q.form.empty() ? out.entry.best : q.form;
+  const AnyLaw contact = contact_of(out.entry, q, out.form);
+  out.overlap_max = overlap_max(out, q, out.remark);
+  const Neighbours around{q.partner, q.ratio, arrangement(q.arrangement), depth_shares(q.arrangement, q.shallow)};
+  const std::vector<AnyLaw> drawn = replicate_laws(table, q, out.form);
+  out.replicates = drawn.size() < kEnough ? 0 : drawn.size();
+  const Beyond beyond = q.beyond.value_or(out.entry.beyond);
+  for (const double delta : deltas) {
+    std::vector<Raw> raws;
+    for (const AnyLaw& law : drawn) raws.push_back(ask(law, around, delta));
+    LawPoint p = point_of(ask(contact, around, delta), delta, raws, slide_for(out.entry, q.partner).kt_ratio);
+    p.where = place(out, p);
+    p.refused = p.where == Where::beyond && beyond == Beyond::error;
+    out.points.push_back(std::move(p));
+  }
+  return out;
+}
+
+}  // namespace softgrain::law

@@ -1,0 +1,56 @@
+#include "pipelines/law/law_file.h"
+
+#include <filesystem>
+
+#include "common/core/error.h"
+#include "common/data/crowd_replicates.h"
+#include "common/io/scene.h"
+
+namespace softgrain::law {
+
+namespace {
+
+std::string file_in(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return path;
+  for (const char* name : {"law_table.toml", "law.toml"})
+    if (std::filesystem::exists(path + "/" + name, ignored)) return path + "/" + name;
+  throw BadInput(path + ": a directory without law_table.toml or law.toml");
+}
+
+LawOrigin read_origin(const SceneTable& root) {
+  const SceneTable t = root.table_or_empty("provenance");
+  return {t.text("version", ""), t.text("commit", ""), t.text("command", ""), t.text("seed", "")};
+}
+
+}  // namespace
+
+LawFile load_law_file(const std::string& given) {
+  LawFile out;
+  out.path = file_in(given);
+  if (std::filesystem::path(out.path).extension() == ".h5")
+    throw BadInput(out.path + ": give the card or table itself, the .toml beside it");
+  const Scene text = Scene::load(out.path);
+  const SceneTable root = text.root();
+  if (root.has("pair")) {
+    out.card = load_card(out.path);
+  } else if (root.has("entry")) {
+    out.table = load_law_table(out.path);
+    read_replicates(*out.table, out.path);
+  } else {
+    throw BadInput(out.path + ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]])");
+  }
+  out.origin = read_origin(root);
+  return out;
+}
+
+std::vector<double> even(double low, double high, std::size_t n) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(n - 1);
+    values.push_back(k + 1 == n ? high : low + (high - low) * share);
+  }
+  return values;
+}
+
+}  // namespace softgrain::law

@@ -1,0 +1,135 @@
+#include "pipelines/law/law_show.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/data/law_card_format.h"
+#include "pipelines/law/law_values.h"
+#include "pipelines/law/terminal_plot.h"
+
+namespace softgrain::law {
+
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string number(double x, int digits = 4) { return fmt::format("{:.{}g}", x, digits); }
+
+std::string interval(const Estimate& e) {
+  return std::isfinite(e.low) && std::isfinite(e.high) && e.low < e.high ? number(e.low) + " .. " + number(e.high)
+                                                                         : "-";
+}
+
+std::string error_text(const Estimate& e) {
+  return std::isfinite(e.standard_error) && e.standard_error > 0.0 ? number(e.standard_error, 2) : "-";
+}
+
+/// a and c in newtons, or newtons per metre, for the soft particle that was measured.
+void add_part(Rows& rows, const PairLaw& law, LawPart part, const SoftParticleSpec& spec) {
+  const bool normal = part == LawPart::normal;
+  const double unit = spec.youngs_modulus * spec.shell_radius * (normal ? spec.shell_radius : 1.0);
+  const std::string name =
+      normal ? "F/(E Rs^2)"
+             : (part == LawPart::tangential_initial ? fmt::format("kt/(E Rs) to {} deg", law.initial_angle_deg)
+                                                    : fmt::format("kt/(E Rs) at {} deg", law.secant_angle_deg));
+  bool first = true;
+  for (const LawParameterName& p : kLawParameters) {
+    const Estimate& e = part_of(law, part).*p.estimate;
+    std::vector<std::string> row{first ? name : "", p.key, number(e.value), error_text(e), interval(e)};
+    if (p.has_dimension) row.push_back(number(e.value * unit) + (normal ? " N" : " N/m"));
+    rows.push_back(std::move(row));
+    first = false;
+  }
+}
+
+std::string range_text(const PairLaw& law) {
+  std::string text = fmt::format("  valid for Delta = {} to {}; beyond: {}", number(law.delta_min),
+                                 number(law.delta_max), to_string(law.beyond));
+  if (law.max_overlap > 0.0)
+    text += fmt::format("; grains overlap in that range by up to {} of the smaller radius", number(law.max_overlap, 2));
+  return wrapped(text, 4);
+}
+
+/// The normal law up to the end of its range, with its 95 % band and the measured means.
+std::string plot_of(const PairLaw& law, bool utf8) {
+  if (!has_part(law, LawPart::normal) || !(law.delta_max > 0.0)) return "";
+  TerminalPlot plot{"Delta", "F/(E Rs^2), " + to_string(law.kind), 76, 10, utf8, {}};
+  TerminalCurve low{{}, {}, TerminalCurve::Look::dotted};
+  TerminalCurve high = low;
+  TerminalCurve line;
+  constexpr std::size_t kPoints = 240;
+  for (const double d : even(0.0, law.delta_max, kPoints)) {
+    line.x.push_back(d);
+    line.y.push_back(law.normal.value(d));
+    if (const auto band = value_interval(law, LawPart::normal, d)) {
+      low.x.push_back(d);
+      low.y.push_back(band->low);
+      high.x.push_back(d);
+      high.y.push_back(band->high);
+    }
+  }
+  const bool band = !low.x.empty();
+  const std::string origin = band ? value_interval(law, LawPart::normal, law.delta_max)->origin : "";
+  plot.curves = {low, high, line, {law.table.delta, law.table.force_mean, TerminalCurve::Look::marks, 'o'}};
+  std::string key = "  line: the law";
+  if (band) key += "; dots: 95 %, " + origin;
+  if (!law.table.delta.empty()) key += "; o: measured means";
+  return draw(plot) + wrapped(key, 4);
+}
+
+std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf8) {
+  std::string text = fmt::format("{}: {}", to_string(law.kind), law.status);
+  if (!law.reason.empty()) text += " (" + law.reason + ")";
+  text += fmt::format(", {} packings, {} points", law.packings, law.points);
+  if (law.chi2_per_dof > 0.0)
+    text += fmt::format(", chi^2 per degree of freedom {} (probability of a larger one {})",
+                        number(law.chi2_per_dof, 2), number(law.quality, 3));
+  text = wrapped(text, 4) + range_text(law);
+  Rows rows{{"law", "", "value", "error", "95 % interval", "here"}};
+  for (const LawPart part : kAllLawParts)
+    if (has_part(law, part)) add_part(rows, law, part, spec);
+  if (rows.size() == 1) return text + "  no law was fitted\n";
+  return text + aligned(rows, 2, 2) + plot_of(law, utf8);
+}
+
+}  // namespace
+
+std::string origin_text(const LawOrigin& o) {
+  if (o.version.empty() && o.command.empty()) return "";
+  std::string text = "made by softgrain " + o.version;
+  if (!o.commit.empty()) text += " (" + o.commit + ")";
+  if (!o.seed.empty()) text += ", seed " + o.seed;
+  return o.command.empty() ? text : text + ": " + o.command;
+}
+
+std::string spec_text_for_people(const SoftParticleSpec& s) {
+  return fmt::format(
+      "Rs = {} m, E = {} Pa, nu = {}, mu = {}, {} kg/m^3; radii r^-{} with rmax/rmin = {}, rmax/Rs = {}, beta = {}, {} "
+      "trials{}",
+      number(s.shell_radius), number(s.youngs_modulus), number(s.poisson_ratio), number(s.friction), number(s.density),
+      number(s.exponent), number(s.polydispersity), number(s.rmax_over_shell), number(s.beta), s.trials,
+      s.placement == Placement::voids ? " in voids" : "");
+}
+
+std::string card_text_for_people(const LawFile& file, bool utf8) {
+  const LawCard& card = *file.card;
+  std::string text =
+      wrapped(fmt::format("{}: law card, measured with the {} relaxation", file.path, card.relaxation), 2);
+  text += wrapped("  " + spec_text_for_people(card.spec), 2);
+  const std::string origin = origin_text(file.origin);
+  if (!origin.empty()) text += wrapped("  " + origin, 2);
+  for (const PairLaw& law : card.pairs) text += "\n" + pair_text(law, card.spec, utf8);
+  return text + "\n" +
+         wrapped(
+             "F(Delta) = a Delta^b + c for Delta >= delta, else 0; c = -a delta^b. a, b and delta are nearly "
+             "degenerate: judge a law by its values (softgrain law eval). Column \"here\": for the E and Rs above.",
+             0);
+}
+
+std::string law_text(const LawFile& file, bool utf8) {
+  return file.card ? card_text_for_people(file, utf8) : table_text_for_people(file, utf8);
+}
+
+}  // namespace softgrain::law

@@ -1,0 +1,123 @@
+// A law table as text for a terminal.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipelines/law/law_show.h"
+#include "pipelines/law/law_values.h"
+#include "pipelines/law/terminal_plot.h"
+
+namespace softgrain::law {
+
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string number(double x, int digits = 4) { return fmt::format("{:.{}g}", x, digits); }
+
+/// "0.733 +- 0.19"; parameters that a form does not have are fixed.
+std::string with_error(const Estimate& e) {
+  if (!std::isfinite(e.standard_error)) return number(e.value, 3) + " (?)";
+  return e.standard_error > 0.0 ? number(e.value, 3) + " +- " + number(e.standard_error, 2) : number(e.value, 3);
+}
+
+std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.1f}", 100.0 * share) : "-"; }
+
+std::string parameters_text(const LawTableEntry& entry) {
+  Rows rows{{"form"}};
+  for (const CrowdParameterName& p : kCrowdParameters) rows.push_back({p.key});
+  for (const char* name : {"off by [%]: fitted", "held out", "leave one out", "criterion"}) rows.push_back({name});
+  for (const CrowdLaw& law : entry.laws) {
+    std::size_t r = 0;
+    rows[r++].push_back(law.form + (law.form == entry.best ? " (best)" : ""));
+    for (const CrowdParameterName& p : kCrowdParameters) rows[r++].push_back(with_error(law.*p.estimate));
+    for (const double x : {law.error_fitted, law.error_held_out, law.error_cross}) rows[r++].push_back(percent(x));
+    rows[r++].push_back(number(law.criterion, 5));
+  }
+  return aligned(rows, 2);
+}
+
+std::string partners_text(const CrowdLaw& law) {
+  Rows rows{{"neighbour", "R'/R", "w", "m", "h/min(R, R') to", "off by [%]"}};
+  for (const PartnerRow& row : law.partners)
+    rows.push_back({to_string(row.kind), number(row.ratio), with_error(row.weight), with_error(row.exponent),
+                    number(row.overlap_max, 3), percent(row.error)});
+  if (rows.size() == 1) return "";
+  return fmt::format("  neighbours of the {} law, nu = w v^m (a plane has w = m = 1)\n", law.form) + aligned(rows, 2);
+}
+
+std::string slides_text(const LawTableEntry& e) {
+  Rows rows{{"friction", "mu_soft", "kt/kn"}};
+  const auto add = [&](const char* name, const SlideLaw& slide) {
+    rows.push_back({name, with_error(slide.friction), with_error(slide.kt_ratio)});
+  };
+  add("on planes", e.slide_plane);
+  add("on solid spheres", e.slide_solid);
+  add("on soft ones", e.slide_soft);
+  return aligned(rows, 2);
+}
+
+/// Forms that are no good say why.
+std::string statuses_text(const LawTableEntry& e) {
+  std::string text;
+  for (const CrowdLaw& law : e.laws)
+    if (law.status != "good")
+      text += wrapped(
+          fmt::format("  {} law: {}{}", law.form, law.status, law.reason.empty() ? "" : " (" + law.reason + ")"), 4);
+  return text;
+}
+
+/// Force of one plane and of each of six.
+std::string plot_of(const LawTableEntry& e, bool utf8) {
+  const CrowdLaw* best = e.find(e.best);
+  const bool usable = best->status != "no threshold crossing" && !best->rows(PartnerKind::solid).empty() &&
+                      !best->rows(PartnerKind::soft).empty();
+  if (!usable || !(e.overlap_max > 0.0)) return "";
+  const LawTable alone{1, {e}};
+  constexpr std::size_t kPoints = 160;
+  TerminalPlot plot{"h/Rs", "F/(E Rs^2) on each plane, " + e.best + " law", 76, 10, utf8, {}};
+  for (const char* arranged : {"one", "cube"}) {
+    CrowdQuestion q;
+    q.arrangement = arranged;
+    q.beyond = Beyond::extrapolate;
+    TerminalCurve curve;
+    if (std::string(arranged) == "one") curve.look = TerminalCurve::Look::dotted;
+    for (const LawPoint& p : crowd_values(alone, q, even(0.0, e.overlap_max, kPoints)).points) {
+      if (p.where == Where::beyond) break;
+      curve.x.push_back(p.delta);
+      curve.y.push_back(p.force.value);
+    }
+    plot.curves.push_back(std::move(curve));
+  }
+  return draw(plot) + "  line: six planes (cube), as far as was measured; dots: one plane\n";
+}
+
+std::string entry_text(const LawTableEntry& e, bool utf8) {
+  std::string text = wrapped(fmt::format("solid fraction {:.4f} +- {:.4f}: {} packings, {}", e.solid_fraction,
+                                         e.solid_fraction_error, e.packings, e.relaxation),
+                             4);
+  text += wrapped("  " + spec_text_for_people(e.spec), 4);
+  text +=
+      wrapped(fmt::format("  valid up to an equivalent volume of {} and h/Rs = {} with a plane, where grains overlap "
+                          "by up to {} of the smaller radius; beyond: {}; unloading {} times as steep",
+                          number(e.volume_max, 3), number(e.overlap_max, 3), number(e.grain_overlap_max, 2),
+                          to_string(e.beyond), with_error(e.retreat)),
+              4);
+  text += statuses_text(e) + parameters_text(e);
+  if (const CrowdLaw* best = e.find(e.best)) text += partners_text(*best);
+  return text + slides_text(e) + plot_of(e, utf8);
+}
+
+}  // namespace
+
+std::string table_text_for_people(const LawFile& file, bool utf8) {
+  std::string text = wrapped(fmt::format("{}: law table, {} solid fraction{}", file.path, file.table->entries.size(),
+                                         file.table->entries.size() == 1 ? "" : "s"),
+                             2);
+  const std::string origin = origin_text(file.origin);
+  if (!origin.empty()) text += wrapped("  " + origin, 2);
+  for (const LawTableEntry& e : file.table->entries) text += "\n" + entry_text(e, utf8);
+  return text;
+}
+
+}  // namespace softgrain::law

@@ -1,0 +1,97 @@
+// softgrain law on the committed laws: the text for people to the letter, and the program from outside.
+// After a change that is meant: LC_ALL=C softgrain law show results/published/law.toml > tests/reference/law/card.txt,
+// from the root of the tree; likewise table.txt (results/law_table/law_table.toml) and difference.txt (both).
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "pipelines/law/law_difference.h"
+#include "pipelines/law/law_show.h"
+#include "pipelines/law/terminal_plot.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace softgrain {
+namespace {
+
+using test::run_the_program;
+
+const std::string kRoot = SOFTGRAIN_SOURCE_DIR;
+const std::string kCard = "results/published/law.toml";
+const std::string kTable = "results/law_table/law_table.toml";
+
+law::LawFile committed(const std::string& path) {
+  law::LawFile file = law::load_law_file(kRoot + "/" + path);
+  file.path = path;
+  return file;
+}
+
+std::string reference(const std::string& name) {
+  return read_text(std::string(SOFTGRAIN_REFERENCE_DIR) + "/law/" + name);
+}
+
+void expect_narrow(const std::string& text) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) EXPECT_LE(law::columns_of(line), 80u) << line;
+}
+
+TEST(LawCommand, ShowsTheCommittedLawsAsBefore) {
+  EXPECT_EQ(law::law_text(committed(kCard), false), reference("card.txt"));
+  EXPECT_EQ(law::law_text(committed(kTable), false), reference("table.txt"));
+  const law::LawFile a = committed(kCard);
+  const law::LawFile b = committed(kTable);
+  EXPECT_EQ(law::differences_text(a, b, law::law_differences(a, b), false), reference("difference.txt"));
+}
+
+TEST(LawCommand, NothingIsWiderThan80Columns) {
+  for (const bool utf8 : {true, false}) {
+    expect_narrow(law::law_text(committed(kCard), utf8));
+    expect_narrow(law::law_text(committed(kTable), utf8));
+  }
+  for (const std::string& file : {kCard, kTable})
+    for (const char* more : {"", " --E 1e9 --radius 1e-6", " --to 1.3 --steps 5"})
+      expect_narrow(run_the_program("law eval '" + kRoot + "/" + file + "'" + more).output);
+}
+
+nlohmann::json json_of(const std::string& arguments, int status = 0) {
+  const test::ProgramOutcome outcome = run_the_program(arguments);
+  EXPECT_EQ(outcome.status, status) << outcome.output;
+  return nlohmann::json::parse(outcome.output);
+}
+
+TEST(LawCommand, EveryActionSpeaksJson) {
+  const std::string card = "'" + kRoot + "/" + kCard + "' ";
+  const std::string table = "'" + kRoot + "/" + kTable + "' ";
+  const nlohmann::json shown = json_of("law show --json " + card);
+  EXPECT_EQ(shown["kind"], "law card");
+  EXPECT_NEAR(shown["parameters"]["soft-solid"]["dimensionless"]["normal"]["a"].get<double>(), 0.80497, 1e-5);
+  EXPECT_EQ(json_of("law show --json " + table)["parameters"]["entries"].size(), 2u);
+  EXPECT_GT(json_of("law show --json " + card + table)["differences"].size(), 2u);
+  const nlohmann::json values = json_of("law eval --json " + card + "--delta 0.2 --kind soft-solid --radius '16 mm'");
+  EXPECT_NEAR(values["laws"][0]["values"][0]["force"].get<double>(), 128.0 * 0.0049529, 1e-4);
+  EXPECT_EQ(values["units"]["force"], "N");
+  const nlohmann::json crowd = json_of("law eval --json " + table + "--arrangement cube --delta 0.15");
+  EXPECT_EQ(crowd["laws"][0]["values"][0]["forces"].size(), 6u);
+  const nlohmann::json refused = json_of("law eval --json " + card + "--beyond error --to 0.5 --kind soft-solid", 3);
+  EXPECT_EQ(refused["status"], "not usable");
+  EXPECT_TRUE(refused["laws"][0]["values"].back()["force"].is_null());
+}
+
+TEST(LawCommand, ExportsToAFileOrToStandardOutput) {
+  const test::TemporaryDirectory directory;
+  const std::string card = "'" + kRoot + "/" + kCard + "' ";
+  for (const char* format : {"lammps-table", "csv", "json"}) {
+    const std::string path = directory.file(format);
+    const nlohmann::json said = json_of("law export " + card + "--json --to " + format + " --out '" + path + "'");
+    EXPECT_EQ(said["written"], path);
+    EXPECT_EQ(read_text(path), run_the_program("law export " + card + "--to " + format).output);
+  }
+  const nlohmann::json law = nlohmann::json::parse(read_text(directory.file("json")));
+  EXPECT_EQ(law["laws"][0]["values"].size(), 101u);
+  EXPECT_TRUE(law["parameters"].contains("soft-soft"));
+  EXPECT_TRUE(read_text(directory.file("csv")).starts_with("law,delta,overlap [R],force [E R^2],"));
+}
+
+}  // namespace
+}  // namespace softgrain
