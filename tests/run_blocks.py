@@ -85,6 +85,7 @@ RULES = [
     (r"\./softgrain run pipelines/(law_table|macro_vs_resolved)\.toml --out results/my_\w+", Check(slow=True)),
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),
     (r"\./softgrain microsim pipelines/powder_\w+\.toml", Check()),
+    (r"\./softgrain law (show|eval|export) .*", Run()),
     (r"\./softgrain microsim pipelines/glass_beads_small\.toml",
      Run()),
 ]

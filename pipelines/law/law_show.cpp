@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+#include <sstream>
 
 #include "common/data/law_card_format.h"
 #include "pipelines/law/law_values.h"
@@ -26,22 +26,43 @@ std::string error_text(const Estimate& e) {
   return std::isfinite(e.standard_error) && e.standard_error > 0.0 ? number(e.standard_error, 2) : "-";
 }
 
-/// a and c in newtons, or newtons per metre, for the soft particle that was measured.
+std::string part_title(const PairLaw& law, LawPart part) {
+  if (part == LawPart::normal) return "normal force, F/(E Rs^2)";
+  if (part == LawPart::tangential_initial)
+    return fmt::format("tangential stiffness kt/(E Rs), initial slope (to {} degrees)", law.initial_angle_deg);
+  return fmt::format("tangential stiffness kt/(E Rs), secant at {} degrees", law.secant_angle_deg);
+}
+
+/// a and c also in newtons, or newtons per metre, for the soft particle that was measured.
 void add_part(Rows& rows, const PairLaw& law, LawPart part, const SoftParticleSpec& spec) {
   const bool normal = part == LawPart::normal;
   const double unit = spec.youngs_modulus * spec.shell_radius * (normal ? spec.shell_radius : 1.0);
-  const std::string name =
-      normal ? "F/(E Rs^2)"
-             : (part == LawPart::tangential_initial ? fmt::format("kt/(E Rs) to {} deg", law.initial_angle_deg)
-                                                    : fmt::format("kt/(E Rs) at {} deg", law.secant_angle_deg));
-  bool first = true;
   for (const LawParameterName& p : kLawParameters) {
     const Estimate& e = part_of(law, part).*p.estimate;
-    std::vector<std::string> row{first ? name : "", p.key, number(e.value), error_text(e), interval(e)};
+    std::vector<std::string> row{p.key, number(e.value), error_text(e), interval(e)};
     if (p.has_dimension) row.push_back(number(e.value * unit) + (normal ? " N" : " N/m"));
     rows.push_back(std::move(row));
-    first = false;
   }
+}
+
+/// All parts in the same columns, each under its title.
+std::string parameters_text(const PairLaw& law, const SoftParticleSpec& spec) {
+  Rows rows{{"", "value", "error", "95 % interval", "here"}};
+  std::vector<std::string> titles;
+  for (const LawPart part : kAllLawParts) {
+    if (!has_part(law, part)) continue;
+    titles.push_back(part_title(law, part));
+    add_part(rows, law, part, spec);
+  }
+  if (titles.empty()) return "  no law was fitted\n";
+  std::istringstream lines(aligned(rows, 4));
+  std::string text;
+  std::string line;
+  for (std::size_t k = 0; std::getline(lines, line); ++k) {
+    if (k > 0 && (k - 1) % kLawParameters.size() == 0) text += "  " + titles[(k - 1) / kLawParameters.size()] + "\n";
+    text += line + "\n";
+  }
+  return text;
 }
 
 std::string range_text(const PairLaw& law) {
@@ -87,11 +108,7 @@ std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf
     text += fmt::format(", chi^2 per degree of freedom {} (probability of a larger one {})",
                         number(law.chi2_per_dof, 2), number(law.quality, 3));
   text = wrapped(text, 4) + range_text(law);
-  Rows rows{{"law", "", "value", "error", "95 % interval", "here"}};
-  for (const LawPart part : kAllLawParts)
-    if (has_part(law, part)) add_part(rows, law, part, spec);
-  if (rows.size() == 1) return text + "  no law was fitted\n";
-  return text + aligned(rows, 2, 2) + plot_of(law, utf8);
+  return text + parameters_text(law, spec) + plot_of(law, utf8);
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ TEST(PairTable, OfALawTable) {
   law::LawFile file;
   LawTableEntry entry = synthetic::law_entry();
   entry.volume_max = 0.5;
-  entry.laws[2].partners[3].overlap_max = 0.6;  // or the smaller of two soft ones never yields
+  entry.laws[2].partners[0].overlap_max = 0.8;  // or the smaller ones never press hard enough
+  entry.laws[2].partners[3].overlap_max = 0.6;
   file.table = LawTable{1, {entry}};
   law::PairTableChoice c = choice();
   c.ratios = {1.0, 0.5, 2.0};
