@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "calibrate/joint_fit.h"
+#include "calibrate/residual_draws.h"
 #include "common/core/random.h"
 #include "common/io/interrupt.h"
 
@@ -18,15 +20,27 @@ struct Replicate {
   std::array<double, 7> law{};
 };
 
-Replicate refit(const BootstrapInput& input, std::uint64_t seed, std::uint64_t index) {
+/// Means of one replicate, made from random numbers.
+using DrawCurves = std::function<FitCurves(RandomStream&)>;
+
+FitCurves draw_packings(const BootstrapInput& input, RandomStream& stream) {
   const std::size_t packings = input.samples[0].packings;
-  RandomStream stream(seed, RandomPurpose::bootstrap, index);
   std::vector<int> multiplicity(packings, 0);
   for (std::size_t i = 0; i < packings; ++i) ++multiplicity[stream.below(packings)];
   FitCurves curves = input.curves;
   for (std::size_t j = 0; j < kLawCurves; ++j)
     if (curves[j].present()) curves[j].means = means_of(input.samples[j], multiplicity);
-  const JointFit joint = refit_joint(curves, input.delta_limit, input.start);
+  return curves;
+}
+
+Replicate refit(const BootstrapInput& input, const FitCurves& curves) {
+  JointFit joint = refit_joint(curves, input.delta_limit, input.start);
+  for (const double share : input.threshold_shares) {
+    JointParameters from = input.start;
+    from.delta = std::min(share * from.delta, input.delta_limit);
+    JointFit other = refit_joint(curves, input.delta_limit, from);
+    if (other.fit.residual_sum_of_squares < joint.fit.residual_sum_of_squares) joint = std::move(other);
+  }
   Replicate out;
   out.law = joint.parameters.law_parameters();
   const bool finite = std::all_of(out.law.begin(), out.law.end(), [](double x) { return std::isfinite(x); });
@@ -37,14 +51,14 @@ Replicate refit(const BootstrapInput& input, std::uint64_t seed, std::uint64_t i
   return out;
 }
 
-}  // namespace
-
-BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint64_t seed, std::uint64_t stream) {
+BootstrapResult refit_all(const BootstrapInput& input, const DrawCurves& draw, int replicates, std::uint64_t seed,
+                          std::uint64_t stream) {
   std::vector<Replicate> all(static_cast<std::size_t>(replicates));
 #pragma omp parallel for schedule(dynamic)
   for (int r = 0; r < replicates; ++r) {
     if (interrupt_requested()) continue;  // an exception must not leave the region
-    all[static_cast<std::size_t>(r)] = refit(input, seed, (stream << 32) + static_cast<std::uint64_t>(r));
+    RandomStream random(seed, RandomPurpose::bootstrap, (stream << 32) + static_cast<std::uint64_t>(r));
+    all[static_cast<std::size_t>(r)] = refit(input, draw(random));
   }
   stop_if_interrupted("refitting to drawn packings");
   BootstrapResult out;
@@ -56,6 +70,37 @@ BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint
     if (one.outcome == Outcome::at_bound) ++out.at_bound;
     out.replicates.push_back(one.law);
   }
+  return out;
+}
+
+}  // namespace
+
+BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint64_t seed, std::uint64_t stream) {
+  return refit_all(
+      input, [&](RandomStream& random) { return draw_packings(input, random); }, replicates, seed, stream);
+}
+
+BootstrapResult residual_bootstrap(const BootstrapInput& input, const std::vector<GivenError>& given, int replicates,
+                                   std::uint64_t seed, std::uint64_t stream) {
+  const ResidualDraws draws(input, given);
+  // A dense curve has a kink at every point, and a local minimum between many of them: one walk would stay near its
+  // start.
+  BootstrapInput searched = input;
+  searched.threshold_shares = {0.7, 0.85, 1.15, 1.3};
+  return refit_all(
+      searched, [&](RandomStream& random) { return draws.draw(random); }, replicates, seed, stream);
+}
+
+std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>>& replicates) {
+  std::vector<double> out(49, 0.0);
+  const auto n = static_cast<double>(replicates.size());
+  if (replicates.size() < 2) return out;
+  std::array<double, 7> mean{};
+  for (const auto& r : replicates)
+    for (std::size_t i = 0; i < 7; ++i) mean[i] += r[i] / n;
+  for (const auto& r : replicates)
+    for (std::size_t i = 0; i < 7; ++i)
+      for (std::size_t j = 0; j < 7; ++j) out[i * 7 + j] += (r[i] - mean[i]) * (r[j] - mean[j]) / (n - 1.0);
   return out;
 }
 

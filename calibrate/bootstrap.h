@@ -1,4 +1,4 @@
-// Bootstrap over packings: refits to resampled ensembles, and quantiles of what they give.
+// Bootstrap: refits to resampled ensembles (over packings) or to redrawn residuals, and quantiles of what they give.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibrate/experiment_errors.h"
 #include "calibrate/threshold_model.h"
 
 namespace softgrain {
@@ -14,7 +15,8 @@ struct BootstrapInput {
   std::array<CurveSamples, kLawCurves> samples;  ///< curves that take no part are empty
   FitCurves curves;                              ///< the full ensemble: its sigma weights every replicate
   double delta_limit = 0.0;
-  JointParameters start;  ///< the fit to the full ensemble
+  JointParameters start;                      ///< the fit to the full ensemble
+  std::vector<double> threshold_shares = {};  ///< further starts: the threshold of `start` times these
 };
 
 struct BootstrapResult {
@@ -25,6 +27,16 @@ struct BootstrapResult {
 
 /// Draws packings with replacement and refits. Replicate r depends on (seed, stream, r) alone, not on threads.
 BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint64_t seed, std::uint64_t stream);
+
+/// For fewer samples than can be drawn from: noise of the size of the residuals is added to the fit, which is then
+/// fitted again. Its shape over Delta is that of sigma, and one normal random number serves as many neighbouring points
+/// as residuals are correlated over. With given errors of the normal force the noise is at least as large as these.
+/// Says nothing about samples that were not measured.
+BootstrapResult residual_bootstrap(const BootstrapInput& input, const std::vector<GivenError>& given, int replicates,
+                                   std::uint64_t seed, std::uint64_t stream);
+
+/// Covariance of the replicates, 7 x 7 row-major; zeros with fewer than two.
+std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>>& replicates);
 
 /// Quantiles 2.5 % and 97.5 % (linear between order statistics); infinite when there are no values.
 std::pair<double, double> interval95(std::vector<double> values);

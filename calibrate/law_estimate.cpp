@@ -55,11 +55,20 @@ double constant_error(const std::vector<double>& covariance, std::size_t i, std:
   return std::sqrt(std::max(variance, 0.0));
 }
 
+/// 95 % interval of the replicates of a value. Those of residuals may lean to one side, because the best threshold
+/// follows the noise of the points around it: the longer side then counts for both.
+std::pair<double, double> interval_of(const FitReport& report, double value, std::vector<double> replicates) {
+  const auto [low, high] = interval95(std::move(replicates));
+  if (!report.from_residuals || !std::isfinite(low) || !std::isfinite(high)) return {low, high};
+  const double half = std::max(value - low, high - value);
+  return {value - half, value + half};
+}
+
 template <class Pick>
 Estimate estimate(double value, double error, const FitReport& report, Pick pick) {
   std::vector<double> values;
   for (const auto& r : report.replicates) values.push_back(pick(r));
-  const auto [low, high] = interval95(std::move(values));
+  const auto [low, high] = interval_of(report, value, std::move(values));
   return {value, error, low, high};
 }
 
@@ -138,8 +147,9 @@ std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<co
   for (const double d : deltas) {
     std::vector<double> values;
     for (const auto& r : report.replicates) values.push_back(value(r[i], r[i + 1], r[2], d));
-    const auto [low, high] = interval95(std::move(values));
-    out.push_back({d, value(best.a.value, best.b.value, best.delta.value, d), low, high});
+    const double at = value(best.a.value, best.b.value, best.delta.value, d);
+    const auto [low, high] = interval_of(report, at, std::move(values));
+    out.push_back({d, at, low, high});
   }
   return out;
 }

@@ -41,13 +41,24 @@ RunList select_runs(const Measurements& data, PairKind kind, const std::string& 
   return runs;
 }
 
-/// Deltas whose mean is above the noise floor and above two standard errors.
-std::vector<double> clear_deltas(const CurveMeans& means, double noise_floor) {
+/// Deltas whose mean is above the noise floor and above two standard errors; `single` holds the errors of one value.
+std::vector<double> clear_deltas(const CurveMeans& means, const std::vector<double>& single, double noise_floor) {
   std::vector<double> out;
   for (std::size_t k = 0; k < means.delta.size(); ++k) {
-    const double standard_error = means.deviation[k] / std::sqrt(std::max(means.count[k], 1.0));
+    const double standard_error = single[k] / std::sqrt(std::max(means.count[k], 1.0));
     if (means.mean[k] > noise_floor && means.mean[k] > 2.0 * standard_error) out.push_back(means.delta[k]);
   }
+  return out;
+}
+
+/// The force of one curve does not fall again: a point above two standard errors with points below behind it is noise.
+std::vector<double> without_early_noise(const std::vector<double>& clear, const CurveMeans& means) {
+  std::size_t first = means.delta.size();
+  for (std::size_t left = clear.size(); first > 0 && left > 0 && means.delta[first - 1] == clear[left - 1]; --left)
+    --first;
+  std::vector<double> out;
+  for (const double d : clear)
+    if (first < means.delta.size() && d >= means.delta[first]) out.push_back(d);
   return out;
 }
 
@@ -55,6 +66,7 @@ std::vector<double> clear_deltas(const CurveMeans& means, double noise_floor) {
 struct Work {
   LawSamples samples;
   LawMeans means;
+  std::array<std::vector<double>, kLawCurves> sigma;  ///< error of a single value, as the fit weights it
   std::array<std::vector<double>, kLawCurves> clear;
   FitCurves curves;
   double delta_limit = 0.0;
@@ -70,20 +82,25 @@ Work collect(const RunList& runs, const SoftParticleSpec& spec, const FitOptions
                secant_samples(runs, spec, selection)};
   for (std::size_t j = 0; j < kLawCurves; ++j) {
     w.means[j] = means_of(w.samples[j]);
-    w.clear[j] = clear_deltas(w.means[j], options.noise_floor);
+    w.sigma[j] = options.experiment ? experiment_errors(w.samples[j], w.means[j],
+                                                        j == 0 ? options.given_errors : std::vector<GivenError>{},
+                                                        options.scatter_floor)
+                                    : floored_deviations(w.means[j], options.scatter_floor);
+    w.clear[j] = clear_deltas(w.means[j], options.experiment ? w.sigma[j] : w.means[j].deviation, options.noise_floor);
+    if (options.experiment) w.clear[j] = without_early_noise(w.clear[j], w.means[j]);
   }
   return w;
 }
 
 /// Chooses the curves that can be fitted and the largest threshold that leaves enough clear points above it.
-void prepare(const FitOptions& options, Work& w) {
+void prepare(Work& w) {
   for (std::size_t j = 0; j < kLawCurves; ++j) {
     if (w.samples[j].empty()) continue;
     if (w.clear[j].size() < kClearNeeded[j])
       w.reasons.push_back(fmt::format("{}: {} points clearly above zero, {} needed", kCurveNames[j], w.clear[j].size(),
                                       kClearNeeded[j]));
     if (j > 0 && w.clear[j].size() < kClearNeeded[j]) continue;
-    w.curves[j] = {w.means[j], floored_deviations(w.means[j], options.scatter_floor)};
+    w.curves[j] = {w.means[j], w.sigma[j]};
   }
   const std::vector<double>& clear = w.clear[0];
   w.delta_limit = clear.size() >= 3 ? clear[clear.size() - 3] : clear.back();
@@ -107,7 +124,8 @@ void judge_fit(Work& w) {
 }
 
 void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
-  const bool enough = report.law.packings >= options.min_packings;
+  report.from_residuals = options.experiment && report.law.packings < options.min_packings;
+  const bool enough = report.from_residuals || report.law.packings >= options.min_packings;
   if (!enough)
     w.reasons.push_back(fmt::format("{} packing{}, {} needed for an interval", report.law.packings,
                                     report.law.packings == 1 ? "" : "s", options.min_packings));
@@ -115,8 +133,10 @@ void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
     w.reasons.emplace_back("no bootstrap replicates were asked for");
   if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient) return;
   BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters};
+  const std::uint64_t stream = static_cast<std::uint64_t>(report.law.kind) + 1;
   BootstrapResult result =
-      bootstrap(input, options.replicates, options.seed, static_cast<std::uint64_t>(report.law.kind) + 1);
+      report.from_residuals ? residual_bootstrap(input, options.given_errors, options.replicates, options.seed, stream)
+                            : bootstrap(input, options.replicates, options.seed, stream);
   report.replicates = std::move(result.replicates);
   report.replicates_failed = result.failed;
   report.replicates_at_bound = result.at_bound;
@@ -132,17 +152,20 @@ void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
 void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   PairLaw& law = report.law;
   law.covariance.assign(49, 0.0);
-  const bool errors_known = law.packings >= 2 && !w.joint.fit.rank_deficient;
-  if (errors_known)
-    law.covariance = packing_covariance(w.joint, w.curves, {&w.samples[0], &w.samples[1], &w.samples[2]});
   run_bootstrap(options, w, report);
+  const bool errors_known =
+      (report.from_residuals ? report.replicates.size() >= 2 : law.packings >= 2) && !w.joint.fit.rank_deficient;
+  if (errors_known)
+    law.covariance = report.from_residuals
+                         ? replicate_covariance(report.replicates)
+                         : packing_covariance(w.joint, w.curves, {&w.samples[0], &w.samples[1], &w.samples[2]});
   const auto p = w.joint.parameters.law_parameters();
   law.normal = estimated_law(report, p, 0, errors_known);
   law.has_tangential_initial = w.curves[1].present();
   law.has_tangential_secant = w.curves[2].present();
   if (w.curves[1].present()) law.tangential_initial = estimated_law(report, p, 1, errors_known);
   if (w.curves[2].present()) law.tangential_secant = estimated_law(report, p, 2, errors_known);
-  if (law.packings >= 2) fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);
+  if (law.packings >= 2 || options.experiment) fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);
 }
 
 void conclude(PairLaw& law, const std::string& status, const std::vector<std::string>& reasons) {
@@ -191,7 +214,7 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
                  options.noise_floor, report.law.delta_max, largest)});
     return report;
   }
-  prepare(options, w);
+  prepare(w);
   w.joint = fit_joint(w.curves, w.delta_limit);
   report.iterations = w.joint.fit.iterations;
   report.fit_message = w.joint.fit.message;
@@ -201,9 +224,6 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
   return report;
 }
 
-namespace {
-
-/// Bands on an even grid up to the end of the fitted range, for the curves that were fitted.
 void add_bands(PairLaw& law, const FitReport& report) {
   constexpr int kSteps = 120;
   if (report.replicates.empty() || !(law.delta_max > 0.0)) return;
@@ -220,8 +240,6 @@ void add_bands(PairLaw& law, const FitReport& report) {
   if (law.has_tangential_initial) add("tangential_initial", LawCurve::tangential_initial);
   if (law.has_tangential_secant) add("tangential_secant", LawCurve::tangential_secant);
 }
-
-}  // namespace
 
 LawCard calibrate(const Measurements& data, const FitOptions& options, std::vector<FitReport>* reports) {
   LawCard card;

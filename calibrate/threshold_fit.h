@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/experiment_errors.h"
 #include "calibrate/threshold_model.h"
 #include "common/data/law_card.h"
 #include "common/data/measurements.h"
@@ -31,6 +32,10 @@ struct FitOptions {
   int min_packings = 5;             ///< for an interval; the published protocol asks for at least seven
   int replicates = 1000;            ///< of the bootstrap; 0: none (the law is then marked underdetermined)
   std::uint64_t seed = 0;
+  /// Measured outside, in few samples or one: errors of single values by experiment_errors() instead of the scatter
+  /// alone, and with fewer than min_packings samples intervals from residuals.
+  bool experiment = false;
+  std::vector<GivenError> given_errors;  ///< of the normal force over E Rs^2, when the experiment states them
 };
 
 /// What a fit found beside the law itself.
@@ -42,6 +47,7 @@ struct FitReport {
   int normal_left_out = 0;      ///< normal points that were measured but not converged
   int tangential_left_out = 0;  ///< the same for tangential points
   int iterations = 0;           ///< of the optimiser over all intervals of delta
+  bool from_residuals = false;  ///< replicates are of residuals, not of packings
   std::string fit_message;      ///< why the optimiser ended
 };
 
@@ -56,6 +62,10 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
 
 /// Fits every pair kind present. Throws BadInput when nothing matches the relaxation asked for.
 LawCard calibrate(const Measurements& data, const FitOptions& options = {}, std::vector<FitReport>* reports = nullptr);
+
+/// Bands on an even grid up to the end of the fitted range, for the curves that were fitted; nothing without
+/// replicates.
+void add_bands(PairLaw& law, const FitReport& report);
 
 /// The law and its 95 % band at one Delta (dimensionless).
 struct Band {

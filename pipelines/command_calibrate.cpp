@@ -1,5 +1,5 @@
-// softgrain calibrate DATA.h5...: fits the contact laws to measurements; writes law.toml, law.h5 and summary.json.
-// Files of crowd measurements: see calibrate_crowd.h.
+// softgrain calibrate DATA...: fits the contact laws to measurements; writes law.toml, law.h5 and summary.json.
+// Files of crowd measurements: see calibrate_crowd.h; of experiments (CSV): see calibrate_curves.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "calibrate/merge_measurements.h"
 #include "calibrate/threshold_fit.h"
 #include "pipelines/calibrate_crowd.h"
+#include "pipelines/calibrate_curves.h"
 #include "pipelines/law_json.h"
 #include "pipelines/run_context.h"
 
@@ -92,6 +93,7 @@ std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
 }  // namespace
 
 ExitStatus command_calibrate(const CommonOptions& options) {
+  if (are_curve_files(options)) return calibrate_curves(options);
   if (are_crowd_files(options.inputs)) return calibrate_crowd(options);
   const Scene settings = Scene::parse("", "calibrate", options.overrides);
   FitOptions fit = read_options(settings.root());

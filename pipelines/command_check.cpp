@@ -20,6 +20,7 @@
 #include "pipelines/crowd_law_fit.h"
 #include "pipelines/grain_box_check.h"
 #include "pipelines/hierarchy_command.h"
+#include "pipelines/inverse_command.h"
 #include "pipelines/law_table_command.h"
 #include "pipelines/kept_states.h"
 #include "pipelines/macro_comparison.h"
@@ -146,7 +147,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   const Scene scene = Scene::load(path, options.overrides);
   const SceneTable root = scene.root();
   const std::string kind = root.choice("kind", {"pipeline", "soft-particle", "macro", "macro-comparison", "particles",
-                                                "grain-box", "law-table", "cohesive-powder", "hierarchy"});
+                                                "grain-box", "law-table", "cohesive-powder", "hierarchy", "inverse"});
   out.add("kind", kind, "scene of kind " + kind);
   if (kind == "particles") {
     check_particles(read_particles_scene(scene), out.facts, out.lines);
@@ -158,6 +159,8 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
     check_powder(scene, out.facts, out.lines);
   } else if (kind == "hierarchy") {
     check_hierarchy(scene, out.facts, out.lines);
+  } else if (kind == "inverse") {
+    check_inverse(scene, out.facts, out.lines);
   } else if (kind == "macro") {
     (void)root.text("title", "");
     (void)root.text("law", "");

@@ -8,6 +8,7 @@
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/hierarchy_command.h"
+#include "pipelines/inverse_command.h"
 #include "pipelines/law_json.h"
 #include "pipelines/law_table_command.h"
 #include "pipelines/macro_comparison.h"
@@ -158,9 +159,11 @@ ExitStatus command_run(const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
   refuse_other_commands(scene.root(), "run");
-  const std::string kind = scene.root().choice("kind", {"pipeline", "macro-comparison", "law-table", "hierarchy"});
+  const std::string kind =
+      scene.root().choice("kind", {"pipeline", "macro-comparison", "law-table", "hierarchy", "inverse"});
   if (kind == "law-table") return run_law_table(scene, options);
   if (kind == "hierarchy") return run_hierarchy(scene, options);
+  if (kind == "inverse") return run_inverse(scene, options);
   if (kind == "macro-comparison") return run_macro_comparison(options, scene);
   const PipelineSetup setup = read_pipeline_setup(scene.root());
   const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());

@@ -150,21 +150,29 @@ SoftParticleSpec read_soft_particle(const SceneTable& root) {
   return spec;
 }
 
-MeasureSetup read_measure_setup(const SceneTable& root) {
+MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxation, MeasurementPlan& plan) {
   MeasureSetup setup;
   setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
   setup.spec = read_soft_particle(root);
-  const std::int64_t count = root.table_or_empty("packing").count("count", 1, 100000, 7);
-  const SceneTable measure = root.table("measure");
+  const SceneTable measure = root.table_or_empty("measure");
   read_damped(measure.table_or_empty("damped"), setup.damped);
   read_published(measure.table_or_empty("published"), setup.published);
   read_least_work(measure.table_or_empty("least_work"), setup.least_work);
+  plan.rotation_step_deg =
+      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), plan.rotation_step_deg);
+  plan.shell_turns = measure.flag("shell_turns", plan.shell_turns);
+  plan.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
+  relaxation = read_relaxation(measure, "least-work");
+  return setup;
+}
+
+MeasureSetup read_measure_setup(const SceneTable& root) {
+  const SceneTable measure = root.table("measure");
+  std::string relaxation;
   MeasurementPlan common;
-  common.rotation_step_deg =
-      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), common.rotation_step_deg);
-  common.shell_turns = measure.flag("shell_turns", common.shell_turns);
-  common.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  setup.series.push_back(read_series(measure, read_relaxation(measure, "least-work"), count, common));
+  MeasureSetup setup = read_measure_protocols(root, relaxation, common);
+  const std::int64_t count = root.table_or_empty("packing").count("count", 1, 100000, 7);
+  setup.series.push_back(read_series(measure, relaxation, count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
     const std::string name = read_relaxation(reference, "published");

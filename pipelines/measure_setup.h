@@ -41,12 +41,16 @@ struct MeasureSetup {
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
 };
 
-/// Throws BadInput at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or from a
-/// law whose mean volume is no number).
+/// Throws BadInput at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or from
+/// a law whose mean volume is no number).
 void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
 
 /// Reads [material] and what [packing] says of the soft particle (not `count`). Throws BadInput.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
+
+/// Reads seed, [material], [packing] and how [measure] relaxes, without what is measured: `plan` gets the rotations'
+/// settings, `relaxation` the name. Throws BadInput.
+MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxation, MeasurementPlan& plan);
 
 /// Reads [material], [packing], [measure], [reference] and [output]. Throws BadInput.
 MeasureSetup read_measure_setup(const SceneTable& root);

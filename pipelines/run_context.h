@@ -33,6 +33,9 @@ struct CommonOptions {
   bool json = false;                               ///< --json
   double checkpoint_seconds = kCheckpointSeconds;  ///< --checkpoint-every S
   std::string law;                                 ///< --law law.toml (macrosim)
+  std::string kind;                                ///< --kind of measurements in CSV (calibrate)
+  std::string radius;                              ///< --radius "16 mm" of them
+  std::string modulus;                             ///< --modulus "0.5 MPa" of them
   std::string law_cache;                           ///< --law-cache DIR; empty: nothing is kept between runs
   std::string to;                                  ///< --to vtp, lammps-dump or csv (export)
   std::string command_line;                        ///< as given, for provenance

@@ -14,6 +14,7 @@
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
 #include "pipelines/law_options.h"
+#include "pipelines/observables.h"
 #include "pipelines/run_context.h"
 
 namespace softgrain {
@@ -37,8 +38,8 @@ constexpr std::array<Command, 8> kCommands{{
      1, 1, command_run},
     {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml",
      "scene to run", 1, 1, command_microsim},
-    {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA.h5",
-     "files of measurements", 1, 1000, command_calibrate},
+    {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA",
+     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
      command_macrosim},
     {"compare", "Error norms and cost of two runs: A against the reference B", "RUN",
@@ -79,7 +80,7 @@ CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t h
           "", "whole number"};
 }
 
-void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
+void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::string& observables) {
   app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
   app.add_option("--out", o.out, "Run directory; default results/<name of the first input>")->option_text("DIR");
   app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
@@ -106,6 +107,17 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o) {
         ->option_text("DIR");
   if (command.function == command_export)
     app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump or csv")->option_text("FORM");
+  if (command.function == command_run || command.function == command_microsim || command.function == command_macrosim)
+    app.add_option("--observables", observables,
+                   "Writes what was observed to PREFIX_sim.txt and the numbers set by --set to PREFIX_param.txt, as "
+                   "GrainLearning reads them; run directory PREFIX_run unless --out is given")
+        ->option_text("PREFIX");
+  if (command.function == command_calibrate) {
+    app.add_option("--kind", o.kind, "CSV: which contact was measured, soft-solid or soft-soft")->option_text("KIND");
+    app.add_option("--radius", o.radius, "CSV: radius Rs of the soft particle, e.g. \"16 mm\"")->option_text("LENGTH");
+    app.add_option("--modulus", o.modulus, "CSV: Young's modulus E of its grains, e.g. \"0.5 MPa\"")
+        ->option_text("PRESSURE");
+  }
   if (command.function == command_macrosim)
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
@@ -144,11 +156,12 @@ void require_command(int argc, char** argv) {
 ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   CommonOptions options;
   options.command_line = joined_command_line(argc, argv);
+  std::string observables;
   const Command* chosen = nullptr;
   for (const Command& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.does);
     sub->footer(kFooter);
-    add_options(*sub, command, options);
+    add_options(*sub, command, options, observables);
     sub->callback([&chosen, &command] { chosen = &command; });
     sub->parse_complete_callback([&options, sub] { options.seed_given = sub->count("--seed") > 0; });
   }
@@ -162,12 +175,18 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     return ExitStatus::bad_input;
   }
   require_inputs(*chosen, options);
+  if (!observables.empty()) {
+    require_observables(options.inputs.front(), options.overrides);
+    if (options.out.empty()) options.out = observables + "_run";
+  }
   if (!options.out.empty()) require_writable_directory(options.out);
   if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
   install_interrupt_handler();
   // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
   std::signal(SIGXFSZ, SIG_IGN);
-  return chosen->function(options);
+  const ExitStatus status = chosen->function(options);
+  if (!observables.empty()) write_observables(options.out, options.overrides, observables);
+  return status;
 }
 
 int complain(ExitStatus status, const std::string& message) {

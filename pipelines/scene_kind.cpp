@@ -11,15 +11,16 @@ struct Kind {
   const char* command;
 };
 
-constexpr std::array<Kind, 9> kKinds{{{"pipeline", "run"},
-                                      {"macro-comparison", "run"},
-                                      {"law-table", "run"},
-                                      {"hierarchy", "run"},
-                                      {"soft-particle", "microsim"},
-                                      {"particles", "microsim"},
-                                      {"grain-box", "microsim"},
-                                      {"cohesive-powder", "microsim"},
-                                      {"macro", "macrosim"}}};
+constexpr std::array<Kind, 10> kKinds{{{"pipeline", "run"},
+                                       {"macro-comparison", "run"},
+                                       {"law-table", "run"},
+                                       {"hierarchy", "run"},
+                                       {"inverse", "run"},
+                                       {"soft-particle", "microsim"},
+                                       {"particles", "microsim"},
+                                       {"grain-box", "microsim"},
+                                       {"cohesive-powder", "microsim"},
+                                       {"macro", "macrosim"}}};
 
 }  // namespace
 

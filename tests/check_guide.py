@@ -33,6 +33,8 @@ PAGES = {
     "scene_powder.md": (
         ["pipelines/powder_setup.cpp", "pipelines/powder_variants.cpp", "pipelines/variant_name.cpp"],
         {"Phi", "z", "Phi_error", "z_error"}, set()),
+    "own_data.md": (["pipelines/calibrate_curves.cpp", "pipelines/inverse_setup.cpp"],
+                    {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"}, {"kind", "title"}),
     "scene_grain_box.md": (["pipelines/grain_box_setup.cpp", "pipelines/variant_name.cpp"], set(), set()),
 }
 
@@ -40,8 +42,8 @@ PAGES = {
 NO_SCENES = {
     "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
     "pipelines/command_check.cpp", "pipelines/command_microsim.cpp", "pipelines/command_run.cpp",
-    "pipelines/calibrate_crowd.cpp", "pipelines/powder_command.cpp", "pipelines/powder_variants_command.cpp",
-    "pipelines/scene_kind.cpp",
+    "pipelines/calibrate_crowd.cpp", "pipelines/observables.cpp", "pipelines/powder_command.cpp",
+    "pipelines/powder_variants_command.cpp", "pipelines/scene_kind.cpp",
 }
 
 READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"

@@ -86,6 +86,10 @@ RULES = [
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),
     (r"\./softgrain microsim pipelines/powder_\w+\.toml", Check()),
     (r"\./softgrain law (show|eval|export) .*", Run()),
+    (r"\./softgrain calibrate pipelines/press_test\.csv --set mirror=true", Run()),
+    (r"\./softgrain run pipelines/inverse\.toml", Check(slow=True)),
+    (r"\./softgrain microsim pipelines/grainlearning_example/soft_particle\.toml .*", Run(statuses=(0, 3))),
+    (r"python3 pipelines/grainlearning_example/calibrate\.py", Elsewhere("default suite: the tests OwnData")),
     (r"\./softgrain microsim pipelines/glass_beads_small\.toml",
      Run()),
 ]

@@ -84,8 +84,9 @@ struct PairLaw {
 
 struct LawCard {
   int schema = 1;
-  SoftParticleSpec spec;   ///< of the measurement behind the law
-  std::string relaxation;  ///< which relaxation measured it
+  SoftParticleSpec spec;                              ///< of the measurement behind the law
+  std::string relaxation;                             ///< which relaxation measured it; "experiment": none of ours
+  std::string intervals = "bootstrap over packings";  ///< where the 95 % intervals come from
   std::vector<PairLaw> pairs;
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;

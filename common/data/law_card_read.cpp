@@ -108,6 +108,7 @@ LawCard read_card_text(const std::string& toml_path) {
   LawCard card;
   card.schema = static_cast<int>(root.count("schema", kSchemaVersion, kSchemaVersion));
   skip_words(root);
+  card.intervals = root.table_or_empty("definitions").text("interval_95", card.intervals);
   const SceneTable measurement = root.table("measurement");
   card.relaxation = measurement.text("relaxation");
   card.spec = read_spec_text(measurement);

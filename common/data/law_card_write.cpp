@@ -47,12 +47,16 @@ void write_head(Out out, const LawCard& card, const Provenance& provenance) {
       out, "Delta = \"total overlap hn over the shell radius Rs; for unequal radii hn/R of the smaller shell\"\n");
   fmt::format_to(out, "normal = \"Fn = E Rs^2 F(Delta), compression positive\"\n");
   fmt::format_to(out, "tangential = \"kt = E Rs F(Delta), force per tangential displacement ht = pi Rs angle/180\"\n");
-  fmt::format_to(out, "interval_95 = \"bootstrap over packings\"\n");
+  fmt::format_to(out, "interval_95 = {}\n", quoted(card.intervals));
 }
 
 void write_measurement(Out out, const LawCard& card) {
-  fmt::format_to(out, "\n# The soft particle that was measured.\n[measurement]\nrelaxation = {}\n",
-                 quoted(card.relaxation));
+  fmt::format_to(out, "\n# The soft particle that was measured.\n");
+  if (card.relaxation == "experiment")
+    fmt::format_to(out,
+                   "# An experiment: shell_radius and youngs_modulus make the law dimensionless; what is inside the\n"
+                   "# particle is not known, and the other values are defaults where the data did not give them.\n");
+  fmt::format_to(out, "[measurement]\nrelaxation = {}\n", quoted(card.relaxation));
   fmt::format_to(out, "{}", spec_text(card.spec));
 }
 

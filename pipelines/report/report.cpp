@@ -12,7 +12,9 @@ namespace softgrain {
 void write_report(const std::string& run_directory) {
   using namespace report;
   const RunData run = load_run(run_directory);
-  std::string body = law_table_section(run);
+  std::string body = own_data_section(run);
+  body += inverse_section(run);
+  body += law_table_section(run);
   body += hierarchy_section(run);
   body += normal_section(run);
   body += tangential_section(run);

@@ -72,7 +72,11 @@ std::string run_line(const RunData& run) {
   return out.empty() ? "" : out + ".";
 }
 
-std::string material_line(const SoftParticleSpec& s) {
+std::string material_line(const RunData& run) {
+  const SoftParticleSpec& s = run.measurements ? run.measurements->spec : run.card->spec;
+  if (!run.measurements && run.card->relaxation == "experiment")
+    return fmt::format("Soft particle of an experiment: radius Rs = {} mm, E = {} MPa; what is inside is not known",
+                       format_number(1e3 * s.shell_radius), format_number(1e-6 * s.youngs_modulus));
   return fmt::format(
       "Soft particle of radius Rs = {} mm, grains with E = {} MPa, ν = {}, μ = {}; number of radii ~ r^-{} over a "
       "factor {}, largest {} Rs",
@@ -196,7 +200,7 @@ std::string list_of(const std::vector<Line>& lines) {
 std::string heading_section(const RunData& run) {
   std::string what = run_line(run);
   if (run.measurements || run.card) {
-    const std::string material = material_line(run.measurements ? run.measurements->spec : run.card->spec);
+    const std::string material = material_line(run);
     what = material + (what.empty() ? "." : "; " + what);
   }
   std::vector<Line> lines = result_lines(run);

@@ -45,10 +45,10 @@ void add_law_rows(HtmlTable& table, const std::string& name, const ThresholdPowe
   add_row(table, "", "δ", law.delta, {});
 }
 
-std::string status_line(const PairLaw& law) {
+std::string status_line(const PairLaw& law, const char* noun) {
   std::string text = "Status: " + law.status;
   if (!law.reason.empty()) text += " (" + law.reason + ")";
-  text += fmt::format(". {} packings, {} points, fitted over Δ = {} .. {}", law.packings, law.points,
+  text += fmt::format(". {} {}, {} points, fitted over Δ = {} .. {}", law.packings, noun, law.points,
                       format_number(law.delta_min), format_number(law.delta_max));
   text += fmt::format("; chi²/dof {}, probability of a larger one {}", format_number(law.chi2_per_dof, 3),
                       format_number(law.quality, 2));
@@ -63,6 +63,7 @@ std::string card_tables(const LawCard& card) {
   const std::vector<UnitScale> force_units{{force, "N"}};
   const std::vector<UnitScale> stiffness_units{
       {stiffness, "N/m"}, {stiffness / per_degree_to_per_metre(card.spec.shell_radius), "N/degree"}};
+  const bool experiment = card.relaxation == "experiment";
   std::string out;
   for (const PairLaw& law : card.pairs) {
     HtmlTable table(
@@ -74,12 +75,13 @@ std::string card_tables(const LawCard& card) {
     if (has_part(law, LawPart::tangential_secant))
       add_law_rows(table, fmt::format("kt/(E Rs), secant at {}°", law.secant_angle_deg), law.tangential_secant,
                    stiffness_units);
-    out += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + status_line(law) + (table.empty() ? "" : table.html());
+    out += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + status_line(law, experiment ? "samples" : "packings") +
+           (table.empty() ? "" : table.html());
   }
   out += paragraph(
       "F(Δ) = a Δ^b + c for Δ ≥ δ and zero below, c = -a δ^b. Standard errors from the covariance of the joint fit, "
-      "intervals by bootstrap over packings. "
-      "a, b and δ are strongly correlated: judge a law by F(Δ), not by single parameters.");
+      "intervals: " +
+      card.intervals + ". a, b and δ are strongly correlated: judge a law by F(Δ), not by single parameters.");
   return out;
 }
 

@@ -10,6 +10,8 @@ namespace softgrain::report {
 std::string heading_section(const RunData& run);       ///< what was run and what came out
 std::string remarks_section(const RunData& run);       ///< what to be careful with
 std::string laws_section(const RunData& run);          ///< parameters, errors, intervals, units
+std::string own_data_section(const RunData& run);      ///< curves of an experiment and the law fitted to them
+std::string inverse_section(const RunData& run);       ///< the soft particle that gives a target curve
 std::string normal_section(const RunData& run);        ///< Fn(Delta)
 std::string tangential_section(const RunData& run);    ///< Ft(ht)
 std::string stiffness_section(const RunData& run);     ///< kt(Delta)

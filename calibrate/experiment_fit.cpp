@@ -1,0 +1,254 @@
+#include "calibrate/experiment_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/bootstrap.h"
+#include "calibrate/law_estimate.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::size_t kMostPoints = 120;  ///< of a single sample; the fit costs their square
+constexpr std::size_t kMostCommon = 60;   ///< common overlaps of several samples
+constexpr double kSame = 1e-7;            ///< overlaps that differ by less are the same
+
+/// Averages in even bins of Delta.
+std::vector<ForcePoint> binned(const std::vector<ForcePoint>& points, std::size_t bins) {
+  if (points.size() <= bins) return points;
+  const double low = points.front().delta;
+  const double width = (points.back().delta - low) / static_cast<double>(bins);
+  std::vector<ForcePoint> out(bins);
+  std::vector<double> count(bins, 0.0);
+  for (ForcePoint& p : out) p.error = 0.0;
+  for (const ForcePoint& p : points) {
+    const auto b = std::min(static_cast<std::size_t>((p.delta - low) / width), bins - 1);
+    out[b].delta += p.delta;
+    out[b].force += p.force;
+    out[b].error += p.error * p.error;
+    count[b] += 1.0;
+  }
+  std::vector<ForcePoint> filled;
+  for (std::size_t b = 0; b < bins; ++b)
+    if (count[b] > 0.0)
+      filled.push_back({out[b].delta / count[b], out[b].force / count[b], std::sqrt(out[b].error) / count[b]});
+  return filled;
+}
+
+/// Linear interpolation within the range of a curve; NaN outside.
+ForcePoint at(const std::vector<ForcePoint>& curve, double delta) {
+  ForcePoint out{delta, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    const ForcePoint& a = curve[k - 1];
+    const ForcePoint& b = curve[k];
+    if (delta < a.delta - kSame || delta > b.delta + kSame) continue;
+    const double share = std::clamp((delta - a.delta) / (b.delta - a.delta), 0.0, 1.0);
+    out.force = a.force + share * (b.force - a.force);
+    out.error = a.error + share * (b.error - a.error);
+    return out;
+  }
+  return out;
+}
+
+bool same_overlaps(const std::vector<ForceCurve>& samples) {
+  for (const ForceCurve& s : samples) {
+    if (s.normal.size() != samples.front().normal.size()) return false;
+    for (std::size_t k = 0; k < s.normal.size(); ++k)
+      if (std::abs(s.normal[k].delta - samples.front().normal[k].delta) > kSame) return false;
+  }
+  return true;
+}
+
+std::vector<double> common_overlaps(const std::vector<ForceCurve>& samples) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = 0.0;
+  std::vector<std::size_t> counts;
+  for (const ForceCurve& s : samples) {
+    if (s.normal.empty()) continue;
+    low = std::min(low, s.normal.front().delta);
+    high = std::max(high, s.normal.back().delta);
+    counts.push_back(s.normal.size());
+  }
+  std::sort(counts.begin(), counts.end());
+  const std::size_t n = std::clamp<std::size_t>(counts[counts.size() / 2], 5, kMostCommon);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < n; ++k)
+    out.push_back(low + (high - low) * static_cast<double>(k) / static_cast<double>(n - 1));
+  return out;
+}
+
+void to_common(std::vector<ForceCurve>& samples) {
+  const std::vector<double> deltas = common_overlaps(samples);
+  for (ForceCurve& s : samples) {
+    const std::vector<ForcePoint> smooth = binned(s.normal, 2 * deltas.size());
+    s.normal.clear();
+    for (const double d : deltas)
+      if (const ForcePoint p = at(smooth, d); !std::isnan(p.force)) s.normal.push_back(p);
+  }
+}
+
+/// Standard error of a single value at each Delta: the mean square over samples.
+std::vector<GivenError> errors_of(const std::vector<ForceCurve>& samples, double unit) {
+  std::vector<GivenError> out;
+  std::vector<double> count;
+  for (const ForceCurve& s : samples)
+    for (const ForcePoint& p : s.normal) {
+      auto found =
+          std::find_if(out.begin(), out.end(), [&](const auto& g) { return std::abs(g.delta - p.delta) < kSame; });
+      const auto k = static_cast<std::size_t>(found - out.begin());
+      if (found == out.end()) {
+        out.push_back({p.delta, 0.0});
+        count.push_back(0.0);
+      }
+      out[k].error += p.error * p.error;
+      count[k] += 1.0;
+    }
+  for (std::size_t k = 0; k < out.size(); ++k) out[k].error = std::sqrt(out[k].error / count[k]) / unit;
+  return out;
+}
+
+PackingRun run_of(const ForceCurve& sample, std::size_t index, PairKind kind) {
+  PackingRun run;
+  run.packing = static_cast<std::int64_t>(index);
+  run.kind = kind;
+  run.relaxation = "experiment";
+  for (const ForcePoint& p : sample.normal) run.normal.push_back({p.delta, p.force, 0.0, 0.0, true});
+  run.tangential = sample.tangential;
+  return run;
+}
+
+/// The law of the kind that was not measured.
+FitReport mirrored(const FitReport& measured) {
+  const bool to_pair = measured.law.kind == PairKind::soft_solid;
+  const double stretch = to_pair ? 2.0 : 0.5;  // of Delta
+  const double series = to_pair ? 0.5 : 2.0;   // of kt: two springs behind one another
+  const auto turned = [&](const std::array<double, 7>& p) {
+    std::array<double, 7> q = p;
+    q[2] *= stretch;
+    q[0] *= std::pow(stretch, -p[1]);
+    q[3] *= series * std::pow(stretch, -p[4]);
+    q[5] *= series * std::pow(stretch, -p[6]);
+    return q;
+  };
+  FitReport out = measured;
+  for (auto& r : out.replicates) r = turned(r);
+  PairLaw& law = out.law;
+  law.kind = to_pair ? PairKind::soft_soft : PairKind::soft_solid;
+  law.status = "underdetermined";
+  law.reason = fmt::format("Not measured: follows from {} by symmetry, each particle taking half of the overlap.",
+                           to_string(measured.law.kind));
+  law.delta_min *= stretch;
+  law.delta_max *= stretch;
+  law.packings = 0;
+  law.points = 0;
+  law.chi2_per_dof = law.quality = 0.0;
+  law.table = {};
+  law.band_delta.clear();
+  law.bands.clear();
+  law.covariance = replicate_covariance(out.replicates);
+  const auto value = [](const ThresholdPowerLaw& l) { return std::array{l.a.value, l.b.value}; };
+  const auto n = value(measured.law.normal);
+  const auto i = value(measured.law.tangential_initial);
+  const auto s = value(measured.law.tangential_secant);
+  const auto p = turned({n[0], n[1], measured.law.normal.delta.value, i[0], i[1], s[0], s[1]});
+  const bool known = out.replicates.size() >= 2;
+  law.normal = estimated_law(out, p, 0, known);
+  if (law.has_tangential_initial) law.tangential_initial = estimated_law(out, p, 1, known);
+  if (law.has_tangential_secant) law.tangential_secant = estimated_law(out, p, 2, known);
+  return out;
+}
+
+void add(ExperimentFit& out, FitReport report) {
+  PairLaw law = report.law;
+  add_bands(law, report);
+  out.card.pairs.push_back(std::move(law));
+  out.reports.push_back(std::move(report));
+}
+
+void add_mirror(ExperimentFit& out) {
+  if (out.reports.size() != 1) return;
+  const FitReport& only = out.reports.front();
+  if (only.law.normal.b.value <= 0.0) return;
+  FitReport other = mirrored(only);
+  out.remarks.push_back(to_string(other.law.kind) + ": " + other.law.reason);
+  add(out, std::move(other));
+}
+
+}  // namespace
+
+PreparedCurves prepare_curves(const ForceCurves& curves) {
+  PreparedCurves out;
+  std::vector<ForceCurve> samples = curves.samples;
+  const std::string kind = to_string(curves.kind);
+  if (samples.size() > 1 && !same_overlaps(samples)) {
+    to_common(samples);
+    out.note =
+        fmt::format("{}: samples are interpolated to {} common overlaps", kind, common_overlaps(curves.samples).size());
+  }
+  for (ForceCurve& s : samples) {
+    if (s.normal.size() <= kMostPoints) continue;
+    out.note =
+        fmt::format("{}: {} points per sample are averaged in {} bins of Delta", kind, s.normal.size(), kMostPoints);
+    s.normal = binned(s.normal, kMostPoints);
+  }
+  out.data.spec = curves.spec;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    PackingInfo info;
+    info.seed = k;
+    out.data.packings.push_back(info);
+    out.data.runs.push_back(run_of(samples[k], k, curves.kind));
+  }
+  if (curves.has_errors)
+    out.errors = errors_of(samples, curves.spec.youngs_modulus * curves.spec.shell_radius * curves.spec.shell_radius);
+  return out;
+}
+
+CurveMeans mean_curve(const ForceCurves& curves) {
+  const PreparedCurves prepared = prepare_curves(curves);
+  RunList runs;
+  for (const PackingRun& run : prepared.data.runs) runs.push_back(&run);
+  CurveMeans means = means_of(normal_samples(runs, curves.spec, {}));
+  const double unit = curves.spec.youngs_modulus * curves.spec.shell_radius * curves.spec.shell_radius;
+  for (std::size_t k = 0; k < means.delta.size(); ++k) {
+    double single = means.deviation[k];
+    for (const GivenError& g : prepared.errors)
+      if (std::abs(g.delta - means.delta[k]) < kSame) single = std::max(single, g.error);
+    means.mean[k] *= unit;
+    means.deviation[k] = unit * single / std::sqrt(std::max(means.count[k], 1.0));
+  }
+  return means;
+}
+
+ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror) {
+  ExperimentFit out;
+  out.card.spec = curves.front().spec;
+  out.card.relaxation = "experiment";
+  out.card.intervals.clear();
+  for (const ForceCurves& one : curves) {
+    const PreparedCurves prepared = prepare_curves(one);
+    FitOptions o = options;
+    o.experiment = true;
+    o.given_errors = prepared.errors;
+    FitReport report = fit_pair_law(prepared.data, one.kind, o);
+    out.remarks.insert(out.remarks.end(), one.remarks.begin(), one.remarks.end());
+    if (!prepared.note.empty()) out.remarks.push_back(prepared.note);
+    if (report.from_residuals)
+      out.remarks.push_back(fmt::format(
+          "{}: {} sample{} ({} needed for an interval over samples): intervals are from the residuals about the law "
+          "and do "
+          "not cover other samples",
+          to_string(one.kind), one.samples.size(), one.samples.size() == 1 ? "" : "s", options.min_packings));
+    const std::string origin =
+        report.from_residuals ? "bootstrap of residuals about the law" : "bootstrap over samples";
+    if (out.card.intervals.find(origin) == std::string::npos)
+      out.card.intervals += (out.card.intervals.empty() ? "" : "; ") + origin;
+    add(out, std::move(report));
+  }
+  if (mirror) add_mirror(out);
+  return out;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,39 @@
+// The threshold fit for curves that were measured in an experiment.
+#pragma once
+
+#include <vector>
+
+#include "calibrate/threshold_fit.h"
+#include "common/data/force_curves.h"
+
+namespace softgrain {
+
+/// What is fitted: curves at common overlaps.
+struct PreparedCurves {
+  Measurements data;  ///< one "packing" per sample, relaxation "experiment"
+  std::vector<GivenError> errors;
+  std::string note;  ///< what was done to the points; empty: they are used as they stand
+};
+
+/// Samples that were measured at different overlaps are interpolated linearly to common ones (as many as the median
+/// sample has, at most 60), never beyond their own range. Samples with more than 120 points are averaged in as many
+/// even bins of Delta.
+PreparedCurves prepare_curves(const ForceCurves& curves);
+
+/// Mean force [N] over samples at the overlaps of prepare_curves(); `deviation` holds the standard error of the mean:
+/// the given one with one sample, the larger of that and of scatter over samples otherwise (0: nothing is known).
+CurveMeans mean_curve(const ForceCurves& curves);
+
+struct ExperimentFit {
+  LawCard card;
+  std::vector<FitReport> reports;
+  std::vector<std::string> remarks;
+};
+
+/// Fits every pair kind. `mirror`: a kind that was not measured follows from the other one, by symmetry: two equal
+/// soft particles that press on each other are each pressed on a plane at half the overlap,
+///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D) = kt_soft-solid(D/2)/2.
+/// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so.
+ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror);
+
+}  // namespace softgrain

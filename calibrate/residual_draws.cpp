@@ -1,0 +1,79 @@
+#include "calibrate/residual_draws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace softgrain {
+
+namespace {
+
+/// Box and Muller; two uniform numbers each, so that draws do not depend on what was drawn before.
+double normal_number(RandomStream& random) {
+  const double radius = std::sqrt(-2.0 * std::log(random.uniform()));
+  return radius * std::cos(2.0 * std::numbers::pi * random.uniform());
+}
+
+}  // namespace
+
+ResidualDraws::ResidualDraws(const BootstrapInput& input, const std::vector<GivenError>& given) : input_(input) {
+  for (std::size_t j = 0; j < kLawCurves; ++j)
+    if (input.curves[j].present()) prepare(j, j == 0 ? given : std::vector<GivenError>{});
+}
+
+void ResidualDraws::prepare(std::size_t j, const std::vector<GivenError>& given) {
+  const CurveSamples& s = input_.samples[j];
+  const std::vector<double>& sigma = input_.curves[j].sigma;
+  Curve& c = curves_[j];
+  for (const double d : s.delta) c.fitted.push_back(input_.start.value(j, d));
+  std::vector<double> standardised(s.value.size(), std::numeric_limits<double>::quiet_NaN());
+  double chi2 = 0.0;
+  double points = 0.0;
+  for (std::size_t i = 0; i < s.packings; ++i)
+    for (std::size_t k = 0; k < s.delta.size(); ++k) {
+      const double z = (s.at(i, k) - c.fitted[k]) / sigma[k];
+      if (std::isnan(z)) continue;
+      standardised[i * s.delta.size() + k] = z;
+      chi2 += z * z;
+      points += 1.0;
+    }
+  c.block = correlation_length(standardised, s.packings);
+  const double parameters = j == 0 ? 3.0 : 2.0;
+  const double freedom = std::max(points - parameters, 1.0);
+  // Errors as the fit weights points, to the size of the residuals; given ones are never taken to be smaller.
+  const double size = std::max(given.empty() ? 0.0 : 1.0, std::sqrt(chi2 / freedom));
+  c.amplitude = standardised;
+  for (std::size_t i = 0; i < s.packings; ++i)
+    for (std::size_t k = 0; k < s.delta.size(); ++k) {
+      double& a = c.amplitude[i * s.delta.size() + k];
+      if (!std::isnan(a)) a = size * sigma[k];
+    }
+}
+
+FitCurves ResidualDraws::draw(RandomStream& random) const {
+  FitCurves out = input_.curves;
+  for (std::size_t j = 0; j < kLawCurves; ++j) {
+    if (!out[j].present()) continue;
+    CurveSamples drawn = input_.samples[j];
+    const std::size_t n = drawn.delta.size();
+    for (std::size_t i = 0; i < drawn.packings; ++i) {
+      double number = 0.0;
+      auto left = static_cast<std::size_t>(random.below(curves_[j].block));  // blocks begin anywhere
+      if (left > 0) number = normal_number(random);
+      for (std::size_t k = 0; k < n; ++k) {
+        const double amplitude = curves_[j].amplitude[i * n + k];
+        if (std::isnan(amplitude)) continue;
+        if (left == 0) {
+          number = normal_number(random);
+          left = curves_[j].block;
+        }
+        --left;
+        drawn.value[i * n + k] = curves_[j].fitted[k] + number * amplitude;
+      }
+    }
+    out[j].means = means_of(drawn);
+  }
+  return out;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,155 @@
+#include "common/data/force_curve_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::size_t kLeastPoints = 5;  ///< a, b and delta, and something to judge them by
+constexpr double kLargestDelta = 0.9;    ///< of a scene; beyond, unit or radius are wrong
+constexpr std::size_t kNone = CurveLayout::none;
+
+}  // namespace
+
+void CurveRows::read() {
+  for (const CsvRow& row : file_.rows()) {
+    const std::size_t sample = sample_of(row);
+    const double delta = overlap(row);
+    if (delta < 0.0)
+      ++before_touch_;
+    else if (is_rotated(row))
+      out_.samples[sample].tangential.push_back(tangential(row, delta));
+    else
+      add_normal(row, delta, sample);
+  }
+  if (before_touch_ > 0)
+    out_.remarks.push_back(
+        fmt::format("{}: {} points before touch (negative overlap) are left out", file_.path(), before_touch_));
+  if (dropped_ > 0)
+    out_.remarks.push_back(fmt::format("{}: {} points of unloading are left out", file_.path(), dropped_));
+  note_falls();
+  require_enough();
+}
+
+double CurveRows::required(const CsvRow& row, std::size_t column, Unit unit) const {
+  const auto value = file_.number(row, column, unit);
+  if (!value)
+    throw BadInput(fmt::format("{}: column \"{}\": the value is missing; fill it in or remove the line",
+                               file_.where(row.line), file_.columns()[column].title));
+  return *value;
+}
+
+double CurveRows::overlap(const CsvRow& row) const {
+  const double delta = at_.delta != kNone ? required(row, at_.delta, Unit::none)
+                                          : required(row, at_.hn, Unit::length) / out_.spec.shell_radius;
+  if (delta > kLargestDelta)
+    throw BadInput(
+        fmt::format("{}: overlap of {:.4g} Rs (Rs = {:.4g} m): allowed are at most {}; check unit and radius",
+                    file_.where(row.line), delta, out_.spec.shell_radius, kLargestDelta));
+  return delta;
+}
+
+bool CurveRows::is_rotated(const CsvRow& row) const {
+  if (at_.ft == kNone) return false;
+  return file_.number(row, at_.ft, Unit::force).has_value() && file_.number(row, at_.ht, Unit::length).has_value();
+}
+
+TangentialPoint CurveRows::tangential(const CsvRow& row, double delta) const {
+  TangentialPoint p;
+  p.delta = delta;
+  p.angle_deg = required(row, at_.ht, Unit::length) * 180.0 / (std::numbers::pi * out_.spec.shell_radius);
+  p.force_parallel = required(row, at_.ft, Unit::force);
+  p.converged = true;
+  return p;
+}
+
+std::size_t CurveRows::sample_of(const CsvRow& row) {
+  const std::string name =
+      at_.sample == kNone ? std::filesystem::path(file_.path()).stem().string() : row.cells[at_.sample];
+  if (name.empty())
+    throw BadInput(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
+                               file_.columns()[at_.sample].title));
+  for (std::size_t k = 0; k < out_.samples.size(); ++k)
+    if (out_.samples[k].name == name) return k;
+  out_.samples.push_back({name, {}, {}});
+  lines_.emplace_back();
+  return out_.samples.size() - 1;
+}
+
+void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
+  ForceCurve& sample = out_.samples[index];
+  ForcePoint p;
+  p.delta = delta;
+  p.force = required(row, at_.fn, Unit::force);
+  if (at_.error != kNone) {
+    p.error = required(row, at_.error, Unit::force);
+    if (p.error < 0.0)
+      throw BadInput(fmt::format("{}: column \"{}\": {} must not be negative", file_.where(row.line),
+                                 file_.columns()[at_.error].title, row.cells[at_.error]));
+  }
+  if (!sample.normal.empty() && delta <= sample.normal.back().delta) {
+    if (options_.drop_unloading) {
+      ++dropped_;
+      return;
+    }
+    throw BadInput(fmt::format(
+        "{}: sample \"{}\": the overlap does not rise (Delta = {:.6g} after {:.6g}); a law is fitted to the loading "
+        "branch: remove unloading and repeated points, or leave them out with --set unloading=drop",
+        file_.where(row.line), sample.name, delta, sample.normal.back().delta));
+  }
+  add_stiffness(row, delta, sample);
+  sample.normal.push_back(p);
+  lines_[index].push_back(row.line);
+}
+
+/// kt as given: the two rotations whose slope it is.
+void CurveRows::add_stiffness(const CsvRow& row, double delta, ForceCurve& sample) const {
+  if (at_.kt == kNone) return;
+  const auto kt = file_.number(row, at_.kt, Unit::stiffness);
+  if (!kt) return;
+  for (const double angle : {-options_.initial_angle_deg, options_.initial_angle_deg}) {
+    TangentialPoint p;
+    p.delta = delta;
+    p.angle_deg = angle;
+    p.force_parallel = *kt * std::numbers::pi * out_.spec.shell_radius * angle / 180.0;
+    p.converged = true;
+    sample.tangential.push_back(p);
+  }
+}
+
+/// A force that falls is no reason to stop, but one to look at the data.
+void CurveRows::note_falls() {
+  constexpr double kShare = 0.1;  // of the largest force of the sample
+  std::string first;
+  int count = 0;
+  for (std::size_t s = 0; s < out_.samples.size(); ++s) {
+    const std::vector<ForcePoint>& points = out_.samples[s].normal;
+    double largest = 0.0;
+    for (const ForcePoint& p : points) largest = std::max(largest, p.force);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      if (!(points[k].force < points[k - 1].force - kShare * largest)) continue;
+      if (++count == 1)
+        first = fmt::format("{}: sample \"{}\": the force falls from {:.4g} to {:.4g} N while the overlap rises",
+                            file_.where(lines_[s][k]), out_.samples[s].name, points[k - 1].force, points[k].force);
+    }
+  }
+  if (count > 0) out_.remarks.push_back(first + (count > 1 ? fmt::format(" (and {} more times)", count - 1) : ""));
+}
+
+void CurveRows::require_enough() const {
+  std::size_t most = 0;
+  for (const ForceCurve& s : out_.samples) most = std::max(most, s.normal.size());
+  if (most < kLeastPoints)
+    throw BadInput(fmt::format(
+        "{}:{}: too few points: {} of the normal force in the longest sample, at least {} are needed", file_.path(),
+        file_.rows().empty() ? file_.header_line() : file_.rows().back().line, most, kLeastPoints));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,48 @@
+// Inner side of force_curves.h: the rows of a file into samples, once it is known which column is what.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/force_curves.h"
+#include "common/io/csv_file.h"
+
+namespace softgrain {
+
+/// Where each quantity stands in a file; `none` when it is not there.
+struct CurveLayout {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t hn = none, delta = none, fn = none, error = none, sample = none, ht = none, ft = none, kt = none;
+};
+
+/// Reads the rows of one file into samples.
+class CurveRows {
+ public:
+  /// All are kept by reference; `out` has its spec.
+  CurveRows(const CsvFile& file, const CurveLayout& at, const ForceCurveOptions& options, ForceCurves& out)
+      : file_(file), at_(at), options_(options), out_(out) {}
+
+  /// Throws BadInput with file and line.
+  void read();
+
+ private:
+  [[nodiscard]] double required(const CsvRow& row, std::size_t column, Unit unit) const;
+  [[nodiscard]] double overlap(const CsvRow& row) const;
+  [[nodiscard]] bool is_rotated(const CsvRow& row) const;
+  [[nodiscard]] TangentialPoint tangential(const CsvRow& row, double delta) const;
+  std::size_t sample_of(const CsvRow& row);  ///< index into the samples
+  void add_normal(const CsvRow& row, double delta, std::size_t index);
+  void add_stiffness(const CsvRow& row, double delta, ForceCurve& sample) const;
+  void note_falls();
+  void require_enough() const;
+
+  const CsvFile& file_;
+  const CurveLayout& at_;
+  const ForceCurveOptions& options_;
+  ForceCurves& out_;
+  std::vector<std::vector<int>> lines_;  ///< of the normal points of each sample
+  std::int64_t before_touch_ = 0;
+  std::int64_t dropped_ = 0;
+};
+
+}  // namespace softgrain

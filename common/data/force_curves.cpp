@@ -1,0 +1,231 @@
+#include "common/data/force_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "common/core/error.h"
+#include "common/data/force_curve_rows.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::size_t kNone = CurveLayout::none;
+
+/// Names under which a quantity may stand in the header (lower case).
+struct ColumnName {
+  const char* quantity;
+  std::vector<std::string> names;
+};
+
+const std::vector<ColumnName>& column_names() {
+  static const std::vector<ColumnName> names{
+      {"hn", {"hn", "h_n", "h", "overlap", "displacement", "indentation"}},
+      {"Delta", {"delta", "delta_n", "strain"}},
+      {"Fn", {"fn", "f_n", "f", "force", "normal force", "load"}},
+      {"standard error", {"se", "error", "standard error", "standard_error", "stderr", "fn_se", "fn error", "sigma"}},
+      {"sample", {"sample", "specimen", "test", "packing"}},
+      {"ht", {"ht", "h_t", "tangential displacement"}},
+      {"Ft", {"ft", "f_t", "tangential force"}},
+      {"kt", {"kt", "k_t", "tangential stiffness"}}};
+  return names;
+}
+
+std::size_t& place(CurveLayout& layout, std::size_t quantity) {
+  std::size_t* const places[] = {&layout.hn,     &layout.delta, &layout.fn, &layout.error,
+                                 &layout.sample, &layout.ht,    &layout.ft, &layout.kt};
+  return *places[quantity];
+}
+
+std::string known_columns(const std::string& found) {
+  std::vector<std::string> all;
+  for (const ColumnName& c : column_names()) all.insert(all.end(), c.names.begin(), c.names.end());
+  const std::string near = nearest_word(found, all);
+  return near.empty() ? "" : fmt::format(" (\"{}\" is near)", near);
+}
+
+[[noreturn]] void no_column(const CsvFile& file, const char* wanted) {
+  std::string found;
+  for (const CsvColumn& c : file.columns())
+    found += (found.empty() ? "\"" : ", \"") + c.title + "\"" + known_columns(c.name);
+  throw BadInput(fmt::format("{}: no column {}; found {}", file.where(file.header_line()), wanted, found));
+}
+
+CurveLayout layout_of(const CsvFile& file, std::vector<std::string>& remarks) {
+  CurveLayout layout;
+  std::string unused;
+  for (std::size_t c = 0; c < file.columns().size(); ++c) {
+    bool known = false;
+    for (std::size_t q = 0; q < column_names().size(); ++q) {
+      const auto& names = column_names()[q].names;
+      if (std::find(names.begin(), names.end(), file.columns()[c].name) == names.end()) continue;
+      known = true;
+      if (place(layout, q) != kNone)
+        throw BadInput(fmt::format("{}: columns \"{}\" and \"{}\" both name {}", file.where(file.header_line()),
+                                   file.columns()[place(layout, q)].title, file.columns()[c].title,
+                                   column_names()[q].quantity));
+      place(layout, q) = c;
+    }
+    if (!known) unused += (unused.empty() ? "\"" : ", \"") + file.columns()[c].title + "\"";
+  }
+  if (!unused.empty()) remarks.push_back(file.path() + ": not used: " + unused);
+  return layout;
+}
+
+void require_columns(const CsvFile& file, const CurveLayout& at) {
+  if (at.hn == kNone && at.delta == kNone) no_column(file, "of the overlap, e.g. hn [mm] or Delta");
+  if (at.hn != kNone && at.delta != kNone)
+    throw BadInput(file.where(file.header_line()) + ": give the overlap once, as hn or as Delta");
+  if (at.fn == kNone) no_column(file, "of the force, e.g. Fn [N]");
+  if ((at.ht == kNone) != (at.ft == kNone)) no_column(file, at.ht == kNone ? "ht beside Ft" : "Ft beside ht");
+  if (at.kt != kNone && at.ft != kNone)
+    throw BadInput(file.where(file.header_line()) + ": give the tangential law once, as kt or as ht and Ft");
+  const auto unit = [&](std::size_t column, Unit u, const char* example) {
+    if (column != kNone) file.require_unit(column, u, example);
+  };
+  unit(at.hn, Unit::length, "hn [mm]");
+  unit(at.delta, Unit::none, "Delta");
+  unit(at.fn, Unit::force, "Fn [N]");
+  unit(at.error, Unit::force, "se [N]");
+  unit(at.ht, Unit::length, "ht [um]");
+  unit(at.ft, Unit::force, "Ft [N]");
+  unit(at.kt, Unit::stiffness, "kt [N/mm]");
+}
+
+/// A number from a comment of the file.
+std::optional<double> setting(const CsvFile& file, const std::vector<std::string>& keys, Unit unit,
+                              const Range& range) {
+  const auto found = file.setting(keys);
+  if (!found) return std::nullopt;
+  const auto complain = [&](const std::string& problem) {
+    throw BadInput(fmt::format("{}: {} = {}: {}", file.where(found->line), found->key, found->value, problem));
+  };
+  double value = 0.0;
+  try {
+    value = parse_quantity(found->value, unit);
+  } catch (const BadInput& e) {
+    complain(e.what());
+  }
+  if (value < range.low || value > range.high || (range.low_open && value == range.low))
+    complain(fmt::format("must be {} {}{}", range.low_open ? "above" : "at least", range.low,
+                         std::isfinite(range.high) ? fmt::format(" and at most {}", range.high) : ""));
+  return value;
+}
+
+PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
+  if (options.kind) return *options.kind;
+  const auto said = file.setting({"kind"});
+  if (!said)
+    throw BadInput(file.path() +
+                   ": which contact was measured? Give --kind soft-solid or soft-soft, or a comment \"# kind = "
+                   "soft-solid\"");
+  if (said->value != "soft-solid" && said->value != "soft-soft")
+    throw BadInput(fmt::format("{}: kind = {}: must be soft-solid or soft-soft", file.where(said->line), said->value));
+  return said->value == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+}
+
+SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) {
+  SoftParticleSpec spec;
+  const auto radius = options.shell_radius
+                          ? options.shell_radius
+                          : setting(file, {"rs", "radius", "shell_radius"}, Unit::length, Range::positive());
+  if (!radius)
+    throw BadInput(file.path() +
+                   ": the radius of the soft particle is needed: --radius \"16 mm\", or a comment \"# Rs = 16 mm\"");
+  const auto modulus = options.youngs_modulus
+                           ? options.youngs_modulus
+                           : setting(file, {"e", "modulus", "youngs_modulus"}, Unit::pressure, Range::positive());
+  if (!modulus)
+    throw BadInput(
+        file.path() +
+        ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
+        "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
+  spec.shell_radius = *radius;
+  spec.youngs_modulus = *modulus;
+  spec.poisson_ratio =
+      setting(file, {"nu", "poisson_ratio"}, Unit::none, Range::closed(-0.99, 0.5)).value_or(spec.poisson_ratio);
+  spec.friction = setting(file, {"mu", "friction"}, Unit::none, Range::not_negative()).value_or(spec.friction);
+  spec.density = setting(file, {"density", "rho"}, Unit::density, Range::positive()).value_or(spec.density);
+  return spec;
+}
+
+/// Ft at +-angle, between the two measured displacements around it, where the sweep reaches that far.
+void add_secant_points(ForceCurve& sample, double angle_deg) {
+  std::vector<TangentialPoint>& all = sample.tangential;
+  std::stable_sort(all.begin(), all.end(), [](const TangentialPoint& a, const TangentialPoint& b) {
+    return a.delta != b.delta ? a.delta < b.delta : a.angle_deg < b.angle_deg;
+  });
+  std::vector<TangentialPoint> added;
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    if (all[k].delta != all[k - 1].delta) continue;
+    for (const double at : {-angle_deg, angle_deg}) {
+      if (!(all[k - 1].angle_deg < at && at < all[k].angle_deg)) continue;
+      TangentialPoint p = all[k];
+      const double share = (at - all[k - 1].angle_deg) / (all[k].angle_deg - all[k - 1].angle_deg);
+      p.angle_deg = at;
+      p.force_parallel = all[k - 1].force_parallel + share * (all[k].force_parallel - all[k - 1].force_parallel);
+      added.push_back(p);
+    }
+  }
+  all.insert(all.end(), added.begin(), added.end());
+}
+
+void require_same(const std::string& a, const std::string& b, const SoftParticleSpec& s, const SoftParticleSpec& t) {
+  const auto differ = [&](const char* name, double x, double y) {
+    if (x != y) throw BadInput(fmt::format("{} and {}: {} differs: {} and {}", a, b, name, x, y));
+  };
+  differ("Rs", s.shell_radius, t.shell_radius);
+  differ("E", s.youngs_modulus, t.youngs_modulus);
+  differ("nu", s.poisson_ratio, t.poisson_ratio);
+  differ("mu", s.friction, t.friction);
+  differ("density", s.density, t.density);
+}
+
+}  // namespace
+
+ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options) {
+  const CsvFile file = CsvFile::read(path);
+  ForceCurves out;
+  const CurveLayout at = layout_of(file, out.remarks);
+  require_columns(file, at);
+  out.kind = kind_of(file, options);
+  out.spec = spec_of(file, options);
+  out.has_errors = at.error != kNone;
+  CurveRows(file, at, options, out).read();
+  for (ForceCurve& s : out.samples)
+    if (at.ft != kNone) add_secant_points(s, options.secant_angle_deg);
+  return out;
+}
+
+std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,
+                                                const ForceCurveOptions& options) {
+  std::vector<ForceCurves> out;
+  for (const std::string& path : paths) {
+    if (std::count(paths.begin(), paths.end(), path) > 1) throw BadInput(path + ": the file is given twice");
+    ForceCurves one = read_force_curves(path, options);
+    const auto same = std::find_if(out.begin(), out.end(), [&](const ForceCurves& c) { return c.kind == one.kind; });
+    if (!out.empty()) require_same(paths.front(), path, out.front().spec, one.spec);
+    if (same == out.end()) {
+      out.push_back(std::move(one));
+      continue;
+    }
+    const std::string stem = std::filesystem::path(path).stem().string();
+    for (ForceCurve& s : one.samples) {
+      const auto taken = [&](const std::string& name) {
+        return std::any_of(same->samples.begin(), same->samples.end(), [&](const auto& x) { return x.name == name; });
+      };
+      if (taken(s.name)) s.name = stem + ": " + s.name;
+      if (taken(s.name)) throw BadInput(path + ": sample \"" + s.name + "\" was read before");
+      same->samples.push_back(std::move(s));
+    }
+    same->has_errors = same->has_errors && one.has_errors;
+    same->remarks.insert(same->remarks.end(), one.remarks.begin(), one.remarks.end());
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
+  return out;
+}
+
+}  // namespace softgrain

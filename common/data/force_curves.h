@@ -1,0 +1,59 @@
+// Force-displacement measurements of an experiment, read from text: what a fit needs instead of simulated packings.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/data/measurements.h"
+
+namespace softgrain {
+
+/// One state of increasing normal overlap.
+struct ForcePoint {
+  double delta = 0.0;                                       ///< Delta = hn/Rs
+  double force = 0.0;                                       ///< Fn [N], compression positive
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the force [N]; NaN: not given
+};
+
+/// One specimen (or one test of it).
+struct ForceCurve {
+  std::string name;
+  std::vector<ForcePoint> normal;           ///< Delta rising
+  std::vector<TangentialPoint> tangential;  ///< angle_deg = 180 ht / (pi Rs); all count as converged
+};
+
+/// All tests of one pair kind.
+struct ForceCurves {
+  PairKind kind = PairKind::soft_solid;
+  SoftParticleSpec spec;  ///< Rs and E make the law dimensionless; nu, mu, density as given, all else is not known
+  std::vector<ForceCurve> samples;
+  bool has_errors = false;
+  std::vector<std::string> remarks;  ///< columns that were not used, points that were left out
+};
+
+/// What the command line says beside the file; it wins over comments in the file.
+struct ForceCurveOptions {
+  std::optional<PairKind> kind;
+  std::optional<double> shell_radius;    ///< Rs [m]
+  std::optional<double> youngs_modulus;  ///< E [Pa]
+  bool drop_unloading = false;      ///< leave out points behind the largest overlap so far, instead of refusing them
+  double initial_angle_deg = 0.05;  ///< a column kt is taken as the slope over +- this angle
+  double secant_angle_deg = 1.0;    ///< Ft is interpolated at this angle
+};
+
+/// Reads one CSV file. Columns (any order, name [unit]): hn or overlap (with a unit of length) or Delta; Fn or force;
+/// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
+/// prestrain), or kt. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
+/// "# E = 0.5 MPa", "# nu = ...", "# mu = ...", "# density = ...".
+/// Throws BadInput with file and line: unknown unit, missing value, number that is not finite, overlap that falls, too
+/// few points (5), kind, Rs or E not given.
+ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options);
+
+/// Files of one experiment, joined by pair kind (soft-solid first). A sample is named by its file when there are
+/// several. Throws BadInput when files disagree about Rs, E, nu, mu or density.
+std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,
+                                                const ForceCurveOptions& options);
+
+}  // namespace softgrain

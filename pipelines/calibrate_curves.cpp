@@ -1,0 +1,167 @@
+#include "pipelines/calibrate_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "calibrate/experiment_fit.h"
+#include "pipelines/law_json.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+bool is_curve_file(const std::string& path) {
+  const std::string end = std::filesystem::path(path).extension().string();
+  return end == ".csv" || end == ".tsv" || end == ".txt" || end == ".dat";
+}
+
+struct Settings {
+  FitOptions fit;
+  ForceCurveOptions curves;
+  bool mirror = false;
+};
+
+/// An option of the command line with a unit.
+std::optional<double> quantity(const char* option, const std::string& text, Unit unit) {
+  if (text.empty()) return std::nullopt;
+  double value = 0.0;
+  try {
+    value = parse_quantity(text, unit);
+  } catch (const BadInput& e) {
+    throw BadInput(fmt::format("{} {}: {}", option, text, e.what()));
+  }
+  if (!(value > 0.0)) throw BadInput(fmt::format("{} {}: must be above 0", option, text));
+  return value;
+}
+
+Settings read_settings(const SceneTable& t, const CommonOptions& options) {
+  Settings s;
+  FitOptions& o = s.fit;
+  o.delta_low = t.number("delta_low", Unit::none, Range::not_negative(), o.delta_low);
+  o.delta_high = t.number("delta_high", Unit::none, Range::positive(), o.delta_high);
+  o.initial_angle_deg = t.number("initial_angle", Unit::none, Range::positive(), o.initial_angle_deg);
+  o.secant_angle_deg = t.number("secant_angle", Unit::none, Range::positive(), o.secant_angle_deg);
+  o.noise_floor = t.number("noise_floor", Unit::none, Range::not_negative(), o.noise_floor);
+  o.scatter_floor = t.number("scatter_floor", Unit::none, {0.0, 1.0, true, false}, o.scatter_floor);
+  o.min_packings = static_cast<int>(t.count("min_packings", 2, 1000000, o.min_packings));
+  o.replicates = static_cast<int>(t.count("replicates", 0, 1000000, o.replicates));
+  s.curves.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
+  s.mirror = t.flag("mirror", false);
+  s.curves.initial_angle_deg = o.initial_angle_deg;
+  s.curves.secant_angle_deg = o.secant_angle_deg;
+  t.finish();
+  if (!options.kind.empty()) {
+    if (options.kind != "soft-solid" && options.kind != "soft-soft")
+      throw BadInput("--kind " + options.kind + ": must be soft-solid or soft-soft");
+    s.curves.kind = options.kind == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+  }
+  s.curves.shell_radius = quantity("--radius", options.radius, Unit::length);
+  s.curves.youngs_modulus = quantity("--modulus", options.modulus, Unit::pressure);
+  return s;
+}
+
+json error_or_null(double error) { return std::isfinite(error) ? json(error) : json(nullptr); }
+
+/// The measured points as the report draws them.
+json samples_json(const std::vector<ForceCurves>& curves) {
+  json out = json::array();
+  for (const ForceCurves& kind : curves)
+    for (const ForceCurve& s : kind.samples) {
+      json one = {{"kind", to_string(kind.kind)}, {"name", s.name}, {"delta", json::array()}, {"force", json::array()}};
+      for (const ForcePoint& p : s.normal) {
+        one["delta"].push_back(p.delta);
+        one["force"].push_back(p.force);
+        if (kind.has_errors) one["error"].push_back(error_or_null(p.error));
+      }
+      one["tangential_points"] = s.tangential.size();
+      out.push_back(std::move(one));
+    }
+  return out;
+}
+
+std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
+  const PairLaw& law = report.law;
+  std::string line = fmt::format("{}: {}", to_string(law.kind), law.status);
+  if (!law.reason.empty()) line += " - " + law.reason;
+  if (law.normal.b.value <= 0.0) return line + "\n";
+  const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
+  const ThresholdPowerLaw& n = law.normal;
+  const std::vector<double> ends{law.delta_max};
+  const Band band = law_band(report, LawCurve::normal, ends).front();
+  return line +
+         fmt::format(
+             "\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta "
+             "= {:.4g} [{:.4g}, {:.4g}]\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]\n",
+             newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value,
+             n.delta.value, n.delta.low, n.delta.high, band.delta, newton * band.value, newton * band.low,
+             newton * band.high);
+}
+
+/// Macro scenes ask for both kinds of contact.
+void add_missing_kind(const ExperimentFit& fit, std::vector<std::string>& remarks) {
+  if (fit.card.pairs.size() > 1) return;
+  const bool solid = fit.card.pairs.front().kind == PairKind::soft_solid;
+  remarks.push_back(
+      fmt::format("a macro scene needs the law of {} contacts too: give their measurements as another file, or take "
+                  "them from these "
+                  "by symmetry with --set mirror=true",
+                  solid ? "soft-soft" : "soft-solid"));
+}
+
+}  // namespace
+
+bool are_curve_files(const CommonOptions& options) {
+  const auto curves = std::count_if(options.inputs.begin(), options.inputs.end(), is_curve_file);
+  if (curves != 0 && curves != static_cast<std::ptrdiff_t>(options.inputs.size()))
+    throw BadInput("calibrate: tables of an experiment and files of this program need a run each");
+  if (curves == 0)
+    for (const auto& [option, value] : {std::pair{"--kind", &options.kind}, std::pair{"--radius", &options.radius},
+                                        std::pair{"--modulus", &options.modulus}})
+      if (!value->empty())
+        throw BadInput(fmt::format("calibrate: {} is for tables of an experiment (.csv, .tsv, .txt, .dat)", option));
+  return curves != 0;
+}
+
+ExitStatus calibrate_curves(const CommonOptions& options) {
+  const Scene scene = Scene::parse("", "calibrate", options.overrides);
+  Settings settings = read_settings(scene.root(), options);
+  const std::vector<ForceCurves> curves = read_force_curve_files(options.inputs, settings.curves);
+  const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
+  settings.fit.seed = run.seed(settings.fit.seed);
+  const ExperimentFit fit = fit_experiment(curves, settings.fit, settings.mirror);
+  const Provenance provenance = run.provenance(scene, settings.fit.seed);
+  save_card(fit.card, run.path("law.toml"), provenance);
+
+  std::vector<std::string> remarks = fit.remarks;
+  add_missing_kind(fit, remarks);
+  bool good = true;  // of what was measured; a law by symmetry says itself that it was not
+  std::string people;
+  for (const FitReport& r : fit.reports) {
+    good = good && (r.law.status == "good" || r.law.points == 0);
+    if (r.law.status != "good" && r.law.points > 0)
+      remarks.insert(remarks.begin(), fmt::format("{} law: {}: {}", to_string(r.law.kind), r.law.status, r.law.reason));
+    people += force_line(r, fit.card.spec);
+  }
+  for (const std::string& remark : remarks) people += "note: " + remark + "\n";
+  people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
+  json summary = {{"status", good ? "good" : "not usable"},
+                  {"inputs", options.inputs},
+                  {"relaxation", fit.card.relaxation},
+                  {"intervals", fit.card.intervals},
+                  {"laws", laws_json(fit.card)},
+                  {"experiment", samples_json(curves)},
+                  {"remarks", remarks},
+                  {"provenance", provenance_json(provenance)}};
+  run.finish(std::move(summary), people);
+  write_report(run.directory());
+  return good ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain

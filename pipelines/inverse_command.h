@@ -1,0 +1,15 @@
+// softgrain run SCENE.toml of kind "inverse": the soft particle whose curve comes nearest to a target.
+#pragma once
+
+#include "pipelines/run_context.h"
+
+namespace softgrain {
+
+/// Searches, measures once more at the answer with other packings, writes measurements.h5 (of that), evaluations.csv,
+/// summary.json and the report. Status 3 when the target is not reached.
+ExitStatus run_inverse(const Scene& scene, const CommonOptions& options);
+
+/// Adds what follows from the scene without running it, as facts and as lines for people.
+void check_inverse(const Scene& scene, nlohmann::json& facts, std::string& lines);
+
+}  // namespace softgrain

@@ -1,0 +1,266 @@
+// Own data through the program: a law from a CSV and a macro run with it, the reverse search, the files for calibration
+// tools; what is wrong is refused with exit status 2.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/data/law_card.h"
+#include "common/data/measurements.h"
+#include "common/io/text_file.h"
+#include "tests/support/markup_check.h"
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+#include "tests/support/run_comparison.h"
+#include "tests/support/synthetic_law.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// The published law with noise, in mm and N.
+std::string made_up_curve(double factor, double noise = 0.01) {
+  RandomStream random(5, RandomPurpose::test, 0);
+  std::ostringstream text;
+  text << "# Rs = 16 mm\n# E = 0.5 MPa\nhn [mm]; Fn [N]\n";
+  for (int k = 1; k <= 30; ++k) {
+    const double d = 0.01 * k;
+    text << 16.0 * d << "; " << factor * 128.0 * KnownLaw{}.value(d) + noise * normal_number(random) << "\n";
+  }
+  return text.str();
+}
+
+constexpr const char* kMacro = R"(kind = "macro"
+title = "tiny"
+seed = 1
+[macro]
+bodies = 12
+steps = 3
+strain = 0.2
+resolved = false
+)";
+
+/// About 40 grains per packing: the search itself is what is tested.
+constexpr const char* kInverse = R"(kind = "inverse"
+seed = 1
+[packing]
+trials = 5000
+polydispersity = 4.0
+rmax_over_shell = 0.5
+beta = 6.0
+placement = "voids"
+count = 6
+[measure]
+relaxation = "damped"
+[measure.damped]
+increment = 0.02
+tolerance = 1e-2
+[target]
+file = "target.csv"
+[search]
+mu = [0.05, 0.9]
+budget = 14
+replicates = 100
+)";
+
+class OwnData : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
+  void write(const std::string& name, const std::string& text) const { write_text_atomic(file(name), text); }
+  [[nodiscard]] json summary(const std::string& run) const {
+    return json::parse(read_text(file(run) + "/summary.json"));
+  }
+  ProgramOutcome calibrate(const std::string& inputs, const std::string& out, const std::string& more = "") const {
+    return run_the_program("calibrate " + inputs + " --quiet --set replicates=60 --out '" + file(out) + "' " + more);
+  }
+  static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words) {
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in " << outcome.output;
+  }
+
+  /// A target by our own simulation with mu = 0.3 and another seed, as a CSV with errors.
+  void write_target(const std::string& scene_text, int packings) const {
+    std::string scene = scene_text.substr(0, scene_text.find("[target]"));
+    scene.replace(scene.find("inverse"), 7, "soft-particle");
+    scene += "[measure.soft_solid]\ndeltas = [0.1, 0.2, 0.3, 0.4]\n";
+    write("made.toml", scene);
+    const auto outcome =
+        run_the_program("microsim '" + file("made.toml") + "' --quiet --seed 77 --set material.mu=0.3 " +
+                        "--set packing.count=" + std::to_string(packings) + " --out '" + file("made") + "'");
+    ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
+    std::ostringstream text;
+    text << "Delta, Fn [N], se [N]\n0.0, 0.0, 0.001\n";  // five points are the least that a file may have
+    const json made = summary("made");
+    for (const json& row : made["forces"]["soft-solid"])
+      text << row["delta"].get<double>() << ", " << row["force"].get<double>() << ", "
+           << row["standard_error"].get<double>() << "\n";
+    write("target.csv", text.str());
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(OwnData, ACsvGivesALawThatAMacroRunTakes) {
+  write("plane.csv", made_up_curve(1.0));
+  write("macro.toml", kMacro);
+  expect(calibrate("'" + file("plane.csv") + "'", "law", "--kind soft-solid --set mirror=true"), 0,
+         {"soft-solid: good", "residuals", "law card"});
+  const LawCard card = load_card(file("law") + "/law.toml");
+  EXPECT_EQ(card.relaxation, "experiment");
+  ASSERT_EQ(card.pairs.size(), 2U);
+  EXPECT_NEAR(card.pairs[0].normal.value(0.25) / KnownLaw{}.value(0.25), 1.0, 0.02);
+  const std::string page = read_text(file("law") + "/report.html");
+  EXPECT_EQ(unbalanced_tags(page), "");
+  for (const char* words : {"Measured curves", "sample plane", "residuals about the law"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  expect(run_the_program("macrosim '" + file("macro.toml") + "' --quiet --law '" + file("law") + "/law.toml' --out '" +
+                         file("macro") + "'"),
+         0, {});
+  expect(run_the_program("check '" + file("law") + "/law.toml'"), 0, {"experiment"});
+}
+
+TEST_F(OwnData, TwoKindsInTwoFilesMakeOneCard) {
+  write("plane.csv", "# kind = soft-solid\n" + made_up_curve(1.0));
+  write("pair.csv", "# kind = soft-soft\n" + made_up_curve(0.2, 0.002));
+  expect(calibrate("'" + file("plane.csv") + "' '" + file("pair.csv") + "'", "law"), 0,
+         {"soft-solid: good", "soft-soft: good"});
+}
+
+TEST_F(OwnData, WrongInputEndsWithStatusTwoBeforeAnyWork) {
+  write("plane.csv", made_up_curve(1.0));
+  write("bad.csv", made_up_curve(1.0) + "5.0; \n");
+  const std::string plane = "'" + file("plane.csv") + "'";
+  expect(calibrate(plane, "x"), 2, {"--kind"});
+  expect(calibrate(plane, "x", "--kind hard"), 2, {"soft-soft"});
+  expect(calibrate(plane, "x", "--kind soft-solid --radius 16s"), 2, {"--radius", "unknown unit"});
+  expect(calibrate("'" + file("bad.csv") + "'", "x", "--kind soft-solid"), 2, {"bad.csv:34", "missing"});
+  expect(calibrate(plane, "x", "--kind soft-solid --set replicatse=5"), 2, {"replicates"});
+  expect(calibrate(plane + " data.h5", "x", "--kind soft-solid"), 2, {"a run each"});
+  expect(calibrate("data.h5", "x", "--kind soft-solid"), 2, {"--kind", ".csv"});
+  EXPECT_FALSE(fs::exists(file("x") + "/law.toml"));
+}
+
+TEST_F(OwnData, NoThresholdCrossingEndsWithStatusThree) {
+  write("flat.csv", made_up_curve(0.0));
+  expect(calibrate("'" + file("flat.csv") + "'", "law", "--kind soft-solid"), 3, {"no threshold crossing"});
+  EXPECT_EQ(summary("law")["status"], "not usable");
+  EXPECT_EQ(load_card(file("law") + "/law.toml").pairs.at(0).status, "no threshold crossing");
+}
+
+TEST_F(OwnData, TheReverseSearchFindsTheFrictionOfATargetMadeWithOtherSeeds) {
+  write_target(kInverse, 12);
+  write("scene.toml", kInverse);
+  const auto outcome =
+      run_the_program("run '" + file("scene.toml") + "' --quiet --threads 2 --out '" + file("a") + "'");
+  expect(outcome, 0, {"mu = "});
+  const json inverse = summary("a")["inverse"];
+  const json mu = inverse["parameters"][0];
+  EXPECT_LE(mu["interval"][0].get<double>(), 0.3) << outcome.output;
+  EXPECT_GE(mu["interval"][1].get<double>(), 0.3) << outcome.output;
+  EXPECT_EQ(inverse["evaluations"].size(), 14U);
+  EXPECT_LE(inverse["confirmed"]["misfit"].get<double>(), 4.0);
+  const std::string page = read_text(file("a") + "/report.html");
+  EXPECT_EQ(unbalanced_tags(page), "");
+  EXPECT_NE(page.find("The soft particle behind a curve"), std::string::npos);
+  EXPECT_FALSE(fs::exists(file("a") + "/work"));
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"14 evaluations", "mu from 0.05 to 0.9"});
+
+  // Other threads, and a run that was stopped: the same bits.
+  const std::string again = "run '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file("b") + "'";
+  const pid_t child = start_program({"run", file("scene.toml"), "--quiet", "--threads", "1", "--out", file("b")});
+  const std::string seventh = file("b") + "/work/evaluation-7-packing-0.h5";
+  (void)signal_when(
+      child, [&] { return fs::exists(seventh); }, SIGTERM);
+  expect(run_the_program(again + " --resume"), 0, {});
+  EXPECT_EQ(summary("a")["inverse"]["parameters"], summary("b")["inverse"]["parameters"]);
+  EXPECT_EQ(read_text(file("a") + "/evaluations.csv"), read_text(file("b") + "/evaluations.csv"));
+}
+
+/// Two parameters, packings of the published kind, least work: minutes.
+TEST_F(OwnData, SlowTheReverseSearchFindsFrictionAndDensityOfAFullPacking) {
+  std::string scene = kInverse;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    scene.replace(scene.find(from), from.size(), to);
+  };
+  replace("polydispersity = 4.0", "polydispersity = 10.0");
+  replace("beta = 6.0", "beta = 3.0");
+  replace("trials = 5000", "trials = 10000");
+  replace("count = 6", "count = 10");
+  replace("relaxation = \"damped\"\n[measure.damped]\nincrement = 0.02\ntolerance = 1e-2",
+          "relaxation = \"least-work\"");
+  replace("mu = [0.05, 0.9]\nbudget = 14", "mu = [0.05, 0.7]\nbeta = [1.5, 5.0]\nbudget = 36");
+  write_target(scene, 16);
+  write("scene.toml", scene);
+  expect(run_the_program("run '" + file("scene.toml") + "' --quiet --out '" + file("a") + "'"), 0,
+         {"mu = ", "beta = "});
+  const std::vector<std::pair<std::string, double>> truth{{"beta", 3.0}, {"mu", 0.3}};
+  const json parameters = summary("a")["inverse"]["parameters"];
+  ASSERT_EQ(parameters.size(), truth.size());
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_EQ(parameters[k]["name"], truth[k].first);
+    EXPECT_LE(parameters[k]["interval"][0].get<double>(), truth[k].second) << truth[k].first;
+    EXPECT_GE(parameters[k]["interval"][1].get<double>(), truth[k].second) << truth[k].first;
+  }
+}
+
+TEST_F(OwnData, ReverseScenesThatAreWrongAreRefused) {
+  write("target.csv", "Delta, Fn [N]\n0.1, 0\n0.2, 0.1\n0.3, 0.4\n0.4, 0.9\n0.5, 2\n");
+  const auto refuse = [&](const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+    std::string text = kInverse;
+    text.replace(text.find(from), from.size(), to);
+    write("scene.toml", text);
+    expect(run_the_program("run '" + file("scene.toml") + "' --quiet --out '" + file("x") + "'"), 2, words);
+  };
+  refuse("mu = [0.05, 0.9]", "mu = [0.9, 0.05]", {"scene.toml:18", "mu", "rising"});
+  refuse("mu = [0.05, 0.9]", "", {"nothing is searched", "beta"});
+  refuse("mu = [0.05, 0.9]", "muu = [0.05, 0.9]", {"nothing is searched"});
+  refuse("mu = [0.05, 0.9]", "mu = [0.05, 0.9]\nbeta = [0.5, 2]", {"beta", "above 1"});
+  refuse("budget = 14", "budget = 2", {"budget"});
+  refuse("file = \"target.csv\"", "delta = [0.1, 0.2, 0.3]\nforce = [0, 1]", {"force", "as many values"});
+  refuse("file = \"target.csv\"", "delta = [0.1, 0.2, 0.3]\nforce = [0, 0, 0]", {"above zero"});
+  refuse("file = \"target.csv\"", "file = \"target.csv\"\ndiscrepancy = 0", {"discrepancy"});
+}
+
+TEST_F(OwnData, ObservablesAreWrittenAsCalibrationToolsReadThem) {
+  std::string scene = kInverse;
+  scene = scene.substr(0, scene.find("[target]")) + "[measure.soft_solid]\ndeltas = [0.3, 0.5]\n";
+  scene.replace(scene.find("inverse"), 7, "soft-particle");
+  write("scene.toml", scene);
+  const std::string prefix = file("iter0/softgrain_Iter0_Sample3");
+  const auto outcome = run_the_program("microsim '" + file("scene.toml") + "' --quiet --set material.mu=0.25 --set " +
+                                       "packing.beta=5 --observables '" + prefix + "'");
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
+  EXPECT_EQ(read_text(prefix + "_param.txt"), "# mu beta\n0.25 5\n");
+  std::istringstream text(read_text(prefix + "_sim.txt"));
+  std::string header;
+  std::getline(text, header);
+  EXPECT_EQ(header, "# Delta Fn Fn_error");
+  double delta = 0.0, force = 0.0, error = 0.0;
+  const json rows = json::parse(read_text(prefix + "_run/summary.json"))["forces"]["soft-solid"];
+  for (const json& row : rows) {
+    ASSERT_TRUE(text >> delta >> force >> error);
+    EXPECT_NEAR(force, row["force"].get<double>(), 1e-9 * std::abs(force));
+  }
+  EXPECT_EQ(delta, 0.5);
+  write("grains.toml", "kind = \"particles\"\n");
+  expect(run_the_program("microsim '" + file("grains.toml") + "' --observables '" + file("p") + "'"), 2, {"particles"});
+}
+
+TEST_F(OwnData, TheExampleForCalibrationToolsRunsWithoutThem) {
+  const std::string line =
+      "python3 '" SOFTGRAIN_SOURCE_DIR "/pipelines/grainlearning_example/calibrate.py' --softgrain '" +
+      std::string(SOFTGRAIN_PROGRAM) + "' --samples 3 --out '" + file("example") + "' > '" + file("log") + "' 2>&1";
+  const int status = std::system(line.c_str());
+  EXPECT_TRUE(ended_with(status, 0)) << read_text(file("log"));
+  EXPECT_NE(read_text(file("log")).find("truth 0.3"), std::string::npos);
+  EXPECT_TRUE(fs::exists(file("example") + "/sim_data/iter0/softgrain_Iter0_Sample2_param.txt"));
+}
+
+}  // namespace

@@ -1,0 +1,159 @@
+// The threshold fit for an experiment: known laws come back, intervals hold them, few samples and bad data say so.
+#include "calibrate/experiment_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/synthetic_law.h"
+
+namespace {
+
+using namespace softgrain;
+using test::KnownLaw;
+using test::normal_number;
+
+constexpr double kUnit = 128.0;  // E Rs^2 [N] of the default soft particle
+
+struct Made {
+  int samples = 1;
+  int points = 40;
+  double noise = 0.01;   ///< [N]
+  double scatter = 0.0;  ///< of a, from sample to sample
+  bool uneven = false;   ///< every sample at its own overlaps
+  bool errors = false;
+  std::uint64_t seed = 1;
+  KnownLaw law = {};
+};
+
+ForceCurves make(const Made& m) {
+  ForceCurves out;
+  out.has_errors = m.errors;
+  for (int s = 0; s < m.samples; ++s) {
+    RandomStream random(m.seed, RandomPurpose::test, static_cast<std::uint64_t>(s));
+    const double factor = 1.0 + m.scatter * normal_number(random);
+    ForceCurve curve{"S" + std::to_string(s), {}, {}};
+    const int n = m.points + (m.uneven ? 7 * s : 0);
+    for (int k = 1; k <= n; ++k) {
+      const double d = 0.3 * k / n;
+      const double f = kUnit * factor * m.law.value(d) + m.noise * normal_number(random);
+      curve.normal.push_back({d, f, m.errors ? m.noise : std::nan("")});
+    }
+    out.samples.push_back(std::move(curve));
+  }
+  return out;
+}
+
+FitOptions replicates(int n) {
+  FitOptions o;
+  o.replicates = n;
+  return o;
+}
+
+bool holds(const Estimate& e, double truth) { return e.low <= truth && truth <= e.high; }
+
+TEST(ExperimentFit, ExactCurveOfOneSampleGivesItsLaw) {
+  const KnownLaw truth;
+  const PairLaw law = fit_experiment({make({.noise = 0.0})}, replicates(50), false).card.pairs.at(0);
+  EXPECT_EQ(law.status, "good") << law.reason;
+  EXPECT_NEAR(law.normal.a.value / truth.a, 1.0, 1e-6);
+  EXPECT_NEAR(law.normal.b.value, truth.b, 1e-6);
+  EXPECT_NEAR(law.normal.delta.value, truth.delta, 1e-6);
+  EXPECT_EQ(law.packings, 1);
+}
+
+/// How many of the intervals of b miss the truth, for noise alone.
+int missed_intervals(bool errors, std::uint64_t seeds) {
+  const KnownLaw truth;
+  int missed = 0;
+  double width = 0.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const auto fit = fit_experiment({make({.errors = errors, .seed = seed})}, replicates(40), false);
+    const PairLaw& law = fit.card.pairs.at(0);
+    EXPECT_EQ(law.status, "good") << law.reason;
+    EXPECT_TRUE(fit.reports[0].from_residuals);
+    missed += holds(law.normal.b, truth.b) ? 0 : 1;
+    width += (law.normal.b.high - law.normal.b.low) / static_cast<double>(seeds);
+  }
+  EXPECT_LT(width, 0.2);
+  EXPECT_GT(width, 0.02);
+  return missed;
+}
+
+TEST(ExperimentFit, IntervalsOfOneSampleHoldTheTruth) { EXPECT_LE(missed_intervals(false, 5), 2); }
+
+/// Measured: 90 % of the nominal 95 % intervals of b hold the truth without given errors.
+TEST(ExperimentFit, SlowIntervalsOfOneSampleHoldTheTruthAsOftenAsTheySay) {
+  EXPECT_LE(missed_intervals(false, 60), 10);
+  EXPECT_LE(missed_intervals(true, 60), 8);
+}
+
+TEST(ExperimentFit, FewSamplesThatDifferWidenTheInterval) {
+  const Made alike{.samples = 3, .noise = 0.005, .uneven = true};
+  Made apart = alike;
+  apart.scatter = 0.1;
+  const auto narrow = fit_experiment({make(alike)}, replicates(200), false);
+  const auto wide = fit_experiment({make(apart)}, replicates(200), false);
+  const Estimate& a = narrow.card.pairs[0].normal.a;
+  const Estimate& b = wide.card.pairs[0].normal.a;
+  EXPECT_GT(b.high - b.low, 2.0 * (a.high - a.low));
+  EXPECT_TRUE(holds(b, KnownLaw{}.a));
+  EXPECT_NE(narrow.card.intervals.find("residuals"), std::string::npos);
+}
+
+TEST(ExperimentFit, ManySamplesAreDrawnAsPackingsAre) {
+  const auto fit = fit_experiment({make({.samples = 8, .noise = 0.003, .scatter = 0.1})}, replicates(200), false);
+  EXPECT_FALSE(fit.reports[0].from_residuals);
+  EXPECT_EQ(fit.card.intervals, "bootstrap over samples");
+  EXPECT_EQ(fit.card.pairs[0].packings, 8);
+  EXPECT_TRUE(holds(fit.card.pairs[0].normal.delta, 0.065));
+}
+
+TEST(ExperimentFit, LongSeriesAreAveragedWithoutBias) {
+  const auto fit = fit_experiment({make({.points = 3000, .noise = 0.02})}, replicates(60), false);
+  EXPECT_LE(fit.card.pairs[0].points, 120);
+  EXPECT_NEAR(fit.card.pairs[0].normal.value(0.25) / KnownLaw{}.value(0.25), 1.0, 3e-3);
+  EXPECT_FALSE(fit.remarks.empty());
+}
+
+TEST(ExperimentFit, NoiseWithoutForceCrossesNoThreshold) {
+  KnownLaw nothing;
+  nothing.a = 0.0;
+  const auto fit = fit_experiment({make({.law = nothing})}, replicates(20), true);
+  ASSERT_EQ(fit.card.pairs.size(), 1U);
+  EXPECT_EQ(fit.card.pairs[0].status, "no threshold crossing");
+}
+
+TEST(ExperimentFit, ALawWithoutThresholdIsMarked) {
+  KnownLaw straight;
+  straight.delta = 0.0;
+  straight.b = 1.5;
+  const PairLaw law = fit_experiment({make({.noise = 0.0, .law = straight})}, replicates(20), false).card.pairs.at(0);
+  EXPECT_EQ(law.status, "underdetermined");
+  EXPECT_NE(law.reason.find("no threshold"), std::string::npos) << law.reason;
+}
+
+TEST(ExperimentFit, TheMirrorImageTakesHalfOfTheOverlap) {
+  const auto fit = fit_experiment({make({})}, replicates(60), true);
+  ASSERT_EQ(fit.card.pairs.size(), 2U);
+  const PairLaw& plane = fit.card.pairs[0];
+  const PairLaw& pair = fit.card.pairs[1];
+  EXPECT_EQ(pair.kind, PairKind::soft_soft);
+  EXPECT_EQ(pair.status, "underdetermined");
+  for (const double d : {0.1, 0.2, 0.3}) EXPECT_NEAR(pair.normal.value(2.0 * d), plane.normal.value(d), 1e-12);
+  EXPECT_NEAR(pair.normal.delta.low, 2.0 * plane.normal.delta.low, 1e-12);
+  EXPECT_NEAR(pair.normal.c.value, -pair.normal.a.value * std::pow(pair.normal.delta.value, pair.normal.b.value),
+              1e-12);
+}
+
+TEST(ExperimentErrors, KnowHowFarResidualsAreCorrelated) {
+  RandomStream random(3, RandomPurpose::test, 0);
+  std::vector<double> white(400);
+  for (double& x : white) x = normal_number(random);
+  EXPECT_EQ(correlation_length(white, 2), 1U);
+  std::vector<double> shifted(60, 1.0);
+  for (std::size_t k = 30; k < 60; ++k) shifted[k] = -1.0;
+  EXPECT_EQ(correlation_length(shifted, 2), 30U);  // two samples, each off as a whole
+}
+
+}  // namespace

@@ -1,0 +1,184 @@
+// Reading force-displacement measurements from text: units, separators, comments, and what is said of wrong ones.
+#include "common/data/force_curves.h"
+
+#include <gtest/gtest.h>
+
+#include "common/core/error.h"
+#include "common/io/csv_file.h"
+#include "common/io/text_file.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using test::TemporaryDirectory;
+
+constexpr const char* kGood = R"(# loading of one sample
+# kind = soft-solid
+# Rs: 16 mm
+# E = "0.5 MPa"
+# mu = 0.25
+hn [mm], Fn [mN]
+0.8, 0
+1.6, 80
+2.4, 300
+3.2, 800
+4.0, 1500
+)";
+
+class ForceCurveFile : public ::testing::Test {
+ protected:
+  std::string write(const std::string& text, const std::string& name = "data.csv") const {
+    write_text_atomic(directory_.file(name), text);
+    return directory_.file(name);
+  }
+  ForceCurves read(const std::string& text, const ForceCurveOptions& options = {}) const {
+    return read_force_curves(write(text), options);
+  }
+  /// The message of BadInput.
+  std::string refused(const std::string& text, const ForceCurveOptions& options = {}) const {
+    try {
+      (void)read(text, options);
+    } catch (const BadInput& e) {
+      return e.what();
+    }
+    return "nothing was refused";
+  }
+  void expect_refused(const std::string& text, const std::vector<std::string>& words,
+                      const ForceCurveOptions& options = {}) const {
+    const std::string message = refused(text, options);
+    for (const std::string& word : words)
+      EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
+  }
+  TemporaryDirectory directory_;
+};
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST_F(ForceCurveFile, UnitsAndCommentsBecomeSiAndDelta) {
+  const ForceCurves c = read(kGood);
+  EXPECT_EQ(c.kind, PairKind::soft_solid);
+  EXPECT_DOUBLE_EQ(c.spec.shell_radius, 0.016);
+  EXPECT_DOUBLE_EQ(c.spec.youngs_modulus, 5e5);
+  EXPECT_DOUBLE_EQ(c.spec.friction, 0.25);
+  ASSERT_EQ(c.samples.size(), 1U);
+  EXPECT_EQ(c.samples[0].name, "data");
+  ASSERT_EQ(c.samples[0].normal.size(), 5U);
+  EXPECT_NEAR(c.samples[0].normal[4].delta, 0.25, 1e-15);
+  EXPECT_NEAR(c.samples[0].normal[4].force, 1.5, 1e-15);
+  EXPECT_TRUE(c.remarks.empty());
+}
+
+TEST_F(ForceCurveFile, OptionsWinOverComments) {
+  ForceCurveOptions o;
+  o.kind = PairKind::soft_soft;
+  o.shell_radius = 0.032;
+  o.youngs_modulus = 1e6;
+  const ForceCurves c = read(kGood, o);
+  EXPECT_EQ(c.kind, PairKind::soft_soft);
+  EXPECT_NEAR(c.samples[0].normal[4].delta, 0.125, 1e-15);
+  EXPECT_EQ(c.spec.youngs_modulus, 1e6);
+}
+
+TEST_F(ForceCurveFile, SemicolonsTabsAndDecimalCommas) {
+  ForceCurveOptions o;
+  o.kind = PairKind::soft_solid;
+  o.shell_radius = 0.01;
+  o.youngs_modulus = 1e6;
+  const std::string rows = "0,5;0,1\n1,0;0,2\n1,5;0,4\n2,0;0,8\n2,5;1,6\n";
+  const ForceCurves c = read("\xef\xbb\xbfhn (mm);Fn (N)\r\n" + rows, o);
+  EXPECT_NEAR(c.samples[0].normal[4].delta, 0.25, 1e-15);
+  EXPECT_NEAR(c.samples[0].normal[4].force, 1.6, 1e-15);
+  std::string tabs = "Delta\tforce [N]\n";
+  for (int k = 1; k <= 5; ++k) tabs += "0." + std::to_string(k) + "\t" + std::to_string(k) + "\n";
+  EXPECT_NEAR(read(tabs, o).samples[0].normal[4].delta, 0.5, 1e-15);
+}
+
+TEST_F(ForceCurveFile, SamplesErrorsAndUnknownColumns) {
+  std::string text = replaced(kGood, "hn [mm], Fn [mN]", "hn [mm], Fn [mN], se [mN], sample, temperature [C]");
+  std::string rows;
+  for (const char* s : {"A", "B"})
+    for (int k = 1; k <= 5; ++k) rows += std::to_string(k) + ", " + std::to_string(10 * k * k) + ", 5, " + s + ", 20\n";
+  const ForceCurves c = read(text.substr(0, text.find("0.8, 0")) + rows);
+  ASSERT_EQ(c.samples.size(), 2U);
+  EXPECT_EQ(c.samples[1].name, "B");
+  EXPECT_NEAR(c.samples[1].normal[0].error, 0.005, 1e-15);
+  EXPECT_TRUE(c.has_errors);
+  ASSERT_EQ(c.remarks.size(), 1U);
+  EXPECT_NE(c.remarks[0].find("temperature"), std::string::npos);
+}
+
+TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
+  expect_refused(replaced(kGood, "hn [mm]", "hn"), {"data.csv:6", "hn", "no unit", "hn [mm]"});
+  expect_refused(replaced(kGood, "Fn [mN]", "Fn [mm]"), {"data.csv:6", "unknown unit 'mm'", "kN"});
+  expect_refused(replaced(kGood, "hn [mm]", "overlapp [mm]"), {"data.csv:6", "overlapp", "\"overlap\" is near"});
+  expect_refused(replaced(kGood, "1.6, 80", "1.6, "), {"data.csv:8", "Fn [mN]", "missing"});
+  expect_refused(replaced(kGood, "1.6, 80", "1.6, eighty"), {"data.csv:8", "Fn [mN]", "eighty"});
+  expect_refused(replaced(kGood, "1.6, 80", "1.6"), {"data.csv:8", "1 cells", "2 columns"});
+  expect_refused(replaced(kGood, "2.4, 300", "1.2, 300"), {"data.csv:9", "does not rise", "unloading=drop"});
+  expect_refused(replaced(kGood, "4.0, 1500\n", ""), {"too few points", "4", "at least 5"});
+  expect_refused(replaced(kGood, "4.0, 1500", "40, 1500"), {"data.csv:11", "2.5 Rs", "check unit and radius"});
+  expect_refused(replaced(kGood, "# kind = soft-solid", ""), {"--kind"});
+  expect_refused(replaced(kGood, "= soft-solid", "= hard"), {"data.csv:2", "hard", "soft-soft"});
+  expect_refused(replaced(kGood, "# Rs: 16 mm", ""), {"--radius"});
+  expect_refused(replaced(kGood, "16 mm", "16 s"), {"data.csv:3", "unknown unit 's'"});
+  expect_refused(replaced(kGood, "16 mm", "-1 mm"), {"data.csv:3", "above 0"});
+  expect_refused(replaced(kGood, "# E = \"0.5 MPa\"", ""), {"--modulus"});
+  expect_refused(replaced(kGood, "hn [mm], Fn [mN]\n", ""), {"data.csv:6", "no header"});
+  expect_refused("# nothing\n", {"no header"});
+  expect_refused(replaced(kGood, "Fn [mN]", "hn [m]"), {"data.csv:6", "twice"});
+  expect_refused(replaced(kGood, "Fn [mN]", "h [m]"), {"both name hn"});
+}
+
+TEST_F(ForceCurveFile, UnloadingCanBeLeftOut) {
+  ForceCurveOptions o;
+  o.drop_unloading = true;
+  const ForceCurves c = read(std::string(kGood) + "3.5, 900\n3.0, 500\n4.5, 2000\n", o);
+  EXPECT_EQ(c.samples[0].normal.size(), 6U);
+  ASSERT_EQ(c.remarks.size(), 1U);
+  EXPECT_NE(c.remarks[0].find("2 points of unloading"), std::string::npos);
+}
+
+TEST_F(ForceCurveFile, AFallingForceIsARemarkWithItsLine) {
+  const ForceCurves c = read(replaced(kGood, "3.2, 800", "3.2, 100"));
+  ASSERT_EQ(c.remarks.size(), 1U);
+  EXPECT_NE(c.remarks[0].find("data.csv:10"), std::string::npos) << c.remarks[0];
+}
+
+TEST_F(ForceCurveFile, StiffnessColumnAndSweepsBecomeRotations) {
+  std::string text = replaced(kGood, "hn [mm], Fn [mN]", "hn [mm], Fn [mN], kt [N/m]");
+  for (const char* row : {"0.8, 0", "1.6, 80", "2.4, 300", "3.2, 800", "4.0, 1500"})
+    text = replaced(text, std::string(row) + "\n", std::string(row) + ", 40\n");
+  const auto kt = read(text).samples[0].tangential;
+  ASSERT_EQ(kt.size(), 10U);
+  EXPECT_NEAR((kt[1].force_parallel - kt[0].force_parallel) /
+                  ((kt[1].angle_deg - kt[0].angle_deg) * 3.14159265358979 * 0.016 / 180.0),
+              40.0, 1e-9);
+  text = replaced(kGood, "hn [mm], Fn [mN]", "hn [mm], Fn [mN], ht [mm], Ft [mN]");
+  for (const char* row : {"0.8, 0", "1.6, 80", "2.4, 300", "3.2, 800", "4.0, 1500"})
+    text = replaced(text, std::string(row) + "\n", std::string(row) + ", , \n");
+  const auto sweep = read(text + "4.0, , 0, 0\n4.0, , 0.5, 20\n").samples[0].tangential;
+  ASSERT_EQ(sweep.size(), 3U);  // two as measured, one interpolated at 1 degree
+  EXPECT_NEAR(sweep[2].angle_deg, 1.0, 1e-12);
+  EXPECT_NEAR(sweep[2].force_parallel, 0.02 * 0.2792526803 / 0.5, 1e-9);
+}
+
+TEST_F(ForceCurveFile, FilesOfOneExperimentAreJoined) {
+  const std::string a = write(kGood, "a.csv");
+  const std::string b = write(kGood, "b.csv");
+  const std::string c = write(replaced(kGood, "soft-solid", "soft-soft"), "c.csv");
+  const auto joined = read_force_curve_files({c, a, b}, {});
+  ASSERT_EQ(joined.size(), 2U);
+  EXPECT_EQ(joined[0].kind, PairKind::soft_solid);
+  EXPECT_EQ(joined[0].samples.size(), 2U);
+  EXPECT_EQ(joined[0].samples[1].name, "b");
+  const std::string other = write(replaced(kGood, "16 mm", "17 mm"), "d.csv");
+  EXPECT_THROW(read_force_curve_files({a, other}, {}), BadInput);
+  EXPECT_THROW(read_force_curve_files({a, a}, {}), BadInput);
+}
+
+}  // namespace
