@@ -80,7 +80,8 @@ int missed_intervals(bool errors, std::uint64_t seeds) {
   return missed;
 }
 
-TEST(ExperimentFit, IntervalsOfOneSampleHoldTheTruth) { EXPECT_LE(missed_intervals(false, 5), 2); }
+/// Were 95 % of the intervals to hold the truth, more than four of twenty would miss it once in 400 such tests.
+TEST(ExperimentFit, IntervalsOfOneSampleHoldTheTruth) { EXPECT_LE(missed_intervals(false, 20), 4); }
 
 /// Measured: 90 % of the nominal 95 % intervals of b hold the truth without given errors.
 TEST(ExperimentFit, SlowIntervalsOfOneSampleHoldTheTruthAsOftenAsTheySay) {
