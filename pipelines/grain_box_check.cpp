@@ -29,9 +29,29 @@ double expected_seconds(const GrainBoxSpec& spec, double increments) {
   return per_grain * static_cast<double>(spec.grains);
 }
 
+void warn_of_pack(const GrainBoxSpec& spec, const GrainBoxForecast& f, Findings& out) {
+  constexpr std::int64_t kFew = 300;
+  if (spec.grains < kFew)
+    out.warn(fmt::format("{}: {} grains are few: the walls hold most of them, and moduli differ between packs",
+                         spec.name, spec.grains));
+  constexpr double kLarge = 0.05;
+  if (f.overlap_ratio > kLarge)
+    out.warn(
+        fmt::format("{}: grains overlap by about {:.0f} % of the radius at the end of the loading: Hertz' law is one "
+                    "of small overlaps; a lower end_stress, or a stiffer E",
+                    spec.name, 100.0 * f.overlap_ratio));
+  constexpr double kMany = 5000.0;
+  if (f.increments > kMany)
+    out.warn(
+        fmt::format("{}: about {:.0f} increments; several sizes of increment (increments, stage_strains) take fewer",
+                    spec.name, std::ceil(f.increments)));
+}
+
 }  // namespace
 
-void check_grain_box(const GrainBoxSetup& setup, nlohmann::json& facts, std::string& lines) {
+void check_grain_box(const GrainBoxSetup& setup, Findings& out) {
+  nlohmann::json& facts = out.facts;
+  std::string& lines = out.lines;
   double total = 0.0;
   facts["packs"] = nlohmann::json::array();
   for (const GrainBoxSpec& spec : setup.packs) {
@@ -47,6 +67,7 @@ void check_grain_box(const GrainBoxSetup& setup, nlohmann::json& facts, std::str
                               {"contacts", f.contacts},
                               {"bytes", f.bytes},
                               {"core_seconds", seconds}});
+    warn_of_pack(spec, f, out);
     lines += fmt::format(
         "  {}: {} grains, solid fraction {:.2f} when loose, box of about {:.3g} m; {} loading from {:.3g} MPa, about "
         "{:.0f} increments; overlap about {:.1f} % of the radius at the end; about {:.0f} contacts, {:.0f} MB, {:.0f} "
@@ -54,8 +75,7 @@ void check_grain_box(const GrainBoxSetup& setup, nlohmann::json& facts, std::str
         spec.name, spec.grains, spec.solid_fraction, f.box_length, spec.loading.test, spec.generation.pressure * 1e-6,
         std::ceil(f.increments), 100.0 * f.overlap_ratio, f.contacts, f.bytes * 1e-6, seconds);
   }
-  facts["core_seconds"] = total;
-  lines += fmt::format("  {} packs: about {:.0f} s of one core\n", setup.packs.size(), total);
+  out.add_time("core_seconds", total, fmt::format("{} packs, one core", setup.packs.size()));
 }
 
 }  // namespace softgrain

@@ -248,15 +248,4 @@ ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
   return run.usable ? ExitStatus::good : ExitStatus::not_usable;
 }
 
-void check_hierarchy(const Scene& scene, json& facts, std::string& lines) {
-  const HierarchySetup setup = read_hierarchy_setup(scene.root());
-  const auto configurations = static_cast<std::int64_t>(setup.crowd.configurations.size());
-  facts["levels"] = setup.levels;
-  facts["levels_max"] = setup.iterations;
-  facts["runs_per_level_min"] = configurations * setup.crowd.packings_min;
-  lines += fmt::format("  {} levels, up to {} on the way to the fixed point, {} to {} runs each\n", setup.levels,
-                       setup.iterations, configurations * setup.crowd.packings_min,
-                       configurations * setup.crowd.packings_max);
-}
-
 }  // namespace softgrain

@@ -1,8 +1,5 @@
-// Scene kind "hierarchy" for softgrain run and softgrain check.
+// Scene kind "hierarchy" for softgrain run.
 #pragma once
-
-#include <nlohmann/json.hpp>
-#include <string>
 
 #include "common/io/scene.h"
 #include "pipelines/run_context.h"
@@ -13,8 +10,5 @@ namespace softgrain {
 /// Writes law_table_level_K.toml, crowd_level_K.h5, law_table.toml (coarsest level), summary.json and the report.
 /// Status not_usable when a level has no law, or the fixed point was not reached.
 ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options);
-
-/// What follows from such a scene.
-void check_hierarchy(const Scene& scene, nlohmann::json& facts, std::string& lines);
 
 }  // namespace softgrain

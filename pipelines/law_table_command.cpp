@@ -98,24 +98,4 @@ ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
   return run.fit.usable ? ExitStatus::good : ExitStatus::not_usable;
 }
 
-void check_law_table(const Scene& scene, nlohmann::json& facts, std::string& lines) {
-  const CrowdSetup setup = read_law_table(scene).crowd;
-  const auto configurations = static_cast<std::int64_t>(setup.configurations.size());
-  std::int64_t increments = 0;
-  std::int64_t stages = 0;
-  for (const CrowdConfiguration& c : setup.configurations) {
-    increments += count_increments(c, CrowdPlan(c.stages.size(), {1.0}), setup.options);
-    stages += static_cast<std::int64_t>(c.stages.size());
-  }
-  facts["configurations"] = configurations;
-  facts["runs_min"] = configurations * setup.packings_min;
-  facts["runs_max"] = configurations * setup.packings_max;
-  facts["points_per_packing"] = stages * setup.points;
-  facts["relaxations_per_packing"] = increments;
-  lines += fmt::format("  {} configurations on {} to {} packings: {} to {} runs\n", configurations, setup.packings_min,
-                       setup.packings_max, configurations * setup.packings_min, configurations * setup.packings_max);
-  lines +=
-      fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
-}
-
 }  // namespace softgrain

@@ -1,9 +1,6 @@
 // Scene kind "law-table": a soft particle is measured with several neighbours at once.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-
 #include "common/io/scene.h"
 #include "pipelines/run_context.h"
 
@@ -12,8 +9,5 @@ namespace softgrain {
 /// Measures and fits; writes crowd.h5, law_table.toml, law_table.h5, summary.json and the report. Status not_usable
 /// when a recorded point did not converge or the best law is not good.
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options);
-
-/// What follows from such a scene: numbers of runs and points, added to `facts` and, as indented lines, to `lines`.
-void check_law_table(const Scene& scene, nlohmann::json& facts, std::string& lines);
 
 }  // namespace softgrain

@@ -5,8 +5,11 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
+#include <numbers>
 
+#include "common/dynamics/contact_watch.h"
+#include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/contact_totals.h"
@@ -16,42 +19,102 @@ namespace softgrain {
 
 namespace {
 
-/// Steps timed to tell the rest; few, as a check should take a moment.
-constexpr std::int64_t kTrialSteps = 5;
+/// Steps timed to tell the rest, and wall time that they may take; few, as a check should take a moment.
+constexpr std::int64_t kTrialSteps = 200;
+constexpr double kTrialSeconds = 0.5;
 
 /// Wall time per step, with one pass before it that makes the neighbour list. Moves the system.
 double step_seconds(System3& s, const SceneTime& time) {
   VelocityVerlet<3> integrator(time.step);
   integrator.initialise(s);
-  const auto trials = std::min(kTrialSteps, time.steps);
-  const auto start = std::chrono::steady_clock::now();
-  for (std::int64_t k = 0; k < trials; ++k) integrator.step(s);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / static_cast<double>(trials);
+  return seconds_per_call([&] { integrator.step(s); }, kTrialSeconds, std::min(kTrialSteps, time.steps));
+}
+
+/// Of a cell that is periodic along all axes.
+void add_solid_fraction(const System3& s, Findings& out) {
+  if (!s.cell.periodic[0] || !s.cell.periodic[1] || !s.cell.periodic[2]) return;
+  double volume = 0.0;
+  for (Slot i = 0; i < s.particles.grains; ++i) {
+    const double r = s.particles.sphere[static_cast<std::size_t>(i)].r;
+    volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  }
+  const double fraction = volume / s.cell.volume();
+  out.add("solid_fraction", fraction, fmt::format("solid fraction of the cell: {:.3f}", fraction));
+  constexpr double kDensest = 0.74;
+  if (fraction > kDensest)
+    out.warn(fmt::format("the cell is filled to {:.2f}: more than equal spheres can be without overlap", fraction));
+}
+
+/// What the first frame shows of the contacts.
+void add_overlap(const System3& s, Findings& out) {
+  const ContactWatch<3> watch = watch_contacts(s);
+  if (!(watch.overlap > 0.0)) return;
+  out.add("overlap", watch.overlap,
+          fmt::format("largest overlap at the start: {:.3g} of the smaller radius (bodies {} and {})", watch.overlap,
+                      watch.i, watch.j));
+  constexpr double kLarge = 0.1;
+  if (watch.overlap > kLarge)
+    out.warn(fmt::format("bodies {} and {} overlap by {:.2g} of the smaller radius at the start: they will fly apart",
+                         watch.i, watch.j, watch.overlap));
+  const std::string beyond = law_use_text(watch.laws);
+  if (!beyond.empty()) out.warn("at the start: " + beyond);
+}
+
+/// Frames of the trajectory: place, turn, velocity and spin of every body.
+double recorded_bytes(const ParticlesScene& scene, const System3& s) {
+  constexpr double kBytesPerBody = 13.0 * 8.0;
+  if (!scene.record) return 0.0;
+  const double frames =
+      scene.output_stride > 0 ? 2.0 + static_cast<double>(scene.time.steps / scene.output_stride) : 2.0;
+  return frames * kBytesPerBody * static_cast<double>(s.particles.size());
+}
+
+void warn_of_step(const SceneTime& time, Findings& out) {
+  constexpr double kBiased = 0.4;
+  const double share = time.step / time.natural_time;
+  if (share >= kBiased)
+    out.warn(fmt::format(
+        "the step is {:.2f} sqrt(m/k): stable, but forces are off by several percent; 0.2 is as good as 0.05", share));
+  constexpr double kManySteps = 1e8;
+  if (static_cast<double>(time.steps) > kManySteps)
+    out.warn(fmt::format("{:.2g} steps: {}; where overlaps stay small, a lower E allows longer steps (as 1/sqrt(E))",
+                         static_cast<double>(time.steps), time.limited_by));
+  if (std::isfinite(time.contact_time) && time.step > time.contact_time / 20.0)
+    out.warn(
+        fmt::format("the shortest impact takes {:.2g} steps: its outcome will be off", time.contact_time / time.step));
 }
 
 }  // namespace
 
-void check_particles(const ParticlesScene& scene, nlohmann::json& facts, std::string& lines) {
-  const auto add = [&](const char* key, const nlohmann::json& value, const std::string& line) {
-    facts[key] = value;
-    lines += "  " + line + "\n";
-  };
+void check_particles(const ParticlesScene& scene, Findings& out) {
   System3 s = scene.system;
   const StepLimit limit = step_limit(s);
-  add("bodies", s.particles.size(), fmt::format("{} grains, {} walls", s.particles.grains, scene.wall_name.size()));
-  add("time_step", scene.time.step,
-      fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
+  out.add("bodies", s.particles.size(), fmt::format("{} grains, {} walls", s.particles.grains, scene.wall_name.size()));
+  out.add("time_step", scene.time.step,
+          fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
   if (limit.body >= 0)
-    add("step_limit", limit.natural_time,
-        fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+    out.add("step_limit", limit.natural_time,
+            fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+  if (!scene.time.limited_by.empty())
+    out.add("limited_by", scene.time.limited_by, "the step is " + scene.time.limited_by);
+  add_solid_fraction(s, out);
+  force_pass(s, 0.0);
+  const System3 first = s;
   const double seconds = step_seconds(s, scene.time) * static_cast<double>(scene.time.steps);
   const ContactTotals totals = contact_totals(s);
-  add("contacts", totals.contacts,
-      fmt::format("contacts at the start: {}, {:.2f} per grain; {} pairs listed", totals.contacts,
-                  totals.coordination_number, s.contacts.size()));
+  out.add("contacts", totals.contacts,
+          fmt::format("contacts at the start: {}, {:.2f} per grain; {} pairs listed", totals.contacts,
+                      totals.coordination_number, s.contacts.size()));
   const double memory = estimated_memory(s.particles.grains, static_cast<double>(s.contacts.size()));
-  add("bytes", memory, fmt::format("memory: about {:.1f} MB beside the program's own", memory / 1e6));
-  add("seconds", seconds, fmt::format("expected time: about {:.3g} s with {} threads", seconds, omp_get_max_threads()));
+  out.add("bytes", memory, fmt::format("memory: about {:.1f} MB beside the program's own", memory / 1e6));
+  const double recorded = recorded_bytes(scene, s);
+  if (recorded > 0.0) out.add_disk(recorded);
+  add_overlap(first, out);
+  warn_of_step(scene.time, out);
+  constexpr double kDay = 86400.0;
+  if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
+  out.add("seconds", seconds,
+          fmt::format("expected time: about {:.3g} s with {} threads", seconds, omp_get_max_threads()));
 }
 
 }  // namespace softgrain

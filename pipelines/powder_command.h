@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/io/scene.h"
+#include "pipelines/findings.h"
 #include "pipelines/powder_setup.h"
 #include "pipelines/run_context.h"
 
@@ -17,7 +18,7 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, con
 /// The same from a scene, or each of its variants.
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options);
 
-/// What follows from such a scene: phases, time step, steps at most.
-void check_powder(const Scene& scene, nlohmann::json& facts, std::string& lines);
+/// What follows from such a scene: phases, time step, steps at most, overlaps, time from a short trial.
+void check_powder(const Scene& scene, Findings& out);
 
 }  // namespace softgrain

@@ -45,8 +45,8 @@ constexpr std::array<Command, 8> kCommands{{
     {"compare", "Error norms and cost of two runs: A against the reference B", "RUN",
      "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, command_compare},
     {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, command_report},
-    {"check", "Validates a scene, card or result file and says what follows from it, without running", "FILE",
-     "file to check", 1, 1, command_check},
+    {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
+     "file or run directory to check", 1, 1, command_check},
     {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
      "run directory, or one of its files with states", 1, 1, command_export},
 }};
@@ -118,7 +118,7 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--modulus", o.modulus, "CSV: Young's modulus E of its grains, e.g. \"0.5 MPa\"")
         ->option_text("PRESSURE");
   }
-  if (command.function == command_macrosim)
+  if (command.function == command_macrosim || command.function == command_check)
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
 }

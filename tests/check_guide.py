@@ -41,7 +41,7 @@ PAGES = {
 # Sources that read cards and tables, or a scene only to see what it is.
 NO_SCENES = {
     "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
-    "pipelines/command_check.cpp", "pipelines/command_microsim.cpp", "pipelines/command_run.cpp",
+    "pipelines/command_check.cpp", "pipelines/macro_check.cpp", "pipelines/command_microsim.cpp", "pipelines/command_run.cpp",
     "pipelines/calibrate_crowd.cpp", "pipelines/observables.cpp", "pipelines/powder_command.cpp",
     "pipelines/powder_variants_command.cpp", "pipelines/scene_kind.cpp",
 }

@@ -1,0 +1,186 @@
+#include "pipelines/crowd_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/dynamics/force_pass.h"
+#include "microsim/crowd_experiment.h"
+#include "microsim/particles/scene_memory.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/hierarchy_setup.h"
+#include "pipelines/law_table_setup.h"
+#include "pipelines/measure_check.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Loop passes per increment between two relaxations, recorded states included: pipelines/law_table.toml takes five
+/// minutes on two cores.
+constexpr double kPassesPerIncrement = 150.0;
+
+double softs_of(const CrowdConfiguration& c) {
+  return static_cast<double>(std::count_if(c.partners.begin(), c.partners.end(),
+                                           [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; }));
+}
+
+std::int64_t increments_of(const CrowdConfiguration& c, const CrowdOptions& options) {
+  return count_increments(c, CrowdPlan(c.stages.size(), {1.0}), options);
+}
+
+bool has_stage(const CrowdConfiguration& c, const char* name) {
+  return std::any_of(c.stages.begin(), c.stages.end(), [&](const CrowdStage& s) { return s.name == name; });
+}
+
+/// What the fit will miss.
+void warn_of_configurations(const CrowdSetup& setup, Findings& out) {
+  const auto any = [&](const auto& holds) {
+    return std::any_of(setup.configurations.begin(), setup.configurations.end(), holds);
+  };
+  const auto partner = [](PartnerKind kind) {
+    return [kind](const CrowdConfiguration& c) { return c.partners.front().kind == kind; };
+  };
+  if (!any([](const CrowdConfiguration& c) {
+        return c.partners.size() == 1 && c.partners.front().kind == PartnerKind::plane && !c.held_out;
+      }))
+    out.warn("no configuration with one plane: nothing fixes the pressure, and there will be no law");
+  if (!any([](const CrowdConfiguration& c) {
+        return c.partners.size() > 2 && c.partners.front().kind == PartnerKind::plane && !c.held_out;
+      }))
+    out.warn("no configuration with three planes or more: the coupling of neighbours is not determined");
+  if (!any(partner(PartnerKind::solid))) out.warn("no solid neighbours: macro scenes cannot use such a table");
+  if (!any(partner(PartnerKind::soft))) out.warn("no soft neighbours: macro scenes cannot use such a table");
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, "slide"); }))
+    out.warn("no path slides: friction limit and tangential stiffness will not be measured");
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, "unload"); }))
+    out.warn("no path unloads: the unloading branch will not be measured");
+  if (!any([](const CrowdConfiguration& c) { return c.held_out; }))
+    out.warn("nothing is held out: how well the law predicts is known from leaving one out alone");
+  constexpr std::int64_t kFew = 6;
+  if (setup.packings_min < kFew)
+    out.warn(fmt::format("{} packings at least are few: single loadings differ by 10 % and more between packings",
+                         setup.packings_min));
+}
+
+void add_overlaps(const CrowdSetup& setup, Findings& out) {
+  double deepest = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations)
+    if (c.partners.front().kind == PartnerKind::plane)
+      for (const CrowdStage& s : c.stages)
+        deepest = std::max(deepest, *std::max_element(s.overlap.begin(), s.overlap.end()));
+  if (!(deepest > 0.0)) return;
+  const double overlap = expected_grain_overlap(PairKind::soft_solid, deepest);
+  out.add(
+      "grain_overlap", overlap,
+      fmt::format("grains overlap by about {:.2g} of the smaller radius at the largest overlap with a plane, {} Rs; "
+                  "more with several neighbours",
+                  overlap, deepest));
+  constexpr double kLarge = 1.0;
+  if (overlap > kLarge)
+    out.warn(
+        fmt::format("planes press in by {} Rs: grains overlap by about {:.2g} of the smaller radius, and Hertz' law is "
+                    "one of small overlaps",
+                    deepest, overlap));
+}
+
+struct Trial {
+  double packing_seconds = 0.0;
+  double pass_seconds = 0.0;  ///< of one soft particle, squeezed
+  double grains = 0.0;
+};
+
+Trial try_one(const CrowdSetup& setup, Findings& out) {
+  constexpr double kBudget = 0.3;
+  Trial t;
+  SoftContent content;
+  t.packing_seconds = seconds_of([&] { content.grains = generate_shell_packing(setup.spec, setup.seed, 0); });
+  t.grains = static_cast<double>(content.grains.radius.size());
+  out.add("grains", content.grains.radius.size(),
+          fmt::format("grains in the first packing: {}, solid fraction {:.3f}", content.grains.radius.size(),
+                      content.grains.solid_fraction()));
+  out.facts["solid_fraction"] = content.grains.solid_fraction();
+  CrowdConfiguration one;
+  one.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
+  one.stages = {{"load", {0.1}, 0.0}};
+  CrowdExperiment e = make_crowd(setup.spec, one, content, {});
+  e.move_to({0.05}, 0.0);
+  force_pass(e.system, 0.0);
+  t.pass_seconds = seconds_per_call([&] { force_pass(e.system, 0.0); }, kBudget, 500);
+  return t;
+}
+
+/// Core seconds of one pass through all configurations with one packing each.
+double seconds_per_packing(const CrowdSetup& setup, const Trial& trial) {
+  constexpr double kSqueezed = 1.5;  // pairs of the squeezed state over those of the first
+  double passes = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations)
+    passes += (1.0 + softs_of(c)) * static_cast<double>(increments_of(c, setup.options)) * kPassesPerIncrement;
+  return kSqueezed * passes * trial.pass_seconds;
+}
+
+void check_crowd(const CrowdSetup& setup, Findings& out) {
+  const auto configurations = static_cast<std::int64_t>(setup.configurations.size());
+  std::int64_t increments = 0;
+  std::int64_t stages = 0;
+  double softs = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations) {
+    increments += increments_of(c, setup.options);
+    stages += static_cast<std::int64_t>(c.stages.size());
+    softs = std::max(softs, softs_of(c));
+  }
+  out.facts["configurations"] = configurations;
+  out.facts["runs_min"] = configurations * setup.packings_min;
+  out.facts["runs_max"] = configurations * setup.packings_max;
+  out.facts["points_per_packing"] = stages * setup.points;
+  out.facts["relaxations_per_packing"] = increments;
+  out.lines +=
+      fmt::format("  {} configurations on {} to {} packings: {} to {} runs\n", configurations, setup.packings_min,
+                  setup.packings_max, configurations * setup.packings_min, configurations * setup.packings_max);
+  out.lines +=
+      fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
+  const Trial trial = try_one(setup, out);
+  const double bodies = trial.grains * (1.0 + softs);
+  const double memory = estimated_memory(static_cast<std::int64_t>(bodies), kPairsPerGrain * bodies);
+  out.add("bytes", memory, "memory: about " + bytes_text(memory) + " for the largest measurement under way");
+  add_overlaps(setup, out);
+  const double seconds = seconds_per_packing(setup, trial);
+  const auto least = static_cast<double>(setup.packings_min);
+  const auto most = static_cast<double>(setup.packings_max);
+  out.facts["core_seconds_max"] = most * (seconds + trial.packing_seconds);
+  out.add_time("core_seconds", least * (seconds + trial.packing_seconds),
+               "measuring with the fewest packings, one core");
+  warn_of_configurations(setup, out);
+  warn_of_soft_particle(setup.spec, out);
+}
+
+}  // namespace
+
+void check_law_table(const Scene& scene, Findings& out) {
+  const LawTableSetup setup = read_law_table(scene);
+  check_crowd(setup.crowd, out);
+  out.facts["variants"] = setup.variants.size();
+  for (const LawTableVariant& v : setup.variants)
+    out.lines += fmt::format("  the same on {} packings with beta = {}, {} trials per grain\n", v.packings, v.spec.beta,
+                             v.spec.trials);
+  if (setup.variants.empty())
+    out.warn(
+        "one kind of packing: the table serves contents within 0.02 of its solid fraction; a [[variant]] widens it");
+}
+
+void check_hierarchy(const Scene& scene, Findings& out) {
+  const HierarchySetup setup = read_hierarchy_setup(scene.root());
+  const auto configurations = static_cast<std::int64_t>(setup.crowd.configurations.size());
+  out.facts["levels"] = setup.levels;
+  out.facts["levels_max"] = setup.iterations;
+  out.facts["runs_per_level_min"] = configurations * setup.crowd.packings_min;
+  out.lines += fmt::format("  {} levels, up to {} on the way to the fixed point, {} to {} runs each\n", setup.levels,
+                           setup.iterations, configurations * setup.crowd.packings_min,
+                           configurations * setup.crowd.packings_max);
+  check_crowd(setup.crowd, out);
+  out.add_time("core_seconds_levels", static_cast<double>(setup.levels) * out.facts["core_seconds"].get<double>(),
+               "all levels, one core, grains alone (inner soft particles come on top)");
+}
+
+}  // namespace softgrain

@@ -1,0 +1,281 @@
+#include "pipelines/macro_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/dynamics/force_pass.h"
+#include "macrosim/constructed_packing.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/kept_states.h"
+#include "pipelines/law/law_values.h"
+#include "pipelines/macro_comparison.h"
+#include "pipelines/measure_check.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+/// Grains in a soft particle of the published kind.
+constexpr double kGrainsPerSoft = 400.0;
+/// Loop passes per increment of a law run at the default tolerance.
+constexpr double kPassesPerIncrement = 400.0;
+/// Above it the pair law, measured with one contact, is far off.
+constexpr double kCrowdedShare = 0.05;
+
+struct BodyCounts {
+  double all = 0.0;
+  double soft = 0.0;
+};
+
+/// Scenes by construction are made on trial, in a fraction of a second: how many soft particles fit, and whether the
+/// share does, is known only then.
+BodyCounts count_bodies(const MacroSetup& setup) {
+  const auto bodies = static_cast<double>(setup.spec.bodies);
+  if (setup.spec.construction != "voids") return {bodies, setup.spec.soft_share * bodies};
+  const SceneFacts facts = describe(make_packing(setup.spec, 1, 0), {});
+  return {static_cast<double>(facts.solid + facts.soft), static_cast<double>(facts.soft)};
+}
+
+std::string load_text(const MacroSpec& spec) {
+  const AffineOverlap overlap = affine_overlap(spec);
+  return fmt::format(
+      "overlaps at the end, were all bodies to move with the box: h/R = {:.2g} in the mean, {:.2g} along the "
+      "load",
+      overlap.mean, overlap.largest);
+}
+
+void beyond_range(const std::string& what, double asked, double end, Beyond beyond, Findings& out) {
+  if (!(end > 0.0) || !(asked > end)) return;
+  const char* then = beyond == Beyond::error   ? "the run will end there"
+                     : beyond == Beyond::clamp ? "forces will stay at that of the end"
+                                               : "the law will be extrapolated";
+  out.warn(fmt::format("{}: about {:.2g} at the end of the test, measured up to {:.2g}: {}", what, asked, end, then));
+}
+
+void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec& spec, Findings& out) {
+  const AffineOverlap overlap = affine_overlap(spec);
+  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+    const PairLaw* law = card.find(kind);
+    if (law == nullptr) continue;
+    const Beyond beyond = laws.beyond.value_or(law->beyond);
+    out.add("law " + to_string(kind),
+            {{"status", law->status}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
+            fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), law->status, law->delta_max));
+    beyond_range(to_string(kind) + " Delta along the load", overlap.largest, law->delta_max, beyond, out);
+    if (law->status == "underdetermined")
+      out.warn("the " + to_string(kind) + " law is underdetermined: " + law->reason);
+  }
+  (void)pair_law_of(card, spec, "law", laws.beyond);  // says what is not usable
+  if (spec.soft_share > kCrowdedShare)
+    out.warn(fmt::format(
+        "soft particles hold {:.0f} % of the bodies' volume and will have several neighbours each: the pair "
+        "law, measured with one, is too soft then by a factor 2 to 14; take a law table",
+        100.0 * spec.soft_share));
+}
+
+/// Ratios of radii between neighbours of a soft particle and itself that a scene can have.
+void check_ratios(const MacroSpec& spec, const CrowdLaw& law, Findings& out) {
+  const auto compare = [&](PartnerKind kind, double low, double high) {
+    const std::vector<PartnerRow> rows = law.rows(kind);
+    if (rows.empty()) {
+      out.warn(fmt::format("the law knows no {} neighbours", to_string(kind)));
+      return;
+    }
+    const double first = rows.front().ratio;
+    // Very large solid spheres are planes, which the law knows.
+    const double last = kind == PartnerKind::soft ? rows.back().ratio : HUGE_VAL;
+    out.facts["ratios " + to_string(kind)] = {low, high};
+    if (low < first * (1.0 - 1e-9) || high > last * (1.0 + 1e-9))
+      out.warn(fmt::format(
+          "{} neighbours of ratio {:.3g} to {:.3g} may meet; the table has {:.3g} to {:.3g}, and the nearest "
+          "row is used beyond",
+          to_string(kind), low, high, first, rows.back().ratio));
+  };
+  const double soft_min = spec.soft_radius_max / spec.soft_polydispersity;
+  const double solid_min = spec.solid_radius_max / spec.solid_polydispersity;
+  compare(PartnerKind::solid, solid_min / spec.soft_radius_max, spec.solid_radius_max / soft_min);
+  compare(PartnerKind::soft, 1.0, spec.soft_polydispersity);
+}
+
+/// S of a soft particle between six planes at the mean overlap, against what was measured.
+void check_volume(const LawTable& table, const LawSources& laws, const std::string& form, double fraction,
+                  const MacroSpec& spec, Findings& out) {
+  law::CrowdQuestion q;
+  q.form = form;
+  q.arrangement = "cube";
+  q.solid_fraction = fraction;
+  q.range = laws.range;
+  q.beyond = laws.beyond;
+  const AffineOverlap overlap = affine_overlap(spec);
+  const law::CrowdAnswer answer = law::crowd_values(table, q, {overlap.mean});
+  const Beyond beyond = laws.beyond.value_or(answer.entry.beyond);
+  const double volume = answer.points.front().volume;
+  out.add(
+      "law_volume", {{"expected", volume}, {"measured", answer.entry.volume_max}},
+      fmt::format("lost volume of a soft particle between six neighbours at the mean overlap: {:.2g}, measured up to "
+                  "{:.2g}",
+                  volume, answer.entry.volume_max));
+  beyond_range("lost volume of soft particles", volume, answer.entry.volume_max, beyond, out);
+  beyond_range("overlaps of single soft contacts along the load", overlap.largest, answer.entry.overlap_max, beyond,
+               out);
+  if (answer.entry.find(answer.form)->status == "underdetermined")
+    out.warn("the " + answer.form + " law is underdetermined: " + answer.entry.find(answer.form)->reason);
+}
+
+/// One content stands for all: a solid fraction outside the table is no refusal yet.
+void check_table_law(const LawTable& table, const LawSources& given, const std::string& form, const MacroSpec& spec,
+                     double contents_fraction, Findings& out) {
+  LawSources laws = given;
+  laws.range = RangePolicy::clamp;
+  const double fraction = contents_fraction > 0.0 ? contents_fraction : table.entries.front().solid_fraction;
+  const NamedLaws named = table_law_of(laws, form, spec, fraction);  // says what is not usable
+  std::string remark;
+  const LawTableEntry entry = entry_at(table, fraction, laws.range, remark);
+  const CrowdLaw& law = *entry.find(named.form);
+  out.add("law", {{"form", named.form}, {"solid_fraction", fraction}, {"error_cross", law.error_cross}},
+          fmt::format("law: {}, at solid fraction {:.3f}; off by {:.0f} % leaving one loading out", named.form,
+                      fraction, 100.0 * law.error_cross));
+  if (!remark.empty())
+    out.warn("one content was made: " + remark +
+             (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
+  check_ratios(spec, law, out);
+  check_volume(table, laws, named.form, fraction, spec, out);
+}
+
+void check_laws_of(const LawSources& laws, const MacroSpec& spec, double contents_fraction, Findings& out) {
+  for (const std::string& form : laws.forms) {
+    if (laws.card && (form == "pair" || !laws.table))
+      check_card_law(*laws.card, laws, spec, out);
+    else
+      check_table_law(*laws.table, laws, form, spec, contents_fraction, out);
+  }
+}
+
+/// Law runs: a small scene of the same kind, its pass timed and scaled by the number of bodies.
+void add_law_time(const MacroSetup& setup, const BodyCounts& count, const LawSources& laws, double fraction,
+                  Findings& out) {
+  constexpr std::int64_t kTrialBodies = 60;
+  constexpr double kBudget = 0.2;
+  if (setup.spec.construction == "voids") return;  // made already; what it takes is in the twin's figures
+  MacroSpec spec = setup.spec;
+  spec.bodies = std::min(spec.bodies, kTrialBodies);
+  const double known = fraction > 0.0 || !laws.table ? fraction : laws.table->entries.front().solid_fraction;
+  LawSources one = laws;
+  one.range = RangePolicy::clamp;
+  one.forms = {laws.forms.front()};
+  try {
+    const MacroPacking packing = make_packing(spec, 1, 0);
+    const NamedLaws law = scene_law(one, spec, known, "law");
+    MacroSystem macro = make_law_system(spec, packing, law.laws, known > 0.0 ? known : 1.0);
+    force_pass(macro.system, 0.0);
+    const double pass = seconds_per_call([&] { force_pass(macro.system, 0.0); }, kBudget, 2000);
+    const auto increments = static_cast<double>(spec.steps * spec.increments_per_step + spec.preload_steps);
+    const double seconds = pass * count.all / static_cast<double>(spec.bodies) * increments * kPassesPerIncrement *
+                           static_cast<double>(setup.samples) * static_cast<double>(laws.forms.size());
+    out.add_time("core_seconds_laws", seconds, "law runs, one core");
+  } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
+  }
+}
+
+void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
+  constexpr double kFew = 50.0;
+  if (count.all < kFew)
+    out.warn(fmt::format("{:.0f} bodies are few: most touch a wall, and samples will differ widely", count.all));
+  if (setup.samples < 3 && count.all < 4.0 * kFew)
+    out.warn(
+        fmt::format("{} sample{} of {:.0f} bodies: no way to tell scatter from difference; the scatter of stress is "
+                    "about 10 %",
+                    setup.samples, setup.samples == 1 ? "" : "s", count.all));
+  if (setup.spec.soft_share > 0.0 && count.soft < 1.0)
+    out.warn("soft_share is so small that the scene has no soft particle");
+  const double step = setup.spec.strain_end / static_cast<double>(setup.spec.steps * setup.spec.increments_per_step);
+  constexpr double kLargeStep = 0.01;
+  if (step > kLargeStep)
+    out.warn(
+        fmt::format("an increment strains by {:.2g}: bodies jump by a good part of an overlap; more steps or "
+                    "increments_per_step",
+                    step));
+}
+
+/// One packing stands for all.
+double solid_fraction_of(const SoftParticleSpec& spec, std::uint64_t seed) {
+  return generate_shell_packing(spec, seed, 0).solid_fraction();
+}
+
+}  // namespace
+
+AffineOverlap affine_overlap(const MacroSpec& spec) {
+  const double strain = spec.test == "shear" ? spec.strain_end + spec.preload : spec.strain_end;
+  const double along = 2.0 * strain;
+  if (spec.test == "isotropic") return {along, along};
+  if (spec.test == "oedometric") return {along / 3.0, along};
+  return {2.0 * spec.preload, along};
+}
+
+void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSources* laws, double contents_fraction,
+                 Findings& out) {
+  const BodyCounts count = count_bodies(setup);
+  const double resolved = count.all + count.soft * grains_per_soft;
+  constexpr double kBytesPerGrain = 300.0;
+  constexpr double kBytesPerContact = 160.0;
+  const double memory = resolved * (kBytesPerGrain + 3.0 * kBytesPerContact);
+  out.add("macro_bodies", count.all,
+          fmt::format("macro: {} samples of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
+                      setup.samples, count.all, count.soft, setup.spec.test, setup.spec.strain_end));
+  const AffineOverlap overlap = affine_overlap(setup.spec);
+  out.add("affine_overlap", {{"mean", overlap.mean}, {"largest", overlap.largest}}, load_text(setup.spec));
+  for (const std::string& twin : setup.twins)
+    out.lines += fmt::format("  resolved twin ({}): about {:.0f} grains per sample\n", twin, resolved);
+  if (!setup.twins.empty()) {
+    out.facts["twin_grains"] = resolved;
+    out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
+  }
+  warn_of_scene(setup, count, out);
+  if (laws == nullptr) return;
+  check_laws_of(*laws, setup.spec, contents_fraction, out);
+  add_law_time(setup, count, *laws, contents_fraction, out);
+}
+
+void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
+  const SceneTable root = scene.root();
+  (void)root.text("title", "");
+  const std::string written = root.text("law", "");
+  const std::string path = !law.empty() || written.empty() ? law : scene.resolve(written);
+  LawSources laws;
+  if (path.empty())
+    read_law_choices(root, laws);
+  else
+    laws = read_scene_law(root, path);
+  const SoftParticleSpec spec =
+      laws.card ? laws.card->spec : (laws.table ? laws.table->entries.front().spec : SoftParticleSpec{});
+  const auto seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  (void)root.count("contents", 1, 100000, 7);
+  (void)read_kept_states(root);
+  const MacroSetup macro = read_macro_setup(root.table("macro"), spec);
+  root.finish();
+  if (path.empty()) {
+    out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");
+    check_macro(macro, kGrainsPerSoft, nullptr, 0.0, out);
+    return;
+  }
+  out.add("law_file", path, "law from " + path);
+  const double fraction = macro.twins.empty() ? 0.0 : solid_fraction_of(spec, seed);
+  check_macro(macro, kGrainsPerSoft, &laws, fraction, out);
+}
+
+void check_macro_comparison(const Scene& scene, Findings& out) {
+  const MacroComparisonSetup setup = read_macro_comparison(scene);
+  out.add("scenes", setup.scenes.size(),
+          fmt::format("comparison of laws with twins on {} scenes", setup.scenes.size()));
+  const double fraction = solid_fraction_of(setup.spec, setup.seed);
+  out.add("solid_fraction", fraction, fmt::format("solid fraction of the first content: {:.3f}", fraction));
+  for (const ComparisonScene& s : setup.scenes) check_macro(s.setup, kGrainsPerSoft, &setup.laws, fraction, out);
+  warn_of_soft_particle(setup.spec, out);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,31 @@
+// softgrain check of macro scenes: what they are made of, and what they will ask of their laws.
+#pragma once
+
+#include <string>
+
+#include "pipelines/findings.h"
+#include "pipelines/macro_stage.h"
+
+namespace softgrain {
+
+/// A kind = "macro" scene; `law` replaces its key of that name, and the law is opened when there is one. Throws
+/// BadInput, FileTrouble.
+void check_macro_scene(const Scene& scene, const std::string& law, Findings& out);
+
+/// Laws with twins on several scenes.
+void check_macro_comparison(const Scene& scene, Findings& out);
+
+/// Bodies, twins, memory. `laws`: what acts between soft particles; null: not known yet (a pipeline fits them).
+/// `contents_fraction`: solid fraction of the contents; 0: not known.
+void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSources* laws, double contents_fraction,
+                 Findings& out);
+
+/// Overlaps of contacts of equal bodies at the end of a test if all moved with the box: h/R = 2 eps along the load and
+/// two thirds of that (oedometric: a third) in the mean over all directions.
+struct AffineOverlap {
+  double mean = 0.0;
+  double largest = 0.0;
+};
+AffineOverlap affine_overlap(const MacroSpec& spec);
+
+}  // namespace softgrain

@@ -1,0 +1,165 @@
+// softgrain check: what follows from scenes, laws, results and run directories, with the warnings that a colleague
+// would give, in a moment and without a trace.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_files.h"
+
+namespace softgrain {
+namespace {
+
+using nlohmann::json;
+using test::run_the_program;
+namespace fs = std::filesystem;
+
+const std::string kRoot = SOFTGRAIN_SOURCE_DIR;
+const std::string kCard = kRoot + "/results/published/law.toml";
+const std::string kTable = kRoot + "/results/law_table/law_table.toml";
+
+class Check : public ::testing::Test {
+ protected:
+  json facts(const std::string& path, const std::string& more = "") {
+    const test::ProgramOutcome outcome = run_the_program("check '" + path + "' --json " + more);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return outcome.status == 0 ? json::parse(outcome.output) : json::object();
+  }
+  json scene_facts(const std::string& text, const std::string& more = "") {
+    write_text_atomic(directory_.file("scene.toml"), text);
+    const json found = facts(directory_.file("scene.toml"), more);
+    EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path()), fs::directory_iterator()), 1);
+    return found;
+  }
+  static bool warned(const json& facts, const std::string& words) {
+    const auto& all = facts["warnings"];
+    return std::any_of(all.begin(), all.end(),
+                       [&](const json& w) { return w.get<std::string>().find(words) != std::string::npos; });
+  }
+  static std::string macro(const std::string& law, const std::string& more) {
+    return "kind = \"macro\"\n" + (law.empty() ? "" : "law = \"" + law + "\"\n") + "[macro]\nresolved = false\n" + more;
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Check, AMacroSceneOpensItsLaw) {
+  EXPECT_TRUE(warned(scene_facts(macro("", "")), "no law named"));
+  const json sound = scene_facts(macro(kCard, "strain = 0.1\nsoft_share = 0.0\nbodies = 200\nsamples = 3\n"));
+  EXPECT_EQ(sound["law soft-solid"]["delta_max"], 0.3);
+  EXPECT_EQ(sound["warnings"], json::array()) << sound["warnings"];
+  EXPECT_GT(sound["core_seconds_laws"].get<double>(), 0.0);
+  const json deep = scene_facts(macro(kCard, "strain = 0.2\n"));
+  EXPECT_TRUE(warned(deep, "soft-solid Delta along the load: about 0.4")) << deep["warnings"];
+  EXPECT_TRUE(warned(deep, "take a law table"));
+  EXPECT_NEAR(deep["affine_overlap"]["largest"].get<double>(), 0.4, 1e-12);
+}
+
+TEST_F(Check, TheLawOfTheCommandLineReplacesThatOfTheScene) {
+  const json table = scene_facts(macro("absent.toml", "strain = 0.1\n"), "--law '" + kTable + "'");
+  EXPECT_EQ(table["law"]["form"], "directional");
+  EXPECT_FALSE(warned(table, "take a law table"));
+  EXPECT_GT(table["law_volume"]["measured"].get<double>(), 0.1);
+  write_text_atomic(directory_.file("scene.toml"), macro("absent.toml", ""));
+  EXPECT_EQ(run_the_program("check '" + directory_.file("scene.toml") + "'").status, 4);
+  EXPECT_EQ(run_the_program("check '" + kCard + "' --law '" + kTable + "'").status, 0);
+}
+
+TEST_F(Check, ATableIsHeldAgainstTheSizesOfTheScene) {
+  const json far = scene_facts(
+      macro(kTable, "strain = 0.3\ntest = \"isotropic\"\nsolid_radius_max = 0.002\nsoft_polydispersity = 5\n"));
+  EXPECT_TRUE(warned(far, "solid neighbours of ratio 0.0625")) << far["warnings"];
+  EXPECT_TRUE(warned(far, "soft neighbours of ratio 1 to 5"));
+  EXPECT_TRUE(warned(far, "lost volume of soft particles"));
+  EXPECT_TRUE(warned(far, "overlaps of single soft contacts"));
+}
+
+TEST_F(Check, FewPackingsAndFewOverlapsAreSaid) {
+  const json poor = scene_facts(R"(kind = "soft-particle"
+[packing]
+trials = 50
+polydispersity = 4
+count = 3
+[measure]
+relaxation = "damped"
+[measure.soft_solid]
+deltas = [0.05, 0.1, 0.2]
+)");
+  EXPECT_TRUE(warned(poor, "3 packings are few")) << poor["warnings"];
+  EXPECT_TRUE(warned(poor, "1 overlaps lie above Delta = 0.1"));
+  EXPECT_TRUE(warned(poor, "nothing is rotated"));
+  EXPECT_TRUE(warned(poor, "loose"));
+  EXPECT_GT(poor["bytes"].get<double>(), 0.0);
+  EXPECT_NEAR(poor["overlap soft-solid"].get<double>(), 0.54, 1e-12);
+}
+
+TEST_F(Check, ALongStepAndOverlapsOfParticlesAreSaid) {
+  const std::string text = R"(kind = "particles"
+[material.glass]
+density = 2500
+E = "1 MPa"
+nu = 0.3
+[[contact]]
+pair = ["glass", "glass"]
+law = "hertz-tsuji"
+restitution = 0.9
+mu = 0.3
+[[particle]]
+material = "glass"
+radius = 0.01
+position = [0, 0, 0]
+[[particle]]
+material = "glass"
+radius = 0.01
+position = [0.017, 0, 0]
+[time]
+step_fraction = 0.5
+steps = 1000
+)";
+  const json found = scene_facts(text);
+  EXPECT_TRUE(warned(found, "overlap by 0.3 of the smaller radius")) << found["warnings"];
+  EXPECT_TRUE(warned(found, "the step is 0.50 sqrt(m/k)"));
+  EXPECT_NEAR(found["overlap"].get<double>(), 0.3, 1e-9);
+  EXPECT_NE(found["limited_by"].get<std::string>().find("set by particle"), std::string::npos);
+}
+
+TEST_F(Check, CardsAndTablesSayWhatToMind) {
+  EXPECT_TRUE(warned(facts(kCard), "grains overlap by up to 0.81"));
+  EXPECT_TRUE(warned(facts(kTable), "soft neighbours of ratio 1 are given back only to"));
+}
+
+TEST_F(Check, SummariesAndRunDirectories) {
+  const std::string run = directory_.file("run");
+  fs::create_directory(run);
+  EXPECT_EQ(run_the_program("check '" + run + "'").status, 2);
+  test::tiny_macro(run + "/macro.h5");
+  fs::copy_file(kCard, run + "/law.toml");
+  json half = facts(run);
+  EXPECT_TRUE(warned(half, "no summary.json")) << half["warnings"];
+  write_text_atomic(
+      run + "/summary.json",
+      R"({"status": "not usable", "command": "macrosim", "version": "0.1.0", "remarks": ["a point is off"]})");
+  const json whole = facts(run);
+  EXPECT_EQ(whole["kind"], "run directory");
+  EXPECT_EQ(whole["files"]["macro.h5"]["kind"], "macro curves");
+  EXPECT_EQ(whole["files"]["law.toml"]["kind"], "law card");
+  EXPECT_TRUE(warned(whole, "summary.json: the run says of itself: not usable"));
+  EXPECT_TRUE(warned(whole, "a point is off"));
+  EXPECT_EQ(facts(run + "/summary.json")["run_status"], "not usable");
+  write_text_atomic(run + "/summary.json", "[1]");
+  EXPECT_EQ(run_the_program("check '" + run + "/summary.json'").status, 2);
+  write_text_atomic(run + "/summary.json", "{");
+  EXPECT_EQ(run_the_program("check '" + run + "'").status, 2);
+}
+
+TEST_F(Check, TakesAMoment) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const char* name : {"powder_method1", "glass_beads_small"}) (void)facts(kRoot + "/pipelines/" + name + ".toml");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 30.0);
+}
+
+}  // namespace
+}  // namespace softgrain
