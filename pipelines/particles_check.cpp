@@ -52,7 +52,7 @@ void add_overlap(const System3& s, Findings& out) {
   out.add("overlap", watch.overlap,
           fmt::format("largest overlap at the start: {:.3g} of the smaller radius (bodies {} and {})", watch.overlap,
                       watch.i, watch.j));
-  constexpr double kLarge = 0.1;
+  constexpr double kLarge = 0.3;
   if (watch.overlap > kLarge)
     out.warn(fmt::format("bodies {} and {} overlap by {:.2g} of the smaller radius at the start: they will fly apart",
                          watch.i, watch.j, watch.overlap));
