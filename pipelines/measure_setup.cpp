@@ -167,10 +167,10 @@ MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxat
 }
 
 MeasureSetup read_measure_setup(const SceneTable& root) {
-  const SceneTable measure = root.table("measure");
   std::string relaxation;
   MeasurementPlan common;
   MeasureSetup setup = read_measure_protocols(root, relaxation, common);
+  const SceneTable measure = root.table("measure");
   const std::int64_t count = root.table_or_empty("packing").count("count", 1, 100000, 7);
   setup.series.push_back(read_series(measure, relaxation, count, common));
   if (root.has("reference")) {

@@ -114,15 +114,15 @@ position = [0, 0, 0]
 [[particle]]
 material = "glass"
 radius = 0.01
-position = [0.017, 0, 0]
+position = [0.015, 0, 0]
 [time]
 step_fraction = 0.5
 steps = 1000
 )";
   const json found = scene_facts(text);
-  EXPECT_TRUE(warned(found, "overlap by 0.3 of the smaller radius")) << found["warnings"];
+  EXPECT_TRUE(warned(found, "overlap by 0.5 of the smaller radius")) << found["warnings"];
   EXPECT_TRUE(warned(found, "the step is 0.50 sqrt(m/k)"));
-  EXPECT_NEAR(found["overlap"].get<double>(), 0.3, 1e-9);
+  EXPECT_NEAR(found["overlap"].get<double>(), 0.5, 1e-9);
   EXPECT_NE(found["limited_by"].get<std::string>().find("set by particle"), std::string::npos);
 }
 
