@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "calibrate/experiment_fit.h"
+#include "pipelines/fit_settings.h"
 #include "pipelines/law_json.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_summary.h"
@@ -43,19 +44,11 @@ std::optional<double> quantity(const char* option, const std::string& text, Unit
 
 Settings read_settings(const SceneTable& t, const CommonOptions& options) {
   Settings s;
-  FitOptions& o = s.fit;
-  o.delta_low = t.number("delta_low", Unit::none, Range::not_negative(), o.delta_low);
-  o.delta_high = t.number("delta_high", Unit::none, Range::positive(), o.delta_high);
-  o.initial_angle_deg = t.number("initial_angle", Unit::none, Range::positive(), o.initial_angle_deg);
-  o.secant_angle_deg = t.number("secant_angle", Unit::none, Range::positive(), o.secant_angle_deg);
-  o.noise_floor = t.number("noise_floor", Unit::none, Range::not_negative(), o.noise_floor);
-  o.scatter_floor = t.number("scatter_floor", Unit::none, {0.0, 1.0, true, false}, o.scatter_floor);
-  o.min_packings = static_cast<int>(t.count("min_packings", 2, 1000000, o.min_packings));
-  o.replicates = static_cast<int>(t.count("replicates", 0, 1000000, o.replicates));
+  s.fit = read_fit_settings(t);
   s.curves.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
   s.mirror = t.flag("mirror", false);
-  s.curves.initial_angle_deg = o.initial_angle_deg;
-  s.curves.secant_angle_deg = o.secant_angle_deg;
+  s.curves.initial_angle_deg = s.fit.initial_angle_deg;
+  s.curves.secant_angle_deg = s.fit.secant_angle_deg;
   t.finish();
   if (!options.kind.empty()) {
     if (options.kind != "soft-solid" && options.kind != "soft-soft")

@@ -11,6 +11,7 @@
 #include "calibrate/threshold_fit.h"
 #include "pipelines/calibrate_crowd.h"
 #include "pipelines/calibrate_curves.h"
+#include "pipelines/fit_settings.h"
 #include "pipelines/law_json.h"
 #include "pipelines/run_context.h"
 
@@ -22,17 +23,8 @@ using nlohmann::json;
 
 /// Settings of the command, all through --set; no scene file is needed.
 FitOptions read_options(const SceneTable& t) {
-  const FitOptions defaults;
-  FitOptions o;
-  o.relaxation = t.text("relaxation", defaults.relaxation);
-  o.delta_low = t.number("delta_low", Unit::none, Range::not_negative(), defaults.delta_low);
-  o.delta_high = t.number("delta_high", Unit::none, Range::positive(), defaults.delta_high);
-  o.initial_angle_deg = t.number("initial_angle", Unit::none, Range::positive(), defaults.initial_angle_deg);
-  o.secant_angle_deg = t.number("secant_angle", Unit::none, Range::positive(), defaults.secant_angle_deg);
-  o.noise_floor = t.number("noise_floor", Unit::none, Range::not_negative(), defaults.noise_floor);
-  o.scatter_floor = t.number("scatter_floor", Unit::none, {0.0, 1.0, true, false}, defaults.scatter_floor);
-  o.min_packings = static_cast<int>(t.count("min_packings", 2, 1000000, defaults.min_packings));
-  o.replicates = static_cast<int>(t.count("replicates", 0, 1000000, defaults.replicates));
+  FitOptions o = read_fit_settings(t);
+  o.relaxation = t.text("relaxation", o.relaxation);
   t.finish();
   return o;
 }

@@ -19,7 +19,8 @@ PAGES = {
     "scene_pipeline.md": (
         ["pipelines/measure_setup.cpp", "pipelines/pipeline_setup.cpp", "pipelines/macro_setup.cpp",
          "pipelines/command_macrosim.cpp", "pipelines/macro_comparison_setup.cpp", "pipelines/named_laws.cpp",
-         "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp", "pipelines/kept_states.cpp"],
+         "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp", "pipelines/fit_settings.cpp",
+         "pipelines/kept_states.cpp"],
         {"beyond"}, {"entry", "pair", "macrosim"}),
     "scene_law_table.md": (
         ["pipelines/law_table_setup.cpp", "pipelines/crowd_setup.cpp", "pipelines/crowd_law_fit.cpp",
@@ -33,7 +34,7 @@ PAGES = {
     "scene_powder.md": (
         ["pipelines/powder_setup.cpp", "pipelines/powder_variants.cpp", "pipelines/variant_name.cpp"],
         {"Phi", "z", "Phi_error", "z_error"}, set()),
-    "own_data.md": (["pipelines/calibrate_curves.cpp", "pipelines/inverse_setup.cpp"],
+    "own_data.md": (["pipelines/calibrate_curves.cpp", "pipelines/fit_settings.cpp", "pipelines/inverse_setup.cpp"],
                     {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"}, {"kind", "title"}),
     "scene_grain_box.md": (["pipelines/grain_box_setup.cpp", "pipelines/variant_name.cpp"], set(), set()),
 }

@@ -175,7 +175,7 @@ TEST_F(OwnData, TheReverseSearchFindsTheFrictionOfATargetMadeWithOtherSeeds) {
   // Other threads, and a run that was stopped: the same bits.
   const std::string again = "run '" + file("scene.toml") + "' --quiet --threads 1 --out '" + file("b") + "'";
   const pid_t child = start_program({"run", file("scene.toml"), "--quiet", "--threads", "1", "--out", file("b")});
-  const std::string seventh = file("b") + "/work/evaluation-7-packing-0.h5";
+  const fs::path seventh = fs::path(file("b")) / "work" / "evaluation-7-packing-0.h5";
   (void)signal_when(
       child, [&] { return fs::exists(seventh); }, SIGTERM);
   expect(run_the_program(again + " --resume"), 0, {});
