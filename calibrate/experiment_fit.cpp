@@ -238,11 +238,10 @@ ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOp
     if (report.from_residuals)
       out.remarks.push_back(fmt::format(
           "{}: {} sample{} ({} needed for an interval over samples): intervals are from the residuals about the law "
-          "and do "
-          "not cover other samples",
+          "and do not cover other samples",
           to_string(one.kind), one.samples.size(), one.samples.size() == 1 ? "" : "s", options.min_packings));
-    const std::string origin =
-        report.from_residuals ? "bootstrap of residuals about the law" : "bootstrap over samples";
+    const std::string origin = report.from_residuals ? kFromResiduals : kFromSamples;
+    report.law.band_origin = origin;
     if (out.card.intervals.find(origin) == std::string::npos)
       out.card.intervals += (out.card.intervals.empty() ? "" : "; ") + origin;
     add(out, std::move(report));

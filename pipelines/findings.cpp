@@ -19,6 +19,15 @@ void Findings::add(const std::string& key, const nlohmann::json& value, const st
   lines += "  " + line + "\n";
 }
 
+void Findings::add_once(const std::string& key, const nlohmann::json& value, const std::string& line) {
+  const std::string said = "  " + line + "\n";
+  const bool new_line = !lines.starts_with(said) && lines.find("\n" + said) == std::string::npos;
+  if (new_line)
+    add(key, value, line);
+  else
+    facts[key] = value;
+}
+
 void Findings::warn(const std::string& text) {
   if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(text);
 }

@@ -15,6 +15,8 @@ class Findings {
   std::string lines;  ///< each with two spaces before it
 
   void add(const std::string& key, const nlohmann::json& value, const std::string& line);
+  /// The same, but a line that is there already is not said again: what holds for several scenes.
+  void add_once(const std::string& key, const nlohmann::json& value, const std::string& line);
   /// Nothing is wrong, but it may not be what was meant. Said once.
   void warn(const std::string& text);
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }

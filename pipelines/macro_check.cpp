@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
@@ -63,9 +64,9 @@ void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec
     const PairLaw* law = card.find(kind);
     if (law == nullptr) continue;
     const Beyond beyond = laws.beyond.value_or(law->beyond);
-    out.add("law " + to_string(kind),
-            {{"status", law->status}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
-            fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), law->status, law->delta_max));
+    out.add_once("law " + to_string(kind),
+                 {{"status", law->status}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
+                 fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), law->status, law->delta_max));
     beyond_range(to_string(kind) + " Delta along the load", overlap.largest, law->delta_max, beyond, out);
     if (law->status == "underdetermined")
       out.warn("the " + to_string(kind) + " law is underdetermined: " + law->reason);
@@ -115,11 +116,11 @@ void check_volume(const LawTable& table, const LawSources& laws, const std::stri
   const law::CrowdAnswer answer = law::crowd_values(table, q, {overlap.mean});
   const Beyond beyond = laws.beyond.value_or(answer.entry.beyond);
   const double volume = answer.points.front().volume;
-  out.add(
-      "law_volume", {{"expected", volume}, {"measured", answer.entry.volume_max}},
-      fmt::format("lost volume of a soft particle between six neighbours at the mean overlap: {:.2g}, measured up to "
-                  "{:.2g}",
-                  volume, answer.entry.volume_max));
+  out.add("law_volume", {{"expected", volume}, {"measured", answer.entry.volume_max}},
+          fmt::format(
+              "{}: lost volume of a soft particle between six neighbours at the mean overlap {:.2g}, measured up to "
+              "{:.2g}",
+              answer.form, volume, answer.entry.volume_max));
   beyond_range("lost volume of soft particles", volume, answer.entry.volume_max, beyond, out);
   beyond_range("overlaps of single soft contacts along the load", overlap.largest, answer.entry.overlap_max, beyond,
                out);
@@ -137,9 +138,9 @@ void check_table_law(const LawTable& table, const LawSources& given, const std::
   std::string remark;
   const LawTableEntry entry = entry_at(table, fraction, laws.range, remark);
   const CrowdLaw& law = *entry.find(named.form);
-  out.add("law", {{"form", named.form}, {"solid_fraction", fraction}, {"error_cross", law.error_cross}},
-          fmt::format("law: {}, at solid fraction {:.3f}; off by {:.0f} % leaving one loading out", named.form,
-                      fraction, 100.0 * law.error_cross));
+  out.add_once("law", {{"form", named.form}, {"solid_fraction", fraction}, {"error_cross", law.error_cross}},
+               fmt::format("law: {}, at solid fraction {:.3f}; off by {:.0f} % leaving one loading out", named.form,
+                           fraction, 100.0 * law.error_cross));
   if (!remark.empty())
     out.warn("one content was made: " + remark +
              (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
@@ -225,8 +226,9 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSourc
   constexpr double kBytesPerContact = 160.0;
   const double memory = resolved * (kBytesPerGrain + 3.0 * kBytesPerContact);
   out.add("macro_bodies", count.all,
-          fmt::format("macro: {} samples of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
-                      setup.samples, count.all, count.soft, setup.spec.test, setup.spec.strain_end));
+          fmt::format("macro: {} sample{} of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
+                      setup.samples, setup.samples == 1 ? "" : "s", count.all, count.soft, setup.spec.test,
+                      setup.spec.strain_end));
   const AffineOverlap overlap = affine_overlap(setup.spec);
   out.add("affine_overlap", {{"mean", overlap.mean}, {"largest", overlap.largest}}, load_text(setup.spec));
   for (const std::string& twin : setup.twins)
@@ -270,11 +272,17 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
 
 void check_macro_comparison(const Scene& scene, Findings& out) {
   const MacroComparisonSetup setup = read_macro_comparison(scene);
-  out.add("scenes", setup.scenes.size(),
-          fmt::format("comparison of laws with twins on {} scenes", setup.scenes.size()));
+  out.lines += fmt::format("  comparison of laws with twins on {} scenes\n", setup.scenes.size());
   const double fraction = solid_fraction_of(setup.spec, setup.seed);
   out.add("solid_fraction", fraction, fmt::format("solid fraction of the first content: {:.3f}", fraction));
-  for (const ComparisonScene& s : setup.scenes) check_macro(s.setup, kGrainsPerSoft, &setup.laws, fraction, out);
+  json scenes = json::array();
+  for (const ComparisonScene& s : setup.scenes) {
+    const json common = std::exchange(out.facts, json{{"name", s.name}});
+    out.lines += "  scene " + s.name + ":\n";
+    check_macro(s.setup, kGrainsPerSoft, &setup.laws, fraction, out);
+    scenes.push_back(std::exchange(out.facts, common));
+  }
+  out.facts["scenes"] = scenes;
   warn_of_soft_particle(setup.spec, out);
 }
 

@@ -36,10 +36,16 @@ std::shared_ptr<spdlog::logger> make_logger(const std::string& file, const Commo
 
 }  // namespace
 
+std::string default_directory(const std::string& name) {
+  const std::string directory = "results/" + name;
+  std::error_code ignored;
+  return std::filesystem::exists(directory + "/README.md", ignored) ? directory + "_run" : directory;
+}
+
 RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name)
     : options_(options),
       command_(command),
-      directory_(options.out.empty() ? "results/" + default_name : options.out),
+      directory_(options.out.empty() ? default_directory(default_name) : options.out),
       threads_(options.threads > 0 ? options.threads : omp_get_max_threads()) {
   require_writable_directory(directory_);
   lock_ = std::make_shared<DirectoryLock>(directory_);

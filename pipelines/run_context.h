@@ -41,11 +41,16 @@ struct CommonOptions {
   std::string command_line;                        ///< as given, for provenance
 };
 
+/// results/NAME, or results/NAME_run where results/NAME is a folder with a page that is kept (README.md): a run does
+/// not write among kept results unless it is told to.
+std::string default_directory(const std::string& name);
+
 /// A run directory in use: made, proved writable and held against other runs, with a log file; writes the summary at
 /// the end.
 class RunContext {
  public:
-  /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent. Unless the run
+  /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent
+  /// (default_directory). Unless the run
   /// goes on with an earlier one, the summary of that is removed: the directory must not look like a run that has
   /// ended. Throws FileTrouble: cannot be written, another run is at work there.
   RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name);

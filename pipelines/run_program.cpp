@@ -36,8 +36,10 @@ struct Command {
 constexpr std::array<Command, 8> kCommands{{
     {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
      1, 1, command_run},
-    {"microsim", "One particle-scale scene: packings of soft particles are generated and measured", "SCENE.toml",
-     "scene to run", 1, 1, command_microsim},
+    {"microsim",
+     "One particle-scale scene: soft particles packed and measured, particles and walls, a grain box, a cohesive "
+     "powder",
+     "SCENE.toml", "scene to run", 1, 1, command_microsim},
     {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA",
      "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
@@ -82,7 +84,10 @@ CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t h
 
 void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::string& observables) {
   app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
-  app.add_option("--out", o.out, "Run directory; default results/<name of the first input>")->option_text("DIR");
+  app.add_option(
+         "--out", o.out,
+         "Run directory; default results/<name of the first input>, with _run behind where that holds kept results")
+      ->option_text("DIR");
   app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
       ->option_text("N")
       ->transform(whole_number("--threads", 1, kMostThreads));

@@ -78,7 +78,7 @@ std::optional<LawInterval> inside(const LawBand& band, double delta) {
   const auto k = static_cast<std::size_t>(after - band.delta.begin());
   const double share = (delta - band.delta[k - 1]) / (band.delta[k] - band.delta[k - 1]);
   const auto between = [&](const std::vector<double>& y) { return y[k - 1] + share * (y[k] - y[k - 1]); };
-  return LawInterval{between(band.low), between(band.high), kFromBootstrap};
+  return LawInterval{between(band.low), between(band.high), band.origin};
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ bool has_part(const PairLaw& law, LawPart part) {
 
 std::optional<LawBand> stored_band(const PairLaw& law, LawPart part) {
   for (const LawBandRows& rows : law.bands)
-    if (rows.law == part_name(part)) return LawBand{law.band_delta, rows.low, rows.high, kFromBootstrap};
+    if (rows.law == part_name(part)) return LawBand{law.band_delta, rows.low, rows.high, law.band_origin};
   return std::nullopt;
 }
 

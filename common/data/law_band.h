@@ -1,4 +1,4 @@
-// How sure a fitted law is at one overlap: 95 % intervals of its value and slope, from the bootstrap over packings that
+// How sure a fitted law is at one overlap: 95 % intervals of its value and slope, from the bootstrap that
 // the table beside a card keeps, else by linearised propagation of the covariance in the card.
 #pragma once
 
@@ -20,7 +20,6 @@ const ThresholdPowerLaw& part_of(const PairLaw& law, LawPart part);
 /// Whether the part was measured and could be fitted.
 bool has_part(const PairLaw& law, LawPart part);
 
-inline constexpr const char* kFromBootstrap = "bootstrap over packings";
 inline constexpr const char* kFromCovariance = "linearised from the covariance";
 
 /// 95 % band of a law, dimensionless, over `delta`.
@@ -28,7 +27,7 @@ struct LawBand {
   std::vector<double> delta;
   std::vector<double> low;
   std::vector<double> high;
-  std::string origin;  ///< kFromBootstrap or kFromCovariance
+  std::string origin;  ///< PairLaw::band_origin or kFromCovariance
 };
 
 /// The band that was read with the card; empty when there is none.
@@ -41,7 +40,7 @@ std::optional<LawBand> linearised_band(const PairLaw& law, LawPart part, const s
 struct LawInterval {
   double low = 0.0;
   double high = 0.0;
-  const char* origin = kFromCovariance;
+  std::string origin = kFromCovariance;
 };
 
 /// Of the value F(Delta): from the stored band where that reaches (linear between its points), else linearised; empty

@@ -14,7 +14,12 @@
 
 namespace softgrain {
 
-/// A fitted number with its standard error (covariance) and 95 % interval (bootstrap over packings).
+/// Where 95 % intervals come from, as files and reports say it.
+inline constexpr const char* kFromPackings = "bootstrap over packings";
+inline constexpr const char* kFromSamples = "bootstrap over samples";  ///< of an experiment
+inline constexpr const char* kFromResiduals = "bootstrap of residuals about the law";
+
+/// A fitted number with its standard error (covariance) and 95 % interval (bootstrap, see PairLaw::band_origin).
 struct Estimate {
   double value = 0.0;
   double standard_error = 0.0;
@@ -44,7 +49,7 @@ struct LawTableRows {
   std::vector<double> kt_secant_deviation;
 };
 
-/// 95 % band of one fitted curve, by bootstrap over packings. Dimensionless; kept in the table (law.h5), not in the
+/// 95 % band of one fitted curve, by bootstrap. Dimensionless; kept in the table (law.h5), not in the
 /// card.
 struct LawBandRows {
   std::string law;  ///< "normal", "tangential_initial" or "tangential_secant"
@@ -80,13 +85,14 @@ struct PairLaw {
   LawTableRows table;
   std::vector<double> band_delta;  ///< Delta of the bands; empty without replicates
   std::vector<LawBandRows> bands;
+  std::string band_origin = kFromPackings;  ///< where bands and 95 % intervals of this pair come from
 };
 
 struct LawCard {
   int schema = 1;
-  SoftParticleSpec spec;                              ///< of the measurement behind the law
-  std::string relaxation;                             ///< which relaxation measured it; "experiment": none of ours
-  std::string intervals = "bootstrap over packings";  ///< where the 95 % intervals come from
+  SoftParticleSpec spec;                  ///< of the measurement behind the law
+  std::string relaxation;                 ///< which relaxation measured it; "experiment": none of ours
+  std::string intervals = kFromPackings;  ///< where the 95 % intervals come from, of all pairs together
   std::vector<PairLaw> pairs;
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;

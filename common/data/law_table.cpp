@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "common/core/error.h"
 #include "common/data/law_card_format.h"
@@ -14,6 +15,7 @@ namespace softgrain {
 namespace {
 
 constexpr const char* kFormat = "soft contact law";
+constexpr std::string_view kBandInterval = "95 %, ";  ///< before PairLaw::band_origin
 
 void write_parameters(const h5::Group& group, const PairLaw& pair) {
   for (const LawPartName& part : kLawParts) {
@@ -55,13 +57,13 @@ void write_pair(const h5::Group& root, const PairLaw& pair) {
   if (pair.covariance.size() == n * n) group.write("covariance", std::span<const double>(pair.covariance), {n, n});
 }
 
-/// Group band/<pair kind>: delta, <law>_low, <law>_high.
+/// Group band/<pair kind>: delta, <law>_low, <law>_high; what the bands are as attribute.
 void write_bands(const h5::Group& root, const LawCard& card) {
   const h5::Group bands = root.create("band");
-  bands.attribute("interval", "95 %, bootstrap over packings");
   for (const PairLaw& pair : card.pairs) {
     if (pair.bands.empty()) continue;
     const h5::Group group = bands.create(to_string(pair.kind));
+    group.attribute("interval", std::string(kBandInterval) + pair.band_origin);
     group.write("delta", std::span<const double>(pair.band_delta));
     for (const LawBandRows& band : pair.bands) {
       group.write(band.law + "_low", std::span<const double>(band.low));
@@ -86,6 +88,8 @@ void read_bands(const h5::Group& root, PairLaw& pair, const std::string& path) {
   if (!root.has("band") || !root.open("band").has(name)) return;
   const h5::Group group = root.open("band").open(name);
   pair.band_delta = group.doubles("delta");
+  const std::string said = group.has_attribute("interval") ? group.text("interval") : "";
+  if (said.starts_with(kBandInterval)) pair.band_origin = said.substr(kBandInterval.size());
   for (const LawPartName& part : kLawParts) {
     const std::string key = part.key;
     if (!group.has(key + "_low") || !group.has(key + "_high")) continue;
@@ -130,6 +134,7 @@ void read_table(LawCard& card, const std::string& path) {
     const std::string name = to_string(pair.kind);
     if (!root.has(name)) continue;
     pair.table = read_curve(root.open(name).open("table"), path);
+    pair.band_origin = card.intervals;  // files of before said it for all pairs together
     read_bands(root, pair, path);
   }
 }

@@ -150,7 +150,7 @@ double overlap_max(const CrowdAnswer& answer, const CrowdQuestion& q, std::strin
 std::optional<LawInterval> interval_of(std::vector<double> values) {
   if (values.size() < kEnough) return std::nullopt;
   const auto [low, high] = interval95(std::move(values));
-  return LawInterval{low, high, kFromBootstrap};
+  return LawInterval{low, high, kFromPackings};
 }
 
 /// kt = (kt/kn) kn: both are uncertain, each on its own.
@@ -160,7 +160,7 @@ std::optional<LawInterval> tangential_interval(double kt, const Quantity& kn, co
   const double of_kn = 0.5 * (kn.interval->high - kn.interval->low) / kn.value;
   const double of_ratio = kNormal95 * ratio.standard_error / ratio.value;
   const double half = kt * std::hypot(of_kn, of_ratio);
-  return LawInterval{std::max(0.0, kt - half), kt + half, kFromBootstrap};
+  return LawInterval{std::max(0.0, kt - half), kt + half, kFromPackings};
 }
 
 Where place(const CrowdAnswer& answer, const LawPoint& p) {

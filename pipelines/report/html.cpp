@@ -1,5 +1,7 @@
 #include "pipelines/report/html.h"
 
+#include <algorithm>
+
 #include "pipelines/report/assets.h"
 
 namespace softgrain::report {
@@ -10,12 +12,20 @@ constexpr const char* kNoNetwork =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data: blob:\">\n";
 
-std::string table_row(const std::vector<std::string>& cells, std::size_t left_columns, const std::string& tag) {
+std::string table_row(const std::vector<std::string>& cells, const std::vector<std::string>& classes,
+                      const std::string& tag) {
   std::string out = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    out += "<" + tag + (i < left_columns ? " class=\"l\">" : ">") + escape(cells[i]) + "</" + tag + ">";
+    const std::string name = classes[i].empty() ? "" : " class=\"" + classes[i] + "\"";
+    out += "<" + tag + name + ">" + escape(cells[i]) + "</" + tag + ">";
   }
   return out + "</tr>\n";
+}
+
+/// Too long for one line beside others: words, not a number.
+bool is_long(const std::string& cell) {
+  constexpr std::size_t kLong = 40;
+  return cell.size() > kLong;
 }
 
 }  // namespace
@@ -56,9 +66,14 @@ void HtmlTable::row(std::vector<std::string> cells) {
 }
 
 std::string HtmlTable::html() const {
-  std::string out =
-      "<div class=\"scroll\"><table><thead>" + table_row(header_, left_columns_, "th") + "</thead><tbody>\n";
-  for (const auto& cells : rows_) out += table_row(cells, left_columns_, "td");
+  std::vector<std::string> classes(header_.size());
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (i < left_columns_) classes[i] = "l";
+    if (i > 0 && std::any_of(rows_.begin(), rows_.end(), [i](const auto& cells) { return is_long(cells[i]); }))
+      classes[i] = "t";
+  }
+  std::string out = "<div class=\"scroll\"><table><thead>" + table_row(header_, classes, "th") + "</thead><tbody>\n";
+  for (const auto& cells : rows_) out += table_row(cells, classes, "td");
   return out + "</tbody></table></div>\n";
 }
 

@@ -10,7 +10,8 @@ namespace softgrain::report {
 /// Text made safe for element content and quoted attributes; control characters that XML forbids are dropped.
 std::string escape(const std::string& text);
 
-/// A table of escaped texts. Columns after the first are aligned to the right unless `left_columns` says otherwise.
+/// A table of escaped texts. Columns after the first are aligned to the right unless `left_columns` says otherwise;
+/// columns with long texts to the left, in several lines.
 class HtmlTable {
  public:
   explicit HtmlTable(std::vector<std::string> header, std::size_t left_columns = 1);

@@ -1,6 +1,7 @@
 // Normal force against overlap: every packing, their mean, the fitted law, the published law and the Hertz line.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "pipelines/report/html.h"
@@ -43,6 +44,14 @@ Series unconverged(const std::vector<const PackingRun*>& runs) {
   return s;
 }
 
+/// Lower end of the logarithmic axis: single packings reach down to the noise, which says nothing.
+std::optional<double> least_shown(const ValuesByDelta& forces) {
+  constexpr double kShown = 1e-4;
+  const Series mean = mean_series(forces, 1.0, "", {});
+  const double largest = mean.y.empty() ? 0.0 : *std::max_element(mean.y.begin(), mean.y.end());
+  return largest > 0.0 ? std::optional(kShown * largest) : std::nullopt;
+}
+
 std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
   const Measurements& data = *run.measurements;
   const auto runs = runs_of(data, kind, run.relaxation(kind));
@@ -53,7 +62,10 @@ std::string force_figure(const RunData& run, PairKind kind, Scale scale) {
   PlotOptions options{.id = "normal-" + to_string(kind) + (linear ? "-linear" : "-log"),
                       .title = "Fn(Δ), " + describe(kind) + (linear ? "" : ", logarithmic"),
                       .x = {},
-                      .y = {.label = "normal force Fn [N]", .scale = scale, .high = top}};
+                      .y = {.label = "normal force Fn [N]",
+                            .scale = scale,
+                            .low = linear ? std::nullopt : least_shown(forces),
+                            .high = top}};
   options.x = overlap_axis(last_delta(forces));
   options.shaded = fitted_range(run.law(kind), LawPart::normal);
   Plot plot(std::move(options));

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""The pictures of this folder, taken of the report of a quickstart in headless Chromium.
+"""The pictures of this folder, taken of reports in headless Chromium.
 
-    pictures.py RUN [DIR]     RUN: directory of `softgrain run pipelines/quickstart.toml`; DIR: where to (this folder)
+    pictures.py QUICKSTART [PUBLISHED] [--to DIR]    directories of `softgrain run pipelines/quickstart.toml` and
+                                                     `pipelines/published.toml`; DIR: where to (this folder)
 
 Debian packages: chromium chromium-driver python3-selenium python3-pil libjs-three.
 """
+import argparse
 import base64
 import io
 import sys
@@ -25,7 +27,8 @@ s.dispatchEvent(new Event("change")); s.dispatchEvent(new Event("input"));"""
 
 
 class Photographer:
-    def __init__(self, page, folder):
+    def __init__(self, page, folder, prefix=""):
+        self.prefix = prefix
         self.browser = start_browser(1200, 900)
         self.browser.get(page.as_uri())
         self.folder = folder
@@ -39,7 +42,7 @@ class Photographer:
         image = Image.open(io.BytesIO(base64.b64decode(shot["data"]))).convert("RGB")
         # Plots keep their own few colours, packings the ends of the scale.
         method = Image.Quantize.MAXCOVERAGE if name.startswith("packing") else Image.Quantize.MEDIANCUT
-        image.quantize(256, method=method).save(self.folder / f"{name}.png", optimize=True)
+        image.quantize(256, method=method, kmeans=1).save(self.folder / f"{self.prefix}{name}.png", optimize=True)
 
     def box(self, element):
         return self.browser.execute_script(
@@ -59,7 +62,8 @@ class Photographer:
         self.take(name, x - margin, y - margin, width + 2 * margin, height + 2 * margin)
 
     def head(self):
-        self.show(self.find("h1"), "start")
+        self.browser.execute_script("scrollTo(0, 0)")
+        time.sleep(0.4)
         x, y, width, height = self.box(self.find("#remarks"))
         self.take("head", x - 20, 0, width + 40, y + height + 15)
 
@@ -91,16 +95,12 @@ class Photographer:
 
     def phone(self):
         self.browser.set_window_size(500, 1000)
-        self.show(self.find("h1"), "start")
+        self.browser.execute_script("scrollTo(0, 0)")
         time.sleep(0.5)
-        self.take("phone", 0, 0, 500, 1000)
+        self.take("phone", *self.browser.execute_script("return [0, 0, innerWidth, innerHeight]"))
 
 
-def main():
-    if missing():
-        sys.exit(missing())
-    run = Path(sys.argv[1]).resolve()
-    folder = Path(sys.argv[2]) if len(sys.argv) > 2 else HERE
+def quickstart(run, folder):
     photographer = Photographer(run / "report.html", folder)
     photographer.head()
     photographer.normal()
@@ -114,6 +114,32 @@ def main():
     photographer.packing("packing_twin_chains", "shelled", grains="off", chains=True)
     photographer.phone()
     photographer.browser.quit()
+
+
+def published(run, folder):
+    photographer = Photographer(run / "report.html", folder, "published_")
+    photographer.head()
+    photographer.row("normal_force", "#normal .row")
+    photographer.row("stiffness", "#stiffness .row")
+    photographer.row("relaxations", "#relaxations .row")
+    photographer.row("macro", "#macro .row")
+    photographer.row("error_cost", "#cost figure")
+    photographer.packing("packing_twin", "shelled", cut="1", place="0.55")
+    photographer.packing("packing_twin_contacts", "shelled", cut="1", place="0.55", color="contacts")
+    photographer.browser.quit()
+
+
+def main():
+    if missing():
+        sys.exit(missing())
+    parser = argparse.ArgumentParser()
+    parser.add_argument("quickstart", type=Path)
+    parser.add_argument("published", type=Path, nargs="?")
+    parser.add_argument("--to", type=Path, default=HERE)
+    o = parser.parse_args()
+    quickstart(o.quickstart.resolve(), o.to)
+    if o.published:
+        published(o.published.resolve(), o.to)
 
 
 if __name__ == "__main__":

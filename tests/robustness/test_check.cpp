@@ -77,6 +77,26 @@ TEST_F(Check, ATableIsHeldAgainstTheSizesOfTheScene) {
   EXPECT_TRUE(warned(far, "overlaps of single soft contacts"));
 }
 
+/// What holds for a law is said once, what a scene asks of it for every scene.
+TEST_F(Check, AComparisonSaysEveryLawOnce) {
+  const std::string scene = kRoot + "/pipelines/macro_vs_resolved.toml";
+  const std::string said = run_the_program("check '" + scene + "'").output;
+  const auto times = [&](const std::string& words) {
+    int n = 0;
+    for (auto at = said.find(words); at != std::string::npos; at = said.find(words, at + 1)) ++n;
+    return n;
+  };
+  for (const char* law : {"law soft-solid: good", "law soft-soft: good", "law: bag", "law: directional"})
+    EXPECT_EQ(times(law), 1) << law;
+  for (const char* asked : {"overlaps at the end", "  bag: lost volume", "  directional: lost volume"})
+    EXPECT_EQ(times(asked), 5) << asked;
+  const json scenes = facts(scene)["scenes"];
+  ASSERT_EQ(scenes.size(), 5U);
+  EXPECT_EQ(scenes[1]["name"], "isotropic-35");
+  EXPECT_NEAR(scenes[1]["affine_overlap"]["largest"].get<double>(), 0.16, 1e-12);
+  EXPECT_EQ(scenes[4]["law soft-solid"]["delta_max"], 0.3);
+}
+
 TEST_F(Check, FewPackingsAndFewOverlapsAreSaid) {
   const json poor = scene_facts(R"(kind = "soft-particle"
 [packing]

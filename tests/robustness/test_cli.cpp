@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "common/io/text_file.h"
+#include "tests/support/temporary_directory.h"
 
 namespace softgrain {
 namespace {
@@ -81,6 +82,26 @@ TEST(CommandLine, UnwritableRunDirectoryIsFoundBeforeAnyWork) {
   expect("run " + scene + " --out /proc/softgrain", 4, "/proc/softgrain");
   expect("run " + scene + " --out " + scene, 4, scene);
   fs::remove(scene);
+}
+
+/// Folders of kept results, which have a page, are not written into unless asked for.
+TEST(CommandLine, RunsDoNotWriteAmongKeptResults) {
+  const test::TemporaryDirectory directory;
+  const fs::path here = fs::current_path();
+  fs::current_path(directory.path());
+  fs::create_directories("results/kept");
+  write_text_atomic("results/kept/README.md", "# Kept\n");
+  for (const char* name : {"kept", "new"}) {
+    write_text_atomic(
+        std::string(name) + ".toml",
+        "kind = \"particles\"\n[material.a]\ndensity = 1.0\nE = 1.0\nnu = 0.2\n[[particle]]\nmaterial = \"a\"\n"
+        "radius = 1.0\nposition = [0.0, 0.0, 0.0]\n[time]\nstep = 0.1\nend = 0.2\n");
+    expect("microsim " + std::string(name) + ".toml --quiet", 0, "");
+  }
+  EXPECT_TRUE(fs::exists("results/new/summary.json"));
+  EXPECT_TRUE(fs::exists("results/kept_run/summary.json"));
+  EXPECT_EQ(std::distance(fs::directory_iterator("results/kept"), fs::directory_iterator()), 1);
+  fs::current_path(here);
 }
 
 TEST(CommandLine, BadSceneIsNamedWithFileAndLine) {

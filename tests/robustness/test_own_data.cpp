@@ -118,8 +118,9 @@ TEST_F(OwnData, ACsvGivesALawThatAMacroRunTakes) {
   EXPECT_NEAR(card.pairs[0].normal.value(0.25) / KnownLaw{}.value(0.25), 1.0, 0.02);
   const std::string page = read_text(file("law") + "/report.html");
   EXPECT_EQ(unbalanced_tags(page), "");
-  for (const char* words : {"Measured curves", "sample plane", "residuals about the law"})
+  for (const char* words : {"Measured curves", "sample plane", "95 % interval (bootstrap of residuals about the law)"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
+  EXPECT_EQ(page.find("over packings"), std::string::npos);
   expect(run_the_program("macrosim '" + file("macro.toml") + "' --quiet --law '" + file("law") + "/law.toml' --out '" +
                          file("macro") + "'"),
          0, {});

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/data/law_band.h"
 #include "tests/support/synthetic_law.h"
 
 namespace {
@@ -99,13 +100,15 @@ TEST(ExperimentFit, FewSamplesThatDifferWidenTheInterval) {
   const Estimate& b = wide.card.pairs[0].normal.a;
   EXPECT_GT(b.high - b.low, 2.0 * (a.high - a.low));
   EXPECT_TRUE(holds(b, KnownLaw{}.a));
-  EXPECT_NE(narrow.card.intervals.find("residuals"), std::string::npos);
+  EXPECT_EQ(narrow.card.intervals, kFromResiduals);
+  EXPECT_EQ(value_interval(narrow.card.pairs[0], LawPart::normal, 0.2)->origin, kFromResiduals);
 }
 
 TEST(ExperimentFit, ManySamplesAreDrawnAsPackingsAre) {
   const auto fit = fit_experiment({make({.samples = 8, .noise = 0.003, .scatter = 0.1})}, replicates(200), false);
   EXPECT_FALSE(fit.reports[0].from_residuals);
-  EXPECT_EQ(fit.card.intervals, "bootstrap over samples");
+  EXPECT_EQ(fit.card.intervals, kFromSamples);
+  EXPECT_EQ(value_interval(fit.card.pairs[0], LawPart::normal, 0.2)->origin, kFromSamples);
   EXPECT_EQ(fit.card.pairs[0].packings, 8);
   EXPECT_TRUE(holds(fit.card.pairs[0].normal.delta, 0.065));
 }

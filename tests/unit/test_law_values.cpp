@@ -88,19 +88,19 @@ TEST(CardValues, IntervalsFromTheBandAndElseFromTheCovariance) {
   PairLaw pair = *published().find(PairKind::soft_solid);
   const auto linear = value_interval(pair, LawPart::normal, 0.2);
   ASSERT_TRUE(linear.has_value());
-  EXPECT_STREQ(linear->origin, kFromCovariance);
+  EXPECT_EQ(linear->origin, kFromCovariance);
   const auto band = linearised_band(pair, LawPart::normal, {0.2});
   EXPECT_EQ(linear->low, band->low.front());
   EXPECT_EQ(linear->high, band->high.front());
   pair.band_delta = {0.0, 0.1, 0.3};
   pair.bands = {{"normal", {0.0, 1.0, 2.0}, {0.0, 3.0, 5.0}}};
   const auto stored = value_interval(pair, LawPart::normal, 0.2);
-  EXPECT_STREQ(stored->origin, kFromBootstrap);
+  EXPECT_EQ(stored->origin, kFromPackings);
   EXPECT_NEAR(stored->low, 1.5, kExact);
   EXPECT_NEAR(stored->high, 4.0, kExact);
   EXPECT_EQ(value_interval(pair, LawPart::normal, 0.3)->high, 5.0);
-  EXPECT_STREQ(value_interval(pair, LawPart::normal, 0.31)->origin, kFromCovariance);
-  EXPECT_STREQ(value_interval(pair, LawPart::tangential_initial, 0.2)->origin, kFromCovariance);
+  EXPECT_EQ(value_interval(pair, LawPart::normal, 0.31)->origin, kFromCovariance);
+  EXPECT_EQ(value_interval(pair, LawPart::tangential_initial, 0.2)->origin, kFromCovariance);
   pair.covariance.clear();
   EXPECT_FALSE(value_interval(pair, LawPart::normal, 0.31).has_value());
   EXPECT_FALSE(slope_interval(pair, LawPart::normal, 0.2).has_value());
@@ -129,8 +129,9 @@ TEST(CardValues, BandsComeWithTheCardUnlessItWasEdited) {
     pair.band_delta = {0.0, 0.2, 0.4};
     pair.bands = {{"normal", {0.0, 0.1, 0.2}, {0.0, 0.3, 0.4}}};
   }
+  card.pairs[1].band_origin = kFromResiduals;
   save_card(card, path);
-  EXPECT_STREQ(value_interval(load_card(path).pairs[0], LawPart::normal, 0.1)->origin, kFromBootstrap);
+  EXPECT_EQ(value_interval(load_card(path).pairs[0], LawPart::normal, 0.1)->origin, kFromPackings);
   std::string text = read_text(path);
   const std::size_t at = text.find("value = 0.8049");
   ASSERT_NE(at, std::string::npos);
@@ -142,8 +143,8 @@ TEST(CardValues, BandsComeWithTheCardUnlessItWasEdited) {
   std::filesystem::copy_file(directory.file("law.h5"), kept);
   save_card(card, path);
   std::filesystem::rename(kept, directory.file("law.h5"));
-  EXPECT_STREQ(value_interval(load_card(path).pairs[0], LawPart::normal, 0.1)->origin, kFromCovariance);
-  EXPECT_STREQ(value_interval(load_card(path).pairs[1], LawPart::normal, 0.1)->origin, kFromBootstrap);
+  EXPECT_EQ(value_interval(load_card(path).pairs[0], LawPart::normal, 0.1)->origin, kFromCovariance);
+  EXPECT_EQ(value_interval(load_card(path).pairs[1], LawPart::normal, 0.1)->origin, kFromResiduals);
 }
 
 struct Asked {
