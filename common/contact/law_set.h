@@ -1,6 +1,6 @@
 // The laws of a scene and which pair of materials uses which. The variant is opened once per section of the contact
 // list, never per contact.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cstdint>
 #include <stdexcept>

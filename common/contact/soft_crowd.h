@@ -1,7 +1,7 @@
 // Laws of soft particles that know about all their contacts [SP 1.7.1]: the pair law on lost volumes, the bag of grains
 // under one pressure, and the directional law. One struct, so that they share geometry, threshold and Newton's third
 // law: the energy is a sum over soft particles, each overlap belongs to both, and the force is the sum of both sides'.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
 #include <cmath>

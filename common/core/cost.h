@@ -1,5 +1,5 @@
 // What a computation cost, in units that do not depend on the machine beside the seconds that do.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cstdint>
 

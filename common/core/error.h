@@ -1,5 +1,5 @@
 // Errors of the project, one class per exit status. Libraries throw them; only the program prints and exits.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <stdexcept>
 #include <string>

@@ -123,24 +123,6 @@ class Watcher {
 
 }  // namespace
 
-void LawUse::add(double value_over_end, Beyond policy) {
-  ++asked;
-  largest = std::max(largest, value_over_end);
-  if (!(value_over_end > 1.0)) return;
-  ++beyond;
-  refused += policy == Beyond::error ? 1 : 0;
-  clamped += policy == Beyond::clamp ? 1 : 0;
-}
-
-LawUse& LawUse::operator+=(const LawUse& other) {
-  asked += other.asked;
-  beyond += other.beyond;
-  largest = std::max(largest, other.largest);
-  refused += other.refused;
-  clamped += other.clamped;
-  return *this;
-}
-
 std::string law_use_text(const LawUse& use) {
   if (use.beyond == 0) return "";
   const char* done = use.refused > 0 ? "which the law does not allow" : use.clamped > 0 ? "clamped" : "extrapolated";

@@ -5,22 +5,10 @@
 #include <cstdint>
 #include <string>
 
+#include "common/contact/law_use.h"
 #include "common/system.h"
 
 namespace softgrain {
-
-/// How far fitted laws are used beyond the range they were measured in. Pair laws of a card count contacts by Delta,
-/// crowd laws soft particles by the lost volume S of all their contacts (the pair form by that of each).
-struct LawUse {
-  std::int64_t asked = 0;    ///< contacts and particles that a fitted law serves
-  std::int64_t beyond = 0;   ///< of them, those beyond the end of their range
-  double largest = 0.0;      ///< largest Delta or S over the end of its range; 1: at the end
-  std::int64_t refused = 0;  ///< of those beyond, under laws that do not allow it (Beyond::error)
-  std::int64_t clamped = 0;  ///< and under laws that are clamped there
-
-  void add(double value_over_end, Beyond policy);
-  LawUse& operator+=(const LawUse& other);
-};
 
 /// "12 of 340 soft contacts beyond ... extrapolated"; empty when nothing is beyond.
 std::string law_use_text(const LawUse& use);

@@ -12,16 +12,7 @@ namespace softgrain {
 namespace {
 
 /// Passes between two updates of masses and two tests for convergence.
-constexpr std::int64_t kMassInterval = 10;
-
-// FIRE, in units where a body alone on its springs has frequency 1 (mass = stiffness).
-constexpr double kLargestStep = 1.0;  // 2/sqrt(2) is the limit of stability (Gershgorin) for a fixed stiffness
-constexpr double kFirstStep = 0.3;
-constexpr double kGrow = 1.1;
-constexpr double kShrink = 0.5;
-constexpr double kFirstMixing = 0.15;
-constexpr double kMixingDecay = 0.99;
-constexpr std::int64_t kPatience = 5;
+constexpr std::int64_t kMassInterval = PseudoMasses::kInterval;
 
 template <class V>
 void limit_length(V& v, double longest) {
@@ -43,18 +34,11 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
     sum += stiffness_.translation[u];
     radii += p.sphere[u].r;
   }
-  // A body without contacts gets a share of the mean stiffness per size, so that a new contact does not throw it.
-  // Where hardly anything touches, that mean says nothing, and grains that meet would find themselves too light for
-  // their contact.
-  const double floor_per_radius = std::max(radii > 0.0 ? 0.1 * sum / radii : 0.0, options_.least_stiffness);
-  // With no contact anywhere, weights alone pull: a body then moves its radius in a step of 1, before the limit on
-  // moves.
-  const double pull = sum > 0.0 ? 0.0 : worst_net_force(p);
+  const PseudoMasses masses(sum, radii, options_.least_stiffness, sum > 0.0 ? 0.0 : worst_net_force(p));
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     const double r = p.sphere[u].r;
-    const double floor = std::max({floor_per_radius * r, r > 0.0 ? pull / r : 0.0, 1e-300});
-    if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = 1.0 / std::max(stiffness_.translation[u], floor);
-    if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = 1.0 / std::max(stiffness_.rotation[u], 0.4 * floor * r * r);
+    if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(stiffness_.translation[u], r);
+    if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = masses.inverse_inertia(stiffness_.rotation[u], r);
   }
 }
 
@@ -76,21 +60,14 @@ void DampedRelaxation<D>::steer(System<D>& s) {
       pull2 += norm2(p.torque[u]) * inverse_inertia_[u];
     }
   }
-  if (power < 0.0) {
+  const Fire::Steering steering = fire_.steer(power, speed2, pull2);
+  if (steering.stop) {
     stop_motion(p);
-    step_ *= kShrink;
-    mixing_ = kFirstMixing;
-    downhill_ = 0;
-  } else {
-    const double turn = pull2 > 0.0 ? mixing_ * std::sqrt(speed2 / pull2) : 0.0;
-    for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
-      p.velocity[u] = p.velocity[u] * (1.0 - mixing_) + p.force[u] * (turn * inverse_mass_[u]);
-      p.spin[u] = p.spin[u] * (1.0 - mixing_) + p.torque[u] * (turn * inverse_inertia_[u]);
-    }
-    if (++downhill_ > kPatience) {
-      step_ = std::min(step_ * kGrow, kLargestStep);
-      mixing_ *= kMixingDecay;
-    }
+    return;
+  }
+  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
+    p.velocity[u] = p.velocity[u] * steering.keep + p.force[u] * (steering.pull * inverse_mass_[u]);
+    p.spin[u] = p.spin[u] * steering.keep + p.torque[u] * (steering.pull * inverse_inertia_[u]);
   }
 }
 
@@ -99,13 +76,13 @@ void DampedRelaxation<D>::move(System<D>& s) {
   auto& p = s.particles;
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     if (inverse_mass_[u] > 0.0) {
-      p.velocity[u] += p.force[u] * (step_ * inverse_mass_[u]);
-      limit_length(p.velocity[u], options_.max_move * p.sphere[u].r / step_);
-      p.sphere[u].x += p.velocity[u] * step_;
+      p.velocity[u] += p.force[u] * (fire_.step * inverse_mass_[u]);
+      limit_length(p.velocity[u], options_.max_move * p.sphere[u].r / fire_.step);
+      p.sphere[u].x += p.velocity[u] * fire_.step;
     }
     if (inverse_inertia_[u] > 0.0) {
-      p.spin[u] += p.torque[u] * (step_ * inverse_inertia_[u]);
-      limit_length(p.spin[u], options_.max_move / step_);
+      p.spin[u] += p.torque[u] * (fire_.step * inverse_inertia_[u]);
+      limit_length(p.spin[u], options_.max_move / fire_.step);
     }
   }
 }
@@ -114,9 +91,7 @@ template <int D>
 RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
   RelaxationResult result;
   stop_motion(s.particles);
-  step_ = kFirstStep;
-  mixing_ = kFirstMixing;
-  downhill_ = 0;
+  fire_ = {};
   force_pass(s, 0.0, stiffness_, History::none);
   add_gravity(s);
   for (;;) {
@@ -137,9 +112,9 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
     steer(s);
     move(s);
     if ((result.passes + 1) % kMassInterval == 0)
-      force_pass(s, step_, stiffness_, History::advance);
+      force_pass(s, fire_.step, stiffness_, History::advance);
     else
-      force_pass(s, step_, History::advance);
+      force_pass(s, fire_.step, History::advance);
     add_gravity(s);
     ++result.passes;
   }

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "common/dynamics/fire.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/relaxation_result.h"
 #include "common/system.h"
@@ -40,9 +41,7 @@ class DampedRelaxation {
   BodyStiffness stiffness_;
   std::vector<double> inverse_mass_;  ///< pseudo, per body
   std::vector<double> inverse_inertia_;
-  double step_ = 0.0;          ///< in units of the pseudo-time of one body on its own springs
-  double mixing_ = 0.0;        ///< share of the velocity that is turned into the direction of the force
-  std::int64_t downhill_ = 0;  ///< passes since the motion last went uphill
+  Fire fire_;
 };
 
 }  // namespace softgrain

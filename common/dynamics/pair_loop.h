@@ -3,84 +3,43 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <type_traits>
 
+#include "common/contact/contact_geometry.h"
 #include "common/contact/contact_list.h"
 #include "common/system.h"
 
 namespace softgrain {
 
-/// Where two bodies touch. Arms are signed distances along the normal: contact point = x_i - arm_i n = x_j + arm_j n.
-template <int D>
-struct ContactGeometry {
-  double overlap = 0.0;
-  Vec<D> normal{};  ///< to body i
-  double arm_i = 0.0;
-  double arm_j = 0.0;
-  Vec<D> branch{};  ///< x_i - x_j (image of j nearest to i), for spheres and shells [m]
-};
-
 namespace detail {
 
 /// False when the bodies do not overlap, spheres: not within `reach` of each other (overlap is then minus the gap).
-/// Coincident centres of spheres get an arbitrary, fixed normal.
 template <int D, Geometry kGeometry>
 [[gnu::always_inline]] inline bool meet(const Particles<D>& p, std::size_t i, std::size_t j, const Vec<D>& shift,
                                         ContactGeometry<D>& g, double reach = 0.0) {
   const Sphere<D>& a = p.sphere[i];
   const Sphere<D>& b = p.sphere[j];
   const Vec<D> d = a.x - b.x - shift;
-  g.branch = d;
-  if constexpr (kGeometry == Geometry::sphere_plane) {
-    const Vec<D>& n = p.normal_of(static_cast<Slot>(j));
-    g.overlap = a.r - dot(d, n);
-    if (g.overlap <= 0.0) return false;
-    g.normal = n;
-    g.arm_i = a.r - 0.5 * g.overlap;
-    g.arm_j = 0.0;
-    return true;
-  } else {
-    const double distance2 = norm2(d);
-    if constexpr (kGeometry == Geometry::sphere_sphere) {
-      const double touch = a.r + b.r;
-      if (distance2 >= (touch + reach) * (touch + reach)) return false;
-      const double distance = std::sqrt(distance2);
-      g.overlap = touch - distance;
-      if (distance > 0.0)
-        g.normal = d * (1.0 / distance);
-      else
-        g.normal[0] = 1.0;
-      g.arm_i = a.r - 0.5 * g.overlap;
-      g.arm_j = b.r - 0.5 * g.overlap;
-      return true;
-    } else {
-      const double room = b.r - a.r;
-      if (room > 0.0 && distance2 <= room * room) return false;
-      const double distance = std::sqrt(distance2);
-      g.overlap = distance - room;
-      if (distance > 0.0)
-        g.normal = d * (-1.0 / distance);
-      else
-        g.normal[0] = 1.0;
-      g.arm_i = a.r - 0.5 * g.overlap;
-      g.arm_j = -(distance + g.arm_i);
-      return true;
-    }
-  }
+  if constexpr (kGeometry == Geometry::sphere_plane)
+    return meet_plane(d, a.r, p.normal_of(static_cast<Slot>(j)), g);
+  else if constexpr (kGeometry == Geometry::sphere_sphere)
+    return meet_sphere(d, a.r, b.r, reach, g);
+  else
+    return meet_shell(d, a.r, b.r - a.r, g);
 }
 
-/// Relative velocity of i against j at the contact point, split along the normal. Spins move the contact point across
-/// the normal only: without a tangential force they are not needed.
+/// Relative velocity of i against j at the contact point, split along the normal. Without a tangential force spins are
+/// not needed.
 template <int D, bool kSpins>
 [[gnu::always_inline]] inline void relative_motion(const Particles<D>& p, std::size_t i, std::size_t j,
                                                    const ContactGeometry<D>& g, const Vec<D>& image_velocity,
                                                    ContactState<D>& state) {
-  Vec<D> v = p.velocity[i] - p.velocity[j] - image_velocity;
-  if constexpr (kSpins) v -= cross(p.spin[i] * g.arm_i + p.spin[j] * g.arm_j, g.normal);
-  state.normal_speed = dot(v, g.normal);
-  if constexpr (kSpins) state.sliding = v - g.normal * state.normal_speed;
+  const Vec<D> v = p.velocity[i] - p.velocity[j] - image_velocity;
+  if constexpr (kSpins)
+    split_motion(v, p.spin[i] * g.arm_i + p.spin[j] * g.arm_j, g.normal, state);
+  else
+    state.normal_speed = dot(v, g.normal);
 }
 
 /// What a law is told of a contact before motion and history.

@@ -4,7 +4,7 @@
 // about letters such as U+00E9 while its parser does ask: here they are what they are, no white space. Its writer
 // counts the digits of numbers below one, and of infinity, by a conversion that C++ leaves undefined: here it counts
 // none.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
 #include <cstdint>

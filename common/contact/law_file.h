@@ -1,0 +1,25 @@
+// The laws of a scene as text, numbers as the contact loop takes them: for other engines, which evaluate the very same
+// functions (macrosim/lammps).
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/contact/law_set.h"
+
+namespace softgrain {
+
+using NamedLaw = std::pair<std::string, AnyLaw>;
+
+/// TOML with one [[law]] per law. Every number is written so that it reads back to the same bits. Laws of particles in
+/// three dimensions only: throws BadInput for cohesive disks.
+std::string laws_text(const std::vector<NamedLaw>& laws);
+
+/// The laws of such a text, in its order; `origin` is what messages call it. Throws BadInput.
+std::vector<NamedLaw> parse_laws(const std::string& text, const std::string& origin);
+
+/// The same law for the bodies in the other order.
+AnyLaw mirrored(const AnyLaw& law);
+
+}  // namespace softgrain

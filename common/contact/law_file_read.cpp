@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "common/contact/law_file.h"
+#include "common/core/error.h"
+#include "common/io/toml.h"
+
+namespace softgrain {
+
+namespace {
+
+/// One [[law]]: every key that is asked for must be there, and no other.
+class Reader {
+ public:
+  Reader(const toml::table& table, std::string origin) : table_(table), origin_(std::move(origin)) {
+    name = text("name");
+    origin_ += ": law '" + name + "'";
+  }
+
+  std::string text(const char* key) {
+    const auto value = node(key).value<std::string>();
+    if (!value) fail(key, "must be a text");
+    return *value;
+  }
+  bool flag(const char* key) {
+    const auto value = node(key).value<bool>();
+    if (!value) fail(key, "must be true or false");
+    return *value;
+  }
+  double value(const char* key) { return finite(key, number(key)); }
+  double not_negative(const char* key) {
+    const double x = value(key);
+    if (x < 0.0) fail(key, "must not be negative");
+    return x;
+  }
+  double positive(const char* key) {
+    const double x = value(key);
+    if (!(x > 0.0)) fail(key, "must be above 0");
+    return x;
+  }
+  std::vector<double> values(const char* key) {
+    const toml::array* array = node(key).as_array();
+    if (array == nullptr) fail(key, "must be a list of numbers");
+    std::vector<double> out;
+    for (const auto& element : *array) {
+      const auto x = element.value<double>();
+      if (!x) fail(key, "must be a list of numbers");
+      out.push_back(finite(key, *x));
+    }
+    return out;
+  }
+  std::vector<double> three(const char* key) {
+    auto out = values(key);
+    if (out.size() != 3) fail(key, "needs three numbers");
+    return out;
+  }
+  LawRange range() {
+    LawRange out;
+    out.end = number("range_end");
+    if (!(out.end > 0.0)) fail("range_end", "must be above 0");
+    const std::string policy = text("beyond");
+    for (const Beyond b : {Beyond::error, Beyond::clamp, Beyond::extrapolate})
+      if (policy == to_string(b)) {
+        out.beyond = b;
+        return out;
+      }
+    fail("beyond", "must be error, clamp or extrapolate");
+  }
+  MonotoneCurve curve(const char* points, const char* key) {
+    const auto x = values(points);
+    const auto y = values(key);
+    if (x.empty() && y.empty()) return {};
+    try {
+      return {x, y};
+    } catch (const std::invalid_argument& e) {
+      fail(key, e.what());
+    }
+  }
+  void finish() const {
+    for (const auto& [key, ignored] : table_)
+      if (asked_.count(std::string(key.str())) == 0) fail(std::string(key.str()).c_str(), "is no key of this law");
+  }
+  [[noreturn]] void fail(const char* key, const std::string& problem) const {
+    throw BadInput(origin_ + ": key '" + key + "' " + problem);
+  }
+
+  std::string name;
+
+ private:
+  toml::node_view<const toml::node> node(const char* key) {
+    asked_.insert(key);
+    if (!table_.contains(key)) fail(key, "is missing");
+    return table_[key];
+  }
+  double number(const char* key) {
+    const auto value = node(key).value<double>();
+    if (!value || std::isnan(*value)) fail(key, "must be a number");
+    return *value;
+  }
+  double finite(const char* key, double x) const {
+    if (!std::isfinite(x)) fail(key, "must be finite");
+    return x;
+  }
+
+  const toml::table& table_;
+  std::string origin_;
+  std::set<std::string> asked_;
+};
+
+template <Tangential kTangential>
+AnyLaw hertz(const HertzCoefficients& k) {
+  if (k.damping > 0.0) return HertzMindlin<kTangential, true>{k};
+  return HertzMindlin<kTangential, false>{k};
+}
+
+AnyLaw read_hertz(Reader& r) {
+  HertzCoefficients k;
+  k.inverse_d = r.positive("inverse_d");
+  k.shear = r.not_negative("shear");
+  k.friction = r.not_negative("friction");
+  k.damping = r.not_negative("damping");
+  const std::string kind = r.text("tangential");
+  if (kind == "none") return hertz<Tangential::none>(k);
+  if (kind == "mindlin") return hertz<Tangential::mindlin>(k);
+  if (kind != "rescaled") r.fail("tangential", "must be none, mindlin or rescaled");
+  return hertz<Tangential::rescaled>(k);
+}
+
+AnyLaw read_linear(Reader& r) {
+  LinearSpring law;
+  law.normal = r.positive("normal");
+  law.tangential = r.not_negative("tangential");
+  law.friction = r.not_negative("friction");
+  law.damping = r.not_negative("damping");
+  return law;
+}
+
+AnyLaw read_soft(Reader& r) {
+  SoftContact law;
+  const auto normal = r.three("normal");
+  const auto tangential = r.three("tangential");
+  law.normal = {normal[0], normal[1], normal[2]};
+  law.tangential = {tangential[0], tangential[1], tangential[2]};
+  law.delta = r.not_negative("delta");
+  law.modulus = r.positive("modulus");
+  law.friction = r.not_negative("friction");
+  law.damping = r.not_negative("damping");
+  law.i_is_soft = r.flag("first_is_soft");
+  law.partner_is_soft = r.flag("second_is_soft") && law.i_is_soft;
+  law.range = r.range();
+  return law;
+}
+
+template <Crowd kCrowd, bool kUnloading>
+AnyLaw read_crowd_law(Reader& r) {
+  SoftCrowd<kCrowd, kUnloading> law;
+  const auto pressure = r.three("pressure");
+  const auto coupling = r.three("coupling");
+  law.form.pressure = {pressure[0], pressure[1], pressure[2], r.range()};
+  law.form.coupling = {coupling[0], coupling[1], coupling[2]};
+  law.partner.log_weight = r.curve("log_ratio", "log_weight");
+  law.partner.exponent = r.curve("exponent_log_ratio", "exponent");
+  law.partner.common_exponent = r.positive("common_exponent");
+  law.modulus = r.positive("modulus");
+  law.friction = r.not_negative("friction");
+  law.kt_ratio = r.not_negative("kt_ratio");
+  law.retreat = r.positive("retreat");
+  law.i_is_soft = r.flag("first_is_soft");
+  law.j_is_soft = r.flag("second_is_soft");
+  if (!law.i_is_soft && !law.j_is_soft) r.fail("first_is_soft", "or second_is_soft must be true");
+  return law;
+}
+
+template <Crowd kCrowd>
+AnyLaw read_crowd_form(Reader& r) {
+  return r.flag("unloading") ? read_crowd_law<kCrowd, true>(r) : read_crowd_law<kCrowd, false>(r);
+}
+
+AnyLaw read_crowd(Reader& r) {
+  const std::string form = r.text("form");
+  if (form == "pair") return read_crowd_form<Crowd::pair>(r);
+  if (form == "bag") return read_crowd_form<Crowd::bag>(r);
+  if (form != "directional") r.fail("form", "must be pair, bag or directional");
+  return read_crowd_form<Crowd::directional>(r);
+}
+
+AnyLaw read_law(Reader& r) {
+  const std::string type = r.text("type");
+  if (type == "hertz") return read_hertz(r);
+  if (type == "linear") return read_linear(r);
+  if (type == "soft") return read_soft(r);
+  if (type != "crowd") r.fail("type", "must be hertz, linear, soft or crowd");
+  return read_crowd(r);
+}
+
+toml::table parse(const std::string& text, const std::string& origin) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& e) {
+    std::ostringstream where;
+    where << origin << ", line " << e.source().begin.line << ": " << e.description();
+    throw BadInput(where.str());
+  } catch (const TomlAssertion&) {
+    throw BadInput(origin + ": no TOML");
+  }
+}
+
+}  // namespace
+
+std::vector<NamedLaw> parse_laws(const std::string& text, const std::string& origin) {
+  const toml::table table = parse(text, origin);
+  if (table["softgrain_laws"].value<std::int64_t>() != 1)
+    throw BadInput(origin + ": no laws file of softgrain (softgrain_laws = 1 is missing)");
+  const toml::array* laws = table["law"].as_array();
+  if (laws == nullptr || laws->empty()) throw BadInput(origin + ": holds no [[law]]");
+  std::vector<NamedLaw> out;
+  for (const auto& node : *laws) {
+    if (!node.is_table()) throw BadInput(origin + ": law must be a table");
+    Reader reader(*node.as_table(), origin);
+    const auto same = [&](const NamedLaw& other) { return other.first == reader.name; };
+    if (std::any_of(out.begin(), out.end(), same)) reader.fail("name", "is there twice");
+    AnyLaw law = read_law(reader);
+    reader.finish();
+    out.emplace_back(reader.name, std::move(law));
+  }
+  return out;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <charconv>
+#include <cmath>
+#include <type_traits>
+
+#include "common/contact/law_file.h"
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+/// The shortest text that reads back to the same number.
+std::string number(double x) {
+  if (std::isinf(x)) return x > 0.0 ? "inf" : "-inf";
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, x).ptr;
+  std::string out(text, end);
+  if (out.find_first_of(".e") == std::string::npos) out += ".0";
+  return out;
+}
+
+std::string list(const std::vector<double>& values) {
+  std::string out = "[";
+  for (const double x : values) out += (out.size() > 1 ? ", " : "") + number(x);
+  return out + "]";
+}
+
+/// One [[law]], line by line.
+class Writer {
+ public:
+  Writer(std::string& out, const std::string& name, const std::string& type) : out_(out) {
+    out_ += "\n[[law]]\n";
+    text("name", name);
+    text("type", type);
+  }
+
+  void text(const char* key, const std::string& value) { line(key, '"' + value + '"'); }
+  void flag(const char* key, bool value) { line(key, value ? "true" : "false"); }
+  void value(const char* key, double x) { line(key, number(x)); }
+  void values(const char* key, const std::vector<double>& x) { line(key, list(x)); }
+  void range(const LawRange& range) {
+    value("range_end", range.end);
+    text("beyond", to_string(range.beyond));
+  }
+
+ private:
+  void line(const char* key, const std::string& value) { out_ += std::string(key) + " = " + value + "\n"; }
+
+  std::string& out_;
+};
+
+template <Tangential kTangential, bool kDamped>
+void write(std::string& out, const std::string& name, const HertzMindlin<kTangential, kDamped>& law) {
+  Writer w(out, name, "hertz");
+  w.text("tangential", kTangential == Tangential::none      ? "none"
+                       : kTangential == Tangential::mindlin ? "mindlin"
+                                                            : "rescaled");
+  w.value("inverse_d", law.k.inverse_d);
+  w.value("shear", law.k.shear);
+  w.value("friction", law.k.friction);
+  w.value("damping", law.k.damping);
+}
+
+void write(std::string& out, const std::string& name, const LinearSpring& law) {
+  Writer w(out, name, "linear");
+  w.value("normal", law.normal);
+  w.value("tangential", law.tangential);
+  w.value("friction", law.friction);
+  w.value("damping", law.damping);
+}
+
+void write(std::string& out, const std::string& name, const SoftContact& law) {
+  Writer w(out, name, "soft");
+  w.values("normal", {law.normal.a, law.normal.b, law.normal.c});
+  w.values("tangential", {law.tangential.a, law.tangential.b, law.tangential.c});
+  w.value("delta", law.delta);
+  w.value("modulus", law.modulus);
+  w.value("friction", law.friction);
+  w.value("damping", law.damping);
+  w.flag("first_is_soft", law.i_is_soft);
+  w.flag("second_is_soft", law.partner_is_soft);
+  w.range(law.range);
+}
+
+template <Crowd kCrowd, bool kUnloading>
+void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kUnloading>& law) {
+  Writer w(out, name, "crowd");
+  w.text("form", kCrowd == Crowd::pair ? "pair" : kCrowd == Crowd::bag ? "bag" : "directional");
+  w.flag("unloading", kUnloading);
+  w.values("pressure", {law.form.pressure.a, law.form.pressure.b, law.form.pressure.delta});
+  w.values("coupling", {law.form.coupling.m0, law.form.coupling.m1, law.form.coupling.m2});
+  w.range(law.form.pressure.range);
+  w.values("log_ratio", law.partner.log_weight.points());
+  w.values("log_weight", law.partner.log_weight.values());
+  w.values("exponent_log_ratio", law.partner.exponent.points());
+  w.values("exponent", law.partner.exponent.values());
+  w.value("common_exponent", law.partner.common_exponent);
+  w.value("modulus", law.modulus);
+  w.value("friction", law.friction);
+  w.value("kt_ratio", law.kt_ratio);
+  w.value("retreat", law.retreat);
+  w.flag("first_is_soft", law.i_is_soft);
+  w.flag("second_is_soft", law.j_is_soft);
+}
+
+template <bool kFriction, bool kRolling>
+void write(std::string&, const std::string& name, const CohesiveDisk<kFriction, kRolling>&) {
+  throw BadInput("law '" + name + "': cohesive disks live in two dimensions, these laws in three");
+}
+
+template <class Law>
+AnyLaw mirror(const Law& law) {
+  return law;
+}
+
+AnyLaw mirror(SoftContact law) {
+  if (!law.partner_is_soft) law.i_is_soft = !law.i_is_soft;
+  return law;
+}
+
+template <Crowd kCrowd, bool kUnloading>
+AnyLaw mirror(SoftCrowd<kCrowd, kUnloading> law) {
+  std::swap(law.i_is_soft, law.j_is_soft);
+  return law;
+}
+
+}  // namespace
+
+std::string laws_text(const std::vector<NamedLaw>& laws) {
+  std::string out =
+      "# Contact laws of softgrain, numbers as the contact loop takes them [SI].\n"
+      "softgrain_laws = 1\n";
+  for (const auto& [name, law] : laws) {
+    const std::string& text = name;
+    std::visit([&](const auto& l) { write(out, text, l); }, law);
+  }
+  return out;
+}
+
+AnyLaw mirrored(const AnyLaw& law) {
+  return std::visit([](const auto& l) { return mirror(l); }, law);
+}
+
+}  // namespace softgrain

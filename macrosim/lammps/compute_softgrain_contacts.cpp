@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "macrosim/lammps/compute_softgrain_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "atom.h"
+#include "error.h"
+#include "force.h"
+#include "macrosim/lammps/fix_softgrain_wall.h"
+#include "macrosim/lammps/pair_softgrain.h"
+#include "update.h"
+
+namespace LAMMPS_NS {
+
+using softgrain::ContactGeometry;
+using softgrain::ContactResponse;
+using softgrain::ContactState;
+using softgrain::CrowdSum;
+using softgrain::Vec;
+namespace bridge = softgrain::lammps;
+
+namespace {
+
+enum Value {
+  kContacts,
+  kWithWalls,
+  kForces,
+  kFabric,
+  kVirial,
+  kOverlap = 10,
+  kAsked,
+  kBeyond,
+  kLargest,
+  kRefused,
+  kClamped,
+  kBehind
+};
+
+/// A contact across ranks, or of images, is on two lists: the one of the smaller tag counts, of equal tags the lower.
+bool is_mine(const bridge::Bodies& b, int i, int j) {
+  if (j < b.own || b.tag[i] < b.tag[j]) return true;
+  if (b.tag[i] > b.tag[j]) return false;
+  for (int k = 2; k >= 0; --k)
+    if (b.x[i][k] != b.x[j][k]) return b.x[i][k] < b.x[j][k];
+  return false;
+}
+
+}  // namespace
+
+ComputeSoftgrainContacts::ComputeSoftgrainContacts(LAMMPS* engine, int count, char** words)
+    : Compute(engine, count, words) {
+  if (count != 3) error->all(FLERR, std::string("compute softgrain/contacts takes no arguments"));
+  vector_flag = local_flag = 1;
+  size_vector = kValues;
+  size_local_cols = kColumns;
+  extvector = 0;
+  vector = new double[kValues]();
+}
+
+ComputeSoftgrainContacts::~ComputeSoftgrainContacts() { delete[] vector; }
+
+void ComputeSoftgrainContacts::init() {
+  pair_ = dynamic_cast<PairSoftgrain*>(force->pair);
+  if (pair_ == nullptr) error->all(FLERR, std::string("compute softgrain/contacts needs pair style softgrain"));
+  looked_ = -1;
+}
+
+/// As the watch of the program counts: pair laws per contact, crowd laws per body.
+template <class Law>
+void ComputeSoftgrainContacts::note_use(const Law& law, const ContactState<3>& state, int i, int j, bool mine) {
+  if constexpr (std::is_same_v<Law, softgrain::SoftContact>) {
+    if (mine) use_.add(state.overlap / (state.constants.a * law.range.end), law.range.beyond);
+  } else if constexpr (requires { law.form; }) {
+    if constexpr (Law::needs_particle_pass) {
+      if (law.i_is_soft) form_[static_cast<std::size_t>(i)] = &law.form;
+      if (law.j_is_soft && j < atom->nlocal) form_[static_cast<std::size_t>(j)] = &law.form;
+    } else if (mine) {
+      for (const bool of_i : {true, false}) {
+        CrowdSum<3> own;
+        law.share(state, of_i, own);
+        const auto& range = law.form.pressure.range;
+        if (own.square > 0.0) use_.add(own.volume / range.end, range.beyond);
+      }
+    }
+  }
+}
+
+void ComputeSoftgrainContacts::note_sums() {
+  for (std::size_t i = 0; i < form_.size(); ++i) {
+    if (form_[i] == nullptr || !(pair_->sums[i].square > 0.0)) continue;
+    const auto& range = form_[i]->pressure.range;
+    use_.add(form_[i]->equivalent_volume(pair_->sums[i]) / range.end, range.beyond);
+  }
+}
+
+template <class Surface>
+void ComputeSoftgrainContacts::look_at(const bridge::ContactStore& store, const std::vector<softgrain::AnyLaw>& laws,
+                                       const Surface& surface, int planes_before) {
+  constexpr bool kPlanes = std::is_same_v<Surface, bridge::PlaneSurface>;
+  const bridge::Bodies& b = surface.b;
+  const bridge::Pass still{false, 0.0, pair_->sums.data()};
+  bridge::over_sections(store, laws, [&](const auto& law, const bridge::Section& section) {
+    for (std::size_t c = section.begin; c < section.end; ++c) {
+      const int i = store.i[c];
+      const int j = store.j[c];
+      ContactGeometry<3> g;
+      if (!surface.meet(i, j, g)) continue;
+      const bool mine = kPlanes || is_mine(b, i, j);
+      note_use(law, bridge::state_of(store, c, surface, g), i, kPlanes ? atom->nlocal : j, mine);
+      if (!mine) continue;
+      const double smaller = kPlanes ? b.r(i) : std::min(b.r(i), surface.radius_j(j));
+      values_[kOverlap] = std::max(values_[kOverlap], g.overlap / smaller);
+      if (kPlanes && g.overlap > b.r(i)) values_[kBehind] += 1.0;
+      const ContactResponse<3> r = bridge::response_of(law, store, c, surface, g, still);
+      if (r.elastic_force == 0.0 && r.normal_force == 0.0) continue;
+      const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
+      const Vec<3> branch = kPlanes ? g.normal * dot(g.branch, g.normal) : g.branch;
+      values_[kContacts] += 1.0;
+      values_[kForces] += std::abs(r.normal_force);
+      if (kPlanes) {
+        values_[kWithWalls] += 1.0;
+      } else {
+        pairs_ += 1.0;
+        values_[kFabric] += g.normal[2] * g.normal[2] - g.normal[0] * g.normal[0];
+      }
+      constexpr int kRow[6] = {0, 1, 2, 0, 0, 1};
+      constexpr int kColumn[6] = {0, 1, 2, 1, 2, 2};
+      for (std::size_t k = 0; k < 6; ++k) values_[kVirial + k] += push[kRow[k]] * branch[kColumn[k]];
+      const double partner = kPlanes ? -(planes_before + j + 1) : b.tag[j];
+      rows_.push_back({static_cast<double>(b.tag[i]), partner, r.normal_force, push[0], push[1], push[2], branch[0],
+                       branch[1], branch[2]});
+    }
+  });
+}
+
+void ComputeSoftgrainContacts::look() {
+  if (looked_ == update->ntimestep) return;
+  looked_ = update->ntimestep;
+  values_ = {};
+  pairs_ = 0.0;
+  use_ = {};
+  rows_.clear();
+  form_.assign(static_cast<std::size_t>(atom->nlocal), nullptr);
+  const bridge::Bodies b = pair_->bodies();
+  look_at(pair_->store, pair_->laws, bridge::AtomSurface{b}, 0);
+  int before = 0;
+  for (const FixSoftgrainWall* wall : pair_->walls) {
+    look_at(wall->store, wall->laws, bridge::PlaneSurface{b, wall->planes}, before);
+    before += static_cast<int>(wall->planes.size());
+  }
+  note_sums();
+  values_[kAsked] = static_cast<double>(use_.asked);
+  values_[kBeyond] = static_cast<double>(use_.beyond);
+  values_[kLargest] = use_.largest;
+  values_[kRefused] = static_cast<double>(use_.refused);
+  values_[kClamped] = static_cast<double>(use_.clamped);
+}
+
+void ComputeSoftgrainContacts::compute_vector() {
+  invoked_vector = update->ntimestep;
+  look();
+  MPI_Allreduce(values_.data(), vector, kValues, MPI_DOUBLE, MPI_SUM, world);
+  for (const int k : {kOverlap, kLargest})
+    MPI_Allreduce(&values_[static_cast<std::size_t>(k)], vector + k, 1, MPI_DOUBLE, MPI_MAX, world);
+  double pairs = 0.0;
+  MPI_Allreduce(&pairs_, &pairs, 1, MPI_DOUBLE, MPI_SUM, world);
+  vector[kFabric] = pairs > 0.0 ? vector[kFabric] / pairs : 0.0;
+}
+
+void ComputeSoftgrainContacts::compute_local() {
+  invoked_local = update->ntimestep;
+  look();
+  size_local_rows = static_cast<int>(rows_.size());
+  row_pointers_.clear();
+  for (auto& row : rows_) row_pointers_.push_back(row.data());
+  array_local = row_pointers_.data();
+}
+
+double ComputeSoftgrainContacts::memory_usage() {
+  return static_cast<double>(rows_.capacity() * sizeof(rows_[0]) + row_pointers_.capacity() * sizeof(double*));
+}
+
+}  // namespace LAMMPS_NS

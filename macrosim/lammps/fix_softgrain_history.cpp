@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "macrosim/lammps/fix_softgrain_history.h"
+
+#include <algorithm>
+
+#include "atom.h"
+#include "error.h"
+#include "macrosim/lammps/fix_softgrain_wall.h"
+#include "macrosim/lammps/pair_softgrain.h"
+#include "update.h"
+
+namespace LAMMPS_NS {
+
+namespace bridge = softgrain::lammps;
+
+namespace {
+
+constexpr int kWords = 5;  ///< of one remembered contact
+
+double* put(const bridge::AtomMemory& memory, double* buf) {
+  *buf++ = static_cast<double>(memory.size());
+  for (const bridge::Remembered& r : memory) {
+    *buf++ = r.partner;
+    for (int k = 0; k < 3; ++k) *buf++ = r.spring[k];
+    *buf++ = r.memory;
+  }
+  return buf;
+}
+
+const double* take(const double* buf, bridge::AtomMemory& memory) {
+  memory.resize(static_cast<std::size_t>(*buf++));
+  for (bridge::Remembered& r : memory) {
+    r.partner = static_cast<int>(*buf++);
+    for (int k = 0; k < 3; ++k) r.spring[k] = *buf++;
+    r.memory = *buf++;
+  }
+  return buf;
+}
+
+}  // namespace
+
+FixSoftgrainHistory::FixSoftgrainHistory(LAMMPS* engine, int count, char** words) : Fix(engine, count, words) {
+  restart_peratom = 1;
+  create_attribute = 1;
+  maxexchange_dynamic = 1;
+  maxexchange = 1;
+  FixSoftgrainHistory::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+FixSoftgrainHistory::~FixSoftgrainHistory() {
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+}
+
+int FixSoftgrainHistory::setmask() { return FixConst::PRE_EXCHANGE | FixConst::POST_NEIGHBOR | FixConst::POST_RUN; }
+
+void FixSoftgrainHistory::init() {
+  if (pair == nullptr) error->all(FLERR, std::string("fix softgrain/history is made by pair style softgrain alone"));
+}
+
+/// From the list to the atoms.
+void FixSoftgrainHistory::store() {
+  const auto own = static_cast<std::size_t>(atom->nlocal);
+  for (std::size_t i = 0; i < own; ++i) memory_[i].clear();
+  const bridge::ContactStore& s = pair->store;
+  for (std::size_t c = 0; c < s.size(); ++c) {
+    if (s.touched[c] == 0) continue;
+    const auto i = static_cast<std::size_t>(s.i[c]);
+    const auto j = static_cast<std::size_t>(s.j[c]);
+    memory_[i].push_back({atom->tag[j], s.spring[c], s.memory[c]});
+    if (j < own) memory_[j].push_back({atom->tag[i], -s.spring[c], s.memory[c]});
+  }
+  int before = 0;
+  for (const FixSoftgrainWall* wall : pair->walls) {
+    const bridge::ContactStore& w = wall->store;
+    for (std::size_t c = 0; c < w.size(); ++c)
+      if (w.touched[c] != 0)
+        memory_[static_cast<std::size_t>(w.i[c])].push_back({-(before + w.j[c] + 1), w.spring[c], w.memory[c]});
+    before += static_cast<int>(wall->planes.size());
+  }
+}
+
+void FixSoftgrainHistory::store_once() {
+  if (!live_ || stored_ == update->ntimestep) return;
+  store();
+  stored_ = update->ntimestep;
+}
+
+int FixSoftgrainHistory::largest() const {
+  std::size_t most = 0;
+  for (int i = 0; i < atom->nlocal; ++i) most = std::max(most, memory_[static_cast<std::size_t>(i)].size());
+  return static_cast<int>(most);
+}
+
+void FixSoftgrainHistory::pre_exchange() {
+  if (live_) store();
+  live_ = false;
+  maxexchange = kWords * largest() + 1;
+}
+
+void FixSoftgrainHistory::post_neighbor() {
+  pair->build(memory_);
+  int before = 0;
+  for (FixSoftgrainWall* wall : pair->walls) {
+    wall->build(pair->bodies(), memory_, before);
+    before += static_cast<int>(wall->planes.size());
+  }
+  live_ = true;
+  stored_ = -1;
+}
+
+void FixSoftgrainHistory::post_run() {
+  if (live_) store();
+  live_ = false;
+  maxexchange = kWords * largest() + 1;
+}
+
+void FixSoftgrainHistory::grow_arrays(int n) { memory_.resize(static_cast<std::size_t>(n)); }
+
+void FixSoftgrainHistory::copy_arrays(int i, int j, int) {
+  memory_[static_cast<std::size_t>(j)] = memory_[static_cast<std::size_t>(i)];
+}
+
+void FixSoftgrainHistory::set_arrays(int i) { memory_[static_cast<std::size_t>(i)].clear(); }
+
+int FixSoftgrainHistory::pack_exchange(int i, double* buf) {
+  return static_cast<int>(put(memory_[static_cast<std::size_t>(i)], buf) - buf);
+}
+
+int FixSoftgrainHistory::unpack_exchange(int i, double* buf) {
+  return static_cast<int>(take(buf, memory_[static_cast<std::size_t>(i)]) - buf);
+}
+
+int FixSoftgrainHistory::pack_restart(int i, double* buf) {
+  store_once();
+  buf[0] = size_restart(i);
+  (void)put(memory_[static_cast<std::size_t>(i)], buf + 1);
+  return size_restart(i);
+}
+
+void FixSoftgrainHistory::unpack_restart(int i, int nth) {
+  const double* extra = atom->extra[i];
+  for (int k = 0; k < nth; ++k) extra += static_cast<int>(*extra);
+  (void)take(extra + 1, memory_[static_cast<std::size_t>(i)]);
+}
+
+int FixSoftgrainHistory::size_restart(int i) {
+  store_once();
+  return kWords * static_cast<int>(memory_[static_cast<std::size_t>(i)].size()) + 2;
+}
+
+int FixSoftgrainHistory::maxsize_restart() {
+  store_once();
+  int most = largest();
+  int all = most;
+  MPI_Allreduce(&most, &all, 1, MPI_INT, MPI_MAX, world);
+  return kWords * all + 2;
+}
+
+double FixSoftgrainHistory::memory_usage() {
+  double bytes = static_cast<double>(memory_.capacity() * sizeof(bridge::AtomMemory));
+  for (const auto& m : memory_) bytes += static_cast<double>(m.capacity() * sizeof(bridge::Remembered));
+  return bytes;
+}
+
+}  // namespace LAMMPS_NS

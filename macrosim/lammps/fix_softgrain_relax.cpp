@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "macrosim/lammps/fix_softgrain_relax.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "macrosim/lammps/fix_softgrain_wall.h"
+#include "macrosim/lammps/pair_softgrain.h"
+#include "macrosim/lammps/words.h"
+#include "modify.h"
+#include "output.h"
+#include "timer.h"
+#include "update.h"
+
+namespace LAMMPS_NS {
+
+using softgrain::PseudoMasses;
+namespace bridge = softgrain::lammps;
+
+namespace {
+
+double norm2(const double* a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
+double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void limit_length(double* v, double longest) {
+  const double size2 = norm2(v);
+  if (!(size2 > longest * longest)) return;
+  for (int k = 0; k < 3; ++k) v[k] *= longest / std::sqrt(size2);
+}
+
+}  // namespace
+
+FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : Fix(engine, count, words) {
+  for (int at = 3; at < count; at += 2) {
+    const std::string key = words[at];
+    if (at + 1 >= count) error->all(FLERR, "fix softgrain/relax: '" + key + "' needs a value");
+    const double value = bridge::number(words[at + 1], key, error);
+    if (key == "tolerance" && value > 0.0)
+      tolerance_ = value;
+    else if (key == "floor" && value >= 0.0)
+      floor_ = value;
+    else if (key == "max_passes" && value >= 1.0)
+      max_passes_ = value;
+    else if (key == "max_move" && value > 0.0)
+      max_move_ = value;
+    else
+      error->all(FLERR, "fix softgrain/relax: '" + key + " " + words[at + 1] +
+                            "': known are tolerance > 0, floor >= 0, max_passes >= 1 and max_move > 0");
+  }
+  time_integrate = 1;
+  nevery = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 6;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  restart_global = 1;
+  dynamic_group_allow = 0;
+  maxexchange = 2;
+  FixSoftgrainRelax::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+}
+
+FixSoftgrainRelax::~FixSoftgrainRelax() {
+  atom->delete_callback(id, Atom::GROW);
+  if (pair_ != nullptr && force != nullptr && force->pair == pair_) {
+    pair_->spring_dt = -1.0;
+    pair_->gathered.wanted = false;
+  }
+}
+
+int FixSoftgrainRelax::setmask() {
+  return FixConst::INITIAL_INTEGRATE | FixConst::END_OF_STEP | FixConst::POST_RUN | FixConst::PRE_FORCE;
+}
+
+void FixSoftgrainRelax::init() {
+  pair_ = dynamic_cast<PairSoftgrain*>(force->pair);
+  if (pair_ == nullptr) error->all(FLERR, std::string("fix softgrain/relax needs pair style softgrain"));
+  bool before = true;
+  for (int k = 0; k < modify->nfix; ++k) {
+    if (modify->fix[k] == this) before = false;
+    if (!before && dynamic_cast<FixSoftgrainWall*>(modify->fix[k]) != nullptr)
+      error->all(FLERR, std::string("fix softgrain/wall must come before fix softgrain/relax in the script"));
+  }
+}
+
+void FixSoftgrainRelax::stop_motion() {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    std::fill(atom->v[i], atom->v[i] + 3, 0.0);
+    std::fill(atom->omega[i], atom->omega[i] + 3, 0.0);
+  }
+}
+
+/// Before the pass of the setup.
+void FixSoftgrainRelax::setup_pre_force(int) {
+  pair_->gathered.wanted = true;
+  if (update->nsteps == 0) return;  // a look at the state as it is
+  stop_motion();
+  fire_ = {};
+  passes_before_ += passes_;
+  passes_ = 0.0;
+  end_ = not_run;
+}
+
+void FixSoftgrainRelax::setup(int) {
+  if (update->nsteps > 0) judge();
+}
+
+double FixSoftgrainRelax::worst_net_force() const {
+  double worst = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double f2 = norm2(atom->f[i]);
+    const double m2 = norm2(atom->torque[i]) / (atom->radius[i] * atom->radius[i]);
+    const double both = f2 + m2;
+    worst = std::isfinite(both) ? std::max(worst, std::max(f2, m2)) : std::numeric_limits<double>::infinity();
+    if (std::isinf(worst)) break;
+  }
+  double all = 0.0;
+  MPI_Allreduce(&worst, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return std::sqrt(all);
+}
+
+/// Whether this run is at its end.
+void FixSoftgrainRelax::judge() {
+  const std::array<double, 2> own{pair_->gathered.force_sum, pair_->gathered.contacts};
+  std::array<double, 2> all{};
+  MPI_Allreduce(own.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, world);
+  mean_force_ = all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  const double scale = std::max(mean_force_, floor_);
+  const double worst = worst_net_force();
+  residual_ = scale > 0.0 ? worst / scale : 0.0;
+  if (!std::isfinite(worst))
+    end_ = diverged;
+  else if (worst <= tolerance_ * scale)
+    end_ = converged;
+  else if (passes_ >= max_passes_)
+    end_ = capped;
+  if (end_ != not_run) finish();
+}
+
+/// Ends the loop of LAMMPS as fix halt does, with output of this step.
+void FixSoftgrainRelax::finish() {
+  stop_motion();
+  if (update->setupflag == 0) output->next = output->next_thermo = update->ntimestep;
+  timer->force_timeout();
+}
+
+void FixSoftgrainRelax::scale_masses() {
+  const auto own = static_cast<std::size_t>(atom->nlocal);
+  const auto& gathered = pair_->gathered;
+  std::array<double, 2> sum{};
+  for (std::size_t i = 0; i < own; ++i) {
+    sum[0] += gathered.translation[i];
+    sum[1] += atom->radius[i];
+  }
+  std::array<double, 2> all{};
+  MPI_Allreduce(sum.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, world);
+  const PseudoMasses masses(all[0], all[1], 0.0, all[0] > 0.0 ? 0.0 : worst_net_force());
+  for (std::size_t i = 0; i < own; ++i) {
+    inverse_mass_[i] = masses.inverse_mass(gathered.translation[i], atom->radius[i]);
+    inverse_inertia_[i] = masses.inverse_inertia(gathered.rotation[i], atom->radius[i]);
+  }
+}
+
+void FixSoftgrainRelax::steer() {
+  std::array<double, 3> sum{};
+  double** v = atom->v;
+  double** f = atom->f;
+  double** omega = atom->omega;
+  double** torque = atom->torque;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double mass = 1.0 / inverse_mass_[static_cast<std::size_t>(i)];
+    const double inertia = 1.0 / inverse_inertia_[static_cast<std::size_t>(i)];
+    sum[0] += dot(v[i], f[i]) + dot(omega[i], torque[i]);
+    sum[1] += norm2(v[i]) * mass + norm2(omega[i]) * inertia;
+    sum[2] += norm2(f[i]) / mass + norm2(torque[i]) / inertia;
+  }
+  std::array<double, 3> all{};
+  MPI_Allreduce(sum.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
+  const softgrain::Fire::Steering steering = fire_.steer(all[0], all[1], all[2]);
+  if (steering.stop) {
+    stop_motion();
+    return;
+  }
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const auto u = static_cast<std::size_t>(i);
+      v[i][k] = v[i][k] * steering.keep + f[i][k] * (steering.pull * inverse_mass_[u]);
+      omega[i][k] = omega[i][k] * steering.keep + torque[i][k] * (steering.pull * inverse_inertia_[u]);
+    }
+}
+
+void FixSoftgrainRelax::move() {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    double* v = atom->v[i];
+    double* omega = atom->omega[i];
+    for (int k = 0; k < 3; ++k) {
+      v[k] += atom->f[i][k] * (fire_.step * inverse_mass_[u]);
+      omega[k] += atom->torque[i][k] * (fire_.step * inverse_inertia_[u]);
+    }
+    limit_length(v, max_move_ * atom->radius[i] / fire_.step);
+    limit_length(omega, max_move_ / fire_.step);
+    for (int k = 0; k < 3; ++k) atom->x[i][k] += v[k] * fire_.step;
+  }
+}
+
+void FixSoftgrainRelax::initial_integrate(int) {
+  const auto pass = static_cast<std::int64_t>(passes_);
+  if (pass % PseudoMasses::kInterval == 0) scale_masses();
+  steer();
+  move();
+  pair_->spring_dt = fire_.step;
+  pair_->gathered.wanted = (pass + 1) % PseudoMasses::kInterval == 0;
+}
+
+void FixSoftgrainRelax::end_of_step() {
+  passes_ += 1.0;
+  if (static_cast<std::int64_t>(passes_) % PseudoMasses::kInterval == 0) judge();
+}
+
+void FixSoftgrainRelax::post_run() {
+  if (end_ != not_run) timer->reset_timeout();
+}
+
+double FixSoftgrainRelax::compute_vector(int k) {
+  if (k == 5) {
+    double all = 0.0;
+    MPI_Allreduce(&pair_->evaluations, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+    return evaluations_before_ + all;
+  }
+  const std::array<double, 5> values{passes_, residual_, static_cast<double>(end_), mean_force_,
+                                     passes_before_ + passes_};
+  return values[static_cast<std::size_t>(k)];
+}
+
+void FixSoftgrainRelax::write_restart(FILE* file) {
+  const double evaluations = compute_vector(5);
+  if (comm->me != 0) return;
+  const std::array<double, 2> data{passes_before_ + passes_, evaluations};
+  const int size = static_cast<int>(data.size() * sizeof(double));
+  fwrite(&size, sizeof(int), 1, file);
+  fwrite(data.data(), sizeof(double), data.size(), file);
+}
+
+void FixSoftgrainRelax::restart(char* buf) {
+  std::array<double, 2> data{};
+  std::memcpy(data.data(), buf, sizeof data);
+  passes_before_ = data[0];
+  evaluations_before_ = data[1];
+}
+
+void FixSoftgrainRelax::grow_arrays(int n) {
+  inverse_mass_.resize(static_cast<std::size_t>(n));
+  inverse_inertia_.resize(static_cast<std::size_t>(n));
+}
+
+void FixSoftgrainRelax::copy_arrays(int i, int j, int) {
+  inverse_mass_[static_cast<std::size_t>(j)] = inverse_mass_[static_cast<std::size_t>(i)];
+  inverse_inertia_[static_cast<std::size_t>(j)] = inverse_inertia_[static_cast<std::size_t>(i)];
+}
+
+int FixSoftgrainRelax::pack_exchange(int i, double* buf) {
+  buf[0] = inverse_mass_[static_cast<std::size_t>(i)];
+  buf[1] = inverse_inertia_[static_cast<std::size_t>(i)];
+  return 2;
+}
+
+int FixSoftgrainRelax::unpack_exchange(int i, double* buf) {
+  inverse_mass_[static_cast<std::size_t>(i)] = buf[0];
+  inverse_inertia_[static_cast<std::size_t>(i)] = buf[1];
+  return 2;
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,71 @@
+// Fix softgrain/relax: the damped relaxation of the program (common/dynamics/damped_relaxation.h) as time integration.
+//
+//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M]
+//
+// Every run relaxes anew, from rest. Ends it when the largest net force is below T times the mean contact force (which
+// never counts for less than F [N]), or after N passes. Time steps are pseudo-time. Fixes with forces come before it in
+// the script. Scalar: residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3
+// diverged), mean contact force [N], passes of all runs, near pairs looked at in all passes.
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
+
+#include <vector>
+
+#include "common/dynamics/fire.h"
+#include "fix.h"
+
+namespace LAMMPS_NS {
+
+class PairSoftgrain;
+
+class FixSoftgrainRelax : public Fix {
+ public:
+  FixSoftgrainRelax(LAMMPS* engine, int count, char** words);
+  ~FixSoftgrainRelax() override;
+  FixSoftgrainRelax(const FixSoftgrainRelax&) = delete;
+  FixSoftgrainRelax& operator=(const FixSoftgrainRelax&) = delete;
+
+  int setmask() override;
+  void init() override;
+  void setup_pre_force(int vflag) override;
+  void setup(int vflag) override;
+  void initial_integrate(int vflag) override;
+  void end_of_step() override;
+  void post_run() override;
+  double compute_scalar() override { return residual_; }
+  double compute_vector(int k) override;
+  void write_restart(FILE* file) override;
+  void restart(char* buf) override;
+
+  void grow_arrays(int n) override;
+  void copy_arrays(int i, int j, int) override;
+  int pack_exchange(int i, double* buf) override;
+  int unpack_exchange(int i, double* buf) override;
+
+ private:
+  enum End { not_run, converged, capped, diverged };
+
+  void stop_motion();
+  void judge();
+  void finish();
+  void scale_masses();
+  void steer();
+  void move();
+  [[nodiscard]] double worst_net_force() const;
+
+  double tolerance_ = 1e-2;
+  double floor_ = 0.0;
+  double max_passes_ = 20000.0;
+  double max_move_ = 0.05;  ///< largest move of a body per pass, in its radius
+  softgrain::Fire fire_;
+  std::vector<double> inverse_mass_;  ///< pseudo, per atom
+  std::vector<double> inverse_inertia_;
+  double passes_ = 0.0;
+  double passes_before_ = 0.0;  ///< of earlier runs
+  double evaluations_before_ = 0.0;
+  double residual_ = 0.0;
+  double mean_force_ = 0.0;
+  End end_ = not_run;
+  PairSoftgrain* pair_ = nullptr;
+};
+
+}  // namespace LAMMPS_NS

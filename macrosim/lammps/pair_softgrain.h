@@ -1,0 +1,85 @@
+// Pair style softgrain: every contact law of the program between spheres, soft or solid.
+//
+//   pair_style softgrain soft TYPES|none
+//   pair_coeff I J FILE NAME
+//   pair_coeff I J card FILE KIND modulus E friction MU [kt initial|secant] [damping Z] [beyond POLICY]
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
+
+#include <string>
+#include <vector>
+
+#include "macrosim/lammps/contact_loop.h"
+#include "pair.h"
+
+namespace LAMMPS_NS {
+
+class FixSoftgrainHistory;
+class FixSoftgrainWall;
+
+class PairSoftgrain : public Pair {
+ public:
+  /// Stiffness sums per own atom and sums of forces, for relaxations.
+  struct Gathered {
+    bool wanted = false;
+    std::vector<double> translation;  ///< sum over the contacts of normal and tangential stiffness [N/m]
+    std::vector<double> rotation;     ///< sum of tangential stiffness times the arm squared [N m]
+    double force_sum = 0.0;           ///< of |normal force|; a contact across ranks counts half on each
+    double contacts = 0.0;            ///< that carry force
+
+    void add(int atom, double stiffness, double turning) {
+      translation[static_cast<std::size_t>(atom)] += stiffness;
+      rotation[static_cast<std::size_t>(atom)] += turning;
+    }
+  };
+
+  explicit PairSoftgrain(LAMMPS* engine);
+  ~PairSoftgrain() override;
+  PairSoftgrain(const PairSoftgrain&) = delete;
+  PairSoftgrain& operator=(const PairSoftgrain&) = delete;
+
+  void compute(int eflag, int vflag) override;
+  void settings(int count, char** words) override;
+  void coeff(int count, char** words) override;
+  void init_style() override;
+  double init_one(int i, int j) override;
+  double single(int i, int j, int itype, int jtype, double rsq, double, double, double& fforce) override;
+  int pack_forward_comm(int n, int* list, double* buf, int, int*) override;
+  void unpack_forward_comm(int n, int first, double* buf) override;
+  double memory_usage() override;
+
+  /// Builds the list of near pairs; the fix for the history calls it after every list of LAMMPS.
+  void build(const std::vector<softgrain::lammps::AtomMemory>& memory_of);
+  [[nodiscard]] softgrain::lammps::Bodies bodies() const;
+  /// What passes do now: history goes on unless LAMMPS sets up.
+  [[nodiscard]] softgrain::lammps::Pass pass() const;
+  [[nodiscard]] bool is_soft(int type) const { return soft_[static_cast<std::size_t>(type)] != 0; }
+  /// The law for bodies of these kinds, turned round where that makes it fit; refuses one that does not.
+  softgrain::AnyLaw oriented(const softgrain::AnyLaw& law, const std::string& name, bool first_soft, bool second_soft);
+
+  softgrain::lammps::ContactStore store;
+  std::vector<softgrain::AnyLaw> laws;
+  std::vector<softgrain::CrowdSum<3>> sums;  ///< per atom, ghosts included; of the last pass
+  std::vector<FixSoftgrainWall*> walls;      ///< in the order of the script
+  Gathered gathered;
+  double spring_dt = -1.0;   ///< for the history, of a relaxation; negative: the time step
+  double evaluations = 0.0;  ///< near pairs looked at by all passes of this rank
+
+ private:
+  void allocate();
+  void find_radii();
+  void particle_pass();
+  int add_law(const softgrain::AnyLaw& law);
+  [[nodiscard]] int law_of(int itype, int jtype) const {
+    return law_index_[static_cast<std::size_t>(itype * (types_ + 1) + jtype)];
+  }
+
+  FixSoftgrainHistory* history_ = nullptr;
+  std::vector<char> soft_;                 ///< per type
+  std::vector<int> law_index_;             ///< per pair of types, in both orders
+  std::vector<double> radius_max_;         ///< per type, over all ranks [m]
+  std::vector<std::vector<int>> entries_;  ///< per own atom: its pairs in the store, for single()
+  std::vector<double> extra_;
+  int types_ = 0;
+};
+
+}  // namespace LAMMPS_NS
