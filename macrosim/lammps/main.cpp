@@ -6,43 +6,16 @@
 #include <iostream>
 #include <string>
 
-#include "force.h"
 #include "input.h"
 #include "lammps.h"
-#include "macrosim/lammps/compute_softgrain_contacts.h"
-#include "macrosim/lammps/fix_softgrain_history.h"
-#include "macrosim/lammps/fix_softgrain_relax.h"
-#include "macrosim/lammps/fix_softgrain_wall.h"
-#include "macrosim/lammps/pair_softgrain.h"
-#include "modify.h"
-
-namespace {
-
-using namespace LAMMPS_NS;
-
-template <class Style>
-Fix* make_fix(LAMMPS* lmp, int count, char** words) {
-  return new Style(lmp, count, words);
-}
-
-void add_styles(const LAMMPS& lmp) {
-  (*lmp.force->pair_map)["softgrain"] = [](LAMMPS* l) -> Pair* { return new PairSoftgrain(l); };
-  (*lmp.modify->fix_map)["softgrain/history"] = make_fix<FixSoftgrainHistory>;
-  (*lmp.modify->fix_map)["softgrain/wall"] = make_fix<FixSoftgrainWall>;
-  (*lmp.modify->fix_map)["softgrain/relax"] = make_fix<FixSoftgrainRelax>;
-  (*lmp.modify->compute_map)["softgrain/contacts"] = [](LAMMPS* l, int count, char** words) -> Compute* {
-    return new ComputeSoftgrainContacts(l, count, words);
-  };
-}
-
-}  // namespace
+#include "macrosim/lammps/styles.h"
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   int status = 0;
   try {
-    LAMMPS lmp(argc, argv, MPI_COMM_WORLD);
-    add_styles(lmp);
+    LAMMPS_NS::LAMMPS lmp(argc, argv, MPI_COMM_WORLD);
+    softgrain::lammps::add_styles(lmp);
     lmp.input->file();
   } catch (const std::exception& e) {
     std::cerr << "softgrain-lammps: " << e.what() << '\n';

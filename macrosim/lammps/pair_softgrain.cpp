@@ -103,12 +103,15 @@ void PairSoftgrain::allocate() {
 }
 
 void PairSoftgrain::settings(int count, char** words) {
-  if (count != 2 || std::string(words[0]) != "soft")
-    error->all(FLERR, std::string("pair_style softgrain: give the soft types: pair_style softgrain soft TYPES|none"));
+  if (count < 2 || std::string(words[0]) != "soft")
+    error->all(FLERR,
+               std::string("pair_style softgrain: name the soft types: pair_style softgrain soft TYPES ...|none"));
   soft_.assign(static_cast<std::size_t>(atom->ntypes) + 1, 0);
-  if (std::string(words[1]) == "none") return;
-  const auto [low, high] = bridge::type_range(words[1], atom->ntypes, error);
-  for (int t = low; t <= high; ++t) soft_[static_cast<std::size_t>(t)] = 1;
+  if (count == 2 && std::string(words[1]) == "none") return;
+  for (int k = 1; k < count; ++k) {
+    const auto [low, high] = bridge::type_range(words[k], atom->ntypes, error);
+    for (int t = low; t <= high; ++t) soft_[static_cast<std::size_t>(t)] = 1;
+  }
 }
 
 int PairSoftgrain::add_law(const AnyLaw& law) {

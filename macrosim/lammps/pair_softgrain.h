@@ -1,6 +1,6 @@
 // Pair style softgrain: every contact law of the program between spheres, soft or solid.
 //
-//   pair_style softgrain soft TYPES|none
+//   pair_style softgrain soft TYPES ...|none
 //   pair_coeff I J FILE NAME
 //   pair_coeff I J card FILE KIND modulus E friction MU [kt initial|secant] [damping Z] [beyond POLICY]
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
