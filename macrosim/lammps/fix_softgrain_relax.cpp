@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
@@ -40,20 +41,8 @@ void limit_length(double* v, double longest) {
 
 FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : Fix(engine, count, words) {
   for (int at = 3; at < count; at += 2) {
-    const std::string key = words[at];
-    if (at + 1 >= count) error->all(FLERR, "fix softgrain/relax: '" + key + "' needs a value");
-    const double value = bridge::number(words[at + 1], key, error);
-    if (key == "tolerance" && value > 0.0)
-      tolerance_ = value;
-    else if (key == "floor" && value >= 0.0)
-      floor_ = value;
-    else if (key == "max_passes" && value >= 1.0)
-      max_passes_ = value;
-    else if (key == "max_move" && value > 0.0)
-      max_move_ = value;
-    else
-      error->all(FLERR, "fix softgrain/relax: '" + key + " " + words[at + 1] +
-                            "': known are tolerance > 0, floor >= 0, max_passes >= 1 and max_move > 0");
+    if (at + 1 >= count) error->all(FLERR, std::string("fix softgrain/relax: '") + words[at] + "' needs a value");
+    set(words[at], words[at + 1]);
   }
   time_integrate = 1;
   nevery = 1;
@@ -64,8 +53,34 @@ FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : 
   restart_global = 1;
   dynamic_group_allow = 0;
   maxexchange = 2;
+  note_box();
   FixSoftgrainRelax::grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
+}
+
+void FixSoftgrainRelax::set(const std::string& key, const std::string& word) {
+  if (key == "follow" && (word == "yes" || word == "no")) {
+    follow_ = word == "yes";
+    return;
+  }
+  const double value = bridge::number(word, key, error);
+  if (key == "tolerance" && value > 0.0)
+    tolerance_ = value;
+  else if (key == "floor" && value >= 0.0)
+    floor_ = value;
+  else if (key == "max_passes" && value >= 1.0)
+    max_passes_ = value;
+  else if (key == "max_move" && value > 0.0)
+    max_move_ = value;
+  else
+    error->all(FLERR, "fix softgrain/relax: '" + key + " " + word +
+                          "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0 and follow yes|no");
+}
+
+int FixSoftgrainRelax::modify_param(int count, char** words) {
+  if (count < 2) error->all(FLERR, std::string("fix_modify of softgrain/relax: KEY VALUE"));
+  set(words[0], words[1]);
+  return 2;
 }
 
 FixSoftgrainRelax::~FixSoftgrainRelax() {
@@ -77,7 +92,8 @@ FixSoftgrainRelax::~FixSoftgrainRelax() {
 }
 
 int FixSoftgrainRelax::setmask() {
-  return FixConst::INITIAL_INTEGRATE | FixConst::END_OF_STEP | FixConst::POST_RUN | FixConst::PRE_FORCE;
+  return FixConst::PRE_EXCHANGE | FixConst::INITIAL_INTEGRATE | FixConst::END_OF_STEP | FixConst::POST_RUN |
+         FixConst::PRE_FORCE;
 }
 
 void FixSoftgrainRelax::init() {
@@ -98,11 +114,26 @@ void FixSoftgrainRelax::stop_motion() {
   }
 }
 
+void FixSoftgrainRelax::note_box() {
+  for (int k = 0; k < 3; ++k) box_[k] = domain->boxhi[k] - domain->boxlo[k];
+}
+
+/// Before ghosts are made, which need the velocities too.
+void FixSoftgrainRelax::setup_pre_exchange() {
+  const softgrain::Vec<3> before = box_;
+  note_box();
+  stop_motion();
+  pair_->strained = follow_ && before != box_;
+  if (!pair_->strained) return;
+  for (int k = 0; k < 3; ++k) pair_->strain[k] = 1.0 - box_[k] / before[k];
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int k = 0; k < 3; ++k) atom->v[i][k] = pair_->strain_move(k, atom->x[i][k]);
+}
+
 /// Before the pass of the setup.
 void FixSoftgrainRelax::setup_pre_force(int) {
   pair_->gathered.wanted = true;
   if (update->nsteps == 0) return;  // a look at the state as it is
-  stop_motion();
   fire_ = {};
   passes_before_ += passes_;
   passes_ = 0.0;
@@ -110,6 +141,8 @@ void FixSoftgrainRelax::setup_pre_force(int) {
 }
 
 void FixSoftgrainRelax::setup(int) {
+  pair_->strained = false;
+  stop_motion();
   if (update->nsteps > 0) judge();
 }
 

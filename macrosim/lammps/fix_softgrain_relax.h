@@ -1,15 +1,20 @@
 // Fix softgrain/relax: the damped relaxation of the program (common/dynamics/damped_relaxation.h) as time integration.
 //
-//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M]
+//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [follow yes|no]
+//   fix_modify ID KEY VALUE ...         the same keys, later
 //
+// A box that was strained since the last run (change_box ... remap) takes the springs of the contacts along, unless
+// `follow no`: bodies slide on each other as the box moves them.
 // Every run relaxes anew, from rest. Ends it when the largest net force is below T times the mean contact force (which
 // never counts for less than F [N]), or after N passes. Time steps are pseudo-time. Fixes with forces come before it in
 // the script. Scalar: residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3
 // diverged), mean contact force [N], passes of all runs, near pairs looked at in all passes.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <string>
 #include <vector>
 
+#include "common/core/vec.h"
 #include "common/dynamics/fire.h"
 #include "fix.h"
 
@@ -25,7 +30,9 @@ class FixSoftgrainRelax : public Fix {
   FixSoftgrainRelax& operator=(const FixSoftgrainRelax&) = delete;
 
   int setmask() override;
+  int modify_param(int count, char** words) override;
   void init() override;
+  void setup_pre_exchange() override;
   void setup_pre_force(int vflag) override;
   void setup(int vflag) override;
   void initial_integrate(int vflag) override;
@@ -44,7 +51,9 @@ class FixSoftgrainRelax : public Fix {
  private:
   enum End { not_run, converged, capped, diverged };
 
+  void set(const std::string& key, const std::string& word);
   void stop_motion();
+  void note_box();
   void judge();
   void finish();
   void scale_masses();
@@ -56,6 +65,8 @@ class FixSoftgrainRelax : public Fix {
   double floor_ = 0.0;
   double max_passes_ = 20000.0;
   double max_move_ = 0.05;  ///< largest move of a body per pass, in its radius
+  bool follow_ = true;
+  softgrain::Vec<3> box_{};  ///< its lengths at the last run
   softgrain::Fire fire_;
   std::vector<double> inverse_mass_;  ///< pseudo, per atom
   std::vector<double> inverse_inertia_;

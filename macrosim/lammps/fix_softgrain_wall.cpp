@@ -120,6 +120,7 @@ void FixSoftgrainWall::follow_box() {
     const bool one_on = update->setupflag == 0 && followed_ == update->ntimestep - 1 && update->dt > 0.0;
     p.velocity = {};
     if (one_on) p.velocity[axis] = (point[axis] - p.point[axis]) / update->dt;
+    if (update->setupflag != 0 && pair_->strained) p.velocity[axis] = pair_->strain_move(axis, point[axis]);
     p.point = point;
   }
 }

@@ -8,6 +8,7 @@
 #include "comm.h"
 #include "common/contact/law_file.h"
 #include "common/core/error.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "macrosim/lammps/fix_softgrain_history.h"
@@ -191,8 +192,13 @@ bridge::Bodies PairSoftgrain::bodies() const {
 }
 
 bridge::Pass PairSoftgrain::pass() const {
-  const bool setup = update->setupflag != 0;
-  return {!setup, setup ? 0.0 : spring_dt >= 0.0 ? spring_dt : update->dt, sums.data()};
+  if (update->setupflag != 0) return {strained, strained ? 1.0 : 0.0, sums.data()};
+  return {true, spring_dt >= 0.0 ? spring_dt : update->dt, sums.data()};
+}
+
+double PairSoftgrain::strain_move(int axis, double x) const {
+  const double centre = 0.5 * (domain->boxlo[axis] + domain->boxhi[axis]);
+  return -strain[axis] / (1.0 - strain[axis]) * (x - centre);
 }
 
 void PairSoftgrain::build(const std::vector<bridge::AtomMemory>& memory_of) {

@@ -52,6 +52,8 @@ class PairSoftgrain : public Pair {
   [[nodiscard]] softgrain::lammps::Bodies bodies() const;
   /// What passes do now: history goes on unless LAMMPS sets up.
   [[nodiscard]] softgrain::lammps::Pass pass() const;
+  /// How far the strain of the box has moved what is at x along an axis [m].
+  [[nodiscard]] double strain_move(int axis, double x) const;
   [[nodiscard]] bool is_soft(int type) const { return soft_[static_cast<std::size_t>(type)] != 0; }
   /// The law for bodies of these kinds, turned round where that makes it fit; refuses one that does not.
   softgrain::AnyLaw oriented(const softgrain::AnyLaw& law, const std::string& name, bool first_soft, bool second_soft);
@@ -61,8 +63,12 @@ class PairSoftgrain : public Pair {
   std::vector<softgrain::CrowdSum<3>> sums;  ///< per atom, ghosts included; of the last pass
   std::vector<FixSoftgrainWall*> walls;      ///< in the order of the script
   Gathered gathered;
-  double spring_dt = -1.0;   ///< for the history, of a relaxation; negative: the time step
-  double evaluations = 0.0;  ///< near pairs looked at by all passes of this rank
+  /// The box has been strained since the last run: the pass of the setup lets the springs follow, velocities being
+  /// moves.
+  bool strained = false;
+  softgrain::Vec<3> strain{};  ///< lengths became 1 - strain of what they were
+  double spring_dt = -1.0;     ///< for the history, of a relaxation; negative: the time step
+  double evaluations = 0.0;    ///< near pairs looked at by all passes of this rank
 
  private:
   void allocate();
