@@ -1,13 +1,16 @@
 // Law tables: what is written is read to the last bit, damage is refused where it stands, entries are interpolated.
+#include <gsl/gsl_spline.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/crowd_table_file.h"
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
+#include "common/core/random.h"
 #include "common/io/text_file.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/temporary_directory.h"
@@ -287,6 +290,26 @@ TEST(MonotoneCurve, GoesThroughItsPointsAndNeverBeyond) {
   EXPECT_EQ(curve.value(30.0), 7.0);
   EXPECT_EQ(curve.low(), 0.0);
   EXPECT_EQ(curve.high(), 5.0);
+}
+
+TEST(MonotoneCurve, IsWhatGslMakesOfSteffensMethod) {
+  RandomStream random(8, RandomPurpose::test, 0);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<double> x{random.uniform()};
+    std::vector<double> y{random.uniform()};
+    for (int k = 0; k < 2 + trial % 7; ++k) {
+      x.push_back(x.back() + 0.01 + random.uniform());
+      y.push_back(trial % 2 == 0 ? random.uniform() : y.back() + random.uniform());  // wavy, rising
+    }
+    const std::unique_ptr<gsl_spline, void (*)(gsl_spline*)> gsl(gsl_spline_alloc(gsl_interp_steffen, x.size()),
+                                                                 gsl_spline_free);
+    gsl_spline_init(gsl.get(), x.data(), y.data(), x.size());
+    const MonotoneCurve curve(x, y);
+    for (int k = 1; k < 200; ++k) {
+      const double at = x.front() + (x.back() - x.front()) * k / 200.0;
+      EXPECT_NEAR(curve.value(at), gsl_spline_eval(gsl.get(), at, nullptr), 1e-13) << trial << ", " << at;
+    }
+  }
 }
 
 TEST(MonotoneCurve, OneAndTwoPoints) {

@@ -1,0 +1,118 @@
+// Laws as text for other engines: what is written is read to the last bit, damage is refused where it stands.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/contact/law_file.h"
+#include "common/core/error.h"
+
+namespace softgrain {
+namespace {
+
+std::vector<NamedLaw> every_law() {
+  const Material m{"m", 2500.0, 5e5, 0.3, false};
+  SoftContact soft;
+  soft.normal = {0.8, 3.1, -0.8 * std::pow(0.075, 3.1)};
+  soft.tangential = {0.5, 1.0 / 3.0, -1e-300};
+  soft.delta = 0.075;
+  soft.modulus = 5e5;
+  soft.friction = 0.3;
+  soft.damping = 0.1;
+  soft.range = {0.3, Beyond::error};
+  SoftContact both = soft;
+  both.partner_is_soft = true;
+  both.range = {};
+  SoftCrowd<Crowd::directional, true> crowd;
+  crowd.form.pressure = {0.8, 3.0, 0.07, {0.1, Beyond::clamp}};
+  crowd.form.coupling = {0.8, 0.15, 0.1};
+  crowd.partner.log_weight = MonotoneCurve({-1.3, 0.0, 1.3}, {-0.9, -0.5, -0.1});
+  crowd.partner.exponent = MonotoneCurve({-1.3, 0.0}, {1.3, 1.2});
+  crowd.partner.common_exponent = 1.25;
+  crowd.modulus = 5e5;
+  crowd.friction = 0.3;
+  crowd.kt_ratio = 0.4;
+  crowd.retreat = 1.7;
+  SoftCrowd<Crowd::bag, false> bag;
+  bag.form = crowd.form;
+  bag.modulus = 1.0;
+  bag.j_is_soft = true;
+  SoftCrowd<Crowd::pair, false> pair;
+  pair.form = crowd.form;
+  pair.modulus = 1.0;
+  pair.i_is_soft = false;
+  pair.j_is_soft = true;
+  return {{"mindlin", hertz_law(HertzCoefficients::of(m, m, 0.3, 0.5), false)},
+          {"rescaled", hertz_law(HertzCoefficients::of(m, m, 0.3, 1.0), true)},
+          {"smooth", hertz_law(HertzCoefficients::of(m, m, 0.0, 1.0), false)},
+          {"spring", LinearSpring{2e3, 1e3, 0.4, 0.2}},
+          {"soft", soft},
+          {"soft both", both},
+          {"crowd", crowd},
+          {"bag", bag},
+          {"pair", pair}};
+}
+
+TEST(LawFile, ReadsBackToTheSameBits) {
+  const std::string text = laws_text(every_law());
+  const auto again = parse_laws(text, "laws.toml");
+  ASSERT_EQ(again.size(), 9U);
+  for (std::size_t k = 0; k < again.size(); ++k) {
+    EXPECT_EQ(again[k].first, every_law()[k].first);
+    EXPECT_EQ(again[k].second.index(), every_law()[k].second.index()) << again[k].first;
+  }
+  EXPECT_EQ(laws_text(again), text);  // numbers are written so that other bits are another text
+  EXPECT_EQ(std::get<SoftContact>(again[5].second).range.end, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(std::get<SoftContact>(again[4].second).tangential.b, 1.0 / 3.0);
+}
+
+TEST(LawFile, MirroredTwiceIsTheSame) {
+  for (const auto& [name, law] : every_law()) {
+    EXPECT_EQ(laws_text({{name, mirrored(mirrored(law))}}), laws_text({{name, law}}));
+    const bool turns = name == "soft" || name == "crowd" || name == "pair";
+    EXPECT_EQ(laws_text({{name, mirrored(law)}}) != laws_text({{name, law}}), turns) << name;
+  }
+}
+
+TEST(LawFile, DisksAreRefused) { EXPECT_THROW((void)laws_text({{"disk", CohesiveDisk<true, true>{}}}), BadInput); }
+
+/// What reading this text says.
+std::string complaint(const std::string& text) {
+  try {
+    (void)parse_laws(text, "laws.toml");
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(LawFile, SaysWhatIsWrong) {
+  const std::string text = laws_text(every_law());
+  EXPECT_NE(complaint("").find("no laws file"), std::string::npos);
+  EXPECT_NE(complaint("softgrain_laws = 1\n").find("no [[law]]"), std::string::npos);
+  EXPECT_NE(complaint("softgrain_laws = [").find("line 1"), std::string::npos);
+  for (const auto& [from, to, expected] : std::vector<std::array<std::string, 3>>{
+           {"friction = 0.3", "friction = -0.3", "law 'mindlin': key 'friction' must not be negative"},
+           {"friction = 0.3", "frictoin = 0.3", "key 'friction' is missing"},
+           {"friction = 0.3", "friction = 0.3\nmore = 1", "key 'more' is no key of this law"},
+           {"name = \"smooth\"", "name = \"mindlin\"", "is there twice"},
+           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft or crowd"},
+           {"modulus = 500000.0", "modulus = inf", "must be finite"},
+           {"modulus = 500000.0", "modulus = 0", "must be above 0"},
+           {"beyond = \"error\"", "beyond = \"never\"", "must be error, clamp or extrapolate"},
+           {"log_ratio = [-1.3, 0.0, 1.3]", "log_ratio = [-1.3, 0.0, 0.0]", "ascending"},
+           {"log_ratio = [-1.3, 0.0, 1.3]", "log_ratio = [-1.3, true]", "must be a list of numbers"},
+           {"pressure = [0.8, 3.0, 0.07]", "pressure = [0.8, 3.0]", "needs three numbers"},
+           {"form = \"bag\"", "form = \"sack\"", "must be pair, bag or directional"}})
+    EXPECT_NE(complaint(replaced(text, from, to)).find(expected), std::string::npos)
+        << to << " gave: " << complaint(replaced(text, from, to));
+}
+
+}  // namespace
+}  // namespace softgrain
