@@ -5,6 +5,7 @@
   check_layers.py --self-test  proves on small made-up trees that every rule can fail
 
 Rules: common includes only itself; microsim, calibrate and macrosim only themselves and common; pipelines everything.
+macrosim/lammps, which is linked with LAMMPS (GPL-2), and all that it includes carry the line of the BSD-3 licence.
 Ceres appears only in .cpp files of calibrate; Eigen, FFTW, SuiteSparse, toml++ and CLI11 only in .cpp files. Folders form no cycles.
 """
 import os
@@ -25,6 +26,8 @@ ONLY_IN_SOURCES = {"ceres": "Ceres", "glog": "glog", "Eigen": "Eigen", "unsuppor
 # Headers of ours that stand for a library: they may include it, and including them counts as including it.
 STANDS_FOR = {"common/io/toml.h": "toml++"}
 ONLY_IN_CALIBRATE = {"ceres", "glog"}
+FREE_FOLDER = "macrosim/lammps"
+FREE_LINE = "SPDX-License-Identifier: BSD-3-Clause"
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 
 
@@ -83,6 +86,23 @@ def folder_cycles(edges):
                 yield f"{where}: folders depend on each other: {start} -> {end} -> ... -> {start}"
 
 
+def unfree(root):
+    """One message per file that a program with LAMMPS includes and whose licence is not the free one."""
+    todo = [(path, path) for path in source_files(root) if path.startswith(FREE_FOLDER + "/")]
+    # Compiled into the same program.
+    todo += [(path, path) for path in source_files(root) if re.fullmatch(r"common/contact/law_file_\w+\.cpp", path)]
+    seen = set()
+    while todo:
+        path, by = todo.pop()
+        if path in seen or not os.path.isfile(os.path.join(root, path)):
+            continue
+        seen.add(path)
+        with open(os.path.join(root, path), encoding="utf-8", errors="replace") as text:
+            if FREE_LINE not in text.read():
+                yield f'{by}: {path} goes into a program with LAMMPS and needs the line "{FREE_LINE}"'
+        todo += [(target, path) for _, target in includes(root, path)]
+
+
 def check(root):
     messages, edges = [], {}
     for path in source_files(root):
@@ -93,17 +113,17 @@ def check(root):
             start, end = os.path.dirname(path), os.path.dirname(target)
             if target.split("/")[0] == path.split("/")[0] and start != end:
                 edges.setdefault(start, {}).setdefault(end, f"{path}:{number}")
-    return messages + list(folder_cycles(edges))
+    return messages + list(folder_cycles(edges)) + list(unfree(root))
 
 
 GOOD = {
-    "common/core/a.h": "#include <vector>\n",
+    "common/core/a.h": f"// {FREE_LINE}\n#include <vector>\n",
     "common/io/b.cpp": '#include "common/core/a.h"\n#include <toml++/toml.h>\n#include <Eigen/Core>\n',
     "microsim/shell/c.h": '#include "common/core/a.h"\n#include "microsim/d.h"\n',
     "microsim/d.h": '// #include "macrosim/x.h"\n',
     "calibrate/fit.cpp": "#include <ceres/ceres.h>\n",
-    "macrosim/lammps/e.cpp": '#include "local.h"\n#include "common/core/a.h"\n',
-    "macrosim/lammps/local.h": "",
+    "macrosim/lammps/e.cpp": f'// {FREE_LINE}\n#include "local.h"\n#include "common/core/a.h"\n',
+    "macrosim/lammps/local.h": f"// {FREE_LINE}\n",
     "pipelines/main.cpp": '#include "microsim/d.h"\n#include <CLI/CLI.hpp>\n#include "generated_build_info.h"\n',
 }
 # Each case: a file that breaks one rule, and the start of the message that it must cause.
@@ -125,6 +145,8 @@ BAD = [
     ("microsim/x.h", "#include <fftw3.h>\n", "microsim/x.h:1:"),
     ("common/core/x.h", '#include "common/io/y.h"\n', "common/core/x.h:1: folders"),
     ("microsim/d.h", '#include "microsim/shell/c.h"\n', "microsim/d.h:1: folders"),
+    ("common/core/a.h", "#include <vector>\n", "macrosim/lammps/e.cpp: common/core/a.h goes into"),
+    ("macrosim/lammps/x.cpp", "", "macrosim/lammps/x.cpp: macrosim/lammps/x.cpp goes into"),
 ]
 
 
