@@ -220,10 +220,9 @@ void PairSoftgrain::build(const std::vector<bridge::AtomMemory>& memory_of) {
     }
   }
   store.assign(near, laws.size());
-  entries_.assign(static_cast<std::size_t>(b.own), {});
+  entries_.clear();
   for (std::size_t c = 0; c < store.size(); ++c) {
     const auto i = static_cast<std::size_t>(store.i[c]);
-    entries_[i].push_back(static_cast<int>(c));
     const bridge::Remembered* past = bridge::find(memory_of[i], b.tag[store.j[c]]);
     if (past == nullptr) continue;
     store.touched[c] = 1;
@@ -280,23 +279,26 @@ void PairSoftgrain::compute(int eflag, int vflag) {
   evaluations += static_cast<double>(store.size());
 }
 
+/// Place in the list of a pair; -1 when it is not there in this order. The index is made when somebody asks.
+int PairSoftgrain::entry(int i, int j) {
+  if (i >= atom->nlocal) return -1;
+  if (entries_.empty()) {
+    entries_.resize(static_cast<std::size_t>(atom->nlocal));
+    for (std::size_t c = 0; c < store.size(); ++c)
+      entries_[static_cast<std::size_t>(store.i[c])].push_back(static_cast<int>(c));
+  }
+  for (const int c : entries_[static_cast<std::size_t>(i)])
+    if (store.j[static_cast<std::size_t>(c)] == j) return c;
+  return -1;
+}
+
 double PairSoftgrain::single(int i, int j, int, int, double, double, double, double& fforce) {
   std::fill(extra_.begin(), extra_.end(), 0.0);
   fforce = 0.0;
-  const bool known = i < static_cast<int>(entries_.size());
-  double sign = 1.0;
-  int at = -1;
-  const auto look = [&](int a, int other) {
-    if (at >= 0 || a >= static_cast<int>(entries_.size())) return;
-    for (const int c : entries_[static_cast<std::size_t>(a)])
-      if (store.j[static_cast<std::size_t>(c)] == other) at = c;
-  };
-  if (known) look(i, j);
-  if (at < 0) {
-    look(j, i);
-    sign = -1.0;
-  }
+  const int ij = entry(i, j);
+  const int at = ij >= 0 ? ij : entry(j, i);
   if (at < 0) return 0.0;
+  const double sign = ij >= 0 ? 1.0 : -1.0;
   const auto c = static_cast<std::size_t>(at);
   const bridge::Bodies b = bodies();
   const bridge::AtomSurface surface{b};

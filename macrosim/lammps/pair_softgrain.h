@@ -75,6 +75,7 @@ class PairSoftgrain : public Pair {
   void find_radii();
   void particle_pass();
   int add_law(const softgrain::AnyLaw& law);
+  int entry(int i, int j);
   [[nodiscard]] int law_of(int itype, int jtype) const {
     return law_index_[static_cast<std::size_t>(itype * (types_ + 1) + jtype)];
   }

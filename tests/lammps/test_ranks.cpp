@@ -101,6 +101,23 @@ TEST_F(Ranks, DynamicsAgreesToo) {
     EXPECT_LT(difference(one, run(ranks, kDynamics + "run 300\n"), kRadius), 1e-9) << ranks;
 }
 
+// Without walls bodies touch images of each other, and on one rank of themselves.
+TEST_F(Ranks, PeriodicBoxesAgreeToo) {
+  std::string head = read_text(directory.path() + "/head.in");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const auto at = head.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    head.replace(at, from.size(), to);
+  };
+  replace("boundary f f f", "boundary p p p");
+  replace("fix walls", "# fix walls");
+  replace("thermo_style custom", "# thermo_style custom");
+  std::ofstream(directory.path() + "/head.in") << head;
+  const std::string protocol = kDynamics + "run 300\n";
+  const State one = run(1, protocol);
+  for (const int ranks : {2, 4}) EXPECT_LT(difference(one, run(ranks, protocol), kRadius), 1e-9) << ranks;
+}
+
 TEST_F(Ranks, RestartBetweenIncrementsGoesOn) {
   const std::string kShort = "fix_modify relax max_passes 20\n" + kStrain;
   for (const int ranks : {1, 2}) {
