@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -62,6 +63,12 @@ std::string legend(const ValueTable& t) {
   return text;
 }
 
+/// Whether any of the overlaps has a force to be sure of.
+bool any_contact(const ValueTable& t) {
+  return std::any_of(t.points.begin(), t.points.end(),
+                     [](const LawPoint& p) { return p.where != Where::no_contact && !p.refused; });
+}
+
 std::string origin_of(const ValueTable& t) {
   for (const LawPoint& p : t.points)
     if (p.force.interval && p.where != Where::no_contact) return p.force.interval->origin;
@@ -98,6 +105,7 @@ std::string values_text(const ValueTable& t, const ValueUnits& u) {
   for (const LawPoint& p : t.points) rows.push_back(people_row(p, t, u));
   text += aligned(rows, 0, 0) + legend(t);
   const std::string origin = origin_of(t);
+  if (!any_contact(t)) return text;
   return text + "  " + (origin.empty() ? "no intervals: none are stored with this law" : "intervals: " + origin) + "\n";
 }
 

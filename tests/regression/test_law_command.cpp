@@ -54,6 +54,12 @@ TEST(LawCommand, NothingIsWiderThan80Columns) {
       expect_narrow(run_the_program("law eval '" + kRoot + "/" + file + "'" + more).output);
 }
 
+TEST(LawCommand, OverlapsWithoutContactAskForNoIntervals) {
+  const std::string said = run_the_program("law eval '" + kRoot + "/" + kCard + "' --delta 0.01 0.02").output;
+  EXPECT_NE(said.find("no contact"), std::string::npos) << said;
+  EXPECT_EQ(said.find("intervals"), std::string::npos) << said;
+}
+
 nlohmann::json json_of(const std::string& arguments, int status = 0) {
   const test::ProgramOutcome outcome = run_the_program(arguments);
   EXPECT_EQ(outcome.status, status) << outcome.output;
