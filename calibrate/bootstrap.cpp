@@ -110,7 +110,8 @@ std::pair<double, double> interval95(std::vector<double> values) {
   if (values.empty()) return {-kInfinity, kInfinity};
   std::sort(values.begin(), values.end());
   const auto quantile = [&](double p) {
-    const double at = p * static_cast<double>(values.size() - 1);
+    const double last = static_cast<double>(values.size() - 1);
+    const double at = std::clamp(p * static_cast<double>(values.size() + 1) - 1.0, 0.0, last);
     const auto k = static_cast<std::size_t>(at);
     const double next = k + 1 < values.size() ? values[k + 1] : values[k];
     return values[k] + (at - static_cast<double>(k)) * (next - values[k]);

@@ -13,10 +13,11 @@ namespace softgrain {
 
 struct BootstrapInput {
   std::array<CurveSamples, kLawCurves> samples;  ///< curves that take no part are empty
-  FitCurves curves;                              ///< the full ensemble: its sigma weights every replicate
+  FitCurves curves;                              ///< the full ensemble: its sigma weights replicates of packings
   double delta_limit = 0.0;
   JointParameters start;                      ///< the fit to the full ensemble
   std::vector<double> threshold_shares = {};  ///< further starts: the threshold of `start` times these
+  double scatter_floor = 0.0;                 ///< of experiment_errors(), for redrawn residuals
 };
 
 struct BootstrapResult {
@@ -29,16 +30,19 @@ struct BootstrapResult {
 BootstrapResult bootstrap(const BootstrapInput& input, int replicates, std::uint64_t seed, std::uint64_t stream);
 
 /// For fewer samples than can be drawn from: noise of the size of the residuals is added to the fit, which is then
-/// fitted again. Its shape over Delta is that of sigma, and one normal random number serves as many neighbouring points
-/// as residuals are correlated over. With given errors of the normal force the noise is at least as large as these.
-/// Says nothing about samples that were not measured.
+/// fitted again, weighted by the errors that the new curve shows: errors told from the curve itself scatter, and with
+/// them the fit. The shape of the noise over Delta is that of sigma, and one normal random number serves as many
+/// neighbouring points as residuals are correlated over. With given errors of the normal force the noise is at least as
+/// large as these. Says nothing about samples that were not measured.
 BootstrapResult residual_bootstrap(const BootstrapInput& input, const std::vector<GivenError>& given, int replicates,
                                    std::uint64_t seed, std::uint64_t stream);
 
 /// Covariance of the replicates, 7 x 7 row-major; zeros with fewer than two.
 std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>>& replicates);
 
-/// Quantiles 2.5 % and 97.5 % (linear between order statistics); infinite when there are no values.
+/// Quantiles 2.5 % and 97.5 %; infinite when there are no values. Linear between order statistics x_1..x_n at p (n +
+/// 1): one more value would be between them with a probability of 95 % from n = 39 on, with fewer the ends are the
+/// extremes.
 std::pair<double, double> interval95(std::vector<double> values);
 
 }  // namespace softgrain

@@ -17,11 +17,12 @@ double normal_number(RandomStream& random) {
 }  // namespace
 
 ResidualDraws::ResidualDraws(const BootstrapInput& input, const std::vector<GivenError>& given) : input_(input) {
+  given_[0] = given;
   for (std::size_t j = 0; j < kLawCurves; ++j)
-    if (input.curves[j].present()) prepare(j, j == 0 ? given : std::vector<GivenError>{});
+    if (input.curves[j].present()) prepare(j);
 }
 
-void ResidualDraws::prepare(std::size_t j, const std::vector<GivenError>& given) {
+void ResidualDraws::prepare(std::size_t j) {
   const CurveSamples& s = input_.samples[j];
   const std::vector<double>& sigma = input_.curves[j].sigma;
   Curve& c = curves_[j];
@@ -41,7 +42,7 @@ void ResidualDraws::prepare(std::size_t j, const std::vector<GivenError>& given)
   const double parameters = j == 0 ? 3.0 : 2.0;
   const double freedom = std::max(points - parameters, 1.0);
   // Errors as the fit weights points, to the size of the residuals; given ones are never taken to be smaller.
-  const double size = std::max(given.empty() ? 0.0 : 1.0, std::sqrt(chi2 / freedom));
+  const double size = std::max(given_[j].empty() ? 0.0 : 1.0, std::sqrt(chi2 / freedom));
   c.amplitude = standardised;
   for (std::size_t i = 0; i < s.packings; ++i)
     for (std::size_t k = 0; k < s.delta.size(); ++k) {
@@ -72,6 +73,7 @@ FitCurves ResidualDraws::draw(RandomStream& random) const {
       }
     }
     out[j].means = means_of(drawn);
+    out[j].sigma = experiment_errors(drawn, out[j].means, given_[j], input_.scatter_floor);
   }
   return out;
 }

@@ -14,7 +14,8 @@ class ResidualDraws {
   /// Keeps a reference to `input`.
   ResidualDraws(const BootstrapInput& input, const std::vector<GivenError>& given);
 
-  /// The fit plus residuals, one normal random number per block of neighbouring points of a sample.
+  /// The fit plus residuals, one normal random number per block of neighbouring points of a sample, and the errors that
+  /// experiment_errors() finds in that.
   [[nodiscard]] FitCurves draw(RandomStream& random) const;
 
  private:
@@ -23,10 +24,11 @@ class ResidualDraws {
     std::vector<double> amplitude;  ///< samples x Delta; NaN where nothing was measured
     std::size_t block = 1;          ///< points
   };
-  void prepare(std::size_t curve, const std::vector<GivenError>& given);
+  void prepare(std::size_t curve);
 
   const BootstrapInput& input_;
   std::array<Curve, kLawCurves> curves_;
+  std::array<std::vector<GivenError>, kLawCurves> given_;
 };
 
 }  // namespace softgrain

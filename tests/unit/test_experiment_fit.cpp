@@ -84,10 +84,12 @@ int missed_intervals(bool errors, std::uint64_t seeds) {
 /// Were 95 % of the intervals to hold the truth, more than four of twenty would miss it once in 400 such tests.
 TEST(ExperimentFit, IntervalsOfOneSampleHoldTheTruth) { EXPECT_LE(missed_intervals(false, 20), 4); }
 
-/// Measured: 90 % of the nominal 95 % intervals of b hold the truth without given errors.
+/// Were 95 % of the intervals to hold the truth, more than seven of sixty would miss it once in 100 such tests.
+/// Measured: 4 without given errors; 12 when replicates were weighted by the errors of the data, which follow its
+/// noise.
 TEST(ExperimentFit, SlowIntervalsOfOneSampleHoldTheTruthAsOftenAsTheySay) {
-  EXPECT_LE(missed_intervals(false, 60), 10);
-  EXPECT_LE(missed_intervals(true, 60), 8);
+  EXPECT_LE(missed_intervals(false, 60), 7);
+  EXPECT_LE(missed_intervals(true, 60), 7);
 }
 
 TEST(ExperimentFit, FewSamplesThatDifferWidenTheInterval) {
