@@ -57,7 +57,7 @@ install(DIRECTORY pipelines/ DESTINATION ${softgrain_scenes}/pipelines FILES_MAT
   PATTERN report EXCLUDE PATTERN compare EXCLUDE PATTERN guide EXCLUDE PATTERN export EXCLUDE PATTERN law EXCLUDE
   PATTERN python EXCLUDE)
 install(DIRECTORY pipelines/python DESTINATION ${softgrain_scenes} PATTERN __pycache__ EXCLUDE PATTERN "*.egg-info" EXCLUDE)
-foreach(law published/law.toml law_table/law_table.toml hierarchy/law_table.toml)
+foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 hierarchy/law_table.toml)
   get_filename_component(folder ${law} DIRECTORY)
   install(FILES results/${law} DESTINATION ${softgrain_scenes}/results/${folder})
 endforeach()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes a committed results folder of a run: collect_run.py RUN_DIR RESULTS_DIR FIGURE... Standard library only.
 
-Copies law_table.toml and table.csv where the run has them and the named figures of its report, and writes README.md: the
+Copies law_table.toml (with its .h5, from which intervals follow) and table.csv where the run has them and the named figures of its report, and writes README.md: the
 hand-written notes (RESULTS_DIR/notes.md) after a heading with command, version and seed, then the tables of the run.
 """
 import json
@@ -96,6 +96,8 @@ def main():
         raw = summary.get("provenance", {}).get("command", "")
         with open(os.path.join(out, "law_table.toml"), "w", encoding="utf-8") as file:
             file.write(card.replace(raw, plain(raw)) if raw else card)
+        if os.path.exists(os.path.join(run, "law_table.h5")):
+            shutil.copy(os.path.join(run, "law_table.h5"), out)
     for name in figures:
         shutil.copy(os.path.join(run, "figures", name + ".svg"), out)
     p = summary.get("provenance", {})
