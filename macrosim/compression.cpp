@@ -1,8 +1,6 @@
 #include "macrosim/compression.h"
 
 #include <chrono>
-#include <cmath>
-#include <numeric>
 
 #include "common/core/error.h"
 #include "common/dynamics/contact_watch.h"
@@ -11,51 +9,17 @@
 #include "common/io/interrupt.h"
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
+#include "macrosim/curve_notes.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Recorded points of the isotropic part of a shear test.
-std::int64_t preload_points(const MacroSpec& spec) {
-  return spec.test == "shear" && spec.preload > 0.0 ? spec.preload_steps : 0;
-}
-
-/// Step k of `total` equal ones to the nominal strain `end`, as a share of the length before it.
-double nominal_step(double end, std::int64_t k, std::int64_t total) {
-  const auto at = [&](std::int64_t n) { return end * static_cast<double>(n) / static_cast<double>(total); };
-  return 1.0 - (1.0 - at(k)) / (1.0 - at(k - 1));
-}
-
-/// Strain of the box, as strain_box takes it, in increment k (from 1) on the way to recorded point `point` (from 1).
-Vec3 increment(const MacroSpec& spec, std::int64_t point, std::int64_t k) {
-  const std::int64_t n = (point - 1) * spec.increments_per_step + k;
-  const std::int64_t preloading = preload_points(spec) * spec.increments_per_step;
-  const std::int64_t total = spec.steps * spec.increments_per_step;
-  if (spec.test == "shear") {
-    if (n <= preloading) {
-      const double factor = nominal_step(spec.preload, n, preloading);
-      return {{factor, factor, factor}};
-    }
-    const double logarithmic = spec.strain_end / static_cast<double>(total);
-    return {{-std::expm1(logarithmic), 0.0, -std::expm1(-logarithmic)}};
-  }
-  const double factor = nominal_step(spec.strain_end, n, total);
-  if (spec.test == "isotropic") return {{factor, factor, factor}};
-  return {{0.0, 0.0, factor}};
-}
-
-double strain_at(const MacroSpec& spec, std::int64_t point) {
-  const std::int64_t before = preload_points(spec);
-  if (point < before) return -spec.preload * static_cast<double>(before - point) / static_cast<double>(before);
-  return spec.strain_end * static_cast<double>(point - before) / static_cast<double>(spec.steps);
-}
-
 DampedOptions relaxation_options(const MacroSpec& spec, const MacroSystem& macro) {
   DampedOptions options;
   options.tolerance = spec.tolerance;
   options.max_passes = spec.max_passes;
-  options.force_floor = spec.force_floor * spec.youngs_modulus * macro.largest_radius * macro.largest_radius;
+  options.force_floor = test_force_floor(spec, macro.largest_radius);
   return options;
 }
 
@@ -69,38 +33,13 @@ void record_bodies(const MacroSystem& macro, MacroCurve& c) {
   for (const BodyContact& b : between) c.body_forces.push_back(b.normal_force);
 }
 
-/// Nobody has gone through a wall; soft particles of a law run against the range of their law (twins have no fitted law
-/// and record nothing).
+/// Nobody has gone through a wall; soft particles of a law run against the range of their law.
 LawUse watch(CompressionState& state) {
   MacroCurve& c = state.curve;
   const ContactWatch<3> seen = watch_contacts(state.macro.system);
-  if (seen.behind_planes > 0)
-    throw NotUsable("macro run '" + c.engine + "': the centre of body " + std::to_string(seen.behind) +
-                    " is behind a wall at strain " + std::to_string(c.strain.back()));
-  if (c.grains > 0 || c.soft == 0) return {};
-  const LawUse& use = seen.laws;
-  c.law_asked.push_back(static_cast<double>(use.asked));
-  c.law_beyond.push_back(static_cast<double>(use.beyond));
-  c.law_largest.push_back(use.largest);
-  return use;
-}
-
-/// Over all recorded points; what happens beyond the range is that of `last`.
-void note_law_use(MacroCurve& c, const LawUse& last, double strain) {
-  LawUse all = last;
-  const auto total = [](const std::vector<double>& v) {
-    return static_cast<std::int64_t>(std::accumulate(v.begin(), v.end(), 0.0));
-  };
-  all.asked = total(c.law_asked);
-  all.beyond = total(c.law_beyond);
-  const std::string text = law_use_text(all);
-  if (text.empty()) return;
-  if (last.refused > 0) {
-    c.usable = false;
-    c.note = text + " (strain " + std::to_string(strain) + ")";
-  } else if (c.note.empty()) {
-    c.note = text;
-  }
+  if (seen.behind_planes > 0) throw NotUsable(behind_wall_text(c.engine, seen.behind, c.strain.back()));
+  record_law_use(c, seen.laws);
+  return c.grains > 0 || c.soft == 0 ? LawUse{} : seen.laws;
 }
 
 void record(CompressionState& state, const MacroSpec& spec, double strain, const RelaxationResult& rest) {
@@ -119,10 +58,7 @@ void record(CompressionState& state, const MacroSpec& spec, double strain, const
   c.coordination.push_back(2.0 * static_cast<double>(r.contacts) / bodies);
   c.residual.push_back(rest.residual);
   record_bodies(state.macro, c);
-  if (rest.end == RelaxationEnd::converged) return;
-  c.usable = false;
-  c.note = "relaxation " + to_string(rest.end) + " at strain " + std::to_string(strain) + " (residual " +
-           std::to_string(rest.residual) + " of the mean contact force, wanted " + std::to_string(spec.tolerance) + ")";
+  note_relaxation(c, rest, strain, spec.tolerance);
 }
 
 /// Strains the box and relaxes; what it cost goes to the curve.
@@ -154,8 +90,6 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   return curve;
 }
 
-std::int64_t recorded_points(const MacroSpec& spec) { return preload_points(spec) + spec.steps + 1; }
-
 void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer,
               double checkpoint_seconds) {
   DampedRelaxation<3> relaxation(relaxation_options(spec, state.macro));
@@ -171,7 +105,7 @@ void compress(CompressionState& state, const MacroSpec& spec, const CompressionO
     RelaxationResult rest;
     if (point == 0) rest = counted_step(relaxation, state, {});
     while (point > 0 && state.increments < spec.increments_per_step) {
-      rest = counted_step(relaxation, state, increment(spec, point, state.increments + 1));
+      rest = counted_step(relaxation, state, strain_increment(spec, point, state.increments + 1));
       ++state.increments;
       // After the last one the point is recorded, which needs what the relaxation said.
       if (state.increments == spec.increments_per_step || !(interrupt_requested() || due.due())) continue;

@@ -6,6 +6,7 @@
 #include "common/data/macro_result.h"
 #include "common/state/checkpoint.h"
 #include "macrosim/macro_system.h"
+#include "macrosim/test_protocol.h"
 
 namespace softgrain {
 
@@ -19,9 +20,6 @@ struct CompressionState {
 /// Called after each recorded point, and between two of them when that takes long or a signal came: to save, to report
 /// progress (the share of the test done).
 using CompressionObserver = std::function<void(const CompressionState&, double share_done)>;
-
-/// Number of points that a test records, the unstrained one included.
-std::int64_t recorded_points(const MacroSpec& spec);
 
 /// Strains the box step by step to spec.strain_end, relaxing every increment. Oedometric: the z planes move, four
 /// stand; isotropic: all six; shear: all six to the nominal strain `preload`, then z shortens and x lengthens by equal

@@ -30,8 +30,8 @@ struct MacroPacking {
 };
 
 /// Radii from the power laws, random non-overlapping start, frictionless isotropic compaction of all bodies as hard
-/// grains until the wall pressure reaches start_pressure * E. Throws BadInput when the shares cannot be met, NotUsable
-/// when it does not jam.
+/// grains until the wall pressure reaches start_pressure * E; with preparation "lammps" no compaction. Throws BadInput
+/// when the shares cannot be met, NotUsable when it does not jam.
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
 
 void write_macro_packing(const h5::Group& group, const MacroPacking& packing);

@@ -14,7 +14,10 @@ struct MacroSpec {
   /// "mixed": solid grains and soft particles are drawn, placed and compacted together; "voids": solid grains first,
   /// then soft particles fill the voids between them, largest hole first
   std::string construction = "mixed";
-  std::int64_t bodies = 200;          ///< mixed: solid grains + soft particles; voids: solid grains
+  std::int64_t bodies = 200;  ///< mixed: solid grains + soft particles; voids: solid grains
+  /// "softgrain": the starting state is made by this program; "lammps": bodies are only placed loosely, and LAMMPS
+  /// compacts them
+  std::string preparation = "softgrain";
   double soft_share = 0.45;           ///< of the volume of all bodies, soft ones by their shell
   double exponent = 3.5;              ///< b of the radii of both kinds
   double solid_radius_max = 0.016;    ///< [m]

@@ -9,6 +9,7 @@
 #include "common/dynamics/damped_relaxation.h"
 #include "common/io/interrupt.h"
 #include "macrosim/box.h"
+#include "macrosim/placed_spheres.h"
 
 namespace softgrain {
 
@@ -16,34 +17,34 @@ namespace {
 
 double cube(double x) { return x * x * x; }
 
-bool collides(const std::vector<MacroBody>& bodies, std::size_t placed, const Vec3& x, double r) {
-  for (std::size_t j = 0; j < placed; ++j) {
-    const double reach = bodies[j].r + r;
-    if (norm2(bodies[j].x - x) < reach * reach) return true;
-  }
-  return false;
-}
-
 /// Largest first at random places of a cube; false when one finds none.
 bool place(std::vector<MacroBody>& bodies, double edge, RandomStream& random) {
   constexpr int kTrials = 100000;
+  std::vector<double> radii;
+  for (const MacroBody& b : bodies) radii.push_back(b.r);
+  PlacedSpheres placed(edge, radii);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     stop_if_interrupted("placing bodies");
     const double r = bodies[k].r;
     int trial = 0;
     do {
       for (int a = 0; a < 3; ++a) bodies[k].x[a] = r + random.uniform() * (edge - 2.0 * r);
-    } while (collides(bodies, k, bodies[k].x, r) && ++trial < kTrials);
+    } while (placed.collides(bodies[k].x, r) && ++trial < kTrials);
     if (trial == kTrials) return false;
+    placed.add(bodies[k].x, r);
   }
   return true;
 }
 
+Material hard_material(const MacroSpec& spec) {
+  return {"hard", spec.density, spec.youngs_modulus, spec.poisson_ratio, false};
+}
+
 System3 hard_system(const MacroSpec& spec, const MacroPacking& packing, Box& box) {
   System3 s;
-  s.materials = {{"hard", spec.density, spec.youngs_modulus, spec.poisson_ratio, false}};
+  s.materials = {hard_material(spec)};
   s.laws = LawSet(1);
-  s.laws.set(0, 0, hertz_law(HertzCoefficients::of(s.materials[0], s.materials[0], 0.0, 1.0), false));
+  s.laws.set(0, 0, hard_law(spec));
   for (const MacroBody& b : packing.bodies) {
     NewBody<3> grain;
     grain.x = b.x;
@@ -62,33 +63,31 @@ void take_over(const System3& s, const Box& box, MacroPacking& packing) {
   for (std::size_t k = 0; k < packing.bodies.size(); ++k) packing.bodies[k].x = s.particles.sphere[k].x;
 }
 
-DampedOptions preparation_options(const System3& s, const Box& box, double pressure) {
+DampedOptions preparation_options(const CompactionProtocol& protocol) {
   DampedOptions options;
-  options.tolerance = 1e-3;
-  options.max_passes = 50000;
-  const Vec3 size = box_high(s, box) - box_low(s, box);
-  options.force_floor = 1e-2 * pressure * size[0] * size[1] / static_cast<double>(s.particles.grains);
+  options.tolerance = protocol.tolerance;
+  options.max_passes = protocol.max_passes;
+  options.force_floor = protocol.force_floor;
   return options;
 }
 
 /// Shrinks the box in ever smaller steps: a step that overshoots the pressure is taken back and halved.
-void compact(System3& s, const Box& box, double pressure, double youngs_modulus) {
-  const DampedOptions options = preparation_options(s, box, pressure);
-  double step = 0.02;
-  for (int round = 0; round < 400; ++round) {
+void compact(System3& s, const Box& box, const CompactionProtocol& protocol, double youngs_modulus) {
+  const DampedOptions options = preparation_options(protocol);
+  double step = protocol.first_step;
+  for (int round = 0; round < protocol.most_rounds; ++round) {
     const System3 before = s;
     strain_box(s, box, {{step, step, step}});
     DampedRelaxation<3>(options).relax(s);
     const Vec3 stress = wall_stress(s, box);
     const double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
-    if (mean < pressure) continue;
-    if (mean < 1.5 * pressure) return;
+    if (mean < protocol.pressure) continue;
+    if (mean < protocol.overshoot * protocol.pressure) return;
     s = before;
     step *= 0.5;
-    if (step < 1e-7) break;
+    if (step < protocol.smallest_step) break;
   }
-  throw NotUsable("macro: the preparation did not reach a pressure of " + std::to_string(pressure / youngs_modulus) +
-                  " E");
+  throw NotUsable(not_jammed_text(protocol, youngs_modulus));
 }
 
 }  // namespace
@@ -111,10 +110,27 @@ MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, st
   throw NotUsable("macro: could not place all bodies without overlap");
 }
 
+AnyLaw hard_law(const MacroSpec& spec) {
+  const Material hard = hard_material(spec);
+  return hertz_law(HertzCoefficients::of(hard, hard, 0.0, 1.0), false);
+}
+
+CompactionProtocol compaction_protocol(const MacroSpec& spec, const Vec3& size, std::size_t bodies) {
+  CompactionProtocol protocol;
+  protocol.pressure = spec.start_pressure * spec.youngs_modulus;
+  protocol.force_floor = 1e-2 * protocol.pressure * size[0] * size[1] / static_cast<double>(bodies);
+  return protocol;
+}
+
+std::string not_jammed_text(const CompactionProtocol& protocol, double youngs_modulus) {
+  return "macro: the preparation did not reach a pressure of " + std::to_string(protocol.pressure / youngs_modulus) +
+         " E";
+}
+
 void bring_into_touch(const MacroSpec& spec, MacroPacking& packing) {
   Box box;
   System3 s = hard_system(spec, packing, box);
-  compact(s, box, spec.start_pressure * spec.youngs_modulus, spec.youngs_modulus);
+  compact(s, box, compaction_protocol(spec, packing.size(), packing.bodies.size()), spec.youngs_modulus);
   take_over(s, box, packing);
 }
 
@@ -129,7 +145,8 @@ void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fr
     if (now >= fraction * (1.0 - 1e-9)) break;
     const double step = std::min(kStep, 1.0 - std::cbrt(now / fraction));
     strain_box(s, box, {{step, step, step}});
-    DampedRelaxation<3>(preparation_options(s, box, pressure)).relax(s);
+    const Vec3 strained = box_high(s, box) - box_low(s, box);
+    DampedRelaxation<3>(preparation_options(compaction_protocol(spec, strained, packing.bodies.size()))).relax(s);
     const Vec3 stress = wall_stress(s, box);
     if (stress[0] + stress[1] + stress[2] > 3.0 * pressure)
       throw BadInput("macro: the solid grains jam at a solid fraction of " + std::to_string(now) +

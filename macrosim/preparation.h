@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "common/contact/law_set.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/macro_spec.h"
 
@@ -16,6 +18,28 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
 /// walls are near find no place, in a larger one. Throws NotUsable.
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
                            double fraction = 0.30);
+
+/// How bodies that were placed loosely are compacted: the box shrinks in steps and all is relaxed after each; a step
+/// that overshoots the pressure is taken back and halved.
+struct CompactionProtocol {
+  double pressure = 0.0;        ///< of the walls, at the end at least [Pa]
+  double overshoot = 1.5;       ///< times the pressure: too much
+  double first_step = 0.02;     ///< strain of all three axes
+  double smallest_step = 1e-7;  ///< below it the packing does not jam
+  int most_rounds = 400;        ///< steps taken back among them
+  double tolerance = 1e-3;      ///< of every relaxation
+  double force_floor = 0.0;     ///< [N]
+  std::int64_t max_passes = 50000;
+};
+
+/// For `bodies` in a box of this size [m].
+CompactionProtocol compaction_protocol(const MacroSpec& spec, const Vec3& size, std::size_t bodies);
+
+/// What is said when a compaction ends without jamming.
+std::string not_jammed_text(const CompactionProtocol& protocol, double youngs_modulus);
+
+/// All bodies as hard grains without friction.
+AnyLaw hard_law(const MacroSpec& spec);
 
 /// Frictionless isotropic compaction of all bodies as hard grains until the wall pressure reaches start_pressure * E.
 /// Throws NotUsable when it does not jam.
