@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "pipelines/compare/compare.h"
 #include "pipelines/kept_states.h"
+#include "pipelines/lammps/lammps_program.h"
+#include "pipelines/lammps_stage.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
@@ -35,6 +38,28 @@ std::string people_text(const std::vector<MacroCurve>& curves, const RunContext&
   return text + "report: " + context.path("report.html");
 }
 
+/// Nothing for our own engine. Throws BadInput.
+std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
+  if (!options.engine.empty() && options.engine != "softgrain" && options.engine != "lammps") {
+    const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
+    throw BadInput("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                   "known are softgrain and lammps");
+  }
+  if (options.engine != "lammps") {
+    if (options.ranks > 0) throw BadInput("--ranks goes with --engine lammps");
+    if (options.write_only) throw BadInput("--write-only goes with --engine lammps");
+    return std::nullopt;
+  }
+  if (options.write_only && options.ranks > 0)
+    throw BadInput("--ranks goes with a run: with --write-only LAMMPS is not started");
+  LammpsEngine engine{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
+  if (engine.write_only) return engine;
+  engine.program = lammps::find_program();
+  if (engine.program.empty()) throw BadInput("macrosim: " + lammps::missing_text());
+  (void)lammps::command_words(engine.program, engine.ranks, {});  // mpirun must be there
+  return engine;
+}
+
 struct MacroScene {
   std::string title;
   std::uint64_t seed = 1;
@@ -43,6 +68,7 @@ struct MacroScene {
   MacroSetup setup;
   SoftParticleSpec spec;      ///< that the law was measured on, and of the contents of twins
   std::int64_t contents = 7;  ///< number of different ones
+  std::optional<LammpsEngine> lammps{};
 };
 
 /// What the laws were measured on; of a table its first entry.
@@ -64,6 +90,9 @@ MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   out.setup.kept_states = read_kept_states(root);
   out.contents = root.count("contents", 1, 100000, out.contents);
   root.finish();
+  out.lammps = read_engine(options);
+  if (out.setup.spec.preparation == "lammps" && !out.lammps)
+    throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
   return out;
 }
 
@@ -101,6 +130,65 @@ nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const st
   return summary;
 }
 
+LammpsRuns lammps_runs(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
+                       const Provenance& provenance) {
+  return {scene.setup, law, mean_solid_fraction(contents), scene.title,
+          fmt::format("{}\n# seed {}\n{}", provenance.scene, provenance.seed, scene.law.text)};
+}
+
+constexpr const char* kInitialFile = "macro_initial.h5";
+
+/// Bodies that LAMMPS is still to bring into touch are no starting state.
+void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& packings, const RunContext& context,
+                      const Provenance& provenance) {
+  if (scene.setup.spec.preparation == "softgrain") save_packings(packings, context, provenance, kInitialFile);
+}
+
+/// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
+ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
+                      std::uint64_t seed, const TaskStore& store, const RunContext& context,
+                      const Provenance& provenance) {
+  context.guard([&] {
+    const auto packings = prepare_packings(scene.setup, seed, store, context, kInitialFile);
+    save_if_prepared(scene, packings, context, provenance);
+    write_lammps_files(lammps_runs(scene, law, contents, provenance), packings, context);
+  });
+  nlohmann::json summary = {{"status", "written"}, {"title", scene.title}, {"remarks", {"nothing was run"}}};
+  for (std::int64_t k = 0; k < scene.setup.samples; ++k)
+    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
+  summary["provenance"] = provenance_json(provenance);
+  context.finish(summary,
+                 fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
+                             "--with-lammps builds); then the same command here with --resume and without --write-only",
+                             lammps_directory(context, 0),
+                             scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
+                             lammps::kProgramName));
+  return ExitStatus::good;
+}
+
+std::vector<MacroCurve> run(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
+                            std::uint64_t seed, const TaskStore& store, const RunContext& context,
+                            const Provenance& provenance) {
+  if (!scene.lammps) return run_macro_stage(scene.setup, law, contents, seed, store, context, provenance);
+  auto packings = prepare_packings(scene.setup, seed, store, context, kInitialFile);
+  save_if_prepared(scene, packings, context, provenance);
+  const LammpsRuns runs = lammps_runs(scene, law, contents, provenance);
+  write_lammps_files(runs, packings, context);
+  auto outcomes = run_with_lammps(runs, *scene.lammps, packings, context);
+  save_packings(packings, context, provenance, kInitialFile);
+  auto curves = run_engines({scene.setup, packings, contents, seed, "macro"}, {}, store, context, provenance,
+                            "states_macro.h5", std::move(outcomes));
+  save_macro(curves, context.path("macro.h5"), provenance);
+  return curves;
+}
+
+void add_engine(const LammpsEngine& engine, std::int64_t samples, const RunContext& context, nlohmann::json& summary) {
+  summary["engine"] = {
+      {"name", "lammps"}, {"ranks", engine.ranks}, {"program", engine.program}, {"lammps", lammps_release(context)}};
+  for (std::int64_t k = 0; k < samples; ++k)
+    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
+}
+
 }  // namespace
 
 ExitStatus command_macrosim(const CommonOptions& options) {
@@ -114,14 +202,18 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, seed);
   const NamedLaws law = law_of(macro, contents);
+  if (macro.lammps) refuse_to_lose_points(context);
+  if (macro.lammps && macro.lammps->write_only)
+    return write_only(macro, law, contents, seed, store, context, provenance);
   std::vector<MacroCurve> curves;
-  context.guard([&] { curves = run_macro_stage(macro.setup, law, contents, seed, store, context, provenance); });
+  context.guard([&] { curves = run(macro, law, contents, seed, store, context, provenance); });
 
   const bool usable = std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
   nlohmann::json summary = summarise(macro, law, curves, usable);
   summary["files"] = {{"macro", context.path("macro.h5")},
                       {"initial", context.path("macro_initial.h5")},
                       {"report", context.path("report.html")}};
+  if (macro.lammps) add_engine(*macro.lammps, macro.setup.samples, context, summary);
   summary["provenance"] = provenance_json(provenance);
   context.finish(summary, people_text(curves, context));
   write_report(context.directory());

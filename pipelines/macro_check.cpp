@@ -11,6 +11,7 @@
 #include "macrosim/constructed_packing.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kept_states.h"
+#include "pipelines/lammps/lammps_program.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/macro_comparison.h"
 #include "pipelines/measure_check.h"
@@ -165,6 +166,7 @@ void add_law_time(const MacroSetup& setup, const BodyCounts& count, const LawSou
   if (setup.spec.construction == "voids") return;  // made already; what it takes is in the twin's figures
   MacroSpec spec = setup.spec;
   spec.bodies = std::min(spec.bodies, kTrialBodies);
+  spec.preparation = "softgrain";
   const double known = fraction > 0.0 || !laws.table ? fraction : laws.table->entries.front().solid_fraction;
   LawSources one = laws;
   one.range = RangePolicy::clamp;
@@ -180,6 +182,31 @@ void add_law_time(const MacroSetup& setup, const BodyCounts& count, const LawSou
                            static_cast<double>(setup.samples) * static_cast<double>(laws.forms.size());
     out.add_time("core_seconds_laws", seconds, "law runs, one core");
   } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
+  }
+}
+
+/// A scene that LAMMPS prepares: what it takes there, and whether it is here.
+void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
+  // Measured with a million bodies on two ranks.
+  constexpr double kFileBytes = 91.0;
+  constexpr double kRankBytes = 800.0;
+  if (setup.spec.preparation != "lammps") return;
+  const double files = count.all * kFileBytes * static_cast<double>(setup.samples);
+  out.add(
+      "engine", "lammps",
+      "runs with `softgrain macrosim --engine lammps` alone: bodies are placed here, LAMMPS compacts and strains them");
+  out.add("lammps_file_bytes", files, fmt::format("bodies for LAMMPS: about {:.3g} MB of text", files / 1e6));
+  out.add("lammps_bytes", count.all * kRankBytes,
+          fmt::format("memory in LAMMPS: about {:.3g} MB over all ranks when bodies are loose, more when they touch",
+                      count.all * kRankBytes / 1e6));
+  try {
+    const std::string program = lammps::find_program();
+    if (program.empty())
+      out.warn(lammps::missing_text());
+    else
+      out.add("lammps_program", program, "LAMMPS: " + program);
+  } catch (const BadInput& e) {
+    out.warn(e.what());
   }
 }
 
@@ -238,6 +265,7 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSourc
     out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
   }
   warn_of_scene(setup, count, out);
+  check_lammps(setup, count, out);
   if (laws == nullptr) return;
   check_laws_of(*laws, setup.spec, contents_fraction, out);
   add_law_time(setup, count, *laws, contents_fraction, out);

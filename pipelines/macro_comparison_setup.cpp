@@ -22,6 +22,7 @@ bool sound_name(const std::string& name) {
 ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const std::vector<ComparisonScene>& before) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
+  require_own_preparation(t, scene.setup);
   std::string name = default_name(scene.setup.spec);
   std::replace(name.begin(), name.end(), '.', '-');
   scene.name = t.text("name", name);
@@ -43,6 +44,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   setup.spec = read_soft_particle(root);
   setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
   MacroSetup base = read_macro_setup(root.table("macro"), setup.spec);
+  require_own_preparation(root.table("macro"), base);
   if (!root.table("macro").has("resolved")) base.twins = {"shelled", "free"};
   base.kept_states = read_kept_states(root);
   for (const SceneTable& t : root.tables("scene")) setup.scenes.push_back(read_scene(t, base, setup.scenes));

@@ -22,6 +22,10 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
     t.reject("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
+  spec.preparation = t.choice("preparation", {"softgrain", "lammps"}, spec.preparation);
+  if (spec.preparation == "lammps" && spec.construction == "voids")
+    t.reject("preparation",
+             "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
 
@@ -53,6 +57,11 @@ std::vector<std::string> read_twins(const SceneTable& t, const std::vector<std::
 }
 
 }  // namespace
+
+void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
+  if (setup.spec.preparation == "lammps")
+    macro.reject("preparation", "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
+}
 
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults) {
   MacroSetup setup;

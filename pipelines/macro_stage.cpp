@@ -60,31 +60,13 @@ MacroSystem make_system(const Stage& stage, std::int64_t sample, const std::stri
   return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
 }
 
-/// What is recorded last, with the names that people and files give it.
-Snapshot named_state(const MacroRuns& runs, const CompressionState& state) {
-  Snapshot s = macro_snapshot(state.macro, runs.packings[static_cast<std::size_t>(state.curve.sample)]);
-  const MacroCurve& c = state.curve;
-  const bool twin = c.engine == "shelled" || c.engine == "free";
-  s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
-  s.strain = c.strain.back();
-  s.series = fmt::format("{}{}-{}", runs.name == "macro" ? "" : runs.name + "/", c.engine, c.sample);
-  s.label = fmt::format("{}{} {}, sample {}, strain {:.4g}", runs.name == "macro" ? "" : runs.name + ": ", c.engine,
-                        twin ? "twin" : "run", c.sample, s.strain);
-  return s;
-}
-
-/// A run and the states of it that are kept.
-struct RunOutcome {
-  MacroCurve curve;
-  std::vector<Snapshot> states;
-};
-
 RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws,
                    Progress& progress) {
   const MacroSpec& spec = stage.runs.setup.spec;
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
   CompressionState state;
   state.macro = make_system(stage, sample, engine, laws);
-  state.curve = begin_curve(spec, stage.runs.packings[static_cast<std::size_t>(sample)], state.macro, engine, sample);
+  state.curve = begin_curve(spec, packing, state.macro, engine, sample);
   const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
   const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
@@ -95,7 +77,8 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& e
       state, spec,
       [&](const CompressionState& s, double share) {
         const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
-        if (s.increments == 0 && states.wants(point)) states.add(named_state(stage.runs, s), point);
+        if (s.increments == 0 && states.wants(point))
+          states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
         stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
         progress.advance(share - done);
         done = share;
@@ -142,6 +125,18 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
 
 }  // namespace
 
+Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& c,
+                     const std::string& runs) {
+  Snapshot s = macro_snapshot(macro, packing);
+  const bool twin = c.engine == "shelled" || c.engine == "free";
+  s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
+  s.strain = c.strain.back();
+  s.series = fmt::format("{}{}-{}", runs == "macro" ? "" : runs + "/", c.engine, c.sample);
+  s.label = fmt::format("{}{} {}, sample {}, strain {:.4g}", runs == "macro" ? "" : runs + ": ", c.engine,
+                        twin ? "twin" : "run", c.sample, s.strain);
+  return s;
+}
+
 double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
   double sum = 0.0;
   for (const ShellPacking& p : contents) sum += p.solid_fraction();
@@ -158,32 +153,43 @@ std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64
   return contents;
 }
 
-std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                              const RunContext& context, const Provenance& provenance,
-                                              const std::string& file_name) {
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                           const RunContext& context, const std::string& file_name) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
     packings[static_cast<std::size_t>(k)] = kept_packing(setup.spec, seed, k, store, file_name);
     progress.advance();
   });
+  return packings;
+}
+
+void save_packings(const std::vector<MacroPacking>& packings, const RunContext& context, const Provenance& provenance,
+                   const std::string& file_name) {
   h5::AtomicFile file(context.path(file_name));
   write_provenance(file.root(), provenance);
   for (std::size_t k = 0; k < packings.size(); ++k)
     write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
   file.commit();
+}
+
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                              const RunContext& context, const Provenance& provenance,
+                                              const std::string& file_name) {
+  auto packings = prepare_packings(setup, seed, store, context, file_name);
+  save_packings(packings, context, provenance, file_name);
   return packings;
 }
 
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
                                     const RunContext& context, const Provenance& provenance,
-                                    const std::string& states_file) {
+                                    const std::string& states_file, std::vector<RunOutcome> before) {
   const Stage stage{runs, store, mean_solid_fraction(runs.contents)};
   std::vector<Engine> with_laws;
   std::vector<Engine> twins;
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
   for (const std::string& name : runs.setup.twins) twins.push_back({name});
-  std::vector<RunOutcome> outcomes;
+  std::vector<RunOutcome> outcomes = std::move(before);
   run_kind(stage, with_laws, " with laws", context, outcomes);
   run_kind(stage, twins, ": resolved twins", context, outcomes);
   std::vector<MacroCurve> curves;

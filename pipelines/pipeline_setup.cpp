@@ -20,7 +20,10 @@ PipelineSetup read_pipeline_setup(const SceneTable& root) {
   setup.title = root.text("title", "");
   setup.measure = read_measure_setup(root);
   setup.fit = read_fit_options(root.table_or_empty("calibrate"));
-  if (root.has("macro")) setup.macro = read_macro_setup(root.table("macro"), setup.measure.spec);
+  if (root.has("macro")) {
+    setup.macro = read_macro_setup(root.table("macro"), setup.measure.spec);
+    require_own_preparation(root.table("macro"), *setup.macro);
+  }
   if (setup.macro) setup.macro->kept_states = setup.measure.kept_states;
   root.finish();
   return setup;

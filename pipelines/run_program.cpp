@@ -22,6 +22,7 @@ namespace softgrain {
 namespace {
 
 constexpr int kMostThreads = 4096;
+constexpr std::int64_t kMostRanks = 1'000'000;
 
 struct Command {
   const char* name;
@@ -123,6 +124,14 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--modulus", o.modulus, "CSV: Young's modulus E of its grains, e.g. \"0.5 MPa\"")
         ->option_text("PRESSURE");
   }
+  if (command.function == command_macrosim) {
+    app.add_option("--engine", o.engine, "What runs the scene with the law: softgrain (default) or lammps")
+        ->option_text("NAME");
+    app.add_option("--ranks", o.ranks, "With --engine lammps: MPI ranks; default 1")
+        ->option_text("N")
+        ->transform(whole_number("--ranks", 1, kMostRanks));
+    app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
+  }
   if (command.function == command_macrosim || command.function == command_check)
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
@@ -204,7 +213,7 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
   if (e.get_exit_code() == 0) return app.exit(e);
   std::string message = e.what();
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
-  for (const std::string option : {"--threads", "--seed"})
+  for (const std::string option : {"--threads", "--seed", "--ranks"})
     if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
   return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)");
 }

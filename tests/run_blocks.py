@@ -90,6 +90,9 @@ RULES = [
     (r"\./softgrain run pipelines/inverse\.toml", Check(slow=True)),
     (r"\./softgrain microsim pipelines/grainlearning_example/soft_particle\.toml .*", Run(statuses=(0, 3))),
     (r"python3 pipelines/grainlearning_example/calibrate\.py", Elsewhere("default suite: the tests OwnData")),
+    (r"\./softgrain setup --with-lammps|\./softgrain macrosim scene\.toml --law law\.toml --engine lammps .*"
+     r"|mpirun -np 512 softgrain-lammps -in scene\.in( -var from 12)?|cmake --build build/release --target softgrain-lammps",
+     Elsewhere("default suite: the tests MacroLammps, with softgrain-lammps WithLammps")),
     (r"\./softgrain microsim pipelines/glass_beads_small\.toml",
      Run()),
 ]

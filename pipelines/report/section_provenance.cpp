@@ -5,12 +5,21 @@
 namespace softgrain::report {
 namespace {
 
-std::string rows(const nlohmann::json& provenance) {
+/// "LAMMPS 29 Sep 2021, 4 ranks", where it was not our own engine.
+std::string engine_of(const nlohmann::json& summary) {
+  const auto* engine = find_value(summary, "engine");
+  if (engine == nullptr || find_text(*engine, "name") != "lammps") return "";
+  const auto* ranks = find_value(*engine, "ranks");
+  return "LAMMPS " + find_text(*engine, "lammps") + ", ranks: " + (ranks != nullptr ? ranks->dump() : "unknown");
+}
+
+std::string rows(const nlohmann::json& provenance, const std::string& engine) {
   HtmlTable table({"what", "value"}, 2);
   for (const char* key : {"version", "commit", "compiler", "threads", "seed", "command"}) {
     const std::string value = find_text(provenance, key);
     if (!value.empty()) table.row({key, value});
   }
+  if (!engine.empty()) table.row({"engine", engine});
   return table.empty() ? "" : table.html();
 }
 
@@ -28,7 +37,7 @@ std::string files(const nlohmann::json& summary) {
 std::string provenance_section(const RunData& run) {
   const auto* found = find_value(run.summary, "provenance");
   const nlohmann::json& provenance = found != nullptr ? *found : run.summary;
-  std::string body = rows(provenance) + files(run.summary);
+  std::string body = rows(provenance, engine_of(run.summary)) + files(run.summary);
   const std::string scene = find_text(provenance, "scene");
   if (!scene.empty()) body += "<h3>Scene</h3>\n<pre>" + escape(scene) + "</pre>\n";
   return section("provenance", "Provenance", body);

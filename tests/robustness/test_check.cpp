@@ -46,6 +46,17 @@ class Check : public ::testing::Test {
   test::TemporaryDirectory directory_;
 };
 
+TEST_F(Check, AMacroSceneThatLammpsPreparesSaysWhatItNeeds) {
+  const std::string scene = macro(kCard, "bodies = 1000000\npreparation = \"lammps\"\nstrain = 0.1\n");
+  ::setenv("SOFTGRAIN_LAMMPS", "/nowhere/softgrain-lammps", 1);
+  const json found = scene_facts(scene);
+  ::unsetenv("SOFTGRAIN_LAMMPS");
+  EXPECT_EQ(found["engine"], "lammps");
+  EXPECT_NEAR(found["lammps_file_bytes"].get<double>(), 91e6, 1e6);
+  EXPECT_TRUE(warned(found, "no program there")) << found["warnings"];
+  EXPECT_FALSE(scene_facts(macro(kCard, "")).contains("engine"));
+}
+
 TEST_F(Check, AMacroSceneOpensItsLaw) {
   EXPECT_TRUE(warned(scene_facts(macro("", "")), "no law named"));
   const json sound = scene_facts(macro(kCard, "strain = 0.1\nsoft_share = 0.0\nbodies = 200\nsamples = 3\n"));

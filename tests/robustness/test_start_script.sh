@@ -102,6 +102,16 @@ missing_with_sudo() {
   check "leaves out what only LAMMPS needs" called 0 'liblammps-dev'
 }
 
+with_lammps() {
+  fresh
+  start setup --with-lammps
+  check "runs with status 0" status 0
+  check "says outright that LAMMPS is wanted" called 1 '^cmake --preset release .*-DSOFTGRAIN_LAMMPS=ON$'
+  check "builds both programs" called 1 '^cmake --build .* --target softgrain softgrain-lammps$'
+  start setup --with-lamps
+  check "status 2 for an unknown option" status 2
+}
+
 missing_without_rights() {
   fresh
   stub dpkg-query ''
@@ -180,7 +190,7 @@ moved_copy() {
 for script_file in softgrain .ci/run; do
   "$real_bash" -n "$root/$script_file" || failures=$((failures + 1))
 done
-for group in nothing_missing missing_as_root missing_with_sudo missing_without_rights other_system failing_steps unwritable tests_command moved_copy; do
+for group in nothing_missing missing_as_root missing_with_sudo with_lammps missing_without_rights other_system failing_steps unwritable tests_command moved_copy; do
   printf -- '-- %s\n' "$group"
   "$group"
 done

@@ -39,7 +39,7 @@ std::vector<MacroBody> some_bodies(std::size_t count, double exponent, double po
 
 double edge_of(const std::vector<MacroBody>& bodies, double fraction) {
   double volume = 0.0;
-  for (const MacroBody& b : bodies) volume += kSphereVolume * b.r * b.r * b.r;
+  for (const MacroBody& b : bodies) volume += kSphereVolume * (b.r * b.r * b.r);
   return std::cbrt(volume / fraction);
 }
 

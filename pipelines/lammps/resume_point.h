@@ -1,0 +1,18 @@
+// Where a test in LAMMPS goes on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace softgrain::lammps {
+
+struct ResumePoint {
+  bool done = false;                  ///< everything is recorded and the last state is there
+  std::vector<std::string> settings;  ///< "-var", NAME, VALUE...
+};
+
+/// From the tables and restart files in the directory of a sample. Brings points.txt to the point that the run goes on
+/// after. Throws what read_points() throws.
+ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points);
+
+}  // namespace softgrain::lammps

@@ -1,0 +1,50 @@
+// Tables and dumps as the script of LAMMPS writes them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "pipelines/lammps/points_file.h"
+
+namespace softgrain::test {
+
+/// Point `number` of a test that went well, in a box of 1 m.
+inline lammps::PointRow point_row(double number, double strain) {
+  using lammps::Point;
+  lammps::PointRow row;
+  const auto set = [&](Point p, double x) { row.values[static_cast<std::size_t>(p)] = x; };
+  set(Point::number, number);
+  set(Point::strain, strain);
+  for (const Point p : {Point::lx, Point::ly, Point::lz}) set(p, 1.0);
+  for (int k = 0; k < 6; ++k) row.values[static_cast<std::size_t>(Point::wall_xlo) + k] = 10.0 + k;
+  set(Point::contacts, 4.0);
+  set(Point::wall_contacts, 2.0);
+  set(Point::force_sum, 40.0);
+  set(Point::fabric, 0.25);
+  set(Point::branch_zz, 15.0);
+  set(Point::law_asked, 3.0);
+  set(Point::law_largest, 0.5);
+  set(Point::residual, 0.003);
+  set(Point::passes, 100.0);
+  set(Point::end, 1.0);
+  set(Point::looked_at, 1234.0);
+  set(Point::seconds, 0.5);
+  return row;
+}
+
+inline lammps::PointRow with(lammps::PointRow row, lammps::Point p, double x) {
+  row.values[static_cast<std::size_t>(p)] = x;
+  return row;
+}
+
+inline std::string dump_text(const std::string& what, const std::vector<std::string>& rows) {
+  std::string text = fmt::format(
+      "ITEM: TIMESTEP\n7\nITEM: NUMBER OF {}\n{}\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n", what, rows.size());
+  text += "ITEM: " + what + " some columns\n";
+  for (const std::string& row : rows) text += row + "\n";
+  return text;
+}
+
+}  // namespace softgrain::test

@@ -1,0 +1,373 @@
+// What goes to LAMMPS and comes back from it: data file, script, tables of points, dumps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "macrosim/test_protocol.h"
+#include "pipelines/lammps/data_file.h"
+#include "pipelines/lammps/dump_files.h"
+#include "pipelines/lammps/input_script.h"
+#include "pipelines/lammps/lammps_curve.h"
+#include "pipelines/lammps/lammps_log.h"
+#include "pipelines/lammps/resume_point.h"
+#include "tests/support/lammps_files.h"
+#include "tests/support/temporary_directory.h"
+
+namespace softgrain {
+namespace {
+
+using lammps::Point;
+using lammps::PointRow;
+using test::point_row;
+using test::with;
+
+/// Two octaves of solid grains, one of soft ones.
+MacroPacking small_packing() {
+  MacroPacking p{{}, {{1.0, 1.0, 1.0}}, {}};
+  p.bodies.push_back({{{0.1 + 0.2, 0.3, 1.0 / 3.0}}, 0.016, false});
+  p.bodies.push_back({{{0.7, 0.1, 0.2}}, 0.0081, false});
+  p.bodies.push_back({{{0.2, 0.8, 0.9}}, 0.008, false});
+  p.bodies.push_back({{{0.5, 0.5, 0.5}}, 0.012, true});
+  return p;
+}
+
+TEST(LammpsFiles, TypesAreSizeClassesOfSolidAndSoftBodies) {
+  const lammps::BodyTypes types = lammps::body_types(small_packing());
+  EXPECT_EQ(types.of, (std::vector<std::int32_t>{1, 1, 2, 3}));
+  EXPECT_EQ(types.solid_range(), "1*2");
+  EXPECT_EQ(types.soft_range(), "3");
+  EXPECT_EQ(types.largest, (std::vector<double>{0.016, 0.008, 0.012}));
+  MacroPacking solid = small_packing();
+  solid.bodies.pop_back();
+  EXPECT_EQ(lammps::body_types(solid).soft_range(), "");
+}
+
+TEST(LammpsFiles, TheDataFileReadsBackToTheSameBits) {
+  const test::TemporaryDirectory directory;
+  const MacroPacking packing = small_packing();
+  const lammps::BodyTypes types = lammps::body_types(packing);
+  lammps::write_data_file(directory.file("bodies.data"), "a title", packing, types, 2500.0, 0.7);
+  std::istringstream in(read_text(directory.file("bodies.data")));
+  std::string line;
+  while (std::getline(in, line) && line != "Atoms # sphere") {
+  }
+  std::getline(in, line);
+  for (std::size_t k = 0; k < packing.bodies.size(); ++k) {
+    const MacroBody& b = packing.bodies[k];
+    std::size_t id = 0;
+    std::int32_t type = 0;
+    std::array<double, 5> x{};
+    ASSERT_TRUE(in >> id >> type >> x[0] >> x[1] >> x[2] >> x[3] >> x[4]);
+    EXPECT_EQ(id, k + 1);
+    EXPECT_EQ(type, types.of[k]);
+    EXPECT_EQ(0.5 * x[0], b.r);
+    EXPECT_EQ(x[1], b.soft ? 2500.0 * 0.7 : 2500.0);
+    EXPECT_EQ((Vec3{{x[2], x[3], x[4]}}), b.x);
+  }
+  EXPECT_FALSE(in >> line);
+  EXPECT_FALSE(std::filesystem::exists(directory.file("bodies.data.tmp")));
+}
+
+/// Without waiting for the disk.
+void overwrite(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string script_of(const MacroSpec& spec) {
+  const MacroPacking packing = small_packing();
+  return lammps::script_text({spec, packing, lammps::body_types(packing), "a title & $more", "0123456789abcdef", 4});
+}
+
+MacroSpec spec_of(const std::string& test, double preload = 0.0, const std::string& preparation = "softgrain") {
+  MacroSpec spec;
+  spec.test = test;
+  spec.preload = preload;
+  spec.preparation = preparation;
+  return spec;
+}
+
+TEST(LammpsFiles, ScriptsAreForPeople) {
+  for (const MacroSpec& spec : {spec_of("oedometric"), spec_of("isotropic"), spec_of("shear"), spec_of("shear", 0.02),
+                                spec_of("oedometric", 0.0, "lammps")}) {
+    std::istringstream in(script_of(spec));
+    for (std::string line; std::getline(in, line);) {
+      EXPECT_LE(line.size(), 110U) << line;
+      EXPECT_EQ(line.find(" /"), std::string::npos) << "a path: " << line;
+    }
+  }
+}
+
+TEST(LammpsFiles, ScriptsSayWhatTheSceneAsksFor) {
+  MacroSpec spec = spec_of("oedometric");
+  spec.strain_end = 0.123;
+  spec.steps = 17;
+  spec.max_passes = 4321;
+  const std::string text = script_of(spec);
+  for (const char* words :
+       {"variable strain_end    index 0.123", "variable steps         index 17", "variable max_passes    index 4321",
+        "pair_coeff   3 1*2 laws.toml soft-solid", "pair_style   softgrain soft 3",
+        "law 1*2 laws.toml solid-wall law 3 laws.toml soft-wall", "0123456789abcdef"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << " not in\n" << text;
+  EXPECT_EQ(text.find("compaction"), std::string::npos);
+  EXPECT_NE(script_of(spec_of("oedometric", 0.0, "lammps")).find("laws.toml hard"), std::string::npos);
+}
+
+/// Every label that is jumped to is there, once.
+TEST(LammpsFiles, JumpsOfScriptsHaveTheirLabels) {
+  const std::string text = script_of(spec_of("shear", 0.02, "lammps"));
+  std::size_t jumps = 0;
+  for (std::size_t at = text.find("jump SELF "); at != std::string::npos; at = text.find("jump SELF ", at + 1)) {
+    const std::string name = text.substr(at + 10, text.find_first_of("\"\n", at) - at - 10);
+    const std::string label = "label " + name + "\n";
+    EXPECT_NE(text.find(label), std::string::npos) << name;
+    EXPECT_EQ(text.find(label), text.rfind(label)) << name;
+    ++jumps;
+  }
+  EXPECT_GT(jumps, 8U);
+}
+
+class Tables : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string points() const { return directory_.file(lammps::kPointsFile); }
+  [[nodiscard]] std::string copy() const { return directory_.file(lammps::kPointsCopy); }
+  [[nodiscard]] std::vector<PointRow> read() const { return lammps::read_points(directory_.path(), "key"); }
+  void write(std::size_t count) {
+    std::vector<PointRow> rows;
+    for (double k = 0.0; k < static_cast<double>(count); k += 1.0) rows.push_back(point_row(k, 0.1 * k));
+    lammps::write_points(directory_.path(), "key", rows);
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Tables, ReadBackWhatWasWritten) {
+  EXPECT_TRUE(read().empty());
+  write(3);
+  const auto rows = read();
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[2].values, point_row(2.0, 0.2).values);
+  EXPECT_EQ(lammps::count_points(directory_.path()), 3);
+  EXPECT_THROW((void)lammps::read_points(directory_.path(), "another"), BadInput);
+}
+
+/// Cut at any place, a table gives the rows before or is refused; it never gives others.
+TEST_F(Tables, CutShortAnywhereIsNoticed) {
+  write(3);
+  const std::string whole = read_text(points());
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    overwrite(points(), whole.substr(0, size));
+    try {
+      EXPECT_LE(read().size(), 2U) << size;
+    } catch (const FileTrouble&) {
+    }
+  }
+}
+
+TEST_F(Tables, AnyDamagedByteIsNoticed) {
+  write(2);
+  const std::string whole = read_text(points());
+  const auto expected = read();
+  for (const std::string& path : {points(), copy()})
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      std::string damaged = whole;
+      damaged[k] = static_cast<char>(damaged[k] ^ 1);
+      overwrite(path, damaged);
+      try {
+        const auto rows = read();
+        // The last line may count as being written.
+        ASSERT_LT(rows.size(), 2U) << k << " of " << path;
+      } catch (const Error&) {
+      }
+      overwrite(path, whole);
+    }
+}
+
+TEST_F(Tables, RowsThatComeAgainReplaceThoseBefore) {
+  write(3);
+  std::string text = read_text(points());
+  const std::size_t row = text.find("\n1 ") + 1;
+  text += text.substr(row, text.find('\n', row) + 1 - row);
+  overwrite(points(), text);
+  overwrite(copy(), text);
+  EXPECT_EQ(read().size(), 2U);
+}
+
+TEST_F(Tables, GapsAndOtherWordsAreRefused) {
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    write(3);
+    std::string text = read_text(points());
+    text.replace(text.find(from), from.size(), to);
+    overwrite(points(), text);
+    overwrite(copy(), text);
+    EXPECT_THROW((void)read(), FileTrouble) << to;
+  };
+  refused("\n1 ", "\n5 ");
+  refused("\n1 ", "\nnan ");
+  refused("\n1 ", "\none ");
+  refused("\n1 0.1 ", "\n1 ");
+  refused("# softgrain points 1", "# softgrain points 9");
+}
+
+/// Test of four points, with tables and restart files as a run leaves them.
+class Resume : public Tables {
+ protected:
+  void touch(const std::string& name) const { overwrite(directory_.file(name), "x"); }
+  [[nodiscard]] lammps::ResumePoint find() const { return lammps::find_resume_point(directory_.path(), "key", 4); }
+  using Words = std::vector<std::string>;
+};
+
+TEST_F(Resume, GoesOnAfterTheLastPointThatHasARestartFile) {
+  EXPECT_TRUE(find().settings.empty());
+  write(3);
+  EXPECT_TRUE(find().settings.empty()) << "no restart file";
+  write(3);
+  touch("restart.1");
+  EXPECT_EQ(find().settings, (Words{"-var", "from", "1"}));
+  EXPECT_EQ(read().size(), 2U);
+  write(3);
+  touch("restart.2");
+  EXPECT_EQ(find().settings, (Words{"-var", "from", "2"}));
+}
+
+TEST_F(Resume, IsDoneWhenTheLastStateIsThere) {
+  write(4);
+  touch("restart.3");
+  EXPECT_EQ(find().settings, (Words{"-var", "from", "3"}));
+  touch(lammps::kEndFile);
+  EXPECT_TRUE(find().done);
+}
+
+TEST_F(Resume, ATestThatEndedEarlyDoesNotGoBeyond) {
+  lammps::write_points(directory_.path(), "key", {point_row(0, 0), with(point_row(1, 0.1), Point::law_refused, 2.0)});
+  touch("restart.0");
+  touch("restart.1");
+  EXPECT_EQ(find().settings, (Words{"-var", "from", "0"}));
+  lammps::write_points(directory_.path(), "key", {point_row(0, 0), with(point_row(1, 0.1), Point::law_refused, 2.0)});
+  touch(lammps::kEndFile);
+  EXPECT_TRUE(find().done);
+}
+
+TEST_F(Resume, GoesOnWithinTheCompaction) {
+  overwrite(directory_.file(lammps::kCompactionFile), "# head\n1 0.02 1 0 5 1\n2 0.01 1 0 5 1\n3 0.005 1");
+  touch("restart.compaction.1");
+  touch("restart.compaction.2");
+  touch("restart.compaction.3");
+  EXPECT_EQ(find().settings, (Words{"-var", "round_done", "2", "-var", "first_step", "0.01"}));
+  touch(lammps::kTouchingFile);
+  EXPECT_EQ(find().settings, (Words{"-var", "prepared", "1"}));
+}
+
+class Dumps : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string write(const std::string& text) const {
+    overwrite(directory_.file("dump.txt"), text);
+    return directory_.file("dump.txt");
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Dumps, BodiesAreReadAndMistakesRefused) {
+  MacroPacking packing = small_packing();
+  packing.bodies.resize(2);
+  const std::vector<std::string> rows{"1 1 0.016 0.1 0.2 0.3", "2 1 0.0081 0.4 0.5 0.6"};
+  const auto bodies = lammps::read_bodies(write(test::dump_text("ATOMS", rows)), packing);
+  EXPECT_EQ(bodies.x[1], (Vec3{{0.4, 0.5, 0.6}}));
+  EXPECT_EQ(bodies.high, (Vec3{{1.0, 1.0, 1.0}}));
+  const auto refused = [&](const std::vector<std::string>& bad) {
+    EXPECT_THROW((void)lammps::read_bodies(write(test::dump_text("ATOMS", bad)), packing), FileTrouble);
+  };
+  refused({rows[0]});
+  refused({rows[0], rows[0]});
+  refused({rows[0], "2 1 0.0081 0.4 0.5"});
+  refused({rows[0], "2 1 0.0082 0.4 0.5 0.6"});
+  refused({rows[0], "2 1 0.0081 0.4 nan 0.6"});
+  const std::string whole = test::dump_text("ATOMS", rows);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_THROW((void)lammps::read_bodies(write(whole.substr(0, size)), packing), FileTrouble) << size;
+}
+
+TEST_F(Dumps, ContactsAreReadAndMustFitTheRowOfTheirPoint) {
+  const std::vector<std::string> rows{"2 -6 3 0 0 -3 0 0 -1", "2 1 2 1 0 0 1 0 0"};
+  const auto contacts = lammps::read_contacts(write(test::dump_text("ENTRIES", rows)), 2, 2.0, 5.0);
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_EQ(contacts[0].i, 0);
+  EXPECT_EQ(contacts[0].j, 1);
+  EXPECT_EQ(contacts[0].force, (Vec3{{-1.0, 0.0, 0.0}})) << "on the body of smaller number";
+  EXPECT_EQ(contacts[1].j, 7) << "walls follow after the bodies: z high is the sixth";
+  EXPECT_EQ(lammps::normal_forces(contacts), (std::vector<double>{2.0, 3.0}));
+  const std::string path = write(test::dump_text("ENTRIES", rows));
+  EXPECT_THROW((void)lammps::read_contacts(path, 2, 3.0, 5.0), FileTrouble);
+  EXPECT_THROW((void)lammps::read_contacts(path, 2, 2.0, 5.1), FileTrouble);
+  EXPECT_THROW((void)lammps::read_contacts(path, 1, 2.0, 5.0), FileTrouble);
+}
+
+class Curves : public ::testing::Test {
+ protected:
+  Curves() {
+    spec_.steps = 2;
+    spec_.strain_end = 0.2;
+    curve_.engine = "law";
+    curve_.bodies = 4;
+    curve_.soft = 2;
+  }
+  MacroSpec spec_;
+  MacroCurve curve_;
+};
+
+TEST_F(Curves, RowsBecomeWhatOurOwnEngineRecords) {
+  lammps::add_points({point_row(0, 0.0), point_row(1, 0.1), point_row(2, 0.2)}, spec_, curve_);
+  ASSERT_EQ(curve_.strain.size(), 3U);
+  EXPECT_EQ(curve_.strain, (std::vector<double>{0.0, 0.1, 0.2}));
+  EXPECT_EQ(curve_.stress_x[1], 10.5);
+  EXPECT_EQ(curve_.stress_y[1], 12.5);
+  EXPECT_EQ(curve_.stress_axial[1], 14.5);
+  EXPECT_EQ(curve_.stress_lateral[1], 11.5);
+  EXPECT_EQ(curve_.stress_deviator[1], 4.0);
+  EXPECT_EQ(curve_.stress_axial_contacts[1], 15.0);
+  EXPECT_EQ(curve_.coordination[1], 2.0);
+  EXPECT_EQ(curve_.coordination_bodies[1], 1.5);
+  EXPECT_EQ(curve_.law_asked[1], 3.0);
+  EXPECT_EQ(curve_.cost.loop_passes, 300);
+  EXPECT_EQ(curve_.cost.contact_evaluations, 3702);
+  EXPECT_TRUE(curve_.usable);
+  EXPECT_EQ(curve_.note, "");
+}
+
+TEST_F(Curves, WhatWentWrongIsSaidAsWithOurOwnEngine) {
+  lammps::add_points({point_row(0, 0.0), with(point_row(1, 0.1), Point::end, 2.0), point_row(2, 0.2)}, spec_, curve_);
+  EXPECT_FALSE(curve_.usable);
+  EXPECT_EQ(curve_.note,
+            "relaxation capped at strain 0.100000 (residual 0.003000 of the mean contact force, wanted 0.010000)");
+}
+
+TEST_F(Curves, ARefusedLawEndsTheTest) {
+  PointRow last = with(point_row(1, 0.1), Point::law_refused, 1.0);
+  last = with(with(last, Point::law_beyond, 1.0), Point::law_largest, 1.5);
+  EXPECT_TRUE(lammps::ended_early(last));
+  lammps::add_points({point_row(0, 0.0), last}, spec_, curve_);
+  EXPECT_FALSE(curve_.usable);
+  EXPECT_NE(curve_.note.find("which the law does not allow"), std::string::npos) << curve_.note;
+}
+
+TEST_F(Curves, AnotherTestIsRefused) {
+  EXPECT_THROW(lammps::add_points({point_row(0, 0.0), point_row(1, 0.11)}, spec_, curve_), FileTrouble);
+}
+
+TEST(LammpsLog, NamesTheErrorOrTheLastLines) {
+  const test::TemporaryDirectory directory;
+  overwrite(directory.file("log"), "before ERROR: old\n");
+  const auto begin = std::filesystem::file_size(directory.file("log"));
+  EXPECT_EQ(lammps::read_log(directory.file("log"), begin).complaint(), "its log is empty");
+  overwrite(directory.file("log"), "before ERROR: old\none\n---\ntwo\n");
+  EXPECT_EQ(lammps::read_log(directory.file("log"), begin).complaint(), "its log ends with: one | two");
+  overwrite(directory.file("log"), "before ERROR: old\none\nERROR: Lost atoms (thermo.cpp:1)\nmore\n");
+  const auto log = lammps::read_log(directory.file("log"), begin);
+  EXPECT_EQ(log.complaint(), "ERROR: Lost atoms (thermo.cpp:1)");
+  EXPECT_TRUE(log.says("Lost atoms"));
+}
+
+}  // namespace
+}  // namespace softgrain
