@@ -2,23 +2,17 @@
 // been.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <map>
 #include <sstream>
 
 #include "tests/lammps/macro_scene.h"
+#include "tests/lammps/run_ranks.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain::test {
 namespace {
 
 using State = std::map<int, std::vector<double>>;
-
-std::string read_text(const std::string& path) {
-  std::ostringstream out;
-  out << std::ifstream(path).rdbuf();
-  return out.str();
-}
 
 /// A dump: id, then numbers.
 State read_dump(const std::string& path) {
@@ -59,13 +53,7 @@ class Ranks : public ::testing::Test {
         << "variable restart equal " << (restart ? 1 : 0) << "\natom_modify sort 0 0\n"
         << read_text(directory.path() + "/head.in") << protocol << "write_dump all custom " << name
         << " id x y z vx vy vz modify sort id format float %.17g\n";
-    // The test is an MPI process itself, whose environment would lead mpirun astray.
-    const std::string command =
-        "for v in $(env | grep -E '^(PMIX|OMPI|OPAL|ORTE|PRTE)_' | cut -d= -f1); do unset $v; done; cd '" +
-        directory.path() +
-        "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe --bind-to none -np " +
-        std::to_string(ranks) + " '" SOFTGRAIN_LAMMPS_PROGRAM "' -in run.in -log none > screen.txt 2>&1";
-    EXPECT_EQ(std::system(command.c_str()), 0) << read_text(directory.path() + "/screen.txt");
+    EXPECT_EQ(run_ranks(ranks, directory.path(), "-in run.in"), 0) << read_text(directory.path() + "/screen.txt");
     return read_dump(directory.path() + "/" + name);
   }
 
