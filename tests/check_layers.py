@@ -90,7 +90,7 @@ def unfree(root):
     """One message per file that a program with LAMMPS includes and whose licence is not the free one."""
     todo = [(path, path) for path in source_files(root) if path.startswith(FREE_FOLDER + "/")]
     # Compiled into the same program.
-    todo += [(path, path) for path in source_files(root) if re.fullmatch(r"common/contact/law_file_\w+\.cpp", path)]
+    todo += [(path, path) for path in source_files(root) if re.fullmatch(r"common/(contact/law_file_|io/toml_)\w+\.cpp", path)]
     seen = set()
     while todo:
         path, by = todo.pop()

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "common/contact/law_file.h"
 #include "common/core/error.h"
@@ -196,22 +195,10 @@ AnyLaw read_law(Reader& r) {
   return read_crowd(r);
 }
 
-toml::table parse(const std::string& text, const std::string& origin) {
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& e) {
-    std::ostringstream where;
-    where << origin << ", line " << e.source().begin.line << ": " << e.description();
-    throw BadInput(where.str());
-  } catch (const TomlAssertion&) {
-    throw BadInput(origin + ": no TOML");
-  }
-}
-
 }  // namespace
 
 std::vector<NamedLaw> parse_laws(const std::string& text, const std::string& origin) {
-  const toml::table table = parse(text, origin);
+  const toml::table table = parse_toml(text, origin);
   if (table["softgrain_laws"].value<std::int64_t>() != 1)
     throw BadInput(origin + ": no laws file of softgrain (softgrain_laws = 1 is missing)");
   const toml::array* laws = table["law"].as_array();

@@ -43,3 +43,13 @@ inline double toml_digits(double x) { return x >= 1.0 && std::isfinite(x) ? std:
 #endif
 // Everybody else's assertions as they were.
 #include <cassert>
+
+#include <string>
+
+namespace softgrain {
+
+/// A text as a table; `name` is what messages call it. Throws BadInput with name and line for what is no TOML, or has a
+/// key of very many parts (toml_keys.h).
+toml::table parse_toml(const std::string& text, const std::string& name);
+
+}  // namespace softgrain

@@ -1,5 +1,5 @@
 // What is looked at in a text before toml++ reads it.
-#pragma once
+#pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cstddef>
 #include <string_view>

@@ -61,18 +61,6 @@ const toml::table& pair_of(const toml::table& card, const std::string& kind, con
   throw BadInput(path + ": no law card with a " + kind + " law");
 }
 
-toml::table parse(const std::string& text, const std::string& path) {
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& e) {
-    std::ostringstream message;
-    message << path << ", line " << e.source().begin.line << ": " << e.description();
-    throw BadInput(message.str());
-  } catch (const TomlAssertion&) {
-    throw BadInput(path + ": no TOML");
-  }
-}
-
 }  // namespace
 
 std::string broadcast_file(const std::string& path, MPI_Comm world) {
@@ -108,7 +96,7 @@ AnyLaw law_of_file(const std::string& path, const std::string& name, MPI_Comm wo
 AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardChoices& choices, MPI_Comm world) {
   if (kind != "soft-solid" && kind != "soft-soft")
     throw BadInput("kind '" + kind + "' of a law card: must be soft-solid or soft-soft");
-  const toml::table card = parse(broadcast_file(path, world), path);
+  const toml::table card = parse_toml(broadcast_file(path, world), path);
   const toml::table& pair = pair_of(card, kind, path);
   const std::string where = path + ": " + kind + " law";
   const std::string status = pair["status"].value_or(std::string("missing"));
