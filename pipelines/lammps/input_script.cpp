@@ -97,7 +97,6 @@ std::string loading(const ScriptScene& s) {
         "elif \"${round_done} > 0\" &\n  \"read_restart restart.compaction.${round_done}\" &\n";
   text += fmt::format("else &\n  \"read_data {}\"\n", kDataFile);
   text += "neighbor     ${skin} multi\ncomm_modify  mode multi vel yes\n";
-  text += "variable     looked_before equal 0\n";
   text += fmt::format("neigh_modify delay 0 every 1 check yes{}\n", room_for_neighbours(s));
   return text;
 }
@@ -117,7 +116,11 @@ std::string laws(const ScriptScene& s) {
   if (!solid.empty()) text += fmt::format(" law {} {} solid-wall", solid, kLawsFile);
   if (!soft.empty()) text += fmt::format(" law {} {} soft-wall", soft, kLawsFile);
   text += "\n" + watching();
-  return text + "# a look at the start: from here on the box may change, after a restart file too\nrun 0 post no\n";
+  text += "fix          relax all softgrain/relax tolerance ${tolerance} floor ${floor} max_passes ${max_passes}\n";
+  return text +
+         "# a look at the start: from here on the box may change, after a restart file too\n"
+         "run 0 post no\n"
+         "variable     looked_before equal $(f_relax[6]:%.17g)\n";
 }
 
 }  // namespace

@@ -50,7 +50,6 @@ std::string one_round(const CompactionProtocol& p) {
              p.tolerance, p.max_passes, p.max_passes) +
          "variable passes equal $(f_relax[1])\n"
          "variable end equal $(f_relax[3])\n"
-         "variable looked_before equal $(f_relax[6]:%.17g)\n"
          "unfix relax\n"
          "if \"${end} == 3\" then \"jump SELF loose\"\n"
          "run 0 post no\n"
