@@ -12,8 +12,7 @@ namespace softgrain {
 
 using NamedLaw = std::pair<std::string, AnyLaw>;
 
-/// TOML with one [[law]] per law. Every number is written so that it reads back to the same bits. Laws of particles in
-/// three dimensions only: throws BadInput for cohesive disks.
+/// TOML with one [[law]] per law. Every number is written so that it reads back to the same bits.
 std::string laws_text(const std::vector<NamedLaw>& laws);
 
 /// The laws of such a text, in its order; `origin` is what messages call it. Throws BadInput.

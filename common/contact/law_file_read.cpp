@@ -186,12 +186,37 @@ AnyLaw read_crowd(Reader& r) {
   return read_crowd_form<Crowd::directional>(r);
 }
 
+template <bool kFriction, bool kRolling>
+AnyLaw read_disk(Reader& r) {
+  CohesiveDisk<kFriction, kRolling> law;
+  law.normal = r.positive("normal");
+  law.tangential = r.not_negative("tangential");
+  law.friction = r.not_negative("friction");
+  law.damping = r.not_negative("damping");
+  law.adhesion = r.not_negative("adhesion");
+  law.range = r.not_negative("range");
+  law.rolling = r.not_negative("rolling");
+  law.rolling_limit = r.not_negative("rolling_limit");
+  if (law.adhesion > 0.0 && !(law.range > 0.0)) r.fail("range", "must be above 0 where there is adhesion");
+  if (kRolling && !(law.rolling > 0.0)) r.fail("rolling", "must be above 0 where disks resist rolling");
+  return law;
+}
+
+AnyLaw read_cohesive(Reader& r) {
+  const bool slides = r.flag("slides");
+  const bool rolls = r.flag("rolls");
+  if (rolls && !slides) r.fail("rolls", "needs slides = true: its limit is a share of friction");
+  if (rolls) return read_disk<true, true>(r);
+  return slides ? read_disk<true, false>(r) : read_disk<false, false>(r);
+}
+
 AnyLaw read_law(Reader& r) {
   const std::string type = r.text("type");
   if (type == "hertz") return read_hertz(r);
   if (type == "linear") return read_linear(r);
   if (type == "soft") return read_soft(r);
-  if (type != "crowd") r.fail("type", "must be hertz, linear, soft or crowd");
+  if (type == "cohesive") return read_cohesive(r);
+  if (type != "crowd") r.fail("type", "must be hertz, linear, soft, crowd or cohesive");
   return read_crowd(r);
 }
 

@@ -4,7 +4,6 @@
 #include <type_traits>
 
 #include "common/contact/law_file.h"
-#include "common/core/error.h"
 
 namespace softgrain {
 
@@ -105,8 +104,18 @@ void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kU
 }
 
 template <bool kFriction, bool kRolling>
-void write(std::string&, const std::string& name, const CohesiveDisk<kFriction, kRolling>&) {
-  throw BadInput("law '" + name + "': cohesive disks live in two dimensions, these laws in three");
+void write(std::string& out, const std::string& name, const CohesiveDisk<kFriction, kRolling>& law) {
+  Writer w(out, name, "cohesive");
+  w.flag("slides", kFriction);
+  w.flag("rolls", kRolling);
+  w.value("normal", law.normal);
+  w.value("tangential", law.tangential);
+  w.value("friction", law.friction);
+  w.value("damping", law.damping);
+  w.value("adhesion", law.adhesion);
+  w.value("range", law.range);
+  w.value("rolling", law.rolling);
+  w.value("rolling_limit", law.rolling_limit);
 }
 
 template <class Law>

@@ -107,7 +107,7 @@ void ComputeSoftgrainContacts::look_at(const bridge::ContactStore& store, const 
       const int i = store.i[c];
       const int j = store.j[c];
       ContactGeometry<3> g;
-      if (!surface.meet(i, j, g)) continue;
+      if (!surface.meet(i, j, softgrain::reach_of(law), g)) continue;
       const bool mine = kPlanes || is_mine(b, i, j);
       note_use(law, bridge::state_of(store, c, surface, g), i, kPlanes ? atom->nlocal : j, mine);
       if (!mine) continue;

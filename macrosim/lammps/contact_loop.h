@@ -37,9 +37,10 @@ struct Plane {
 struct AtomSurface {
   const Bodies& b;
 
-  bool meet(int i, int j, ContactGeometry<3>& g) const {
-    return meet_sphere(Bodies::vec(b.x[i]) - Bodies::vec(b.x[j]), b.r(i), b.r(j), 0.0, g);
+  bool meet(int i, int j, double reach, ContactGeometry<3>& g) const {
+    return meet_sphere(Bodies::vec(b.x[i]) - Bodies::vec(b.x[j]), b.r(i), b.r(j), reach, g);
   }
+  [[nodiscard]] Vec<3> turning(int i, int j) const { return Bodies::vec(b.omega[i]) - Bodies::vec(b.omega[j]); }
   [[nodiscard]] double radius_j(int j) const { return b.r(j); }
   void move(int i, int j, const ContactGeometry<3>& g, ContactState<3>& state) const {
     split_motion(Bodies::vec(b.v[i]) - Bodies::vec(b.v[j]),
@@ -52,11 +53,12 @@ struct PlaneSurface {
   const Bodies& b;
   const std::vector<Plane>& planes;
 
-  bool meet(int i, int j, ContactGeometry<3>& g) const {
+  bool meet(int i, int j, double, ContactGeometry<3>& g) const {
     const Plane& p = planes[static_cast<std::size_t>(j)];
     return meet_plane(Bodies::vec(b.x[i]) - p.point, b.r(i), p.normal, g);
   }
   [[nodiscard]] static double radius_j(int) { return 0.0; }
+  [[nodiscard]] Vec<3> turning(int i, int) const { return Bodies::vec(b.omega[i]); }
   void move(int i, int j, const ContactGeometry<3>& g, ContactState<3>& state) const {
     split_motion(Bodies::vec(b.v[i]) - planes[static_cast<std::size_t>(j)].velocity, Bodies::vec(b.omega[i]) * g.arm_i,
                  g.normal, state);
@@ -83,6 +85,39 @@ ContactState<3> state_of(const ContactStore& store, std::size_t c, const Surface
   return s;
 }
 
+/// A law of two dimensions asked about bodies in the plane z = 0.
+template <class Law>
+ContactResponse<3> evaluate_flat(const Law& law, const ContactState<3>& s) {
+  ContactState<2> flat;
+  flat.overlap = s.overlap;
+  flat.normal_speed = s.normal_speed;
+  flat.dt = s.dt;
+  flat.constants = s.constants;
+  flat.memory = s.memory;
+  flat.radius_i = s.radius_i;
+  flat.radius_j = s.radius_j;
+  flat.turning[0] = s.turning[2];
+  for (int k = 0; k < 2; ++k) {
+    flat.normal[k] = s.normal[k];
+    flat.sliding[k] = s.sliding[k];
+    flat.spring[k] = s.spring[k];
+  }
+  const ContactResponse<2> r = law.evaluate(flat);
+  ContactResponse<3> out;
+  out.normal_force = r.normal_force;
+  out.elastic_force = r.elastic_force;
+  out.normal_stiffness = r.normal_stiffness;
+  out.tangential_stiffness = r.tangential_stiffness;
+  out.sliding = r.sliding;
+  out.memory = r.memory;
+  out.rolling_moment[2] = r.rolling_moment[0];
+  for (int k = 0; k < 2; ++k) {
+    out.tangential_force[k] = r.tangential_force[k];
+    out.spring[k] = r.spring[k];
+  }
+  return out;
+}
+
 /// What a law answers to contact c as it is.
 template <class Law, class Surface>
 ContactResponse<3> response_of(const Law& law, const ContactStore& store, std::size_t c, const Surface& surface,
@@ -97,7 +132,11 @@ ContactResponse<3> response_of(const Law& law, const ContactStore& store, std::s
     s.sum_i = &pass.sums[i];
     if constexpr (std::is_same_v<Surface, AtomSurface>) s.sum_j = &pass.sums[j];
   }
-  return law.evaluate(s);
+  if constexpr (resists_rolling<Law>()) s.turning = surface.turning(i, j);
+  if constexpr (!law_serves<Law, 3>())
+    return evaluate_flat(law, s);
+  else
+    return law.evaluate(s);
 }
 
 /// sink(c, geometry, response) for every pair of a section that touches.
@@ -106,7 +145,7 @@ void run_section(const Law& law, ContactStore& store, const Section& section, co
                  Sink&& sink) {
   for (std::size_t c = section.begin; c < section.end; ++c) {
     ContactGeometry<3> g;
-    if (!surface.meet(store.i[c], store.j[c], g)) {
+    if (!surface.meet(store.i[c], store.j[c], reach_of(law), g)) {
       if (pass.advance && store.touched[c] != 0) {
         store.touched[c] = 0;
         store.spring[c] = {};
@@ -124,15 +163,11 @@ void run_section(const Law& law, ContactStore& store, const Section& section, co
   }
 }
 
-/// Opens the law of every section: work(law, section). Laws of two dimensions never get into a table of laws.
+/// Opens the law of every section: work(law, section).
 template <class Work>
 void over_sections(const ContactStore& store, const std::vector<AnyLaw>& laws, Work&& work) {
   for (const Section& section : store.sections)
-    std::visit(
-        [&]<class Law>(const Law& law) {
-          if constexpr (law_serves<Law, 3>()) work(law, section);
-        },
-        laws[static_cast<std::size_t>(section.law)]);
+    std::visit([&](const auto& law) { work(law, section); }, laws[static_cast<std::size_t>(section.law)]);
 }
 
 /// Adds what the contacts of a store take from their own bodies to the sums of those; ghosts get theirs from their
@@ -144,7 +179,7 @@ void add_shares(const ContactStore& store, const std::vector<AnyLaw>& laws, cons
     if constexpr (Law::needs_particle_pass)
       for (std::size_t c = section.begin; c < section.end; ++c) {
         ContactGeometry<3> g;
-        if (!surface.meet(store.i[c], store.j[c], g)) continue;
+        if (!surface.meet(store.i[c], store.j[c], 0.0, g)) continue;
         const ContactState<3> s = state_of(store, c, surface, g);
         law.share(s, true, sums[static_cast<std::size_t>(store.i[c])]);
         if (std::is_same_v<Surface, AtomSurface> && store.j[c] < surface.b.own)

@@ -59,7 +59,11 @@ FixSoftgrainWall::FixSoftgrainWall(LAMMPS* engine, int count, char** words) : Fi
   dynamic_group_allow = 0;
 }
 
-FixSoftgrainWall::~FixSoftgrainWall() = default;
+/// Nobody asks a wall that is gone; at the end of LAMMPS the pair style goes first.
+FixSoftgrainWall::~FixSoftgrainWall() {
+  if (force == nullptr) return;
+  if (auto* pair = dynamic_cast<PairSoftgrain*>(force->pair)) std::erase(pair->walls, this);
+}
 
 void FixSoftgrainWall::read_plane(char** words, int count, int& at) {
   if (at + 6 > count) error->all(FLERR, std::string("fix softgrain/wall: plane PX PY PZ NX NY NZ"));
@@ -90,6 +94,7 @@ void FixSoftgrainWall::read_law(char** words, int count, int& at) {
            std::string(words[end]) != "box")
       ++end;
   laws.push_back(bridge::read_law_words(words + at + 1, end - at - 1, world, error));
+  bridge::check_dimension(laws.back(), domain->dimension, error);
   for (int t = low; t <= high; ++t) law_of_type_[static_cast<std::size_t>(t)] = static_cast<int>(laws.size()) - 1;
   at = end;
 }
@@ -195,7 +200,7 @@ void FixSoftgrainWall::post_force(int) {
                           const Vec<3> moment = cross(g.normal, r.tangential_force);
                           for (int k = 0; k < 3; ++k) {
                             atom->f[i][k] += push[k];
-                            atom->torque[i][k] -= moment[k] * g.arm_i;
+                            atom->torque[i][k] += r.rolling_moment[k] - moment[k] * g.arm_i;
                           }
                           force_[static_cast<std::size_t>(store.j[c])] += r.normal_force;
                           if (!gathered.wanted) return;

@@ -116,6 +116,7 @@ void PairSoftgrain::settings(int count, char** words) {
 }
 
 int PairSoftgrain::add_law(const AnyLaw& law) {
+  bridge::check_dimension(law, domain->dimension, error);
   laws.push_back(law);
   comm_forward = std::max(comm_forward, needs_sums(law) ? kSumSize : 0);
   return static_cast<int>(laws.size()) - 1;
@@ -184,7 +185,9 @@ void PairSoftgrain::find_radii() {
 double PairSoftgrain::init_one(int i, int j) {
   if (setflag[i][j] == 0)
     error->all(FLERR, "pair_coeff of types " + std::to_string(i) + " and " + std::to_string(j) + " is missing");
-  return radius_max_[static_cast<std::size_t>(i)] + radius_max_[static_cast<std::size_t>(j)];
+  const double reach = std::visit([](const auto& law) { return softgrain::reach_of(law); },
+                                  laws[static_cast<std::size_t>(law_of(i, j))]);
+  return radius_max_[static_cast<std::size_t>(i)] + radius_max_[static_cast<std::size_t>(j)] + reach;
 }
 
 bridge::Bodies PairSoftgrain::bodies() const {
@@ -212,7 +215,7 @@ void PairSoftgrain::build(const std::vector<bridge::AtomMemory>& memory_of) {
       const softgrain::PairBodies pair{b.r(i), b.r(j), 1.0 / b.mass[i], 1.0 / b.mass[j]};
       std::visit(
           [&](const auto& l) {
-            const double reach = b.r(i) + b.r(j) - l.onset(pair) + neighbor->skin;
+            const double reach = b.r(i) + b.r(j) - l.onset(pair) + softgrain::reach_of(l) + neighbor->skin;
             if (norm2(b.vec(b.x[i]) - b.vec(b.x[j])) < reach * reach)
               near.push_back({i, j, law, l.pair_constants(pair)});
           },
@@ -265,10 +268,10 @@ void PairSoftgrain::compute(int eflag, int vflag) {
                           const Vec<3> moment = cross(g.normal, r.tangential_force);
                           for (int k = 0; k < 3; ++k) {
                             f[i][k] += push[k];
-                            torque[i][k] -= moment[k] * g.arm_i;
+                            torque[i][k] += r.rolling_moment[k] - moment[k] * g.arm_i;
                             if (j >= b.own) continue;
                             f[j][k] -= push[k];
-                            torque[j][k] -= moment[k] * g.arm_j;
+                            torque[j][k] -= r.rolling_moment[k] + moment[k] * g.arm_j;
                           }
                           if (gathered.wanted) gather(gathered, i, j, b.own, g, r);
                           if (evflag)
@@ -302,21 +305,19 @@ double PairSoftgrain::single(int i, int j, int, int, double, double, double, dou
   const auto c = static_cast<std::size_t>(at);
   const bridge::Bodies b = bodies();
   const bridge::AtomSurface surface{b};
-  ContactGeometry<3> g;
-  if (!surface.meet(store.i[c], store.j[c], g)) return 0.0;
   const auto section = std::find_if(store.sections.begin(), store.sections.end(),
                                     [&](const bridge::Section& s) { return c >= s.begin && c < s.end; });
   std::visit(
-      [&]<class Law>(const Law& law) {
-        if constexpr (softgrain::law_serves<Law, 3>()) {
-          const ContactResponse<3> r = bridge::response_of(law, store, c, surface, g, {false, 0.0, sums.data()});
-          fforce = r.normal_force / norm(g.branch);
-          for (int k = 0; k < 3; ++k) extra_[static_cast<std::size_t>(k)] = sign * r.tangential_force[k];
-          extra_[3] = norm(r.tangential_force);
-          extra_[4] = r.normal_force;
-          extra_[5] = g.overlap;
-          extra_[6] = r.sliding ? 1.0 : 0.0;
-        }
+      [&](const auto& law) {
+        ContactGeometry<3> g;
+        if (!surface.meet(store.i[c], store.j[c], softgrain::reach_of(law), g)) return;
+        const ContactResponse<3> r = bridge::response_of(law, store, c, surface, g, {false, 0.0, sums.data()});
+        fforce = r.normal_force / norm(g.branch);
+        for (int k = 0; k < 3; ++k) extra_[static_cast<std::size_t>(k)] = sign * r.tangential_force[k];
+        extra_[3] = norm(r.tangential_force);
+        extra_[4] = r.normal_force;
+        extra_[5] = g.overlap;
+        extra_[6] = r.sliding ? 1.0 : 0.0;
       },
       laws[static_cast<std::size_t>(section->law)]);
   return 0.0;

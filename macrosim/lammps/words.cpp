@@ -85,4 +85,12 @@ AnyLaw read_law_words(char** words, int count, MPI_Comm world, LAMMPS_NS::Error*
   }
 }
 
+void check_dimension(const AnyLaw& law, int dimension, LAMMPS_NS::Error* error) {
+  const bool serves = std::visit(
+      [&]<class Law>(const Law&) { return dimension == 2 ? law_serves<Law, 2>() : law_serves<Law, 3>(); }, law);
+  if (!serves)
+    error->all(FLERR, "softgrain: this law is for " + std::string(dimension == 2 ? "three" : "two") +
+                          " dimensions, the script has " + std::to_string(dimension));
+}
+
 }  // namespace softgrain::lammps

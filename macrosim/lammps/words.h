@@ -23,4 +23,7 @@ double number(const std::string& word, const std::string& what, LAMMPS_NS::Error
 /// FILE NAME, or: card FILE KIND modulus E friction MU [kt ..] [damping ..] [beyond ..].
 AnyLaw read_law_words(char** words, int count, MPI_Comm world, LAMMPS_NS::Error* error);
 
+/// Refuses laws of disks in three dimensions, and those of three in two (`dimension` of the script).
+void check_dimension(const AnyLaw& law, int dimension, LAMMPS_NS::Error* error);
+
 }  // namespace softgrain::lammps

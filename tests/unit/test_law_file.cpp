@@ -50,13 +50,16 @@ std::vector<NamedLaw> every_law() {
           {"soft both", both},
           {"crowd", crowd},
           {"bag", bag},
-          {"pair", pair}};
+          {"pair", pair},
+          {"disk", CohesiveDisk<false, false>{1e3, 0.0, 0.0, 0.1, 0.2, 1e-5, 0.0, 0.0}},
+          {"disk that slides", CohesiveDisk<true, false>{1e3, 5e2, 0.3, 0.1, 0.0, 0.0, 0.0, 0.0}},
+          {"disk that rolls", CohesiveDisk<true, true>{1e3, 5e2, 0.3, 0.1, 0.2, 1e-5, 1e-4, 2e-5}}};
 }
 
 TEST(LawFile, ReadsBackToTheSameBits) {
   const std::string text = laws_text(every_law());
   const auto again = parse_laws(text, "laws.toml");
-  ASSERT_EQ(again.size(), 9U);
+  ASSERT_EQ(again.size(), 12U);
   for (std::size_t k = 0; k < again.size(); ++k) {
     EXPECT_EQ(again[k].first, every_law()[k].first);
     EXPECT_EQ(again[k].second.index(), every_law()[k].second.index()) << again[k].first;
@@ -73,8 +76,6 @@ TEST(LawFile, MirroredTwiceIsTheSame) {
     EXPECT_EQ(laws_text({{name, mirrored(law)}}) != laws_text({{name, law}}), turns) << name;
   }
 }
-
-TEST(LawFile, DisksAreRefused) { EXPECT_THROW((void)laws_text({{"disk", CohesiveDisk<true, true>{}}}), BadInput); }
 
 /// What reading this text says.
 std::string complaint(const std::string& text) {
@@ -102,13 +103,15 @@ TEST(LawFile, SaysWhatIsWrong) {
            {"friction = 0.3", "frictoin = 0.3", "key 'friction' is missing"},
            {"friction = 0.3", "friction = 0.3\nmore = 1", "key 'more' is no key of this law"},
            {"name = \"smooth\"", "name = \"mindlin\"", "is there twice"},
-           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft or crowd"},
+           {"type = \"linear\"", "type = \"cubic\"", "must be hertz, linear, soft, crowd or cohesive"},
            {"modulus = 5e+05", "modulus = inf", "must be finite"},
            {"modulus = 5e+05", "modulus = 0", "must be above 0"},
            {"beyond = \"error\"", "beyond = \"never\"", "must be error, clamp or extrapolate"},
            {"log_ratio = [-1.3, 0.0, 1.3]", "log_ratio = [-1.3, 0.0, 0.0]", "ascending"},
            {"log_ratio = [-1.3, 0.0, 1.3]", "log_ratio = [-1.3, true]", "must be a list of numbers"},
            {"pressure = [0.8, 3.0, 0.07]", "pressure = [0.8, 3.0]", "needs three numbers"},
+           {"range = 1e-05", "range = 0.0", "law 'disk': key 'range' must be above 0"},
+           {"rolling = 0.0001", "rolling = 0.0", "key 'rolling' must be above 0"},
            {"form = \"bag\"", "form = \"sack\"", "must be pair, bag or directional"}})
     EXPECT_NE(complaint(replaced(text, from, to)).find(expected), std::string::npos)
         << to << " gave: " << complaint(replaced(text, from, to));
