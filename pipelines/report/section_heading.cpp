@@ -107,10 +107,23 @@ std::string law_line(const PairLaw& law, const SoftParticleSpec& spec) {
                      format_number(law.delta_max));
 }
 
+/// Where runs of one engine ended, when there is nothing to compare with.
+std::string end_line(const std::vector<MacroCurve>& curves) {
+  std::vector<double> stress;
+  for (const MacroCurve& c : curves)
+    if (!c.stress_axial.empty()) stress.push_back(c.stress_axial.back());
+  if (stress.empty()) return "";
+  const MeanError mean = mean_error(stress);
+  return fmt::format("Axial stress {} Pa at strain {} ({}; {} {}).",
+                     stress.size() > 1 ? format_with_error(mean.mean, mean.error) : format_number(mean.mean, 4),
+                     format_number(curves.front().strain.back(), 3), curves.front().test, stress.size(),
+                     stress.size() > 1 ? "samples, mean" : "sample");
+}
+
 std::string macro_line(const std::vector<MacroCurve>& macro) {
   const auto laws = curves_of(macro, "law");
   const auto twins = curves_of(macro, "shelled");
-  if (laws.empty() || twins.empty()) return fmt::format("{} curves.", macro.size());
+  if (laws.empty() || twins.empty()) return end_line(laws.empty() ? macro : laws);
   try {
     const Comparison c = compare_curves(laws, twins);
     return fmt::format(
