@@ -22,7 +22,7 @@ add_library(softgrain_lammps_styles STATIC ${lammps_sources}
   common/contact/law_file_read.cpp common/contact/law_file_write.cpp common/io/toml_keys.cpp common/io/toml_parse.cpp)
 # The shim for fmt must come before every other folder; headers of LAMMPS are not ours to warn about.
 target_include_directories(softgrain_lammps_styles SYSTEM BEFORE PUBLIC ${PROJECT_SOURCE_DIR}/macrosim/lammps/fmt_shim)
-target_link_libraries(softgrain_lammps_styles PUBLIC softgrain_flags LAMMPS::lammps fmt::fmt)
+target_link_libraries(softgrain_lammps_styles PUBLIC softgrain_flags LAMMPS::lammps MPI::MPI_CXX fmt::fmt)
 target_compile_options(softgrain_lammps_styles PUBLIC -Wno-non-virtual-dtor)
 add_executable(softgrain-lammps macrosim/lammps/main.cpp)
 target_link_libraries(softgrain-lammps PRIVATE softgrain_lammps_styles)
