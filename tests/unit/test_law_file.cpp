@@ -111,7 +111,7 @@ TEST(LawFile, SaysWhatIsWrong) {
            {"log_ratio = [-1.3, 0.0, 1.3]", "log_ratio = [-1.3, true]", "must be a list of numbers"},
            {"pressure = [0.8, 3.0, 0.07]", "pressure = [0.8, 3.0]", "needs three numbers"},
            {"range = 1e-05", "range = 0.0", "law 'disk': key 'range' must be above 0"},
-           {"rolling = 0.0001", "rolling = 0.0", "key 'rolling' must be above 0"},
+           {"rolling = 1e-04", "rolling = 0.0", "key 'rolling' must be above 0"},
            {"form = \"bag\"", "form = \"sack\"", "must be pair, bag or directional"}})
     EXPECT_NE(complaint(replaced(text, from, to)).find(expected), std::string::npos)
         << to << " gave: " << complaint(replaced(text, from, to));
