@@ -175,7 +175,7 @@ std::vector<MacroCurve> run(const MacroScene& scene, const NamedLaws& law, const
   const LammpsRuns runs = lammps_runs(scene, law, contents, provenance);
   write_lammps_files(runs, packings, context);
   auto outcomes = run_with_lammps(runs, *scene.lammps, packings, context);
-  save_packings(packings, context, provenance, kInitialFile);
+  if (scene.setup.spec.preparation == "lammps") save_packings(packings, context, provenance, kInitialFile);
   auto curves = run_engines({scene.setup, packings, contents, seed, "macro"}, {}, store, context, provenance,
                             "states_macro.h5", std::move(outcomes));
   save_macro(curves, context.path("macro.h5"), provenance);
