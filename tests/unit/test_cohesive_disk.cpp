@@ -170,7 +170,7 @@ TEST(CohesiveDisk, MomentsOfRollingAreOpposite) {
 }
 
 /// Two disks that meet slowly stick; above sqrt(F0 D0/m) and without damping they part again.
-TEST(CohesiveDisk, SlowDisksStickAndFastOnesPart) {
+TEST(CohesiveDisk, DisksStickWhenSlowAndPartWhenFast) {
   const auto end_distance = [](double speed) {
     auto law = published<false>(1e4);
     law.damping = 0.0;
