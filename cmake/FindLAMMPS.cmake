@@ -2,6 +2,11 @@
 # the program lmp is not installed beside the library, and would stop the build of everything.
 # LAMMPS_INTEGERS: its sizes of integers, as it was compiled (LAMMPS_SMALLBIG, which is usual, or LAMMPS_BIGBIG).
 include(FindPackageHandleStandardArgs)
+foreach(name LAMMPS_INCLUDE_DIR LAMMPS_LIBRARY)  # uninstalled since: a target with paths that are gone would stop every build
+  if(NOT EXISTS "${${name}}")
+    unset(${name} CACHE)
+  endif()
+endforeach()
 find_path(LAMMPS_INCLUDE_DIR lammps.h PATH_SUFFIXES lammps)
 find_library(LAMMPS_LIBRARY lammps)
 set(LAMMPS_INTEGERS LAMMPS_SMALLBIG CACHE STRING "Sizes of integers that LAMMPS was compiled with")

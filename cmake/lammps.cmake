@@ -1,20 +1,37 @@
 # softgrain-lammps: LAMMPS with the laws of the program, under MPI. Optional, and apart from the program: it links
 # nothing under GPL-3 (no GSL), and only sources that carry the BSD-3 line (tests/check_layers.py holds it to that).
-find_package(MPI QUIET COMPONENTS CXX)
-find_package(LAMMPS QUIET)
-find_package(fmt QUIET)
-if(MPI_CXX_FOUND AND TARGET LAMMPS::lammps)
-  set(softgrain_lammps_found ON)
-else()
-  set(softgrain_lammps_found OFF)
-endif()
-option(SOFTGRAIN_LAMMPS "Build softgrain-lammps (LAMMPS and MPI)" ${softgrain_lammps_found})
+# It never stops a build of the program: AUTO builds it where LAMMPS and MPI are there, only ON insists.
+set(SOFTGRAIN_LAMMPS AUTO CACHE STRING "Build softgrain-lammps (LAMMPS and MPI): AUTO, ON or OFF")
+set_property(CACHE SOFTGRAIN_LAMMPS PROPERTY STRINGS AUTO ON OFF)
+set(softgrain_lammps_built OFF)
 if(NOT SOFTGRAIN_LAMMPS)
   return()
 endif()
-if(NOT softgrain_lammps_found)
-  message(FATAL_ERROR "SOFTGRAIN_LAMMPS needs LAMMPS and MPI (packages liblammps-dev and mpi-default-bin)")
+
+include(${CMAKE_CURRENT_LIST_DIR}/working_mpi.cmake)
+find_package(LAMMPS QUIET)
+find_package(fmt QUIET)
+set(softgrain_lammps_missing "")
+if(NOT TARGET LAMMPS::lammps)
+  set(softgrain_lammps_missing "LAMMPS was not found as a library with its headers (package liblammps-dev)")
+else()
+  softgrain_find_working_mpi(softgrain_lammps_missing)
 endif()
+if(softgrain_lammps_missing)
+  if(NOT SOFTGRAIN_LAMMPS STREQUAL "AUTO")
+    # Not remembered, so that a build without it goes on next time.
+    set_property(CACHE SOFTGRAIN_LAMMPS PROPERTY VALUE AUTO)
+    message(FATAL_ERROR "SOFTGRAIN_LAMMPS=ON: ${softgrain_lammps_missing}")
+  endif()
+  message(STATUS "softgrain-lammps is left out: ${softgrain_lammps_missing}")
+  # Who asks for it by name is told why there is none.
+  add_custom_target(softgrain-lammps
+    COMMAND ${CMAKE_COMMAND} -E echo "softgrain-lammps cannot be built: ${softgrain_lammps_missing}"
+    COMMAND ${CMAKE_COMMAND} -E false
+    VERBATIM)
+  return()
+endif()
+set(softgrain_lammps_built ON)
 
 file(GLOB lammps_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/macrosim/lammps/*.cpp)
 list(FILTER lammps_sources EXCLUDE REGEX "/main\\.cpp$")

@@ -106,7 +106,7 @@ with_lammps() {
   fresh
   start setup --with-lammps
   check "runs with status 0" status 0
-  check "says outright that LAMMPS is wanted" called 1 '^cmake --preset release .*-DSOFTGRAIN_LAMMPS=ON$'
+  check "looks for LAMMPS anew" called 1 '^cmake --preset release .*-DSOFTGRAIN_LAMMPS=AUTO$'
   check "builds both programs" called 1 '^cmake --build .* --target softgrain softgrain-lammps$'
   start setup --with-lamps
   check "status 2 for an unknown option" status 2
