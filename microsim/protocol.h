@@ -34,7 +34,7 @@ struct LeastWorkProtocolOptions {
   double increment = 0.0025;           ///< of Delta between two equilibria
   double tolerance_between = 0.1;      ///< at increments between recorded points
   double tolerance = 1e-2;             ///< at a recorded point
-  std::int64_t increment_passes = 80;  ///< an increment without equilibrium after these is left to dynamics
+  std::int64_t increment_passes = 80;  ///< without equilibrium after these: left to dynamics; 0: all are
   double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
   double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match)
   double settle_time = 120.0;  ///< of dynamics before a normal force is recorded; 0: none

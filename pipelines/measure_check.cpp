@@ -16,13 +16,11 @@ namespace {
 using nlohmann::json;
 
 /// Loop passes per recorded point of each relaxation, as measured on the published parameters.
-double typical_passes(const MeasureSetup& setup, const std::string& relaxation, bool rotated) {
+double typical_passes(const std::string& relaxation, bool rotated) {
   if (relaxation == "published") return 55000.0;
-  if (relaxation == "least-work") {
-    if (rotated) return 270.0;
-    return setup.least_work.increment_passes > 0 ? 2500.0 : 6700.0;
-  }
-  return rotated ? 450.0 : 2500.0;
+  if (relaxation == "damped") return rotated ? 450.0 : 2500.0;
+  if (rotated) return 270.0;
+  return relaxation == "least-work" ? 2500.0 : 6700.0;
 }
 
 struct PointCounts {
@@ -146,8 +144,8 @@ void check_measurements(const MeasureSetup& setup, Findings& out) {
       const double weight =
           (kind == PairKind::soft_soft ? 2.2 : 1.0) * 2.0;  // the squeezed state has about twice the pairs of the first
       seconds += weight * trial.pass_time *
-                 (static_cast<double>(points.normal) * typical_passes(setup, series.relaxation, false) +
-                  static_cast<double>(points.rotated) * typical_passes(setup, series.relaxation, true));
+                 (static_cast<double>(points.normal) * typical_passes(series.relaxation, false) +
+                  static_cast<double>(points.rotated) * typical_passes(series.relaxation, true));
       out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
               fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind),
                           series.packings, points.normal, points.rotated));

@@ -47,11 +47,13 @@ void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
 }
 
+constexpr std::int64_t kMostPasses = 1000000;  ///< of one increment by least work
+
 void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
   o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
   o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
   o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
-  o.increment_passes = t.count("increment_passes", 0, 1000000, o.increment_passes);
+  o.increment_passes = t.count("increment_passes", 0, kMostPasses, o.increment_passes);
   if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
   o.step_factor = t.number("step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
   o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
@@ -99,8 +101,20 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
   return plan;
 }
 
-std::string read_relaxation(const SceneTable& t, const char* fallback) {
-  return t.choice("relaxation", {kRelaxations[0], kRelaxations[1], kRelaxations[2]}, fallback);
+/// Least work that leaves every increment to dynamics is called by what it does.
+std::string read_relaxation(const SceneTable& t, const char* fallback, const LeastWorkProtocolOptions& least_work) {
+  const std::string name =
+      t.choice("relaxation", {kRelaxations[0], kRelaxations[1], kRelaxations[2], kRelaxations[3]}, fallback);
+  return name == "least-work" && least_work.increment_passes == 0 ? "slow-dynamics" : name;
+}
+
+/// Slow dynamics makes no increment by least work, and must not be asked for some.
+void require_increments_used(const SceneTable& measure, const std::string& relaxation, bool least_work_too) {
+  if (relaxation != "slow-dynamics" || least_work_too) return;
+  const SceneTable t = measure.table_or_empty("least_work");
+  if (t.has("increment_passes") && t.count("increment_passes", 0, kMostPasses) > 0)
+    t.reject("increment_passes",
+             "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
 }
 
 MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, std::int64_t packings,
@@ -162,7 +176,7 @@ MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxat
       measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), plan.rotation_step_deg);
   plan.shell_turns = measure.flag("shell_turns", plan.shell_turns);
   plan.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  relaxation = read_relaxation(measure, "least-work");
+  relaxation = read_relaxation(measure, "least-work", setup.least_work);
   return setup;
 }
 
@@ -175,11 +189,12 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   setup.series.push_back(read_series(measure, relaxation, count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
-    const std::string name = read_relaxation(reference, "published");
+    const std::string name = read_relaxation(reference, "published", setup.least_work);
     if (name == setup.series[0].relaxation)
       reference.reject("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, name, reference.count("count", 1, 100000, count), common));
   }
+  require_increments_used(measure, setup.series.front().relaxation, setup.series.back().relaxation == "least-work");
   setup.kept_states = read_kept_states(root);
   return setup;
 }
@@ -187,7 +202,9 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
 std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name) {
   if (name == "published") return make_published_protocol(setup.published);
   if (name == "damped") return make_damped_protocol(setup.damped);
-  if (name == "least-work") return make_least_work_protocol(setup.least_work);
+  LeastWorkProtocolOptions least_work = setup.least_work;
+  if (name == "slow-dynamics") least_work.increment_passes = 0;
+  if (name == "least-work" || name == "slow-dynamics") return make_least_work_protocol(least_work);
   throw BadInput("unknown relaxation '" + name + "'");
 }
 

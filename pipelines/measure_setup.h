@@ -12,8 +12,9 @@
 
 namespace softgrain {
 
-/// The names a scene may give as `relaxation`.
-inline constexpr std::array kRelaxations{"least-work", "damped", "published"};
+/// The names a scene may give as `relaxation`, and under which series are recorded. "slow-dynamics" is the least-work
+/// protocol without a single increment by least work (increment_passes = 0), which no result may pass off as that.
+inline constexpr std::array kRelaxations{"least-work", "slow-dynamics", "damped", "published"};
 
 /// One series of measurements: which relaxation, how many packings, which states of which pair kind.
 struct MeasureSeries {

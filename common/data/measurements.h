@@ -64,7 +64,7 @@ struct TangentialPoint {
 struct PackingRun {
   std::int64_t packing = 0;  ///< index into Measurements::packings (first body)
   PairKind kind = PairKind::soft_solid;
-  std::string relaxation;  ///< "published", "damped" or "least-work"
+  std::string relaxation;  ///< "published", "damped", "slow-dynamics" or "least-work"
   std::vector<NormalPoint> normal;
   std::vector<TangentialPoint> tangential;
   Cost normal_cost;

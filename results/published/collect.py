@@ -20,7 +20,7 @@ FIGURES = {
     "fn-two-equal-soft-particles": "normal_law_soft_soft",
     "kt-initial-slope-up-to-0-05-soft-solid": "tangential_stiffness",
     "kt-secant-at-1-soft-solid": "tangential_secant",
-    "ratio-least-work-published-soft-solid": "relaxations_ratio",
+    "ratio-slow-dynamics-published-soft-solid": "relaxations_ratio",
     "axial-stress-oedometric": "macro_against_twin",
     "size-distribution-of-the-packed-grains": "size_distribution",
 }
@@ -74,7 +74,7 @@ def study_rows(study, pair, scale):
 
 
 def force_rows(checked, studied, law=None):
-    """Published protocol and damped on the packings of the check; published protocol and least-work on those of the study."""
+    """Published protocol and damped on the packings of the check; published protocol and slow-dynamics on those of the study."""
     rows = []
     for old, new in zip(checked, studied):
         assert abs(old["delta"] - new["delta"]) < 1e-9
@@ -124,7 +124,7 @@ def main():
     scale = 5e5 * 0.016**2  # E Rs^2 [N]
     made = {name: r["provenance"]["commit"] for name, r in (("damped", old), ("check", check))}
     text = "# The published experiment\n\n"
-    text += (f"Made by `collect.py` from `softgrain run pipelines/published.toml` (least-work; version {run['provenance']['version']}, commit "
+    text += (f"Made by `collect.py` from `softgrain run pipelines/published.toml` (slow-dynamics; version {run['provenance']['version']}, commit "
              f"{run['provenance']['commit']}, status {run['status']}), the same with `--set measure.relaxation=damped` (commit {made['damped']}), "
              f"`softgrain microsim pipelines/relaxation_check.toml` (commit {made['check']}) and the [study of the relaxations](../relaxation/README.md).\n\n")
     text += (HERE / "notes.md").read_text() + "\n"
@@ -132,10 +132,10 @@ def main():
              f"(deviation), {p['contacts_per_grain']:.2f} contacts per grain, re-fitted exponent {p['exponent']:.2f} ± {p['exponent_deviation']:.2f}.\n\n")
     text += "![normal law](normal_law.svg)\n\n"
     law_head = ["pair", "quantity", "a", "b", "c", "delta", "unit", "status"]
-    text += "## Laws (least-work, 95 % intervals by bootstrap over packings)\n\n" + table(law_head, law_rows(run["laws"]))
+    text += "## Laws (slow-dynamics, 95 % intervals by bootstrap over packings)\n\n" + table(law_head, law_rows(run["laws"]))
     text += "\nPublished, soft-solid normal: a = 73.669 N, b = 2.799, c = -0.035 N, delta = 0.065. a, b and delta are nearly degenerate: compare F.\n"
     text += "\n### The same packings by the damped relaxation\n\n" + table(law_head, law_rows(old["laws"]))
-    sides = ["published protocol (B)", "least-work (B)", "ratio", "published protocol (A)", "damped (A)", "ratio"]
+    sides = ["published protocol (B)", "slow-dynamics (B)", "ratio", "published protocol (A)", "damped (A)", "ratio"]
     text += "\n## F(Delta), soft-solid, against the published law [N]\n\nA: 24 packings (seed 1); B: 24 others (seed 2001) that no setting was chosen on.\n\n"
     text += table(["Delta", "published law"] + sides, force_rows(check["relaxations"]["soft-solid"]["normal"], study_rows(study, "soft-solid", scale), published))
     text += "\n## F(Delta), soft-soft [N]\n\n"
@@ -143,7 +143,7 @@ def main():
     for kind in ("soft-solid", "soft-soft"):
         for key, name in (("normal", "Fn [N]"), ("kt_initial", "kt, initial slope [N/m]"), ("kt_secant", "kt, secant at 1 degree [N/m]")):
             text += f"\n## {name}, {kind}, {p['count']} packings\n\n"
-            text += table(["Delta", "published protocol", "least-work", "ratio", "damped", "ratio", "packings"],
+            text += table(["Delta", "published protocol", "slow-dynamics", "ratio", "damped", "ratio", "packings"],
                           ratio_rows(run["relaxations"][kind][key], old["relaxations"][kind][key]))
     text += "\n## Cost per recorded point\n\n"
     text += table(["pair", "state", "relaxation", "points", "loop passes", "contact evaluations", "seconds"], cost_rows(run["relaxations"], old["relaxations"]))

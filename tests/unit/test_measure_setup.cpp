@@ -1,0 +1,64 @@
+// Which relaxation a scene asks for, and under what name its results go.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "common/core/error.h"
+#include "pipelines/measure_check.h"
+#include "pipelines/measure_setup.h"
+
+namespace softgrain {
+namespace {
+
+MeasureSetup read(const std::string& measure, const std::string& reference = "") {
+  const std::string text =
+      "[packing]\ncount = 1\n[measure]\n" + measure + "\n[measure.soft_solid]\ndeltas = [0.1]\n" + reference;
+  const Scene scene = Scene::parse(text, "scene.toml");
+  MeasureSetup setup = read_measure_setup(scene.root());
+  scene.root().finish();
+  return setup;
+}
+
+const std::string kNone = "[measure.least_work]\nincrement_passes = 0\n";
+
+TEST(MeasureSetup, LeastWorkWithoutIncrementsOfLeastWorkIsCalledSlowDynamics) {
+  EXPECT_EQ(read("").series[0].relaxation, "least-work");
+  EXPECT_EQ(read("relaxation = \"least-work\"\n" + kNone).series[0].relaxation, "slow-dynamics");
+  EXPECT_EQ(read(kNone).series[0].relaxation, "slow-dynamics");
+  EXPECT_EQ(read("relaxation = \"slow-dynamics\"").series[0].relaxation, "slow-dynamics");
+  EXPECT_EQ(read("relaxation = \"damped\"\n" + kNone).series[0].relaxation, "damped");
+  const MeasureSetup beside = read("relaxation = \"slow-dynamics\"",
+                                   "[reference]\nrelaxation = \"least-work\"\n[reference.soft_solid]\ndeltas = [0.1]\n");
+  EXPECT_EQ(beside.series[1].relaxation, "least-work");
+}
+
+TEST(MeasureSetup, SlowDynamicsAndIncrementsOfLeastWorkExcludeEachOther) {
+  const auto refused = [](const std::string& measure, const std::string& reference, const std::string& word) {
+    try {
+      (void)read(measure, reference);
+      ADD_FAILURE() << measure;
+    } catch (const BadInput& e) {
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    }
+  };
+  refused("relaxation = \"slow-dynamics\"\n[measure.least_work]\nincrement_passes = 80\n", "", "increment_passes");
+  refused(kNone, "[reference]\nrelaxation = \"slow-dynamics\"\n[reference.soft_solid]\ndeltas = [0.1]\n",
+          "must differ");
+}
+
+/// The scenes that say in their comments that they go by slow dynamics.
+TEST(MeasureSetup, TheScenesOfSlowDynamicsRecordItAsThat) {
+  for (const char* name : {"quickstart", "published", "calibration"}) {
+    const Scene scene = Scene::load(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/" + name + ".toml");
+    EXPECT_EQ(read_measure_setup(scene.root()).series[0].relaxation, "slow-dynamics") << name;
+  }
+}
+
+TEST(MeasureSetup, CheckNamesWhatWillBeDone) {
+  Findings found;
+  check_measurements(read("relaxation = \"least-work\"\n" + kNone), found);
+  EXPECT_TRUE(found.facts.contains("slow-dynamics soft-solid")) << found.facts.dump();
+}
+
+}  // namespace
+}  // namespace softgrain
