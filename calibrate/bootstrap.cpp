@@ -104,6 +104,16 @@ std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>
   return out;
 }
 
+double scatter_of(const std::vector<double>& values) {
+  if (values.size() < 2) return std::numeric_limits<double>::infinity();
+  const auto n = static_cast<double>(values.size());
+  double sum = 0.0;
+  double square = 0.0;
+  for (const double v : values) sum += v;
+  for (const double v : values) square += (v - sum / n) * (v - sum / n);
+  return std::sqrt(square / (n - 1.0));
+}
+
 std::pair<double, double> interval95(std::vector<double> values) {
   constexpr double kTail = 0.025;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

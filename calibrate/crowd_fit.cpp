@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
+#include <tuple>
 
 #include "calibrate/bootstrap.h"
-#include "calibrate/crowd_problem.h"
+#include "calibrate/crowd_form_fit.h"
 #include "calibrate/crowd_side_fits.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
-#include "common/core/random.h"
 #include "common/data/crowd_replicates.h"
-#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -30,110 +29,17 @@ CrowdModel starting_model(const std::string& form) {
   return model;
 }
 
-bool fits(const CrowdStates& c, PartnerKind kind) {
-  return c.use == CrowdUse::fitted && !c.states.empty() && c.all_of(kind);
-}
-
-/// The pair law knows one contact only; the others use every configuration of planes that is not held out.
-StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd crowd, const CrowdStates* without) {
-  StateSelection out;
-  for (const CrowdStates& c : states)
-    if (&c != without && fits(c, PartnerKind::plane) && (crowd != Crowd::pair || c.configuration->partners.size() == 1))
-      out.push_back(&c);
-  return out;
-}
-
-/// Size of a neighbour as the tables know it: soft ones the same from either side.
-double table_ratio(const CrowdPartner& p) {
-  return p.kind == PartnerKind::soft ? std::max(p.ratio, 1.0 / p.ratio) : p.ratio;
-}
-
-std::vector<double> ratios_of(const StateSelection& selection) {
-  std::set<double> out;
-  for (const CrowdStates* c : selection)
-    for (const CrowdPartner& p : c->configuration->partners) out.insert(table_ratio(p));
-  return {out.begin(), out.end()};
-}
-
-StateSelection partner_selection(const std::vector<CrowdStates>& states, PartnerKind kind, Crowd crowd) {
-  StateSelection out;
-  for (const CrowdStates& c : states)
-    if (fits(c, kind) && c.largest_force() > 0.0 && (crowd != Crowd::pair || c.configuration->partners.size() == 1))
-      out.push_back(&c);
-  return out;
-}
-
-/// The parameters of one form, as one row: planes, then per kind ln w by ratio and m.
-struct FormFit {
-  CrowdModel model;
-  LeastSquaresFit planes;
-  std::vector<double> solid_ratios;
-  std::vector<double> soft_ratios;
-  LeastSquaresFit solid;
-  LeastSquaresFit soft;
-};
-
-FormFit fit_form(const std::string& form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
-                 const CrowdModel& start) {
-  FormFit out;
-  out.model = start;
-  out.model.crowd = crowd_of(form);
-  const StateSelection planes = plane_selection(states, out.model.crowd, nullptr);
-  out.planes = fit_planes(out.model, planes, discrepancy, thorough);
-  const StateSelection solid = partner_selection(states, PartnerKind::solid, out.model.crowd);
-  out.solid_ratios = ratios_of(solid);
-  if (!solid.empty()) out.solid = fit_partners(out.model, PartnerKind::solid, out.solid_ratios, solid, discrepancy);
-  const StateSelection soft = partner_selection(states, PartnerKind::soft, out.model.crowd);
-  out.soft_ratios = ratios_of(soft);
-  if (!soft.empty()) out.soft = fit_partners(out.model, PartnerKind::soft, out.soft_ratios, soft, discrepancy);
-  return out;
-}
-
-std::vector<double> all_parameters(const FormFit& f) {
-  std::vector<double> all = f.planes.parameters;
-  all.insert(all.end(), f.solid.parameters.begin(), f.solid.parameters.end());
-  all.insert(all.end(), f.soft.parameters.begin(), f.soft.parameters.end());
-  return all;
-}
-
-/// Refits to packings drawn with replacement; one column of values per parameter.
-std::vector<std::vector<double>> bootstrap_form(const CrowdMeasurements& data, const std::string& form,
-                                                const FormFit& full, const CrowdFitOptions& options) {
-  std::vector<std::vector<double>> columns(all_parameters(full).size());
-  for (int r = 0; r < options.replicates; ++r) {
-    stop_if_interrupted("refitting to drawn packings");
-    RandomStream random(options.seed, RandomPurpose::bootstrap, static_cast<std::uint64_t>(r));
-    std::vector<double> weight(data.packings.size(), 0.0);
-    for (std::size_t k = 0; k < weight.size(); ++k) weight[random.below(weight.size())] += 1.0;
-    const std::vector<CrowdStates> states = average_states(data, weight);
-    const std::vector<double> p = all_parameters(fit_form(form, states, options.discrepancy, false, full.model));
-    if (p.size() != columns.size()) continue;
-    for (std::size_t j = 0; j < p.size(); ++j) columns[j].push_back(p[j]);
-  }
-  return columns;
-}
-
-double scatter(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double sum = 0.0;
-  double square = 0.0;
-  for (const double v : values) sum += v;
-  for (const double v : values) square += (v - sum / n) * (v - sum / n);
-  return std::sqrt(square / (n - 1.0));
-}
-
 /// A fitted number with its error and, where there are replicates, their interval. The covariance of a fit to
 /// neighbours takes the law of planes for exact; replicates, which fit both anew, do not: the larger error holds.
 Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<double>& replicates, bool logarithm) {
-  constexpr std::size_t kEnough = 10;
   const double value = fit.parameters[j];
-  double sd = fit.standard_deviations.empty() ? 0.0 : fit.standard_deviations[j];
+  double sd = fit.standard_deviations.empty() ? HUGE_VAL : fit.standard_deviations[j];
   auto [low, high] = interval95(replicates);
-  if (replicates.size() < kEnough) {
+  if (replicates.size() < kEnoughReplicates) {
     low = value - 1.96 * sd;
     high = value + 1.96 * sd;
   } else {
-    sd = std::max(sd, scatter(replicates));
+    sd = std::max(sd, scatter_of(replicates));
   }
   if (!logarithm) return {value, sd, low, high};
   return {std::exp(value), std::exp(value) * sd, std::exp(low), std::exp(high)};
@@ -251,21 +157,22 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   if (counts[1] > 0) law.error_held_out = sums[1] / counts[1];
 }
 
-/// Leave one loading of planes out, fit the others, predict it; held-out ones are predicted by the full fit, and so is
-/// everything by the pair law, which is fitted to one plane alone.
+/// Leave one loading of planes out of those that may be fitted, fit the others, predict it; the pair law, which is
+/// fitted to one plane alone, predicts all the others. What is held out has no say: errors on it would else be those of
+/// a law that was chosen by them. NaN when nothing can be left out.
 double cross_validate(const FormFit& full, const std::vector<CrowdStates>& states, double discrepancy) {
   double sum = 0.0;
   int count = 0;
   for (const CrowdStates& c : states) {
-    if (c.states.empty() || c.use == CrowdUse::repeated || !c.all_of(PartnerKind::plane)) continue;
+    if (!fits(c, PartnerKind::plane)) continue;
     CrowdModel model = full.model;
     const StateSelection rest = plane_selection(states, model.crowd, &c);
-    if (c.use == CrowdUse::fitted && rest.empty()) continue;  // nothing else to predict it from
-    if (c.use == CrowdUse::fitted && model.crowd != Crowd::pair) (void)fit_planes(model, rest, discrepancy, false);
+    if (rest.empty()) continue;  // nothing else to predict it from
+    if (model.crowd != Crowd::pair) (void)fit_planes(model, rest, discrepancy, false);
     sum += crowd_error(model, c);
     ++count;
   }
-  return count > 0 ? sum / count : 0.0;
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Corrected Akaike information criterion over all configurations of planes that may be fitted, with errors of known
@@ -289,29 +196,59 @@ void set_status(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates
   if (!(p.delta < deepest)) {
     law.status = "no threshold crossing";
     law.reason = fmt::format("the threshold {:.3f} lies beyond the largest overlap {:.3f}", p.delta, deepest);
-  } else if (!fit.planes.usable()) {
+  } else if (const std::string trouble = fit.trouble(); !trouble.empty()) {
     law.status = "underdetermined";
-    law.reason = "planes: " + fit.planes.message;
+    law.reason = trouble;
   }
 }
 
-CrowdLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>& states, const std::string& form,
-                  const CrowdFitOptions& options) {
-  const FormFit fit = fit_form(form, states, options.discrepancy, true, starting_model(form));
+/// A law and the replicates behind each row of CrowdLaw::replicates.
+struct FittedLaw {
   CrowdLaw law;
+  std::vector<int> draws;
+};
+
+FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>& states, const std::string& form,
+                   const CrowdFitOptions& options) {
+  const FormFit fit = fit_form(form, states, options.discrepancy, true, starting_model(form));
+  FittedLaw out;
+  CrowdLaw& law = out.law;
   law.form = form;
   law.parameters = static_cast<int>(fit.planes.parameters.size());
-  const std::vector<std::vector<double>> columns = bootstrap_form(data, form, fit, options);
-  const Filler filler(fit, columns);
+  const FormRefits refits = refit_form(data, form, fit, options);
+  law.replicates_failed = refits.failed;
+  const Filler filler(fit, refits.columns);
   filler.planes(law);
   filler.partners(law, states, PartnerKind::solid);
   filler.partners(law, states, PartnerKind::soft);
-  law.replicates = replicate_rows(law, fit, columns);
+  law.replicates = replicate_rows(law, fit, refits.columns);
+  out.draws = refits.draws;
   set_status(law, fit, states);
   judge(law, fit, states);
   law.error_cross = cross_validate(fit, states, options.discrepancy);
   law.criterion = criterion(fit, states, options.discrepancy);
-  return law;
+  return out;
+}
+
+/// The packings and the law of every replicate.
+std::vector<CrowdDraw> draws_of(const CrowdMeasurements& data, const FittedLaw& fitted, const CrowdFitOptions& o) {
+  std::vector<CrowdDraw> out;
+  for (std::size_t k = 0; k < fitted.draws.size(); ++k)
+    out.push_back({average_states(data, packing_weights(data.packings.size(), o.seed, fitted.draws[k])),
+                   crowd_model(with_numbers(fitted.law, fitted.law.replicates[k]))});
+  return out;
+}
+
+/// What is far off on loadings that it has not seen is no law to use, however well it was fitted. Said after the choice
+/// of form, in which held-out loadings have no part.
+void judge_accuracy(CrowdLaw& law, double largest) {
+  if (law.status != "good") return;
+  const bool held_out = law.error_held_out > largest;
+  if (!held_out && !(law.error_cross > largest)) return;
+  law.status = "inaccurate";
+  law.reason = fmt::format(
+      "off by {:.0f} % on {}; at most {:.0f} % are allowed", 100.0 * (held_out ? law.error_held_out : law.error_cross),
+      held_out ? "loadings that were held out" : "fitted loadings when each is left out", 100.0 * largest);
 }
 
 /// Nothing measured at all, or no force anywhere: there is no law to fit.
@@ -362,15 +299,23 @@ LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOption
   entry.spec = data.spec;
   entry.relaxation = data.relaxation;
   describe_packings(data, entry);
-  for (const char* form : kForms) entry.laws.push_back(make_law(data, states, form, options));
+  std::vector<FittedLaw> laws;
+  for (const char* form : kForms) laws.push_back(make_law(data, states, form, options));
   // What the data do not determine is not preferred, however well it follows them.
-  const auto rank = [](const CrowdLaw& law) { return std::pair{law.status != "good", law.error_cross}; };
-  const auto best = std::min_element(entry.laws.begin(), entry.laws.end(),
-                                     [&](const CrowdLaw& a, const CrowdLaw& b) { return rank(a) < rank(b); });
-  entry.best = best->form;
-  const CrowdModel model = crowd_model(*best);
+  const auto rank = [](const FittedLaw& f) {
+    const CrowdLaw& law = f.law;
+    return std::tuple{law.status != "good", std::isnan(law.error_cross) ? HUGE_VAL : law.error_cross, law.parameters};
+  };
+  const auto best = std::min_element(laws.begin(), laws.end(),
+                                     [&](const FittedLaw& a, const FittedLaw& b) { return rank(a) < rank(b); });
+  entry.best = best->law.form;
+  const CrowdModel model = crowd_model(best->law);
   describe_range(states, model, entry);
-  fit_sides(states, model, entry);
+  fit_sides(states, model, draws_of(data, *best, options), options.seed, entry);
+  for (FittedLaw& f : laws) {
+    judge_accuracy(f.law, options.largest_error);
+    entry.laws.push_back(std::move(f.law));
+  }
   return entry;
 }
 

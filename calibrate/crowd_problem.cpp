@@ -99,7 +99,7 @@ LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, d
 }
 
 LeastSquaresFit fit_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
-                             const StateSelection& selection, double discrepancy) {
+                             const StateSelection& selection, double discrepancy, bool thorough) {
   const auto set = [&](CrowdModel& tried, std::span<const double> p) {
     set_partners(tried, kind, ratios, {p.begin(), p.end() - 1}, p.back());
   };
@@ -109,6 +109,8 @@ LeastSquaresFit fit_partners(CrowdModel& model, PartnerKind kind, const std::vec
   bounds.back() = {0.6, 3.0};
   set(model, start);
   LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, false, set);
+  if (thorough && fit.end != FitEnd::converged)
+    fit = fit_model(model, selection, discrepancy, start, bounds, true, set);
   set(model, fit.parameters);
   return fit;
 }

@@ -27,7 +27,8 @@ std::vector<const CrowdState*> loading_states(const CrowdStates& states);
 LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, double discrepancy, bool thorough);
 
 /// Weights per ratio and one exponent of solid or soft neighbours; `ratios` ascending (soft: of |ln ratio|).
+/// `thorough`: every strategy when the first one does not come to a minimum.
 LeastSquaresFit fit_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
-                             const StateSelection& selection, double discrepancy);
+                             const StateSelection& selection, double discrepancy, bool thorough);
 
 }  // namespace softgrain

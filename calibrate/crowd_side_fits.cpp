@@ -4,26 +4,54 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
+#include "calibrate/bootstrap.h"
 #include "calibrate/least_squares.h"
+#include "common/core/random.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Mean and scatter of a few values as an estimate.
-Estimate mean_of(const std::vector<double>& values, double fallback) {
-  constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  if (values.empty()) return {fallback, kUnknown, -kUnknown, kUnknown};
+/// Random numbers of these draws are other ones than those that draw packings.
+constexpr std::uint64_t kSideStream = std::uint64_t{1} << 40U;
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+Estimate guessed(double value) { return {value, kUnknown, -kUnknown, kUnknown}; }
+
+/// Taken over from another kind of neighbour: nothing is known of how far it is off.
+SlideLaw borrowed(const SlideLaw& from) { return {guessed(from.kt_ratio.value), guessed(from.friction.value)}; }
+
+double mean_of(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
-  const double mean = sum / static_cast<double>(values.size());
-  double square = 0.0;
-  for (const double v : values) square += (v - mean) * (v - mean);
-  const double n = static_cast<double>(values.size());
-  const double error = n > 1.0 ? std::sqrt(square / (n * (n - 1.0))) : 0.0;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return {mean, error, *low, *high};
+  return sum / static_cast<double>(values.size());
+}
+
+/// A quantity by configuration: of the measurement, and of every draw.
+struct SideValues {
+  std::vector<double> measured;
+  std::vector<std::vector<double>> drawn;
+};
+
+/// Mean over configurations; each draw takes as many of its own with replacement.
+Estimate estimate_of(const SideValues& v, std::uint64_t seed) {
+  Estimate out = guessed(mean_of(v.measured));
+  std::vector<double> means;
+  for (std::size_t r = 0; r < v.drawn.size(); ++r) {
+    const std::vector<double>& values = v.drawn[r];
+    if (values.empty()) continue;
+    RandomStream random(seed, RandomPurpose::bootstrap, kSideStream + static_cast<std::uint64_t>(r));
+    double sum = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) sum += values[random.below(values.size())];
+    means.push_back(sum / static_cast<double>(values.size()));
+  }
+  if (means.size() < kEnoughReplicates) return out;
+  std::tie(out.low, out.high) = interval95(means);
+  out.standard_error = scatter_of(means);
+  return out;
 }
 
 /// d force/d overlap of the first neighbour over E Rs.
@@ -80,19 +108,27 @@ bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& ou
   return true;
 }
 
-/// Means over all configurations of one kind of neighbour that slide; `fallback` when there is none.
-SlideLaw slide_law(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind,
-                   const SlideLaw& fallback) {
-  std::vector<double> kt;
-  std::vector<double> friction;
+/// kt/kn and friction of every configuration of one kind of neighbour that slides.
+void collect_slides(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind,
+                    std::vector<double>& kt, std::vector<double>& friction) {
   for (const CrowdStates& c : states) {
     SlideResult slide;
     if (c.states.empty() || c.configuration->held_out || !c.all_of(kind) || !slide_result(c, model, slide)) continue;
     kt.push_back(slide.kt_ratio);
     friction.push_back(slide.friction);
   }
-  if (kt.empty()) return fallback;
-  return {mean_of(kt, 0.0), mean_of(friction, 0.0)};
+}
+
+/// `fallback` when no configuration of this kind slides.
+SlideLaw slide_law(const std::vector<CrowdStates>& states, const CrowdModel& model, const std::vector<CrowdDraw>& draws,
+                   std::uint64_t seed, PartnerKind kind, const SlideLaw& fallback) {
+  SideValues kt;
+  SideValues friction;
+  collect_slides(states, model, kind, kt.measured, friction.measured);
+  if (kt.measured.empty()) return fallback;
+  for (const CrowdDraw& d : draws)
+    collect_slides(d.states, d.model, kind, kt.drawn.emplace_back(), friction.drawn.emplace_back());
+  return {estimate_of(kt, seed), estimate_of(friction, seed)};
 }
 
 /// States of the retreat that follows the deepest one, every neighbour going back.
@@ -109,7 +145,8 @@ std::vector<const CrowdState*> retreat_states(const CrowdStates& c, const CrowdS
   return out;
 }
 
-/// s that best gives back a retreat, relative to the law at the deepest state; not above 5.
+/// s that best gives back a retreat, relative to the law at the deepest state; not above 5. False when there is no
+/// retreat, or its fit did not come to a minimum.
 bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
   const CrowdState* deepest = nullptr;
   const std::vector<const CrowdState*> states = retreat_states(c, deepest);
@@ -131,24 +168,35 @@ bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
   };
   LeastSquaresOptions options;
   options.thorough = false;
-  s = fit_least_squares(problem, {{1.5}}, options).parameters[0];
-  return true;
+  const LeastSquaresFit fit = fit_least_squares(problem, {{1.5}}, options);
+  s = fit.parameters[0];
+  return fit.end == FitEnd::converged;
+}
+
+/// s of every configuration of planes that unloads.
+std::vector<double> retreats(const std::vector<CrowdStates>& states, const CrowdModel& model) {
+  std::vector<double> out;
+  for (const CrowdStates& c : states) {
+    double s = 1.0;
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
+    if (retreat_result(c, model, s)) out.push_back(s);
+  }
+  return out;
 }
 
 }  // namespace
 
-void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry) {
-  const SlideLaw unknown{mean_of({}, 0.3), mean_of({}, entry.spec.friction)};
-  entry.slide_plane = slide_law(states, model, PartnerKind::plane, unknown);
-  entry.slide_solid = slide_law(states, model, PartnerKind::solid, entry.slide_plane);
-  entry.slide_soft = slide_law(states, model, PartnerKind::soft, entry.slide_solid);
-  std::vector<double> retreat;
-  for (const CrowdStates& c : states) {
-    double s = 1.0;
-    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
-    if (retreat_result(c, model, s)) retreat.push_back(s);
-  }
-  entry.retreat = mean_of(retreat, 1.0);
+void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, const std::vector<CrowdDraw>& draws,
+               std::uint64_t seed, LawTableEntry& entry) {
+  const auto slide = [&](PartnerKind kind, const SlideLaw& fallback) {
+    return slide_law(states, model, draws, seed, kind, fallback);
+  };
+  entry.slide_plane = slide(PartnerKind::plane, {guessed(0.3), guessed(entry.spec.friction)});
+  entry.slide_solid = slide(PartnerKind::solid, borrowed(entry.slide_plane));
+  entry.slide_soft = slide(PartnerKind::soft, borrowed(entry.slide_solid));
+  SideValues retreat{retreats(states, model), {}};
+  for (const CrowdDraw& d : draws) retreat.drawn.push_back(retreats(d.states, d.model));
+  entry.retreat = retreat.measured.empty() ? guessed(1.0) : estimate_of(retreat, seed);
 }
 
 }  // namespace softgrain

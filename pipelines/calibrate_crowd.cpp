@@ -48,6 +48,7 @@ nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurem
   summary["options"] = {{"discrepancy", settings.fit.discrepancy},
                         {"replicates", settings.fit.replicates},
                         {"min_packings", settings.fit.min_packings},
+                        {"largest_error", settings.fit.largest_error},
                         {"target", settings.target},
                         {"seed", settings.fit.seed}};
   summary["remarks"] = fit.remarks;

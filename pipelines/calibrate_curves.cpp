@@ -62,21 +62,76 @@ Settings read_settings(const SceneTable& t, const CommonOptions& options) {
 
 json error_or_null(double error) { return std::isfinite(error) ? json(error) : json(nullptr); }
 
-/// The measured points as the report draws them.
+/// More points than these in all are not drawn, nor more samples: a page must open, and nobody sees them one by one.
+constexpr std::size_t kMostDrawn = 4000;
+constexpr std::size_t kMostSamples = 100;
+
+/// At most `most` of n points: of every even stretch the lowest and the highest force, and both ends, so that what lies
+/// far from the law is among them.
+std::vector<std::size_t> drawn_points(const std::vector<ForcePoint>& points, std::size_t most) {
+  const std::size_t n = points.size();
+  std::vector<std::size_t> out;
+  if (n <= most) {
+    for (std::size_t k = 0; k < n; ++k) out.push_back(k);
+    return out;
+  }
+  const std::size_t stretches = std::max<std::size_t>(most / 2, 2) - 1;
+  out.push_back(0);
+  for (std::size_t s = 0; s < stretches; ++s) {
+    const auto begin = points.begin() + static_cast<std::ptrdiff_t>(s * n / stretches);
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>((s + 1) * n / stretches);
+    const auto [low, high] =
+        std::minmax_element(begin, end, [](const ForcePoint& a, const ForcePoint& b) { return a.force < b.force; });
+    for (const auto at : {std::min(low, high), std::max(low, high)})
+      if (const auto k = static_cast<std::size_t>(at - points.begin()); k > out.back()) out.push_back(k);
+  }
+  if (out.back() != n - 1) out.push_back(n - 1);
+  return out;
+}
+
+json sample_json(const ForceCurves& kind, const ForceCurve& s, std::size_t most) {
+  json one = {{"kind", to_string(kind.kind)}, {"name", s.name}, {"delta", json::array()}, {"force", json::array()}};
+  for (const std::size_t k : drawn_points(s.normal, most)) {
+    const ForcePoint& p = s.normal[k];
+    one["delta"].push_back(p.delta);
+    one["force"].push_back(p.force);
+    if (kind.has_errors) one["error"].push_back(error_or_null(p.error));
+  }
+  one["points"] = s.normal.size();
+  one["tangential_points"] = s.tangential.size();
+  return one;
+}
+
+/// The measured points as the report draws them; each sample says how many it has.
 json samples_json(const std::vector<ForceCurves>& curves) {
+  std::size_t samples = 0;
+  for (const ForceCurves& kind : curves) samples += kind.samples.size();
+  const std::size_t drawn = std::min(samples, kMostSamples);
   json out = json::array();
+  std::size_t number = 0;
   for (const ForceCurves& kind : curves)
     for (const ForceCurve& s : kind.samples) {
-      json one = {{"kind", to_string(kind.kind)}, {"name", s.name}, {"delta", json::array()}, {"force", json::array()}};
-      for (const ForcePoint& p : s.normal) {
-        one["delta"].push_back(p.delta);
-        one["force"].push_back(p.force);
-        if (kind.has_errors) one["error"].push_back(error_or_null(p.error));
-      }
-      one["tangential_points"] = s.tangential.size();
-      out.push_back(std::move(one));
+      const bool chosen = number * drawn / samples != (number + 1) * drawn / samples;  // evenly spread
+      ++number;
+      if (chosen) out.push_back(sample_json(kind, s, kMostDrawn / drawn));
     }
   return out;
+}
+
+/// How many of the measured points the summary and the report hold, when not all.
+void note_thinned(const std::vector<ForceCurves>& curves, const json& drawn, std::vector<std::string>& remarks) {
+  std::size_t points = 0;
+  std::size_t samples = 0;
+  std::size_t kept = 0;
+  for (const ForceCurves& kind : curves) {
+    samples += kind.samples.size();
+    for (const ForceCurve& s : kind.samples) points += s.normal.size();
+  }
+  for (const json& one : drawn) kept += one["delta"].size();
+  if (kept < points)
+    remarks.push_back(
+        fmt::format("{} of {} points (of {} of {} samples) are drawn and in the summary; the fit is to all", kept,
+                    points, drawn.size(), samples));
 }
 
 std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
@@ -142,6 +197,8 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
       remarks.insert(remarks.begin(), fmt::format("{} law: {}: {}", to_string(r.law.kind), r.law.status, r.law.reason));
     people += force_line(r, fit.card.spec);
   }
+  json samples = samples_json(curves);
+  note_thinned(curves, samples, remarks);
   for (const std::string& remark : remarks) people += "note: " + remark + "\n";
   people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
   json summary = {{"status", good ? "good" : "not usable"},
@@ -149,7 +206,7 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
                   {"relaxation", fit.card.relaxation},
                   {"intervals", fit.card.intervals},
                   {"laws", laws_json(fit.card)},
-                  {"experiment", samples_json(curves)},
+                  {"experiment", std::move(samples)},
                   {"remarks", remarks},
                   {"provenance", provenance_json(provenance)}};
   run.finish(std::move(summary), people);

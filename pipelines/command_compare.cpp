@@ -16,11 +16,12 @@ ExitStatus command_compare(const CommonOptions& options) {
       within ? compare_within(candidate) : compare_sides(candidate, load_side(options.inputs.back()));
   const RunContext context(options, "compare", "compare");
   nlohmann::json summary = to_json(result);
-  summary["status"] = "good";
+  const bool usable = result.undefined.empty();
+  summary["status"] = usable ? "good" : "not usable";
   summary["candidate"] = options.inputs.front();
   summary["reference"] = options.inputs.back();
   context.finish(std::move(summary), to_text(result));
-  return ExitStatus::good;
+  return usable ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 }  // namespace softgrain

@@ -28,12 +28,16 @@ std::string law_path(const Scene& scene, const SceneTable& root, const CommonOpt
   return scene.resolve(written);
 }
 
+std::string lateral_ratio(const MacroCurve& c) {
+  if (c.stress_axial.back() == 0.0) return "undefined (no axial stress)";
+  return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
+}
+
 std::string people_text(const std::vector<MacroCurve>& curves, const RunContext& context) {
   std::string text;
   for (const MacroCurve& c : curves)
-    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {:.3f}, {:.1f} s{}\n",
-                        c.engine, c.sample, c.stress_axial.back(), c.strain.back(),
-                        c.stress_lateral.back() / c.stress_axial.back(), c.cost.seconds,
+    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
+                        c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
                         c.usable ? "" : " (" + c.note + ")");
   return text + "report: " + context.path("report.html");
 }
@@ -87,6 +91,7 @@ MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   out.law = read_scene_law(root, out.law_file);
   out.spec = measured_spec(out.law);
   out.setup = read_macro_setup(root.table("macro"), out.spec);
+  require_known_contents(root.table("macro"), out.setup, out.spec, out.law_file);
   out.setup.kept_states = read_kept_states(root);
   out.contents = root.count("contents", 1, 100000, out.contents);
   root.finish();
@@ -105,11 +110,18 @@ NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& conte
 
 /// What the law does beside the shelled twin; nothing to compare is a remark, as all that was computed is kept.
 void compare_with_twin(const std::vector<MacroCurve>& curves, nlohmann::json& summary) {
+  const auto undefined = [&](const std::string& what) {
+    summary["remarks"].push_back(what);
+    summary["status"] = "not usable";
+  };
   try {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
     summary["comparison"] = {{"stress_error", c.axial_difference.mean},
                              {"speedup_seconds", c.speedup_seconds},
                              {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
+    for (const std::string& one : c.undefined) undefined("law and twin: " + one);
+  } catch (const ZeroReference& e) {
+    undefined(std::string("law and twin cannot be compared: ") + e.what());
   } catch (const BadInput& e) {
     summary["remarks"].push_back(std::string("law and twin cannot be compared: ") + e.what());
   }
@@ -126,6 +138,7 @@ nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const st
   if (resolved) summary["resolved"] = macro_json(curves, "shelled");
   if (has_twin(scene.setup, "free")) summary["free"] = macro_json(curves, "free");
   summary["remarks"] = macro_remarks(curves);
+  if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary["remarks"].push_back(assumed);
   if (resolved && usable) compare_with_twin(curves, summary);
   return summary;
 }
@@ -208,17 +221,19 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   std::vector<MacroCurve> curves;
   context.guard([&] { curves = run(macro, law, contents, seed, store, context, provenance); });
 
-  const bool usable = std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
+  const bool usable = all_carry_stress(curves) &&
+                      std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
   nlohmann::json summary = summarise(macro, law, curves, usable);
   summary["files"] = {{"macro", context.path("macro.h5")},
                       {"initial", context.path("macro_initial.h5")},
                       {"report", context.path("report.html")}};
   if (macro.lammps) add_engine(*macro.lammps, macro.setup.samples, context, summary);
   summary["provenance"] = provenance_json(provenance);
+  const bool good = summary["status"] == "good";
   context.finish(summary, people_text(curves, context));
   write_report(context.directory());
   store.clear();
-  return usable ? ExitStatus::good : ExitStatus::not_usable;
+  return good ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 }  // namespace softgrain

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -101,9 +102,14 @@ void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunCont
   if (!setup.macro || !run_macro_samples(setup, store, context, provenance, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
+  result.usable = result.usable && all_carry_stress(result.curves);
   if (!has_twin(*setup.macro, "shelled")) return;
   try {
     result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
+    for (const std::string& one : result.comparison->undefined) {
+      result.remarks.push_back("law and twin: " + one);
+      result.usable = false;
+    }
   } catch (const BadInput& e) {
     // No sample with two usable curves: said in the summary, what was computed is kept.
     result.remarks.emplace_back(std::string("macro and twin cannot be compared: ") + e.what());
@@ -139,15 +145,17 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Proven
   return s;
 }
 
+std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : "(undefined)"; }
+
 std::string people_text(const PipelineResult& r, const RunContext& context, double seconds) {
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
   if (r.comparison)
     text += fmt::format(
-        "macro against its resolved twin: stress differs by {:.0f} %, {:.0f} times fewer contact evaluations, {:.0f} "
-        "times less time\n",
-        100.0 * r.comparison->axial_difference.mean, r.comparison->speedup_contact_evaluations,
-        r.comparison->speedup_seconds);
+        "macro against its resolved twin: stress differs by {} %, {} times fewer contact evaluations, {} times less "
+        "time\n",
+        rounded(100.0 * r.comparison->axial_difference.mean), rounded(r.comparison->speedup_contact_evaluations),
+        rounded(r.comparison->speedup_seconds));
   for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
   return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
 }

@@ -46,6 +46,8 @@ nlohmann::json law_json(const CrowdLaw& law) {
           {"error_held_out", law.error_held_out},
           {"error_cross", law.error_cross},
           {"criterion", law.criterion},
+          {"reason", law.reason},
+          {"replicates_failed", law.replicates_failed},
           {"a", estimate_json(law.a)},
           {"b", estimate_json(law.b)},
           {"delta", estimate_json(law.delta)},
@@ -70,8 +72,9 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
 }
 
 std::string law_line(const CrowdLaw& law, bool best) {
-  return fmt::format("  {}{}: off by {:.1f} % on what it was fitted to, {}, {:.1f} % leaving one out\n", law.form,
-                     best ? " (best)" : "", 100.0 * law.error_fitted, held_out_text(law), 100.0 * law.error_cross);
+  return fmt::format("  {}{}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", law.form, best ? " (best)" : "",
+                     law.status == "good" ? "" : law.status + ", ", 100.0 * law.error_fitted, held_out_text(law),
+                     cross_text(law));
 }
 
 }  // namespace
@@ -81,11 +84,17 @@ std::string held_out_text(const CrowdLaw& law) {
   return fmt::format("{:.1f} % on what was held out", 100.0 * law.error_held_out);
 }
 
+std::string cross_text(const CrowdLaw& law) {
+  if (std::isnan(law.error_cross)) return "nothing to leave out";
+  return fmt::format("{:.1f} % leaving one out", 100.0 * law.error_cross);
+}
+
 CrowdFitOptions read_crowd_fit(const SceneTable& t) {
   CrowdFitOptions o;
   o.discrepancy = t.number("discrepancy", Unit::none, Range{0.0, 1.0, true, false}, o.discrepancy);
   o.replicates = static_cast<int>(t.count("replicates", 0, 100000, o.replicates));
   o.min_packings = static_cast<int>(t.count("min_packings", 2, 100000, o.min_packings));
+  o.largest_error = t.number("largest_error", Unit::none, Range::positive(), o.largest_error);
   return o;
 }
 
@@ -95,6 +104,12 @@ void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOp
   for (const std::string& r : crowd_remarks(data, target))
     fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", entry.solid_fraction, r));
   for (const CrowdLaw& law : entry.laws) {
+    if (law.replicates_failed > 0)
+      fit.remarks.push_back(
+          fmt::format("solid fraction {:.3f}, {} law: {} of {} refits to drawn packings did not come to a minimum and "
+                      "are left out of "
+                      "the intervals",
+                      entry.solid_fraction, law.form, law.replicates_failed, options.replicates));
     if (law.status == "good") continue;
     fit.usable = fit.usable && law.form != entry.best;
     fit.remarks.push_back(law.form + " law: " + law.status + ": " + law.reason);

@@ -18,10 +18,11 @@ struct CrowdLawFit {
   bool usable = true;  ///< every recorded point came to rest, and the best law of every entry is good
 };
 
-/// "12.1 % on what was held out", or that nothing was.
+/// "12.1 % on what was held out", or that nothing was; "9.6 % leaving one out", or that there was but one.
 std::string held_out_text(const CrowdLaw& law);
+std::string cross_text(const CrowdLaw& law);
 
-/// Reads `discrepancy`, `replicates` and `min_packings`. Throws BadInput.
+/// Reads `discrepancy`, `replicates`, `min_packings` and `largest_error`. Throws BadInput.
 CrowdFitOptions read_crowd_fit(const SceneTable& t);
 
 /// Fits `data` and adds an entry at the solid fraction of its packings, between those that are there. `target`: wanted

@@ -66,7 +66,8 @@ double onset(const std::vector<CrowdRun>& runs) {
   for (std::size_t k = 0; k < runs[0].points.size() && runs[0].points[k].stage == 0; ++k) {
     overlap.push_back(deepest(runs[0].points[k]));
     force.push_back(0.0);
-    for (const CrowdRun& r : runs) force.back() += mean_of(r.points[k].normal);
+    for (const CrowdRun& r : runs)
+      if (k < r.points.size()) force.back() += mean_of(r.points[k].normal);
   }
   for (std::size_t k = 0; k < force.size(); ++k)
     if (force[k] > 1e-3 * force.back()) return overlap[k];

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "common/data/crowd_replicates.h"
 #include "common/data/law_band.h"
 #include "pipelines/crowd_law_fit.h"
 #include "pipelines/named_laws.h"
@@ -34,13 +37,17 @@ void warn_of_card(const LawCard& card, Findings& out) {
 
 void check_card(const std::string& path, Findings& out) {
   const LawCard card = load_card(path);
-  out.add("kind", "law card", "law card, measured with the " + card.relaxation + " relaxation");
+  out.add("kind", "law card", "law card, " + measured_text(card));
+  if (!packing_known(card.spec))
+    out.add("contents", "not known",
+            "what is inside the soft particle is not known: no resolved twin can be made of it");
   for (const PairLaw& law : card.pairs)
     out.add(to_string(law.kind), {{"status", law.status}, {"delta_min", law.delta_min}, {"delta_max", law.delta_max}},
             fmt::format("{}: {}, fitted for Delta from {:.3f} to {:.3f} on {} packings, largest grain overlap {:.2f} "
                         "of the smaller radius",
                         to_string(law.kind), law.status, law.delta_min, law.delta_max, law.packings, law.max_overlap));
   warn_of_card(card, out);
+  for (const std::string& note : card.notes) out.warn(note);
 }
 
 /// "0.712 to 0.745", or one number.
@@ -66,12 +73,10 @@ void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std
                            {"error_fitted", law.error_fitted},
                            {"error_held_out", law.error_held_out},
                            {"error_cross", law.error_cross}});
-  lines += fmt::format(
-      "    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {:.1f} % leaving "
-      "one out; {}, {}\n",
-      law.form, law.form == entry.best ? " (best)" : "", law.status, law.reason.empty() ? "" : " (" + law.reason + ")",
-      100.0 * law.error_fitted, held_out_text(law), 100.0 * law.error_cross, partners_text(law, PartnerKind::solid),
-      partners_text(law, PartnerKind::soft));
+  lines += fmt::format("    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n", law.form,
+                       law.form == entry.best ? " (best)" : "", law.status,
+                       law.reason.empty() ? "" : " (" + law.reason + ")", 100.0 * law.error_fitted, held_out_text(law),
+                       cross_text(law), partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
 }
 
 void check_entry(const LawTableEntry& e, Findings& out) {
@@ -95,10 +100,12 @@ void warn_of_entry(const LawTableEntry& e, Findings& out) {
   const CrowdLaw* best = e.find(e.best);
   constexpr double kFar = 0.15;
   if (best->status != "good")
-    out.warn(fmt::format("solid fraction {:.3f}: the best law is {}", e.solid_fraction, best->status));
-  if (best->error_cross > kFar)
+    out.warn(fmt::format("solid fraction {:.3f}: the best law is {}{}", e.solid_fraction, best->status,
+                         best->reason.empty() ? "" : " (" + best->reason + ")"));
+  const double unseen = std::fmax(best->error_cross, best->error_held_out);  // either may be unknown
+  if (unseen > kFar)
     out.warn(fmt::format("solid fraction {:.3f}: the best law is off by {:.0f} % on loadings that it has not seen",
-                         e.solid_fraction, 100.0 * best->error_cross));
+                         e.solid_fraction, 100.0 * unseen));
   for (const PartnerRow& row : best->partners)
     if (row.error > 2.0 * kFar)
       out.warn(fmt::format("solid fraction {:.3f}: {} neighbours of ratio {:.3g} are given back only to {:.0f} %",
@@ -106,13 +113,15 @@ void warn_of_entry(const LawTableEntry& e, Findings& out) {
 }
 
 void check_table(const std::string& path, Findings& out) {
-  const LawTable table = load_law_table(path);
+  LawTable table = load_law_table(path);
+  read_replicates(table, path);
   out.add("kind", "law table",
           fmt::format("law table: {} entries, solid fraction {}", table.entries.size(), fractions_text(table)));
   for (const LawTableEntry& e : table.entries) {
     check_entry(e, out);
     warn_of_entry(e, out);
   }
+  for (const std::string& note : table.notes) out.warn(note);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "common/dynamics/force_pass.h"
 #include "macrosim/constructed_packing.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/crowd_law_fit.h"
 #include "pipelines/kept_states.h"
 #include "pipelines/lammps/lammps_program.h"
 #include "pipelines/law/law_values.h"
@@ -125,8 +126,8 @@ void check_volume(const LawTable& table, const LawSources& laws, const std::stri
   beyond_range("lost volume of soft particles", volume, answer.entry.volume_max, beyond, out);
   beyond_range("overlaps of single soft contacts along the load", overlap.largest, answer.entry.overlap_max, beyond,
                out);
-  if (answer.entry.find(answer.form)->status == "underdetermined")
-    out.warn("the " + answer.form + " law is underdetermined: " + answer.entry.find(answer.form)->reason);
+  const CrowdLaw& law = *answer.entry.find(answer.form);
+  if (law.status != "good") out.warn("the " + answer.form + " law is " + law.status + ": " + law.reason);
 }
 
 /// One content stands for all: a solid fraction outside the table is no refusal yet.
@@ -140,8 +141,7 @@ void check_table_law(const LawTable& table, const LawSources& given, const std::
   const LawTableEntry entry = entry_at(table, fraction, laws.range, remark);
   const CrowdLaw& law = *entry.find(named.form);
   out.add_once("law", {{"form", named.form}, {"solid_fraction", fraction}, {"error_cross", law.error_cross}},
-               fmt::format("law: {}, at solid fraction {:.3f}; off by {:.0f} % leaving one loading out", named.form,
-                           fraction, 100.0 * law.error_cross));
+               fmt::format("law: {}, at solid fraction {:.3f}; off by {}", named.form, fraction, cross_text(law)));
   if (!remark.empty())
     out.warn("one content was made: " + remark +
              (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
@@ -287,7 +287,9 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
   (void)root.count("contents", 1, 100000, 7);
   (void)read_kept_states(root);
   const MacroSetup macro = read_macro_setup(root.table("macro"), spec);
+  require_known_contents(root.table("macro"), macro, spec, path);
   root.finish();
+  if (const std::string assumed = assumed_text(macro); !assumed.empty()) out.warn(assumed);
   if (path.empty()) {
     out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");
     check_macro(macro, kGrainsPerSoft, nullptr, 0.0, out);

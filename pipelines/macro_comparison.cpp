@@ -102,6 +102,13 @@ SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& 
                                   "states_macro_" + scene.name + ".h5");
   save_macro(curves, context.path(r.file), provenance);
   r.scores = score_engines(curves);
+  if (!all_carry_stress(curves)) {
+    r.usable = false;
+    r.remarks.push_back(
+        scene.name +
+        ": a run with a law, or a shelled twin, carries no stress at its end: what is relative to it is "
+        "undefined");
+  }
   for (const MacroCurve& c : curves) {
     r.usable = r.usable && c.usable;
     if (!c.note.empty())
@@ -155,7 +162,7 @@ std::string people_text(const std::vector<SceneResult>& results, const RunContex
     for (const EngineScore& s : r.scores) {
       text +=
           fmt::format("{}, {}: axial stress {:.4g} Pa, {:.3g} s per sample", r.name, s.engine, s.axial.mean, s.seconds);
-      if (s.shelled.axial.n > 0)
+      if (s.shelled.axial.n > 0 && std::isfinite(s.shelled.speedup_evaluations))
         text += fmt::format("; against shelled: stress error {:.3g} %, {:.3g} times fewer contact evaluations",
                             100.0 * s.shelled.axial.mean, s.shelled.speedup_evaluations);
       text += "\n";
@@ -169,6 +176,10 @@ std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
   if (!setup.laws.card) return {};
   const SoftParticleSpec& law = setup.laws.card->spec;
   const SoftParticleSpec& mine = setup.spec;
+  if (!packing_known(law))
+    return {
+        "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "
+        "scene says"};
   const bool same = law.exponent == mine.exponent && law.polydispersity == mine.polydispersity &&
                     law.rmax_over_shell == mine.rmax_over_shell && law.beta == mine.beta &&
                     law.friction == mine.friction && law.poisson_ratio == mine.poisson_ratio;

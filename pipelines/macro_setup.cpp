@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/core/error.h"
@@ -66,13 +68,35 @@ void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults) {
   MacroSetup setup;
   MacroSpec& spec = setup.spec;
-  spec.exponent = defaults.exponent;
   spec.solid_radius_max = spec.soft_radius_max = defaults.shell_radius;
   spec.youngs_modulus = defaults.youngs_modulus;
-  spec.poisson_ratio = defaults.poisson_ratio;
-  spec.friction = defaults.friction;
-  spec.density = defaults.density;
+  if (is_known(defaults.exponent)) spec.exponent = defaults.exponent;
+  const auto take = [&](const char* name, double known, double& value, const char* unit) {
+    if (is_known(known))
+      value = known;
+    else
+      setup.assumed.push_back(fmt::format("{} = {}{}", name, value, unit));
+  };
+  take("nu", defaults.poisson_ratio, spec.poisson_ratio, "");
+  take("density", defaults.density, spec.density, " kg/m^3");
+  if (is_known(defaults.friction) || !macro.has("mu")) take("mu", defaults.friction, spec.friction, "");
   return read_macro_setup(macro, setup);
+}
+
+void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
+                            const std::string& law_file) {
+  if (setup.twins.empty() || packing_known(spec)) return;
+  macro.reject("resolved",
+               "a resolved twin is filled with grains, and " + law_file +
+                   " does not say what is inside the soft particle that was measured: give resolved = false, or add "
+                   "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
+}
+
+std::string assumed_text(const MacroSetup& setup) {
+  if (setup.assumed.empty()) return "";
+  std::string all;
+  for (const std::string& one : setup.assumed) all += (all.empty() ? "" : ", ") + one;
+  return "the law does not say all of the grains' material; of solid grains this is taken: " + all;
 }
 
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {

@@ -23,17 +23,26 @@ struct MacroSetup {
   std::int64_t samples = 1;
   std::vector<std::string> twins{"shelled"};  ///< of "shelled", "free": resolved beside every sample
   std::int64_t kept_states = 0;               ///< of the first sample of every engine, for pictures
+  std::vector<std::string> assumed{};         ///< "nu = 0.3": of grains, where the law does not say them
 };
 
 [[nodiscard]] inline bool has_twin(const MacroSetup& setup, const std::string& name) {
   return std::find(setup.twins.begin(), setup.twins.end(), name) != setup.twins.end();
 }
 
-/// Reads [macro]; material defaults come from the measured soft particle. Throws BadInput.
+/// Reads [macro]; material defaults come from the measured soft particle, as far as it is known. Throws BadInput.
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults);
 
 /// Replaces what a table says, keeps the rest. Throws BadInput.
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
+
+/// Twins are filled with packings like the one that was measured. Throws BadInput, at key `resolved`, when the scene
+/// has twins and `spec` of the law in this file does not say what is inside.
+void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
+                            const std::string& law_file);
+
+/// What was assumed because the law does not say it, as a sentence; empty when nothing was.
+std::string assumed_text(const MacroSetup& setup);
 
 /// For commands that do not run LAMMPS. Throws BadInput.
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup);

@@ -183,8 +183,27 @@ std::vector<std::string> measurement_remarks(const Measurements& data) {
   return out;
 }
 
+namespace {
+
+/// The free twin may be without stress for a while: its grains spread into the voids between bodies first.
+bool lacks_stress(const MacroCurve& c) {
+  return c.usable && c.engine != "free" && !c.stress_axial.empty() && c.stress_axial.back() == 0.0;
+}
+
+}  // namespace
+
+bool all_carry_stress(const std::vector<MacroCurve>& curves) {
+  return std::none_of(curves.begin(), curves.end(), lacks_stress);
+}
+
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
   std::vector<std::string> out;
+  for (const MacroCurve& c : curves)
+    if (lacks_stress(c))
+      out.push_back(
+          fmt::format("macro run '{}' of sample {} carries no stress at its end: what is relative to it is "
+                      "undefined",
+                      c.engine, c.sample));
   for (const MacroCurve& c : curves)
     if (!c.usable)
       out.push_back(fmt::format("macro run '{}' of sample {} is not usable: {}", c.engine, c.sample, c.note));

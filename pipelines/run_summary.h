@@ -28,6 +28,9 @@ nlohmann::json macro_json(const std::vector<MacroCurve>& curves, const std::stri
 
 /// Sentences about what must not be overlooked: points that did not converge, curves that are not usable.
 std::vector<std::string> measurement_remarks(const Measurements& data);
+/// Whether every run with a law, and every shelled twin, ends under stress: else nothing can be said relative to it.
+bool all_carry_stress(const std::vector<MacroCurve>& curves);
+
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves);
 
 /// Provenance as it goes into a summary.

@@ -9,6 +9,7 @@
 #include "common/data/crowd_replicates.h"
 #include "common/data/law_card_format.h"
 #include "common/data/spec_io.h"
+#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
@@ -58,9 +59,11 @@ void write_replicates(const h5::Group& group, const CrowdLaw& law) {
   group.write("replicates", all, {law.replicates.size(), numbers.size()});
 }
 
-void write_table_file(const LawTable& table, const std::string& path, const Provenance& provenance) {
+void write_table_file(const LawTable& table, const std::string& path, const Provenance& provenance,
+                      const std::string& table_id) {
   h5::AtomicFile file(path);
   write_format(file.root(), kFormat);
+  file.root().attribute(kTableId, table_id);
   write_provenance(file.root(), provenance);
   for (std::size_t k = 0; k < table.entries.size(); ++k) {
     const LawTableEntry& e = table.entries[k];
@@ -84,8 +87,9 @@ void write_table_file(const LawTable& table, const std::string& path, const Prov
 }  // namespace
 
 void save_law_table(const LawTable& table, const std::string& toml_path, const Provenance& provenance) {
-  write_table_file(table, table_path(toml_path), provenance);
-  write_text_atomic(toml_path, law_table_text(table, provenance));
+  const std::string id = short_hash(law_table_text(table, provenance, ""));
+  write_table_file(table, table_path(toml_path), provenance, id);
+  write_text_atomic(toml_path, law_table_text(table, provenance, id));
 }
 
 }  // namespace softgrain

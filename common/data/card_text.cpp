@@ -35,23 +35,61 @@ std::optional<Beyond> read_beyond(const SceneTable& table) {
   return word == "clamp" ? Beyond::clamp : Beyond::extrapolate;
 }
 
+namespace {
+
+/// A number of the soft particle, its range and what it is; Rs and E are always known.
+struct SpecLine {
+  const char* key;
+  double SoftParticleSpec::*value;
+  Unit unit;
+  Range range;
+  const char* meaning;
+  bool always = false;
+};
+
+const std::vector<SpecLine>& spec_lines() {
+  using S = SoftParticleSpec;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static const std::vector<SpecLine> lines{
+      {"shell_radius", &S::shell_radius, Unit::length, Range::positive(), "Rs [m]", true},
+      {"youngs_modulus", &S::youngs_modulus, Unit::pressure, Range::positive(), "E [Pa]", true},
+      {"poisson_ratio", &S::poisson_ratio, Unit::none, Range{-1.0, 0.5, true, false}, "nu"},
+      {"friction", &S::friction, Unit::none, Range::not_negative(), "mu"},
+      {"density", &S::density, Unit::density, Range::positive(), "[kg/m^3]"},
+      {"restitution", &S::restitution, Unit::none, Range::closed(0.0, 1.0), ""},
+      {"exponent", &S::exponent, Unit::none, Range::any(), "b of P(r) ~ r^-b"},
+      {"polydispersity", &S::polydispersity, Unit::none, Range{1.0, kInfinity, false, false}, "rmax/rmin"},
+      {"rmax_over_shell", &S::rmax_over_shell, Unit::none, Range{0.0, 1.0, true, false}, "rmax/Rs"},
+      {"beta", &S::beta, Unit::none, Range::positive(), "volume of drawn grains over volume of the shell"}};
+  return lines;
+}
+
+}  // namespace
+
 std::string spec_text(const SoftParticleSpec& s) {
   std::string text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "shell_radius = {}  # Rs [m]\n", real(s.shell_radius));
-  fmt::format_to(out, "youngs_modulus = {}  # E [Pa]\n", real(s.youngs_modulus));
-  fmt::format_to(out, "poisson_ratio = {}  # nu\n", real(s.poisson_ratio));
-  fmt::format_to(out, "friction = {}  # mu\n", real(s.friction));
-  fmt::format_to(out, "density = {}  # [kg/m^3]\n", real(s.density));
-  fmt::format_to(out, "restitution = {}\n", real(s.restitution));
-  fmt::format_to(out, "exponent = {}  # b of P(r) ~ r^-b\n", real(s.exponent));
-  fmt::format_to(out, "polydispersity = {}  # rmax/rmin\n", real(s.polydispersity));
-  fmt::format_to(out, "rmax_over_shell = {}  # rmax/Rs\n", real(s.rmax_over_shell));
-  fmt::format_to(out, "beta = {}  # volume of drawn grains over volume of the shell\n", real(s.beta));
+  for (const SpecLine& line : spec_lines()) {
+    const std::string meaning = *line.meaning == '\0' ? "" : std::string("  # ") + line.meaning;
+    if (is_known(s.*line.value)) fmt::format_to(out, "{} = {}{}\n", line.key, real(s.*line.value), meaning);
+  }
+  if (s.trials == 0) return text;
   fmt::format_to(out, "trials = {}  # random positions tried per grain\n", s.trials);
   fmt::format_to(out, "placement = {}  # blind trials, or the same law by looking only where there is room\n",
                  quoted(s.placement == Placement::voids ? "voids" : "trials"));
   return text;
+}
+
+SoftParticleSpec read_spec_text(const SceneTable& table, bool may_be_unknown) {
+  SoftParticleSpec s = unknown_soft_particle(0.0, 0.0);
+  for (const SpecLine& line : spec_lines())
+    if (line.always || !may_be_unknown || table.has(line.key))
+      s.*line.value = table.number(line.key, line.unit, line.range);
+  if (!may_be_unknown || table.has("trials"))
+    s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());
+  s.placement =
+      table.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
+  return s;
 }
 
 std::string estimate_text(const Estimate& e) {
@@ -64,25 +102,6 @@ double read_real(const SceneTable& table, const std::string& key, const Range& r
   const std::string word = table.choice(key, {"nan", "inf", "-inf"});
   if (word == "nan") return std::numeric_limits<double>::quiet_NaN();
   return word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
-}
-
-SoftParticleSpec read_spec_text(const SceneTable& table) {
-  SoftParticleSpec s;
-  s.shell_radius = table.number("shell_radius", Unit::length, Range::positive());
-  s.youngs_modulus = table.number("youngs_modulus", Unit::pressure, Range::positive());
-  s.poisson_ratio = table.number("poisson_ratio", Unit::none, Range{-1.0, 0.5, true, false});
-  s.friction = table.number("friction", Unit::none, Range::not_negative());
-  s.density = table.number("density", Unit::density, Range::positive());
-  s.restitution = table.number("restitution", Unit::none, Range::closed(0.0, 1.0));
-  s.exponent = table.number("exponent", Unit::none);
-  s.polydispersity =
-      table.number("polydispersity", Unit::none, Range{1.0, std::numeric_limits<double>::infinity(), false, false});
-  s.rmax_over_shell = table.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, false});
-  s.beta = table.number("beta", Unit::none, Range::positive());
-  s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());
-  s.placement =
-      table.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
-  return s;
 }
 
 Estimate read_estimate_text(const SceneTable& table, const Range& range) {

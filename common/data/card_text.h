@@ -21,9 +21,9 @@ double read_real(const SceneTable& table, const std::string& key, const Range& r
 /// Key `beyond`, of cards and of scenes that overrule them; empty when it is not there.
 std::optional<Beyond> read_beyond(const SceneTable& table);
 
-/// "key = value" lines of a soft particle, and back.
+/// "key = value" lines of what is known of a soft particle, and back; `may_be_unknown`: all but Rs and E may be absent.
 std::string spec_text(const SoftParticleSpec& spec);
-SoftParticleSpec read_spec_text(const SceneTable& table);
+SoftParticleSpec read_spec_text(const SceneTable& table, bool may_be_unknown);
 
 /// An inline table { value, standard_error, low, high }, and back; the value must be in range.
 std::string estimate_text(const Estimate& estimate);

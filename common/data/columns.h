@@ -1,9 +1,8 @@
 // Records to columns and back: a vector of structs is stored as one data set per field.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -28,33 +27,59 @@ void write_column(const h5::Group& group, const std::string& name, const std::st
   group.attribute_of(name, "unit", unit);
 }
 
-/// Reads the data set into set(record, value) of every record. Throws FileTrouble when its length is another.
-template <class Record, class Set>
-void read_doubles(const h5::Group& group, const std::string& name, std::vector<Record>& records, Set set) {
-  const std::vector<double> values = group.doubles(name);
-  if (values.size() != records.size()) throw FileTrouble("data set '" + name + "' has a wrong length");
-  for (std::size_t k = 0; k < records.size(); ++k) set(records[k], values[k]);
-}
-/// The same for numbers that everything else is worked out from. Throws FileTrouble also when one is not finite.
-template <class Record, class Set>
-void read_finite(const h5::Group& group, const std::string& name, std::vector<Record>& records, Set set) {
-  read_doubles(group, name, records, [&](Record& r, double value) {
-    if (!std::isfinite(value))
-      throw FileTrouble("data set '" + name + "' holds a number that is not finite, in row " +
-                        std::to_string(&r - records.data()));
-    set(r, value);
-  });
-}
-template <class Record, class Set>
-void read_integers(const h5::Group& group, const std::string& name, std::vector<Record>& records, Set set) {
-  const std::vector<std::int64_t> values = group.integers(name);
-  if (values.size() != records.size()) throw FileTrouble("data set '" + name + "' has a wrong length");
-  for (std::size_t k = 0; k < records.size(); ++k) set(records[k], values[k]);
-}
+/// What the numbers of a data set may be.
+struct Limits {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  static Limits not_negative() { return {0.0, std::numeric_limits<double>::infinity()}; }
+  static Limits flag() { return {0.0, 1.0}; }
+};
+
+/// What a data set must be to be taken for what its name says. All throw FileTrouble that names it and what is there.
+void require_unit(const h5::Group& group, const std::string& name, const std::string& unit);
+void require_shape(const h5::Group& group, const std::string& name, const h5::Shape& shape);
+void require_within(double value, const Limits& limits, const std::string& name, std::size_t row);
+
+/// Finite numbers of this unit, shape and range, row by row. Throws FileTrouble.
+std::vector<double> read_numbers(const h5::Group& group, const std::string& name, const std::string& unit,
+                                 const h5::Shape& shape, const Limits& limits = {});
+
+/// A finite number within limits that is an attribute of the group. Throws FileTrouble.
+double read_attribute(const h5::Group& group, const std::string& name, const Limits& limits = {});
 
 /// Number of records of a group: the length of its data set `name`.
-inline std::size_t column_length(const h5::Group& group, const std::string& name) {
-  return group.integers(name).size();
+std::size_t column_length(const h5::Group& group, const std::string& name);
+
+/// Reads the data set into set(record, value) of every record; the numbers may be anything. Throws FileTrouble when
+/// length or unit are others.
+template <class Record, class Set>
+void read_doubles(const h5::Group& group, const std::string& name, const std::string& unit,
+                  std::vector<Record>& records, Set set) {
+  require_shape(group, name, {records.size()});
+  require_unit(group, name, unit);
+  const std::vector<double> values = group.doubles(name);
+  for (std::size_t k = 0; k < records.size(); ++k) set(records[k], values[k]);
+}
+/// The same for numbers that everything else is worked out from. Throws FileTrouble also when one is not finite, or
+/// outside limits.
+template <class Record, class Set>
+void read_finite(const h5::Group& group, const std::string& name, const std::string& unit, std::vector<Record>& records,
+                 Set set, const Limits& limits = {}) {
+  const std::vector<double> values = read_numbers(group, name, unit, {records.size()}, limits);
+  for (std::size_t k = 0; k < records.size(); ++k) set(records[k], values[k]);
+}
+/// Whole numbers, without unit.
+template <class Record, class Set>
+void read_integers(const h5::Group& group, const std::string& name, std::vector<Record>& records, Set set,
+                   const Limits& limits = {}) {
+  require_shape(group, name, {records.size()});
+  require_unit(group, name, "1");
+  const std::vector<std::int64_t> values = group.integers(name);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    require_within(static_cast<double>(values[k]), limits, name, k);
+    set(records[k], values[k]);
+  }
 }
 
 /// Hands out consecutive parts of a long list; a part that reaches beyond the end means a damaged file.

@@ -35,7 +35,9 @@ class AlongEntries {
   [[nodiscard]] double value(const Get& get) const {
     std::vector<double> y;
     for (const LawTableEntry& e : table_.entries) y.push_back(get(e));
-    if (!std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); })) return y.front();
+    // What one entry does not know is not known between entries.
+    const auto unknown = std::find_if(y.begin(), y.end(), [](double v) { return !std::isfinite(v); });
+    if (unknown != y.end()) return *unknown;
     return MonotoneCurve(fractions_, y).value(x_);
   }
 
@@ -82,7 +84,8 @@ void take_worst_status(const LawTable& table, std::size_t k, CrowdLaw& law) {
     law.reason = at->laws[k].reason;
     return true;
   };
-  if (!bad("no threshold crossing")) bad("underdetermined");
+  for (const char* status : {"no threshold crossing", "underdetermined", "inaccurate"})
+    if (bad(status)) return;
 }
 
 void interpolate_law(const AlongEntries& along, std::size_t k, CrowdLaw& law) {

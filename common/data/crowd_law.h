@@ -34,7 +34,7 @@ struct ConfigurationError {
 /// One form of law with its parameters.
 struct CrowdLaw {
   std::string form;             ///< "pair", "bag" or "directional"
-  std::string status = "good";  ///< "good", "no threshold crossing", "underdetermined"
+  std::string status = "good";  ///< "good", "no threshold crossing", "underdetermined", "inaccurate"
   std::string reason;
   Estimate a;  ///< pressure: F/(E Rs^2) of one plane is a (D^b - delta^b)
   Estimate b;
@@ -46,9 +46,11 @@ struct CrowdLaw {
   std::vector<ConfigurationError> errors;
   double error_fitted = 0.0;                                         ///< mean over the configurations of the fit
   double error_held_out = std::numeric_limits<double>::quiet_NaN();  ///< over those left out of it; NaN: none was
-  double error_cross = 0.0;  ///< leave one configuration out, mean over configurations
-  double criterion = 0.0;    ///< corrected Akaike information criterion: smaller is better
+  /// Leave one loading out of those that may be fitted, mean over them; NaN: there is but one.
+  double error_cross = std::numeric_limits<double>::quiet_NaN();
+  double criterion = 0.0;  ///< corrected Akaike information criterion: smaller is better
   int parameters = 0;
+  int replicates_failed = 0;  ///< refits that did not come to their minimum and count nowhere
   /// Refits to packings drawn with replacement, each as crowd_numbers() gives it; kept in the .h5 beside the table,
   /// read by read_replicates() alone.
   std::vector<std::vector<double>> replicates{};
@@ -90,7 +92,7 @@ struct LawTableEntry {
   SlideLaw slide_soft;
   Estimate retreat;  ///< s of the unloading branch
   std::vector<CrowdLaw> laws;
-  std::string best;  ///< the form that cross-validation prefers among good ones
+  std::string best;  ///< the form that cross-validation prefers among good ones; what is held out has no say
 
   [[nodiscard]] const CrowdLaw* find(const std::string& form) const;
 };
@@ -104,11 +106,13 @@ enum class RangePolicy { reject, clamp };
 struct LawTable {
   int schema = 1;
   std::vector<LawTableEntry> entries;  ///< by solid fraction, ascending
+  std::string table_id{};              ///< of the .h5 that belongs to it; empty in files of before
+  std::vector<std::string> notes{};    ///< of reading: what of the .h5 does not go with an edited table
 };
 
 /// The card as TOML; save_law_table() of common/contact/crowd_table_file.h writes it with the forces that it stands
-/// for.
-std::string law_table_text(const LawTable& table, const Provenance& provenance);
+/// for. `table_id`: names the .h5 that belongs to it; empty: none.
+std::string law_table_text(const LawTable& table, const Provenance& provenance, const std::string& table_id);
 
 /// Reads the card. Throws BadInput with file:line for wrong content, FileTrouble for files.
 LawTable load_law_table(const std::string& toml_path);

@@ -24,13 +24,14 @@ constexpr std::array<SlideName, 3> kSlides{{{"slide_plane", &LawTableEntry::slid
                                             {"slide_solid", &LawTableEntry::slide_solid},
                                             {"slide_soft", &LawTableEntry::slide_soft}}};
 
-void write_head(Out out, const LawTable& table, const Provenance& provenance) {
+void write_head(Out out, const LawTable& table, const Provenance& provenance, const std::string& table_id) {
   fmt::format_to(out, "# Laws of soft particles with several contacts: fitted parameters and how well they predict.\n");
   fmt::format_to(out, "# The forces they stand for are tabulated in the .h5 file of the same name.\n");
   fmt::format_to(out, "schema = {}\n\n[provenance]\n", table.schema);
   fmt::format_to(out, "version = {}\ncommit = {}\n", quoted(provenance.version), quoted(provenance.commit));
   fmt::format_to(out, "compiler = {}\ncommand = {}\n", quoted(provenance.compiler), quoted(provenance.command));
   fmt::format_to(out, "seed = {}\nthreads = {}\n", quoted(fmt::format("{}", provenance.seed)), provenance.threads);
+  if (!table_id.empty()) fmt::format_to(out, "table = {}  # the .h5 that belongs to this table\n", quoted(table_id));
   fmt::format_to(out, "\n[definitions]\n");
   fmt::format_to(out,
                  "lost_volume = \"nu = w v^m, v the volume of the lens with the neighbour over that of the shell; a "
@@ -62,8 +63,11 @@ void write_law(Out out, const CrowdLaw& law) {
   fmt::format_to(out, "error_fitted = {}  # root mean square over that of the mean force, configurations of the fit\n",
                  real(law.error_fitted));
   fmt::format_to(out, "error_held_out = {}  # those left out of it\n", real(law.error_held_out));
-  fmt::format_to(out, "error_cross = {}  # leave one out, all configurations of planes\n", real(law.error_cross));
+  fmt::format_to(out, "error_cross = {}  # leave one out, configurations of planes that may be fitted\n",
+                 real(law.error_cross));
   fmt::format_to(out, "criterion = {}  # corrected Akaike, smaller is better\n", real(law.criterion));
+  fmt::format_to(out, "replicates_failed = {}  # refits without a minimum, which count nowhere\n",
+                 law.replicates_failed);
   for (const PartnerRow& row : law.partners) write_partner(out, row);
   for (const ConfigurationError& e : law.errors) {
     fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nuse = {}\n", quoted(e.name), quoted(e.use));
@@ -91,13 +95,25 @@ void write_entry(Out out, const LawTableEntry& e) {
   for (const CrowdLaw& law : e.laws) write_law(out, law);
 }
 
+constexpr double kLargestExponent = 50.0;  ///< fits end far below
+constexpr double kLargestOverlap = 2.0;    ///< beyond, two bodies have passed each other
+constexpr double kLargestShare = 100.0;    ///< of friction, kt/kn and how much stiffer unloading is
+
+/// Numbers of a law of planes; the coupling is of the order of one, and fits end within 3.
+Range range_of(const CrowdParameterName& p) {
+  if (p.estimate == &CrowdLaw::a) return Range::positive();
+  if (p.estimate == &CrowdLaw::b) return {0.0, kLargestExponent, true, false};
+  if (p.estimate == &CrowdLaw::delta) return {0.0, 1.0, false, true};
+  return Range::closed(-10.0, 10.0);
+}
+
 PartnerRow read_partner(const SceneTable& t) {
   PartnerRow row;
   row.kind = t.choice("kind", {"solid", "soft"}) == "soft" ? PartnerKind::soft : PartnerKind::solid;
   row.ratio = t.number("ratio", Unit::none, Range::positive());
-  row.weight = read_estimate_text(t.table("weight"), Range::positive());
-  row.exponent = read_estimate_text(t.table("exponent"), Range::positive());
-  row.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
+  row.weight = read_estimate_text(t.table("weight"), Range{0.0, 1e3, true, false});
+  row.exponent = read_estimate_text(t.table("exponent"), Range{0.0, kLargestExponent, true, false});
+  row.overlap_max = t.number("overlap_max", Unit::none, Range::closed(0.0, kLargestOverlap));
   row.error = t.number("error", Unit::none, Range::not_negative());
   return row;
 }
@@ -105,19 +121,17 @@ PartnerRow read_partner(const SceneTable& t) {
 CrowdLaw read_law(const SceneTable& t) {
   CrowdLaw law;
   law.form = t.choice("form", {"pair", "bag", "directional"});
-  law.status = t.choice("status", {"good", "no threshold crossing", "underdetermined"});
+  law.status = t.choice("status", {"good", "no threshold crossing", "underdetermined", "inaccurate"});
   law.reason = t.text("reason", "");
   for (const CrowdParameterName& p : kCrowdParameters) {
-    const bool shape = p.estimate == &CrowdLaw::a || p.estimate == &CrowdLaw::b;
-    const Range range =
-        shape ? Range::positive() : (p.estimate == &CrowdLaw::delta ? Range{0.0, 1.0, false, true} : Range::any());
-    law.*p.estimate = read_estimate_text(t.table(p.key), range);
+    law.*p.estimate = read_estimate_text(t.table(p.key), range_of(p));
   }
   law.parameters = static_cast<int>(t.count("parameters", 1, 1000));
   law.error_fitted = t.number("error_fitted", Unit::none, Range::not_negative());
   law.error_held_out = read_real(t, "error_held_out", Range::not_negative());
-  law.error_cross = t.number("error_cross", Unit::none, Range::not_negative());
+  law.error_cross = read_real(t, "error_cross", Range::not_negative());
   law.criterion = read_real(t, "criterion", Range::any());
+  law.replicates_failed = static_cast<int>(t.count("replicates_failed", 0, 1000000000, 0));
   for (const SceneTable& p : t.tables("partner")) law.partners.push_back(read_partner(p));
   for (const SceneTable& e : t.tables("error"))
     law.errors.push_back({e.text("configuration"), e.choice("use", {"fitted", "predicted", "repeated"}),
@@ -142,22 +156,23 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.best = t.choice("best", {"pair", "bag", "directional"});
   e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
   e.beyond = read_beyond(t).value_or(Beyond::extrapolate);
-  e.overlap_max = t.number("overlap_max", Unit::none, Range::not_negative());
+  e.overlap_max = t.number("overlap_max", Unit::none, Range::closed(0.0, kLargestOverlap));
   e.grain_overlap_max = t.number("grain_overlap_max", Unit::none, Range::not_negative());
   for (const SlideName& slide : kSlides) {
     const SceneTable of_kind = t.table(slide.key);
-    (e.*slide.law).kt_ratio = read_estimate_text(of_kind.table("kt_ratio"), Range::not_negative());
-    (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::not_negative());
+    (e.*slide.law).kt_ratio = read_estimate_text(of_kind.table("kt_ratio"), Range::closed(0.0, kLargestShare));
+    (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::closed(0.0, kLargestShare));
   }
-  e.retreat = read_estimate_text(t.table("retreat"), Range{1.0, HUGE_VAL, false, false});
-  e.spec = read_spec_text(t.table("measurement"));
+  e.retreat = read_estimate_text(t.table("retreat"), Range::closed(1.0, kLargestShare));
+  e.spec = read_spec_text(t.table("measurement"), false);
   for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));
   if (e.find(e.best) == nullptr) t.reject("best", "is no form that the entry has");
   return e;
 }
 
-void skip_words(const SceneTable& root) {
+void skip_words(const SceneTable& root, std::string& table_id) {
   const SceneTable provenance = root.table_or_empty("provenance");
+  table_id = provenance.text("table", "");
   for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
   (void)provenance.count("threads", 1, 1000000000, 1);
   const SceneTable definitions = root.table_or_empty("definitions");
@@ -167,10 +182,10 @@ void skip_words(const SceneTable& root) {
 
 }  // namespace
 
-std::string law_table_text(const LawTable& table, const Provenance& provenance) {
+std::string law_table_text(const LawTable& table, const Provenance& provenance, const std::string& table_id) {
   std::string text;
   const Out out(text);
-  write_head(out, table, provenance);
+  write_head(out, table, provenance, table_id);
   for (const LawTableEntry& e : table.entries) write_entry(out, e);
   return text;
 }
@@ -180,7 +195,7 @@ LawTable load_law_table(const std::string& toml_path) {
   const SceneTable root = scene.root();
   LawTable table;
   table.schema = static_cast<int>(root.count("schema", 1, 1));
-  skip_words(root);
+  skip_words(root, table.table_id);
   for (const SceneTable& e : root.tables("entry")) {
     const LawTableEntry entry = read_entry(e);
     if (!table.entries.empty() && !(table.entries.back().solid_fraction < entry.solid_fraction))

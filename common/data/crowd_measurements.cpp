@@ -2,6 +2,8 @@
 // after the other), "runs" (one row each; "points", and "neighbours" with one row per point and neighbour, likewise).
 #include "common/data/crowd_measurements.h"
 
+#include <cmath>
+
 #include "common/data/columns.h"
 #include "common/data/packing_io.h"
 #include "common/data/spec_io.h"
@@ -11,6 +13,8 @@ namespace softgrain {
 namespace {
 
 constexpr const char* kFormat = "crowd-measurements";
+constexpr Limits kOverlaps{0.0, 2.0};  ///< h/Rs: beyond, the bodies have passed each other
+constexpr Limits kTouch{-2.0, 2.0};    ///< of states: a shell that moves may leave a neighbour
 
 std::int64_t below(std::int64_t value, std::size_t limit, const char* what) {
   if (value < 0 || static_cast<std::uint64_t>(value) >= limit) throw FileTrouble(std::string(what) + " out of range");
@@ -26,10 +30,11 @@ void write_vector(const h5::Group& group, const std::string& name, const std::st
 }
 
 template <class Record, class Field>
-void read_vector(const h5::Group& group, const std::string& name, std::vector<Record>& records, Field field) {
+void read_vector(const h5::Group& group, const std::string& name, const std::string& unit, std::vector<Record>& records,
+                 Field field) {
   constexpr const char* kAxis[] = {"_x", "_y", "_z"};
   for (int k = 0; k < 3; ++k)
-    read_finite(group, name + kAxis[k], records, [&](Record& r, double v) { field(r)[k] = v; });
+    read_finite(group, name + kAxis[k], unit, records, [&](Record& r, double v) { field(r)[k] = v; });
 }
 
 void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration>& configurations) {
@@ -47,8 +52,15 @@ std::vector<CrowdPartner> read_partners(const h5::Group& group) {
   std::vector<CrowdPartner> all(column_length(g, "kind"));
   read_integers(g, "kind", all,
                 [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
-  read_finite(g, "ratio", all, [](auto& p, double v) { p.ratio = v; });
-  read_vector(g, "direction", all, [](auto& p) -> Vec3& { return p.direction; });
+  read_finite(
+      g, "ratio", "1", all, [](auto& p, double v) { p.ratio = v; }, Limits::not_negative());
+  read_vector(g, "direction", "1", all, [](auto& p) -> Vec3& { return p.direction; });
+  for (const CrowdPartner& p : all) {
+    constexpr double kUnit = 1e-6;
+    if ((p.kind == PartnerKind::plane) != (p.ratio == 0.0))
+      throw FileTrouble("a neighbour's kind and ratio do not fit: ratio 0 is that of planes");
+    if (std::abs(norm(p.direction) - 1.0) > kUnit) throw FileTrouble("the direction of a neighbour is no unit vector");
+  }
   return all;
 }
 
@@ -69,8 +81,11 @@ std::vector<CrowdStage> read_stages(const h5::Group& group) {
   const h5::Group g = group.open("stages");
   std::vector<CrowdStage> all(column_length(g, "overlaps"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
-  read_finite(g, "slide", all, [](auto& s, double v) { s.slide = v; });
-  const std::vector<double> overlaps = g.doubles("overlap");
+  for (const CrowdStage& s : all)
+    if (s.name != "load" && s.name != "unload" && s.name != "reload" && s.name != "slide")
+      throw FileTrouble("a stage is called '" + s.name + "'; known are load, unload, reload and slide");
+  read_finite(g, "slide", "Rs", all, [](auto& s, double v) { s.slide = v; });
+  const std::vector<double> overlaps = read_numbers(g, "overlap", "Rs", {g.doubles("overlap").size()}, kOverlaps);
   Slices slices(overlaps.size());
   read_integers(g, "overlaps", all, [&](auto& s, auto v) { s.overlap = take(overlaps, slices, v); });
   slices.finish();
@@ -92,8 +107,10 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
   const h5::Group g = root.open("configurations");
   std::vector<CrowdConfiguration> all(column_length(g, "centre_free"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
-  read_integers(g, "centre_free", all, [](auto& c, auto v) { c.centre_free = v != 0; });
-  read_integers(g, "held_out", all, [](auto& c, auto v) { c.held_out = v != 0; });
+  read_integers(
+      g, "centre_free", all, [](auto& c, auto v) { c.centre_free = v != 0; }, Limits::flag());
+  read_integers(
+      g, "held_out", all, [](auto& c, auto v) { c.held_out = v != 0; }, Limits::flag());
   const std::vector<CrowdPartner> partners = read_partners(g);
   const std::vector<CrowdStage> stages = read_stages(g);
   Slices partner_slices(partners.size());
@@ -102,9 +119,12 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
   read_integers(g, "stage_count", all, [&](auto& c, auto v) { c.stages = take(stages, stage_slices, v); });
   partner_slices.finish();
   stage_slices.finish();
-  for (const CrowdConfiguration& c : all)
+  for (const CrowdConfiguration& c : all) {
+    if (c.partners.empty() || c.stages.empty())
+      throw FileTrouble("configuration '" + c.name + "' has no neighbours, or no stages");
     for (const CrowdStage& s : c.stages)
       if (s.overlap.size() != c.partners.size()) throw FileTrouble("a stage has another number of overlaps");
+  }
   return all;
 }
 
@@ -136,9 +156,10 @@ void write_points(const h5::Group& group, const std::vector<CrowdPoint>& points)
 std::vector<NeighbourRow> read_neighbours(const h5::Group& group) {
   const h5::Group g = group.open("neighbours");
   std::vector<NeighbourRow> rows(g.doubles("overlap").size());
-  read_finite(g, "overlap", rows, [](auto& r, double v) { r.overlap = v; });
-  read_finite(g, "normal", rows, [](auto& r, double v) { r.normal = v; });
-  read_vector(g, "tangential", rows, [](auto& r) -> Vec3& { return r.tangential; });
+  read_finite(
+      g, "overlap", "Rs", rows, [](auto& r, double v) { r.overlap = v; }, kTouch);
+  read_finite(g, "normal", "E Rs^2", rows, [](auto& r, double v) { r.normal = v; });
+  read_vector(g, "tangential", "E Rs^2", rows, [](auto& r) -> Vec3& { return r.tangential; });
   return rows;
 }
 
@@ -158,12 +179,30 @@ std::vector<CrowdPoint> read_points(const h5::Group& group) {
   Slices slices(rows.size());
   read_integers(g, "neighbours", points, [&](auto& p, auto v) { append_neighbours(p, take(rows, slices, v)); });
   slices.finish();
-  read_finite(g, "slide", points, [](auto& p, double v) { p.slide = v; });
-  read_vector(g, "centre", points, [](auto& p) -> Vec3& { return p.centre; });
-  read_doubles(g, "residual", points, [](auto& p, double v) { p.residual = v; });
-  read_doubles(g, "max_overlap", points, [](auto& p, double v) { p.max_overlap = v; });
-  read_integers(g, "converged", points, [](auto& p, auto v) { p.converged = v != 0; });
+  read_finite(g, "slide", "Rs", points, [](auto& p, double v) { p.slide = v; });
+  read_vector(g, "centre", "Rs", points, [](auto& p) -> Vec3& { return p.centre; });
+  read_doubles(g, "residual", "1", points, [](auto& p, double v) { p.residual = v; });
+  read_finite(
+      g, "max_overlap", "1", points, [](auto& p, double v) { p.max_overlap = v; }, Limits::not_negative());
+  read_integers(
+      g, "converged", points, [](auto& p, auto v) { p.converged = v != 0; }, Limits::flag());
   return points;
+}
+
+/// Points come stage by stage, and no neighbour is away from a shell that is held.
+void require_path(const CrowdRun& run, const CrowdConfiguration& c) {
+  constexpr double kRounding = 1e-6;
+  std::int64_t stage = 0;
+  for (const CrowdPoint& p : run.points) {
+    (void)below(p.stage, c.stages.size(), "stage of a point");
+    if (p.stage < stage) throw FileTrouble("the points of a run are not in the order of its stages");
+    stage = p.stage;
+    if (p.overlap.size() != c.partners.size()) throw FileTrouble("a point has another number of neighbours");
+    for (const double x : p.overlap)
+      if (!c.centre_free && x < -kRounding)
+        throw FileTrouble("configuration '" + c.name + "': an overlap of " + std::to_string(x) +
+                          " Rs; of a shell that is held none is below 0");
+  }
 }
 
 /// Runs, configurations and packings must speak of each other.
@@ -171,11 +210,7 @@ void require_consistent(const CrowdMeasurements& data) {
   for (const CrowdRun& run : data.runs) {
     (void)below(run.packing, data.packings.size(), "packing of a run");
     const auto k = below(run.configuration, data.configurations.size(), "configuration of a run");
-    const CrowdConfiguration& c = data.configurations[static_cast<std::size_t>(k)];
-    for (const CrowdPoint& p : run.points) {
-      (void)below(p.stage, c.stages.size(), "stage of a point");
-      if (p.overlap.size() != c.partners.size()) throw FileTrouble("a point has another number of neighbours");
-    }
+    require_path(run, data.configurations[static_cast<std::size_t>(k)]);
   }
 }
 
@@ -202,9 +237,13 @@ std::vector<CrowdRun> read_crowd_runs(const h5::Group& group) {
   std::vector<CrowdRun> runs(column_length(group, "configuration"));
   read_integers(group, "configuration", runs, [](auto& r, auto v) { r.configuration = v; });
   read_integers(group, "packing", runs, [](auto& r, auto v) { r.packing = v; });
-  read_integers(group, "loop_passes", runs, [](auto& r, auto v) { r.cost.loop_passes = v; });
-  read_integers(group, "contact_evaluations", runs, [](auto& r, auto v) { r.cost.contact_evaluations = v; });
-  read_doubles(group, "seconds", runs, [](auto& r, double v) { r.cost.seconds = v; });
+  const Limits limits = Limits::not_negative();
+  read_integers(
+      group, "loop_passes", runs, [](auto& r, auto v) { r.cost.loop_passes = v; }, limits);
+  read_integers(
+      group, "contact_evaluations", runs, [](auto& r, auto v) { r.cost.contact_evaluations = v; }, limits);
+  read_finite(
+      group, "seconds", "s", runs, [](auto& r, double v) { r.cost.seconds = v; }, limits);
   const std::vector<CrowdPoint> points = read_points(group);
   Slices slices(points.size());
   read_integers(group, "point_count", runs, [&](auto& r, auto v) { r.points = take(points, slices, v); });

@@ -20,18 +20,22 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
                     [](double x, double y) { return std::abs(x - y) <= 1e-9 * std::abs(y); });
 }
 
-void read_law(const h5::Group& group, CrowdLaw& law, const std::string& path) {
-  if (!group.has("replicates") || !group.has("numbers")) return;
+/// False when the refits are those of other numbers.
+bool read_law(const h5::Group& group, CrowdLaw& law, const std::string& path) {
+  if (!group.has("replicates") || !group.has("numbers")) return true;
   const std::vector<double> numbers = crowd_numbers(law);
-  if (!same(group.doubles("numbers"), numbers)) return;
+  if (!same(group.doubles("numbers"), numbers)) return false;
   const h5::Shape shape = group.shape("replicates");
   const std::vector<double> all = group.doubles("replicates");
   if (shape.size() != 2 || shape[1] != numbers.size())
     throw FileTrouble(path + ": the replicates of the " + law.form + " law have a wrong length");
+  if (!std::all_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); }))
+    throw FileTrouble(path + ": the replicates of the " + law.form + " law hold a number that is not finite");
   for (std::size_t r = 0; r < shape[0]; ++r) {
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * shape[1]);
     law.replicates.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(shape[1]));
   }
+  return true;
 }
 
 }  // namespace
@@ -63,12 +67,17 @@ void read_replicates(LawTable& table, const std::string& toml_path) {
   const std::string path = table_path(toml_path);
   if (!std::filesystem::exists(path)) return;
   const h5::Group root = h5::open_file(path);
+  require_own_table(root, table.table_id, path);
   for (std::size_t k = 0; k < table.entries.size(); ++k) {
     const std::string name = fmt::format("entry_{}", k);
     if (!root.has(name)) continue;
     const h5::Group entry = root.open(name);
     for (CrowdLaw& law : table.entries[k].laws)
-      if (entry.has(law.form)) read_law(entry.open(law.form), law, path);
+      if (entry.has(law.form) && !read_law(entry.open(law.form), law, path))
+        table.notes.push_back(fmt::format(
+            "solid fraction {:.3f}, {} law: its numbers are not those that {} was written with: the refits there, and "
+            "intervals from them, are not used",
+            table.entries[k].solid_fraction, law.form, path));
   }
 }
 

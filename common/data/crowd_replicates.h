@@ -17,7 +17,8 @@ std::vector<double> crowd_numbers(const CrowdLaw& law);
 CrowdLaw with_numbers(const CrowdLaw& law, const std::vector<double>& numbers);
 
 /// Fills CrowdLaw::replicates from the .h5 beside a table. Laws whose numbers are not those of the table (it was
-/// edited) get none, and so does everything when there is no such file. Throws FileTrouble for a damaged one.
+/// edited) get none, which LawTable::notes say, and so does everything when there is no such file. Throws FileTrouble
+/// for a damaged one, BadInput for that of another table.
 void read_replicates(LawTable& table, const std::string& toml_path);
 
 /// The table as replicate `r` of each entry's law of this form; entries draw their packings independently, so any

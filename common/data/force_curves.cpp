@@ -128,7 +128,6 @@ PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
 }
 
 SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) {
-  SoftParticleSpec spec;
   const auto radius = options.shell_radius
                           ? options.shell_radius
                           : setting(file, {"rs", "radius", "shell_radius"}, Unit::length, Range::positive());
@@ -143,8 +142,7 @@ SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) 
         file.path() +
         ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
         "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
-  spec.shell_radius = *radius;
-  spec.youngs_modulus = *modulus;
+  SoftParticleSpec spec = unknown_soft_particle(*radius, *modulus);
   spec.poisson_ratio =
       setting(file, {"nu", "poisson_ratio"}, Unit::none, Range::closed(-0.99, 0.5)).value_or(spec.poisson_ratio);
   spec.friction = setting(file, {"mu", "friction"}, Unit::none, Range::not_negative()).value_or(spec.friction);
@@ -173,15 +171,28 @@ void add_secant_points(ForceCurve& sample, double angle_deg) {
   all.insert(all.end(), added.begin(), added.end());
 }
 
+struct SpecName {
+  const char* name;
+  double SoftParticleSpec::*value;
+};
+constexpr SpecName kSaid[] = {{"Rs", &SoftParticleSpec::shell_radius},
+                              {"E", &SoftParticleSpec::youngs_modulus},
+                              {"nu", &SoftParticleSpec::poisson_ratio},
+                              {"mu", &SoftParticleSpec::friction},
+                              {"density", &SoftParticleSpec::density}};
+
 void require_same(const std::string& a, const std::string& b, const SoftParticleSpec& s, const SoftParticleSpec& t) {
-  const auto differ = [&](const char* name, double x, double y) {
-    if (x != y) throw BadInput(fmt::format("{} and {}: {} differs: {} and {}", a, b, name, x, y));
-  };
-  differ("Rs", s.shell_radius, t.shell_radius);
-  differ("E", s.youngs_modulus, t.youngs_modulus);
-  differ("nu", s.poisson_ratio, t.poisson_ratio);
-  differ("mu", s.friction, t.friction);
-  differ("density", s.density, t.density);
+  for (const SpecName& n : kSaid)
+    if (is_known(s.*n.value) && is_known(t.*n.value) && s.*n.value != t.*n.value)
+      throw BadInput(fmt::format("{} and {}: {} differs: {} and {}", a, b, n.name, s.*n.value, t.*n.value));
+}
+
+/// What one file says holds for all.
+void share_spec(std::vector<ForceCurves>& curves) {
+  for (const SpecName& n : kSaid)
+    for (const ForceCurves& from : curves)
+      for (ForceCurves& to : curves)
+        if (!is_known(to.spec.*n.value)) to.spec.*n.value = from.spec.*n.value;
 }
 
 }  // namespace
@@ -207,7 +218,7 @@ std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& 
     if (std::count(paths.begin(), paths.end(), path) > 1) throw BadInput(path + ": the file is given twice");
     ForceCurves one = read_force_curves(path, options);
     const auto same = std::find_if(out.begin(), out.end(), [&](const ForceCurves& c) { return c.kind == one.kind; });
-    if (!out.empty()) require_same(paths.front(), path, out.front().spec, one.spec);
+    for (const ForceCurves& before : out) require_same(paths.front(), path, before.spec, one.spec);
     if (same == out.end()) {
       out.push_back(std::move(one));
       continue;
@@ -221,9 +232,12 @@ std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& 
       if (taken(s.name)) throw BadInput(path + ": sample \"" + s.name + "\" was read before");
       same->samples.push_back(std::move(s));
     }
+    for (const SpecName& n : kSaid)
+      if (!is_known(same->spec.*n.value)) same->spec.*n.value = one.spec.*n.value;
     same->has_errors = same->has_errors && one.has_errors;
     same->remarks.insert(same->remarks.end(), one.remarks.begin(), one.remarks.end());
   }
+  share_spec(out);
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   return out;
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "common/data/law_card_format.h"
+#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
@@ -24,14 +25,20 @@ const PairLaw* LawCard::find(PairKind kind) const {
   return nullptr;
 }
 
+std::string measured_text(const LawCard& card) {
+  if (card.relaxation == "experiment") return "from an experiment";
+  return "measured with the " + card.relaxation + " relaxation";
+}
+
 std::string table_path(const std::string& toml_path) {
   return std::filesystem::path(toml_path).replace_extension(".h5").string();
 }
 
 void save_card(const LawCard& card, const std::string& toml_path, const Provenance& provenance) {
+  const std::string id = short_hash(card_text(card, provenance, ""));
   // The table first: a card on disk then always has its own table beside it.
-  write_table(card, table_path(toml_path), provenance);
-  write_text_atomic(toml_path, card_text(card, provenance));
+  write_table(card, table_path(toml_path), provenance, id);
+  write_text_atomic(toml_path, card_text(card, provenance, id));
 }
 
 LawCard load_card(const std::string& toml_path) {

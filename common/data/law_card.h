@@ -94,15 +94,20 @@ struct LawCard {
   std::string relaxation;                 ///< which relaxation measured it; "experiment": none of ours
   std::string intervals = kFromPackings;  ///< where the 95 % intervals come from, of all pairs together
   std::vector<PairLaw> pairs;
+  std::string table_id{};            ///< of the .h5 that belongs to the card; empty in files of before
+  std::vector<std::string> notes{};  ///< of reading: what of the .h5 does not go with an edited card
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;
 };
 
+/// "measured with the damped relaxation", "from an experiment".
+std::string measured_text(const LawCard& card);
+
 /// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws FileTrouble.
 void save_card(const LawCard& card, const std::string& toml_path, const Provenance& provenance = build_provenance());
 
-/// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, FileTrouble
-/// for files.
+/// Reads a card (and its table when the .h5 is there). Throws BadInput with file:line for wrong content, and when the
+/// .h5 is that of another card; FileTrouble for files.
 LawCard load_card(const std::string& toml_path);
 
 }  // namespace softgrain

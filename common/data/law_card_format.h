@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/data/law_card.h"
+#include "common/io/hdf5_file.h"
 
 namespace softgrain {
 
@@ -43,17 +44,23 @@ inline constexpr std::array<LawTableColumn, 7> kLawTableColumns{
      {"kt_secant_mean", &LawTableRows::kt_secant_mean},
      {"kt_secant_deviation", &LawTableRows::kt_secant_deviation}}};
 
-/// The card as TOML.
-std::string card_text(const LawCard& card, const Provenance& provenance);
+/// The card as TOML; `table_id` names the .h5 that belongs to it.
+std::string card_text(const LawCard& card, const Provenance& provenance, const std::string& table_id);
 
 /// Card without its table. Throws BadInput with file and line, FileTrouble.
 LawCard read_card_text(const std::string& toml_path);
 
 /// Name of the table beside a card: the same with extension .h5.
 std::string table_path(const std::string& toml_path);
-void write_table(const LawCard& card, const std::string& path, const Provenance& provenance);
-/// Fills the table rows of the pairs that the file holds, and the bands of laws whose numbers are those of the card.
-/// Throws FileTrouble.
+void write_table(const LawCard& card, const std::string& path, const Provenance& provenance,
+                 const std::string& table_id);
+
+/// Card (or law table) and .h5 name each other by `table_id`. Throws BadInput when the file belongs to another one.
+void require_own_table(const h5::Group& root, const std::string& table_id, const std::string& path);
+inline constexpr const char* kTableId = "belongs_to";  ///< attribute of the .h5
+
+/// Fills the table rows of the pairs that the file holds, and the bands of laws whose numbers are those of the card; a
+/// law that was edited has none, which LawCard::notes say. Throws FileTrouble, BadInput for the table of another card.
 void read_table(LawCard& card, const std::string& path);
 
 }  // namespace softgrain

@@ -15,6 +15,10 @@ namespace {
 
 /// c may differ from -a delta^b by rounding only.
 constexpr double kContinuityTolerance = 1e-6;
+/// Of a force or stiffness over overlap; fits end far below.
+constexpr double kLargestExponent = 50.0;
+/// Delta: beyond, two bodies have passed each other.
+constexpr double kLargestDelta = 2.0;
 
 Estimate read_estimate(const SceneTable& table, const Range& range, bool must_be_known) {
   Estimate e;
@@ -28,13 +32,13 @@ Estimate read_estimate(const SceneTable& table, const Range& range, bool must_be
   return e;
 }
 
-/// `must_be_known`: the law is used, so its numbers must be finite and make a continuous law.
+/// `must_be_known`: the law is used, so its numbers must be finite and make a continuous law that pushes.
 ThresholdPowerLaw read_law(const SceneTable& table, bool must_be_known) {
   ThresholdPowerLaw law;
-  law.a = read_estimate(table.table("a"), Range::any(), must_be_known);
-  law.b = read_estimate(table.table("b"), Range::positive(), must_be_known);
+  law.a = read_estimate(table.table("a"), Range::positive(), must_be_known);
+  law.b = read_estimate(table.table("b"), Range{0.0, kLargestExponent, true, false}, must_be_known);
   law.c = read_estimate(table.table("c"), Range::any(), must_be_known);
-  law.delta = read_estimate(table.table("delta"), Range::not_negative(), must_be_known);
+  law.delta = read_estimate(table.table("delta"), Range{0.0, 1.0, false, true}, must_be_known);
   if (!must_be_known) return law;
   const double expected = -law.a.value * std::pow(law.delta.value, law.b.value);
   if (std::abs(law.c.value - expected) > kContinuityTolerance * std::abs(expected))
@@ -56,8 +60,8 @@ std::vector<double> read_covariance(const SceneTable& pair) {
 }
 
 void read_validity(const SceneTable& table, PairLaw& law) {
-  law.delta_min = table.number("delta_min", Unit::none, Range::not_negative());
-  law.delta_max = table.number("delta_max", Unit::none, Range::not_negative());
+  law.delta_min = table.number("delta_min", Unit::none, Range::closed(0.0, kLargestDelta));
+  law.delta_max = table.number("delta_max", Unit::none, Range::closed(0.0, kLargestDelta));
   if (law.delta_max < law.delta_min) table.reject("delta_max", "must not be below delta_min");
   law.max_overlap = read_real(table, "max_overlap", Range::not_negative());
   law.beyond = read_beyond(table).value_or(Beyond::extrapolate);
@@ -81,8 +85,15 @@ PairLaw read_pair(const SceneTable& table) {
   law.chi2_per_dof = read_real(table, "chi2_per_dof", Range::not_negative());
   law.quality = read_real(table, "quality", Range::closed(0.0, 1.0));
   read_validity(table.table("validity"), law);
-  const bool good = law.status == "good" || law.status == "underdetermined";
+  // Of an underdetermined law there may be no numbers at all, written as zeros.
+  const bool none =
+      law.status == "underdetermined" && read_real(table.table("normal").table("b"), "value", Range::any()) == 0.0;
+  const bool good = law.status == "good" || (law.status == "underdetermined" && !none);
   law.normal = read_law(table.table("normal"), good);
+  if (law.status == "good" && !(law.normal.delta.value < law.delta_max))
+    table.table("normal").table("delta").reject(
+        "value", fmt::format("must be below delta_max = {}: a good law has a force in the range it was fitted to",
+                             law.delta_max));
   read_tangential(table.table("tangential_initial"), law.tangential_initial, law.initial_angle_deg,
                   law.has_tangential_initial, good);
   read_tangential(table.table("tangential_secant"), law.tangential_secant, law.secant_angle_deg,
@@ -91,9 +102,10 @@ PairLaw read_pair(const SceneTable& table) {
   return law;
 }
 
-/// Words for people: known, but nothing depends on them.
-void skip_words(const SceneTable& root) {
+/// Words for people: known, but nothing depends on them; and which .h5 belongs to the card.
+void skip_words(const SceneTable& root, std::string& table_id) {
   const SceneTable provenance = root.table_or_empty("provenance");
+  table_id = provenance.text("table", "");
   for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
   (void)provenance.count("threads", 1, std::numeric_limits<int>::max(), 1);
   const SceneTable definitions = root.table_or_empty("definitions");
@@ -107,11 +119,11 @@ LawCard read_card_text(const std::string& toml_path) {
   const SceneTable root = scene.root();
   LawCard card;
   card.schema = static_cast<int>(root.count("schema", kSchemaVersion, kSchemaVersion));
-  skip_words(root);
+  skip_words(root, card.table_id);
   card.intervals = root.table_or_empty("definitions").text("interval_95", card.intervals);
   const SceneTable measurement = root.table("measurement");
   card.relaxation = measurement.text("relaxation");
-  card.spec = read_spec_text(measurement);
+  card.spec = read_spec_text(measurement, card.relaxation == "experiment");
   for (const SceneTable& pair : root.tables("pair")) {
     const PairLaw law = read_pair(pair);
     if (card.find(law.kind) != nullptr) pair.reject("kind", "this pair kind was given before");

@@ -30,7 +30,7 @@ std::string dimensional(double value, bool tangential, const SoftParticleSpec& s
                      stiffness * std::numbers::pi * spec.shell_radius / 180.0);
 }
 
-void write_head(Out out, const LawCard& card, const Provenance& provenance) {
+void write_head(Out out, const LawCard& card, const Provenance& provenance, const std::string& table_id) {
   fmt::format_to(out, "# Contact law of a soft particle: fitted parameters and what they were fitted to.\n");
   fmt::format_to(out, "# The measured curve behind each law is in the .h5 file of the same name.\n");
   fmt::format_to(
@@ -41,6 +41,7 @@ void write_head(Out out, const LawCard& card, const Provenance& provenance) {
   fmt::format_to(out, "version = {}\ncommit = {}\n", quoted(provenance.version), quoted(provenance.commit));
   fmt::format_to(out, "compiler = {}\ncommand = {}\n", quoted(provenance.compiler), quoted(provenance.command));
   fmt::format_to(out, "seed = {}\nthreads = {}\n", quoted(fmt::format("{}", provenance.seed)), provenance.threads);
+  if (!table_id.empty()) fmt::format_to(out, "table = {}  # the .h5 that belongs to this card\n", quoted(table_id));
   fmt::format_to(out, "\n[definitions]\n");
   fmt::format_to(out, "form = \"F(Delta) = 0 for Delta < delta, a Delta^b + c for Delta >= delta, c = -a delta^b\"\n");
   fmt::format_to(
@@ -53,9 +54,11 @@ void write_head(Out out, const LawCard& card, const Provenance& provenance) {
 void write_measurement(Out out, const LawCard& card) {
   fmt::format_to(out, "\n# The soft particle that was measured.\n");
   if (card.relaxation == "experiment")
-    fmt::format_to(out,
-                   "# An experiment: shell_radius and youngs_modulus make the law dimensionless; what is inside the\n"
-                   "# particle is not known, and the other values are defaults where the data did not give them.\n");
+    fmt::format_to(
+        out,
+        "# An experiment: shell_radius and youngs_modulus make the law dimensionless. What the data did not\n"
+        "# say is not known and not here: friction, and what is inside (exponent, polydispersity,\n"
+        "# rmax_over_shell, beta, trials), without which no resolved twin can be made.\n");
   fmt::format_to(out, "[measurement]\nrelaxation = {}\n", quoted(card.relaxation));
   fmt::format_to(out, "{}", spec_text(card.spec));
 }
@@ -113,10 +116,10 @@ void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
 
 }  // namespace
 
-std::string card_text(const LawCard& card, const Provenance& provenance) {
+std::string card_text(const LawCard& card, const Provenance& provenance, const std::string& table_id) {
   std::string text;
   const Out out(text);
-  write_head(out, card, provenance);
+  write_head(out, card, provenance, table_id);
   write_measurement(out, card);
   for (const PairLaw& pair : card.pairs) write_pair(out, pair, card.spec);
   return text;

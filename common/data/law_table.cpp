@@ -82,12 +82,21 @@ bool same_numbers(const h5::Group& law, const ThresholdPowerLaw& card) {
   });
 }
 
-/// Bands of the laws whose numbers are those of the card.
-void read_bands(const h5::Group& root, PairLaw& pair, const std::string& path) {
+/// Numbers that place values on the axis of overlaps.
+std::vector<double> ascending(const h5::Group& group, const std::string& name, const std::string& path) {
+  std::vector<double> values = group.doubles(name);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!std::isfinite(values[k]) || (k > 0 && !(values[k - 1] < values[k])))
+      throw FileTrouble(path + ": '" + name + "' does not ascend in row " + std::to_string(k));
+  return values;
+}
+
+/// Bands of the laws whose numbers are those of the card; the others are named in `edited`.
+void read_bands(const h5::Group& root, PairLaw& pair, const std::string& path, std::vector<std::string>& edited) {
   const std::string name = to_string(pair.kind);
   if (!root.has("band") || !root.open("band").has(name)) return;
   const h5::Group group = root.open("band").open(name);
-  pair.band_delta = group.doubles("delta");
+  pair.band_delta = ascending(group, "delta", path);
   const std::string said = group.has_attribute("interval") ? group.text("interval") : "";
   if (said.starts_with(kBandInterval)) pair.band_origin = said.substr(kBandInterval.size());
   for (const LawPartName& part : kLawParts) {
@@ -97,7 +106,10 @@ void read_bands(const h5::Group& root, PairLaw& pair, const std::string& path) {
     if (rows.low.size() != pair.band_delta.size() || rows.high.size() != pair.band_delta.size())
       throw FileTrouble(path + ": the band of '" + key + "' has a wrong length");
     const h5::Group fitted = root.open(name);
-    if (fitted.has(key) && same_numbers(fitted.open(key), pair.*part.law)) pair.bands.push_back(std::move(rows));
+    if (fitted.has(key) && same_numbers(fitted.open(key), pair.*part.law))
+      pair.bands.push_back(std::move(rows));
+    else
+      edited.push_back(name + " " + key);
   }
 }
 
@@ -105,7 +117,7 @@ LawTableRows read_curve(const h5::Group& table, const std::string& path) {
   LawTableRows rows;
   for (const LawTableColumn& column : kLawTableColumns) {
     std::vector<double>& values = rows.*column.values;
-    values = table.doubles(column.name);
+    values = column.values == &LawTableRows::delta ? ascending(table, column.name, path) : table.doubles(column.name);
     // A quantity that was not measured has an empty column.
     if (!values.empty() && values.size() != rows.delta.size())
       throw FileTrouble(path + ": column '" + column.name + "' of the table has a wrong length");
@@ -115,10 +127,22 @@ LawTableRows read_curve(const h5::Group& table, const std::string& path) {
 
 }  // namespace
 
-void write_table(const LawCard& card, const std::string& path, const Provenance& provenance) {
+void require_own_table(const h5::Group& root, const std::string& table_id, const std::string& path) {
+  const std::string said = root.has_attribute(kTableId) ? root.text(kTableId) : "";
+  // People may take the words about the origin out of a card: then its numbers tell.
+  if (table_id.empty() || said == table_id) return;
+  throw BadInput(path + ": this file belongs to another law (" + (said.empty() ? "it names none" : "it names " + said) +
+                 ", the .toml of this name wants " + table_id +
+                 "): put the one back that was written with the .toml, or "
+                 "remove it");
+}
+
+void write_table(const LawCard& card, const std::string& path, const Provenance& provenance,
+                 const std::string& table_id) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
   write_format(root, kFormat);
+  if (!table_id.empty()) root.attribute(kTableId, table_id);
   root.attribute("relaxation", card.relaxation);
   write_spec(root, card.spec);
   for (const PairLaw& pair : card.pairs) write_pair(root, pair);
@@ -130,13 +154,20 @@ void write_table(const LawCard& card, const std::string& path, const Provenance&
 void read_table(LawCard& card, const std::string& path) {
   const h5::Group root = h5::open_file(path);
   require_format(root, kFormat, path);
+  require_own_table(root, card.table_id, path);
+  std::vector<std::string> edited;
   for (PairLaw& pair : card.pairs) {
     const std::string name = to_string(pair.kind);
     if (!root.has(name)) continue;
     pair.table = read_curve(root.open(name).open("table"), path);
     pair.band_origin = card.intervals;  // files of before said it for all pairs together
-    read_bands(root, pair, path);
+    read_bands(root, pair, path, edited);
   }
+  std::string laws;
+  for (const std::string& one : edited) laws += (laws.empty() ? "" : ", ") + one;
+  if (!edited.empty())
+    card.notes.push_back("the numbers of the card are not those that " + path + " was written with (" + laws +
+                         "): its 95 % bands are not used");
 }
 
 }  // namespace softgrain

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <limits>
 
 #include "common/core/error.h"
+#include "common/data/columns.h"
 #include "common/data/spec_io.h"
 
 namespace softgrain {
@@ -18,14 +19,18 @@ struct Column {
   const char* name;
   const char* unit;
   std::vector<double> MacroCurve::*values;
+  Limits limits{};
 };
 
-constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain},
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Limits kNotNegative{0.0, kInfinity};
+
+constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-1.0, 1.0}},
                                {"stress_axial", "Pa", &MacroCurve::stress_axial},
                                {"stress_lateral", "Pa", &MacroCurve::stress_lateral},
                                {"stress_axial_contacts", "Pa", &MacroCurve::stress_axial_contacts},
-                               {"coordination", "1", &MacroCurve::coordination},
-                               {"residual", "1", &MacroCurve::residual}};
+                               {"coordination", "1", &MacroCurve::coordination, kNotNegative},
+                               {"residual", "1", &MacroCurve::residual, kNotNegative}};
 
 /// Later additions: absent in files of before.
 constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x},
@@ -33,23 +38,29 @@ constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x}
                                        {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
                                        {"fabric", "1", &MacroCurve::fabric},
                                        {"fabric_bodies", "1", &MacroCurve::fabric_bodies},
-                                       {"coordination_bodies", "1", &MacroCurve::coordination_bodies},
-                                       {"law_asked", "1", &MacroCurve::law_asked},
-                                       {"law_beyond", "1", &MacroCurve::law_beyond},
-                                       {"law_largest", "1", &MacroCurve::law_largest}};
+                                       {"coordination_bodies", "1", &MacroCurve::coordination_bodies, kNotNegative},
+                                       {"law_asked", "1", &MacroCurve::law_asked, kNotNegative},
+                                       {"law_beyond", "1", &MacroCurve::law_beyond, kNotNegative},
+                                       {"law_largest", "1", &MacroCurve::law_largest, kNotNegative}};
 constexpr Column kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
 
-void write_column(const h5::Group& group, const MacroCurve& curve, const Column& c) {
+void write_quantity(const h5::Group& group, const MacroCurve& curve, const Column& c) {
   group.write(c.name, std::span<const double>(curve.*c.values));
   group.attribute_of(c.name, "unit", c.unit);
 }
 
 void write_if_any(const h5::Group& group, const MacroCurve& curve, const Column& c) {
-  if (!(curve.*c.values).empty()) write_column(group, curve, c);
+  if (!(curve.*c.values).empty()) write_quantity(group, curve, c);
 }
 
-void read_if_there(const h5::Group& group, MacroCurve& curve, const Column& c) {
-  if (group.has(c.name)) curve.*c.values = group.doubles(c.name);
+void read_column(const h5::Group& group, MacroCurve& curve, const Column& c, std::size_t length) {
+  curve.*c.values = read_numbers(group, c.name, c.unit, {length}, c.limits);
+}
+
+std::int64_t read_count(const h5::Group& group, const char* name) {
+  const std::int64_t value = group.integer(name);
+  if (value < 0) throw FileTrouble(fmt::format("attribute '{}' is {}; allowed: at least 0", name, value));
+  return value;
 }
 
 struct Count {
@@ -76,7 +87,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("contact_evaluations", curve.cost.contact_evaluations);
   group.attribute("seconds", curve.cost.seconds);
   group.attribute("preload", curve.preload);
-  for (const Column& c : kColumns) write_column(group, curve, c);
+  for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
   write_if_any(group, curve, kBodyForces);
 }
@@ -87,14 +98,17 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   curve.test = group.text("test");
   curve.note = group.text("note");
   curve.usable = group.integer("usable") != 0;
-  for (const Count& c : kCounts) curve.*c.value = group.integer(c.name);
-  curve.soft_volume_share = group.number("soft_volume_share");
-  curve.solid_fraction = group.number("solid_fraction");
-  curve.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
-  if (group.has_attribute("preload")) curve.preload = group.number("preload");
-  for (const Column& c : kColumns) curve.*c.values = group.doubles(c.name);
-  for (const Column& c : kOptionalColumns) read_if_there(group, curve, c);
-  read_if_there(group, curve, kBodyForces);
+  for (const Count& c : kCounts) curve.*c.value = read_count(group, c.name);
+  curve.soft_volume_share = read_attribute(group, "soft_volume_share", Limits::flag());
+  curve.solid_fraction = read_attribute(group, "solid_fraction", kNotNegative);
+  curve.cost = {read_count(group, "loop_passes"), read_count(group, "contact_evaluations"),
+                read_attribute(group, "seconds", kNotNegative)};
+  if (group.has_attribute("preload")) curve.preload = read_attribute(group, "preload", Limits::flag());
+  const std::size_t points = group.doubles(kColumns[0].name).size();
+  for (const Column& c : kColumns) read_column(group, curve, c, points);
+  for (const Column& c : kOptionalColumns)
+    if (group.has(c.name)) read_column(group, curve, c, points);
+  if (group.has(kBodyForces.name)) read_column(group, curve, kBodyForces, group.doubles(kBodyForces.name).size());
   return curve;
 }
 
@@ -109,32 +123,19 @@ void save_macro(const std::vector<MacroCurve>& curves, const std::string& path, 
   file.commit();
 }
 
-namespace {
-
-void require_finite(const MacroCurve& curve, const Column& c, const std::string& where) {
-  for (const double x : curve.*c.values)
-    if (!std::isfinite(x)) throw FileTrouble(fmt::format("{}/{}: holds a number that is not finite", where, c.name));
-}
-
-void require_length(const MacroCurve& curve, const Column& c, bool optional, const std::string& where) {
-  const std::size_t n = (curve.*c.values).size();
-  if (n == curve.strain.size() || (optional && n == 0)) return;
-  throw FileTrouble(fmt::format("{}/{}: another length than the strain", where, c.name));
-}
-
-}  // namespace
-
 std::vector<MacroCurve> load_macro(const std::string& path) {
   const h5::Group root = h5::open_file(path);
   require_format(root, kFormat, path);
   const h5::Group group = root.open("curves");
   std::vector<MacroCurve> curves;
   for (const std::string& name : group.children()) {
-    curves.push_back(read_macro_curve(group.open(name)));
-    for (const Column& c : kColumns) require_length(curves.back(), c, false, path + ": " + name);
-    for (const Column& c : {kColumns[0], kColumns[1], kColumns[2]})
-      require_finite(curves.back(), c, path + ": " + name);
-    for (const Column& c : kOptionalColumns) require_length(curves.back(), c, true, path + ": " + name);
+    const h5::Group one = group.open(name);
+    try {
+      curves.push_back(read_macro_curve(one));
+    } catch (const FileTrouble& e) {
+      const std::string text = e.what();
+      throw FileTrouble(text.starts_with(path) ? text : path + ": " + name + ": " + text);
+    }
   }
   return curves;
 }

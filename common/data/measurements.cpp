@@ -13,6 +13,7 @@ namespace softgrain {
 namespace {
 
 constexpr const char* kFormat = "soft-particle measurements";
+constexpr Limits kOverlaps{0.0, 2.0};  ///< Delta: beyond, the bodies have passed each other
 
 void write_normal(const h5::Group& root, const std::vector<NormalPoint>& points) {
   const h5::Group group = root.create("normal");
@@ -26,11 +27,14 @@ void write_normal(const h5::Group& root, const std::vector<NormalPoint>& points)
 std::vector<NormalPoint> read_normal(const h5::Group& root) {
   const h5::Group group = root.open("normal");
   std::vector<NormalPoint> points(column_length(group, "converged"));
-  read_finite(group, "delta", points, [](auto& p, double v) { p.delta = v; });
-  read_finite(group, "force", points, [](auto& p, double v) { p.force = v; });
-  read_doubles(group, "residual", points, [](auto& p, double v) { p.residual = v; });
-  read_doubles(group, "max_overlap", points, [](auto& p, double v) { p.max_overlap = v; });
-  read_integers(group, "converged", points, [](auto& p, auto v) { p.converged = v != 0; });
+  read_finite(
+      group, "delta", "1", points, [](auto& p, double v) { p.delta = v; }, kOverlaps);
+  read_finite(group, "force", "N", points, [](auto& p, double v) { p.force = v; });
+  read_doubles(group, "residual", "1", points, [](auto& p, double v) { p.residual = v; });
+  read_finite(
+      group, "max_overlap", "1", points, [](auto& p, double v) { p.max_overlap = v; }, Limits::not_negative());
+  read_integers(
+      group, "converged", points, [](auto& p, auto v) { p.converged = v != 0; }, Limits::flag());
   return points;
 }
 
@@ -47,12 +51,14 @@ void write_tangential(const h5::Group& root, const std::vector<TangentialPoint>&
 std::vector<TangentialPoint> read_tangential(const h5::Group& root) {
   const h5::Group group = root.open("tangential");
   std::vector<TangentialPoint> points(column_length(group, "converged"));
-  read_finite(group, "delta", points, [](auto& p, double v) { p.delta = v; });
-  read_finite(group, "angle", points, [](auto& p, double v) { p.angle_deg = v; });
-  read_finite(group, "force_parallel", points, [](auto& p, double v) { p.force_parallel = v; });
-  read_finite(group, "force_perpendicular", points, [](auto& p, double v) { p.force_perpendicular = v; });
-  read_doubles(group, "residual", points, [](auto& p, double v) { p.residual = v; });
-  read_integers(group, "converged", points, [](auto& p, auto v) { p.converged = v != 0; });
+  read_finite(
+      group, "delta", "1", points, [](auto& p, double v) { p.delta = v; }, kOverlaps);
+  read_finite(group, "angle", "degree", points, [](auto& p, double v) { p.angle_deg = v; }, {-360.0, 360.0});
+  read_finite(group, "force_parallel", "N", points, [](auto& p, double v) { p.force_parallel = v; });
+  read_finite(group, "force_perpendicular", "N", points, [](auto& p, double v) { p.force_perpendicular = v; });
+  read_doubles(group, "residual", "1", points, [](auto& p, double v) { p.residual = v; });
+  read_integers(
+      group, "converged", points, [](auto& p, auto v) { p.converged = v != 0; }, Limits::flag());
   return points;
 }
 
@@ -66,10 +72,14 @@ void write_cost(const h5::Group& group, const std::string& prefix, const std::ve
 
 void read_cost(const h5::Group& group, const std::string& prefix, std::vector<PackingRun>& runs,
                Cost PackingRun::*cost) {
-  read_integers(group, prefix + "_loop_passes", runs, [cost](auto& r, auto v) { (r.*cost).loop_passes = v; });
-  read_integers(group, prefix + "_contact_evaluations", runs,
-                [cost](auto& r, auto v) { (r.*cost).contact_evaluations = v; });
-  read_doubles(group, prefix + "_seconds", runs, [cost](auto& r, double v) { (r.*cost).seconds = v; });
+  const Limits limits = Limits::not_negative();
+  read_integers(
+      group, prefix + "_loop_passes", runs, [cost](auto& r, auto v) { (r.*cost).loop_passes = v; }, limits);
+  read_integers(
+      group, prefix + "_contact_evaluations", runs, [cost](auto& r, auto v) { (r.*cost).contact_evaluations = v; },
+      limits);
+  read_finite(
+      group, prefix + "_seconds", "s", runs, [cost](auto& r, double v) { (r.*cost).seconds = v; }, limits);
 }
 
 /// Names of relaxations in order of appearance; runs store the number.
@@ -143,6 +153,20 @@ std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
 
 }  // namespace
 
+SoftParticleSpec unknown_soft_particle(double shell_radius, double youngs_modulus) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  SoftParticleSpec s;
+  for (double SoftParticleSpec::*value :
+       {&SoftParticleSpec::poisson_ratio, &SoftParticleSpec::friction, &SoftParticleSpec::density,
+        &SoftParticleSpec::restitution, &SoftParticleSpec::exponent, &SoftParticleSpec::polydispersity,
+        &SoftParticleSpec::rmax_over_shell, &SoftParticleSpec::beta})
+    s.*value = kUnknown;
+  s.trials = 0;
+  s.shell_radius = shell_radius;
+  s.youngs_modulus = youngs_modulus;
+  return s;
+}
+
 void save(const Measurements& data, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
@@ -161,10 +185,10 @@ Measurements load_measurements(const std::string& path) {
   const h5::Group root = h5::open_file(path);
   require_format(root, kFormat, path);
   Measurements data;
-  data.spec = read_spec(root);
   data.shell_turns = root.integer("shell_turns") != 0;
   data.approach_speed = root.number("approach_speed");
   try {
+    data.spec = read_spec(root);
     data.packings = read_packings(root);
     data.runs = read_runs(root, data.packings.size());
   } catch (const FileTrouble& e) {

@@ -1,6 +1,7 @@
 // What the particle-scale experiments recorded: the data that microsim writes and calibrate reads.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@ namespace softgrain {
 /// How grains are placed in a shell: the published trials, or the same law without the trials that must fail.
 enum class Placement { trials, voids };
 
-/// The soft particle that was measured [SP 1.1-1.3]. SI units.
+/// The soft particle that was measured [SP 1.1-1.3]. SI units. Of an experiment only Rs and E are always known: numbers
+/// that nobody gave are NaN, trials 0.
 struct SoftParticleSpec {
   double shell_radius = 0.016;              ///< Rs [m]
   double youngs_modulus = 5.0e5;            ///< E [Pa]
@@ -29,6 +31,18 @@ struct SoftParticleSpec {
   std::int64_t trials = 10000;              ///< I, random positions tried per grain
   Placement placement = Placement::trials;  ///< the same law either way, other random numbers
 };
+
+/// Whether a number of a soft particle was given.
+inline bool is_known(double value) { return !std::isnan(value); }
+
+/// Whether it is known what is inside: law of sizes, how many grains, how they were placed.
+inline bool packing_known(const SoftParticleSpec& s) {
+  return is_known(s.exponent) && is_known(s.polydispersity) && is_known(s.rmax_over_shell) && is_known(s.beta) &&
+         s.trials > 0;
+}
+
+/// A soft particle of which Rs and E are all that is known.
+SoftParticleSpec unknown_soft_particle(double shell_radius, double youngs_modulus);
 
 /// One packing as generated.
 struct PackingInfo {

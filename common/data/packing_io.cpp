@@ -23,12 +23,17 @@ std::vector<PackingInfo> read_packings(const h5::Group& root) {
   const h5::Group group = root.open("packings");
   std::vector<PackingInfo> packings(column_length(group, "seed"));
   read_integers(group, "seed", packings, [](auto& p, auto v) { p.seed = static_cast<std::uint64_t>(v); });
-  read_integers(group, "grains", packings, [](auto& p, auto v) { p.grains = v; });
-  read_doubles(group, "solid_fraction", packings, [](auto& p, double v) { p.solid_fraction = v; });
-  read_doubles(group, "contacts_per_grain", packings, [](auto& p, double v) { p.contacts_per_grain = v; });
-  read_doubles(group, "exponent", packings, [](auto& p, double v) { p.exponent = v; });
-  read_doubles(group, "exponent_error", packings, [](auto& p, double v) { p.exponent_error = v; });
-  const std::vector<double> radii = group.doubles("radii");
+  read_integers(
+      group, "grains", packings, [](auto& p, auto v) { p.grains = v; }, Limits::not_negative());
+  read_finite(
+      group, "solid_fraction", "1", packings, [](auto& p, double v) { p.solid_fraction = v; }, Limits::flag());
+  read_finite(
+      group, "contacts_per_grain", "1", packings, [](auto& p, double v) { p.contacts_per_grain = v; },
+      Limits::not_negative());
+  read_doubles(group, "exponent", "1", packings, [](auto& p, double v) { p.exponent = v; });
+  read_doubles(group, "exponent_error", "1", packings, [](auto& p, double v) { p.exponent_error = v; });
+  const std::vector<double> radii =
+      read_numbers(group, "radii", "m", {group.doubles("radii").size()}, Limits::not_negative());
   Slices slices(radii.size());
   read_integers(group, "radius_count", packings, [&](auto& p, auto v) { p.radii = take(radii, slices, v); });
   slices.finish();

@@ -29,11 +29,9 @@ void write_vectors(const h5::Group& g, const std::string& name, const std::strin
 }
 
 template <class Record, class Set>
-void read_vectors(const h5::Group& g, const std::string& name, std::vector<Record>& records, Set set) {
-  const std::vector<double> flat = g.doubles(name);
-  if (flat.size() != 3 * records.size()) throw FileTrouble("data set '" + name + "' has a wrong length");
-  for (const double x : flat)
-    if (!std::isfinite(x)) throw FileTrouble("data set '" + name + "' holds a number that is not finite");
+void read_vectors(const h5::Group& g, const std::string& name, const std::string& unit, std::vector<Record>& records,
+                  Set set) {
+  const std::vector<double> flat = read_numbers(g, name, unit, {records.size(), 3});
   for (std::size_t k = 0; k < records.size(); ++k)
     set(records[k], Vec3{{flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]}});
 }
@@ -66,14 +64,25 @@ void write_particles(const h5::Group& g, const Snapshot& s) {
   write_column(g, "index", "1", all, [&](const P& p) { return static_cast<std::int64_t>(&p - all.data()); });
 }
 
+/// Line k joins the two ends of contact k, as far as there are contacts.
+void require_segments(const h5::Group& g) {
+  const std::vector<std::int64_t> rows = g.integers("segment");
+  require_shape(g, "segment", {rows.size() / 2, 2});
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (rows[k] != static_cast<std::int64_t>(k))
+      throw FileTrouble(fmt::format("data set 'segment' holds {} in row {}, where {} belongs", rows[k], k / 2, k));
+}
+
 void read_particles(const h5::Group& g, Snapshot& s) {
   using P = SnapshotParticle;
   s.particles.resize(column_length(g, "id"));
   auto& all = s.particles;
-  read_vectors(g, "position", all, [](P& p, const Vec3& v) { p.position = v; });
-  read_finite(g, "radius", all, [](P& p, double v) { p.radius = v; });
+  read_vectors(g, "position", s.length_unit, all, [](P& p, const Vec3& v) { p.position = v; });
+  read_finite(
+      g, "radius", s.length_unit, all, [](P& p, double v) { p.radius = v; }, Limits::not_negative());
   s.has_velocity = g.has("velocity");
-  if (s.has_velocity) read_vectors(g, "velocity", all, [](P& p, const Vec3& v) { p.velocity = v; });
+  if (s.has_velocity)
+    read_vectors(g, "velocity", s.length_unit + "/" + s.time_unit, all, [](P& p, const Vec3& v) { p.velocity = v; });
   read_integers(g, "id", all, [](P& p, std::int64_t v) { p.id = v; });
   read_integers(g, "role", all, [](P& p, std::int64_t v) { p.role = checked(v, ParticleRole::inner, "role"); });
   read_integers(g, "body", all, [](P& p, std::int64_t v) { p.body = v; });
@@ -95,9 +104,10 @@ void read_walls(const h5::Group& g, Snapshot& s) {
   s.walls.resize(column_length(g, "shape"));
   read_integers(g, "shape", s.walls,
                 [](W& w, std::int64_t v) { w.shape = checked(v, WallShape::sphere_inside, "shape of a wall"); });
-  read_vectors(g, "point", s.walls, [](W& w, const Vec3& v) { w.point = v; });
-  read_vectors(g, "normal", s.walls, [](W& w, const Vec3& v) { w.normal = v; });
-  read_finite(g, "radius", s.walls, [](W& w, double v) { w.radius = v; });
+  read_vectors(g, "point", s.length_unit, s.walls, [](W& w, const Vec3& v) { w.point = v; });
+  read_vectors(g, "normal", "1", s.walls, [](W& w, const Vec3& v) { w.normal = v; });
+  read_finite(
+      g, "radius", s.length_unit, s.walls, [](W& w, double v) { w.radius = v; }, Limits::not_negative());
   read_integers(g, "body", s.walls, [](W& w, std::int64_t v) { w.body = v; });
 }
 
@@ -105,7 +115,7 @@ void write_number(const h5::Group& g, const char* name, double value) {
   if (!std::isnan(value)) g.attribute(name, value);
 }
 double read_number(const h5::Group& g, const char* name) {
-  return g.has_attribute(name) ? g.number(name) : Snapshot::kNone;
+  return g.has_attribute(name) ? read_attribute(g, name) : Snapshot::kNone;
 }
 
 void write_cell(const h5::Group& g, const Snapshot& s) {
@@ -119,9 +129,9 @@ void write_cell(const h5::Group& g, const Snapshot& s) {
 }
 
 void read_cell(const h5::Group& g, Snapshot& s) {
-  const std::vector<double> edges = g.doubles("cell_edges");
+  const std::vector<double> edges = read_numbers(g, "cell_edges", s.length_unit, {3, 3});
+  require_shape(g, "cell_periodic", {3});
   const std::vector<std::int64_t> periodic = g.integers("cell_periodic");
-  if (edges.size() != 9 || periodic.size() != 3) throw FileTrouble("data set 'cell_edges' has a wrong length");
   for (std::size_t k = 0; k < 3; ++k) {
     s.periodic[k] = periodic[k] != 0;
     for (std::size_t c = 0; c < 3; ++c) s.cell_edges[k].v[c] = edges[3 * k + c];
@@ -151,17 +161,19 @@ void write_snapshot_contacts(const h5::Group& g, const std::vector<SnapshotConta
   write_segments(g, segments);
 }
 
-std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, std::size_t particles, std::size_t bodies) {
+std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, const SnapshotBodies& bodies,
+                                                    const Snapshot& units) {
   using C = SnapshotContact;
   const std::vector<std::int64_t> pairs = g.integers("pair");
-  const std::vector<double> ends = g.doubles("ends");
   std::vector<C> contacts(pairs.size() / 2);
-  if (pairs.size() % 2 != 0 || ends.size() != 6 * contacts.size())
-    throw FileTrouble("data set 'ends' has a wrong length");
+  require_shape(g, "pair", {contacts.size(), 2});
+  const std::vector<double> ends = read_numbers(g, "ends", units.length_unit, {2 * contacts.size(), 3});
+  require_segments(g);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const std::int64_t i = pairs[2 * k];
     const std::int64_t j = pairs[2 * k + 1];
-    if (i < 0 || j < 0 || i >= static_cast<std::int64_t>(particles) || j >= static_cast<std::int64_t>(bodies))
+    if (i < 0 || j < 0 || i >= static_cast<std::int64_t>(bodies.particles) ||
+        j >= static_cast<std::int64_t>(bodies.all))
       throw FileTrouble("a contact names a body that is not there");
     contacts[k].i = static_cast<std::int32_t>(i);
     contacts[k].j = static_cast<std::int32_t>(j);
@@ -170,10 +182,10 @@ std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& g, std::siz
       contacts[k].to.v[c] = ends[6 * k + 3 + c];
     }
   }
-  read_vectors(g, "point", contacts, [](C& c, const Vec3& v) { c.point = v; });
-  read_vectors(g, "force", contacts, [](C& c, const Vec3& v) { c.force = v; });
-  read_finite(g, "normal_force", contacts, [](C& c, double v) { c.normal_force = v; });
-  if (g.has("shift")) read_vectors(g, "shift", contacts, [](C& c, const Vec3& v) { c.shift = v; });
+  read_vectors(g, "point", units.length_unit, contacts, [](C& c, const Vec3& v) { c.point = v; });
+  read_vectors(g, "force", units.force_unit, contacts, [](C& c, const Vec3& v) { c.force = v; });
+  read_finite(g, "normal_force", units.force_unit, contacts, [](C& c, double v) { c.normal_force = v; });
+  if (g.has("shift")) read_vectors(g, "shift", units.length_unit, contacts, [](C& c, const Vec3& v) { c.shift = v; });
   return contacts;
 }
 
@@ -208,13 +220,18 @@ Snapshot read_snapshot(const h5::Group& g) {
   s.length_unit = g.text("length_unit");
   s.force_unit = g.text("force_unit");
   s.time_unit = g.text("time_unit");
-  s.dimension = g.integer("dimension") == 2 ? 2 : 3;
+  const std::int64_t dimension = g.integer("dimension");
+  if (dimension != 2 && dimension != 3)
+    throw FileTrouble(fmt::format("a state has {} dimensions; allowed: 2, 3", dimension));
+  s.dimension = static_cast<int>(dimension);
   read_particles(g.open("particles"), s);
   read_walls(g.open("walls"), s);
   read_cell(g, s);
   s.has_contacts = g.has("contacts");
-  if (s.has_contacts)
-    s.contacts = read_snapshot_contacts(g.open("contacts"), s.particles.size(), s.particles.size() + s.walls.size());
+  if (!s.has_contacts) return s;
+  const h5::Group contacts = g.open("contacts");
+  s.contacts = read_snapshot_contacts(contacts, {s.particles.size(), s.particles.size() + s.walls.size()}, s);
+  require_shape(contacts, "segment", {s.contacts.size(), 2});
   return s;
 }
 

@@ -14,9 +14,15 @@ namespace softgrain {
 /// any is not zero) and segment (S x 2: rows of `ends` that one line joins, S = the largest of `segments`, or C).
 void write_snapshot_contacts(const h5::Group& group, const std::vector<SnapshotContact>& contacts,
                              const Snapshot& units, std::size_t segments);
-/// Throws FileTrouble when lengths do not fit each other or a contact names a body that is not there: i must be below
-/// `particles`, j below `bodies`, both at least 0.
-std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& group, std::size_t particles, std::size_t bodies);
+/// What a contact may name: i a particle, j any body, particles first.
+struct SnapshotBodies {
+  std::size_t particles = 0;
+  std::size_t all = 0;
+};
+/// Throws FileTrouble when shapes or units are others, a number is not finite, a contact names a body that is not
+/// there, or a line joins other rows than those of its contact.
+std::vector<SnapshotContact> read_snapshot_contacts(const h5::Group& group, const SnapshotBodies& bodies,
+                                                    const Snapshot& units);
 
 /// One state: attributes, particles (position, radius, id, role, body, material, index; velocity), walls, cell, and the
 /// group "contacts".

@@ -1,6 +1,9 @@
 #include "common/data/spec_io.h"
 
+#include <cmath>
+
 #include "common/core/error.h"
+#include "common/data/columns.h"
 #include "common/io/provenance.h"
 
 namespace softgrain {
@@ -10,25 +13,32 @@ namespace {
 struct SpecField {
   const char* name;
   double SoftParticleSpec::*value;
+  Limits limits;
 };
 
-constexpr SpecField kFields[] = {{"shell_radius", &SoftParticleSpec::shell_radius},
-                                 {"youngs_modulus", &SoftParticleSpec::youngs_modulus},
-                                 {"poisson_ratio", &SoftParticleSpec::poisson_ratio},
-                                 {"friction", &SoftParticleSpec::friction},
-                                 {"density", &SoftParticleSpec::density},
-                                 {"restitution", &SoftParticleSpec::restitution},
-                                 {"exponent", &SoftParticleSpec::exponent},
-                                 {"polydispersity", &SoftParticleSpec::polydispersity},
-                                 {"rmax_over_shell", &SoftParticleSpec::rmax_over_shell},
-                                 {"beta", &SoftParticleSpec::beta}};
+constexpr double kLeast = std::numeric_limits<double>::min();  ///< above zero
+constexpr double kAny = std::numeric_limits<double>::max();
+
+constexpr SpecField kFields[] = {{"shell_radius", &SoftParticleSpec::shell_radius, {kLeast, kAny}},
+                                 {"youngs_modulus", &SoftParticleSpec::youngs_modulus, {kLeast, kAny}},
+                                 {"poisson_ratio", &SoftParticleSpec::poisson_ratio, {-1.0, 0.5}},
+                                 {"friction", &SoftParticleSpec::friction, {0.0, kAny}},
+                                 {"density", &SoftParticleSpec::density, {kLeast, kAny}},
+                                 {"restitution", &SoftParticleSpec::restitution, {0.0, 1.0}},
+                                 {"exponent", &SoftParticleSpec::exponent, {-kAny, kAny}},
+                                 {"polydispersity", &SoftParticleSpec::polydispersity, {1.0, kAny}},
+                                 {"rmax_over_shell", &SoftParticleSpec::rmax_over_shell, {kLeast, 1.0}},
+                                 {"beta", &SoftParticleSpec::beta, {kLeast, kAny}}};
+constexpr const char* kUnits = "shell_radius m, youngs_modulus Pa, density kg/m^3, all others 1";
 
 }  // namespace
 
 void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
   const h5::Group group = root.create("spec");
-  group.attribute("units", "shell_radius m, youngs_modulus Pa, density kg/m^3, all others 1");
-  for (const SpecField& field : kFields) group.attribute(field.name, spec.*field.value);
+  group.attribute("units", kUnits);
+  for (const SpecField& field : kFields)
+    if (is_known(spec.*field.value)) group.attribute(field.name, spec.*field.value);
+  if (!packing_known(spec)) return;
   group.attribute("trials", spec.trials);
   group.attribute("placement", std::string(spec.placement == Placement::voids ? "voids" : "trials"));
 }
@@ -36,9 +46,15 @@ void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
 SoftParticleSpec read_spec(const h5::Group& root) {
   const h5::Group group = root.open("spec");
   SoftParticleSpec spec;
-  for (const SpecField& field : kFields) spec.*field.value = group.number(field.name);
+  if (group.text("units") != kUnits) throw FileTrouble("spec: units '" + group.text("units") + "' are not known");
+  for (const SpecField& field : kFields) spec.*field.value = read_attribute(group, field.name, field.limits);
   spec.trials = group.integer("trials");
-  if (group.has_attribute("placement") && group.text("placement") == "voids") spec.placement = Placement::voids;
+  if (spec.trials < 1)
+    throw FileTrouble("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");
+  if (!group.has_attribute("placement")) return spec;
+  const std::string placement = group.text("placement");
+  if (placement != "voids" && placement != "trials") throw FileTrouble("spec: unknown placement '" + placement + "'");
+  if (placement == "voids") spec.placement = Placement::voids;
   return spec;
 }
 

@@ -36,13 +36,13 @@ void write_text(const Group::Impl& group, hid_t place, const std::string& name, 
   write_one(group, place, name, type.id(), type.id(), static_cast<const void*>(&text));
 }
 
-Handle open_attribute(const Group::Impl& group, const std::string& name) {
-  return group.checked(H5Aopen(group.handle.id(), name.c_str(), H5P_DEFAULT), H5Aclose, name, "missing attribute");
+Handle open_attribute(const Group::Impl& group, hid_t place, const std::string& name) {
+  return group.checked(H5Aopen(place, name.c_str(), H5P_DEFAULT), H5Aclose, name, "missing attribute");
 }
 
 /// A scalar of integer or floating type, converted to `native`.
 void read_number(const Group::Impl& group, const std::string& name, hid_t native, bool integer_only, void* value) {
-  const Handle attribute = open_attribute(group, name);
+  const Handle attribute = open_attribute(group, group.handle.id(), name);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type.id());
   if (kind != H5T_INTEGER && (integer_only || kind != H5T_FLOAT))
@@ -61,6 +61,22 @@ std::string read_variable_text(const Group::Impl& group, const Handle& attribute
   return value;
 }
 
+std::string read_text(const Group::Impl& group, hid_t place, const std::string& name) {
+  const Handle attribute = open_attribute(group, place, name);
+  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  if (H5Tget_class(type.id()) != H5T_STRING) group.fail(name, "attribute is not text");
+  const Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space.id()) != 1) group.fail(name, "attribute holds more than one value");
+  if (H5Tis_variable_str(type.id()) > 0) return read_variable_text(group, attribute, type, name);
+  std::string value(H5Tget_size(type.id()), '\0');
+  if (H5Aread(attribute.id(), type.id(), value.data()) < 0) group.fail(name, "damaged attribute");
+  return value.c_str();
+}
+
+Handle open_set(const Group::Impl& group, const std::string& name) {
+  return group.checked(H5Dopen2(group.handle.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name, "missing data set");
+}
+
 }  // namespace
 
 void Group::attribute(const std::string& name, const std::string& value) const {
@@ -76,23 +92,17 @@ void Group::attribute(const std::string& name, std::int64_t value) const {
 }
 
 void Group::attribute_of(const std::string& data_set, const std::string& name, const std::string& value) const {
-  const Handle set = impl_->checked(H5Dopen2(impl_->handle.id(), data_set.c_str(), H5P_DEFAULT), H5Dclose, data_set,
-                                    "missing data set");
+  const Handle set = open_set(*impl_, data_set);
   write_text(*impl_, set.id(), name, value);
 }
 
 bool Group::has_attribute(const std::string& name) const { return H5Aexists(impl_->handle.id(), name.c_str()) > 0; }
 
-std::string Group::text(const std::string& name) const {
-  const Handle attribute = open_attribute(*impl_, name);
-  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  if (H5Tget_class(type.id()) != H5T_STRING) impl_->fail(name, "attribute is not text");
-  const Handle space(H5Aget_space(attribute.id()), H5Sclose);
-  if (H5Sget_simple_extent_npoints(space.id()) != 1) impl_->fail(name, "attribute holds more than one value");
-  if (H5Tis_variable_str(type.id()) > 0) return read_variable_text(*impl_, attribute, type, name);
-  std::string value(H5Tget_size(type.id()), '\0');
-  if (H5Aread(attribute.id(), type.id(), value.data()) < 0) impl_->fail(name, "damaged attribute");
-  return value.c_str();
+std::string Group::text(const std::string& name) const { return read_text(*impl_, impl_->handle.id(), name); }
+
+std::string Group::text_of(const std::string& data_set, const std::string& name) const {
+  const Handle set = open_set(*impl_, data_set);
+  return H5Aexists(set.id(), name.c_str()) > 0 ? read_text(*impl_, set.id(), name) : "";
 }
 
 double Group::number(const std::string& name) const {

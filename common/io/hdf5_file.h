@@ -37,6 +37,8 @@ class Group {
   void attribute(const std::string& name, std::int64_t value) const;
   /// Attribute of a data set of this group (units mostly).
   void attribute_of(const std::string& data_set, const std::string& name, const std::string& value) const;
+  /// Reads it back; empty when the data set has no such attribute.
+  [[nodiscard]] std::string text_of(const std::string& data_set, const std::string& name) const;
   [[nodiscard]] bool has_attribute(const std::string& name) const;
   [[nodiscard]] std::string text(const std::string& name) const;
   [[nodiscard]] double number(const std::string& name) const;

@@ -71,8 +71,9 @@ void write_vector(const h5::Group& g, const VectorColumn& c, const std::vector<B
 }
 
 void read_vector(const h5::Group& g, const VectorColumn& c, std::vector<BoxPoint>& points) {
+  require_shape(g, c.name, {points.size(), 3});
+  require_unit(g, c.name, c.unit);
   const std::vector<double> flat = g.doubles(c.name);
-  if (flat.size() != 3 * points.size()) throw FileTrouble(fmt::format("data set '{}' has a wrong length", c.name));
   for (std::size_t k = 0; k < points.size(); ++k)
     for (std::size_t a = 0; a < 3; ++a) (points[k].*c.values).v[a] = flat[3 * k + a];
 }
@@ -99,12 +100,12 @@ std::vector<BoxPoint> read_points(const h5::Group& g) {
   read_integers(g, "phase", points, [](BoxPoint& p, std::int64_t v) { p.phase = phase_of(v); });
   for (const VectorColumn& c : kVectors) read_vector(g, c, points);
   for (const NumberColumn& c : kNumbers)
-    read_doubles(g, c.name, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
+    read_doubles(g, c.name, c.unit, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
   for (const CountColumn& c : kCounts)
     read_integers(g, c.name, points, [&](BoxPoint& p, std::int64_t v) { p.*c.values = v; });
   for (const EffortColumn& c : kEffort)
     read_integers(g, c.name, points, [&](BoxPoint& p, std::int64_t v) { p.effort.*c.values = v; });
-  read_doubles(g, "residual", points, [](BoxPoint& p, double v) { p.effort.residual = v; });
+  read_doubles(g, "residual", "1", points, [](BoxPoint& p, double v) { p.effort.residual = v; });
   return points;
 }
 
@@ -122,9 +123,9 @@ std::vector<BoxFailure> read_failures(const h5::Group& g) {
   std::vector<BoxFailure> failures(column_length(g, "before_point"));
   read_integers(g, "before_point", failures, [](BoxFailure& f, std::int64_t v) { f.before_point = v; });
   for (int a = 0; a < 3; ++a)
-    read_doubles(g, fmt::format("strain_{}", "xyz"[a]), failures,
+    read_doubles(g, fmt::format("strain_{}", "xyz"[a]), "1", failures,
                  [a](BoxFailure& f, double v) { f.tried.strain[a] = v; });
-  read_doubles(g, "residual", failures, [](BoxFailure& f, double v) { f.tried.residual = v; });
+  read_doubles(g, "residual", "1", failures, [](BoxFailure& f, double v) { f.tried.residual = v; });
   for (std::size_t k = 0; k < failures.size(); ++k) failures[k].tried.reason = g.text(fmt::format("reason_{:06}", k));
   return failures;
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "common/core/error.h"
+#include "common/data/columns.h"
 #include "common/data/snapshot_io.h"
 #include "common/dynamics/system_snapshot.h"
 
@@ -39,7 +40,7 @@ FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles,
   FrameContacts c;
   c.frame = group.integers("frame");
   c.count = group.integers("count");
-  c.contacts = read_snapshot_contacts(group, particles, bodies);
+  c.contacts = read_snapshot_contacts(group, {particles, bodies}, Snapshot{});
   std::int64_t total = 0;
   for (const std::int64_t n : c.count) {
     if (n < 0 || n > static_cast<std::int64_t>(c.contacts.size())) throw FileTrouble("contacts of frames do not fit");
@@ -48,6 +49,8 @@ FrameContacts read_frame_contacts(const h5::Group& group, std::size_t particles,
   if (c.frame.size() != c.count.size() || total != static_cast<std::int64_t>(c.contacts.size()) ||
       !std::is_sorted(c.frame.begin(), c.frame.end()))
     throw FileTrouble("contacts of frames do not fit");
+  const std::int64_t most = c.count.empty() ? 0 : *std::max_element(c.count.begin(), c.count.end());
+  require_shape(group, "segment", {static_cast<std::size_t>(most), 2});
   return c;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 
+#include "common/data/columns.h"
 #include "common/neighbours/spatial_order.h"
 
 namespace softgrain {
@@ -30,6 +31,11 @@ constexpr std::array<Column, 9> kColumns{{
 }};
 
 void append(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), v.v.begin(), v.v.end()); }
+
+h5::Shape shape_of(const Column& c, std::size_t frames, std::size_t values) {
+  if (c.width == 0) return {frames};
+  return {frames, frames == 0 ? 0 : values / (frames * c.width), c.width};
+}
 
 }  // namespace
 
@@ -59,17 +65,19 @@ void write_trajectory(const h5::Group& group, const Trajectory& t) {
   const std::size_t frames = t.time.size();
   for (const Column& c : kColumns) {
     const std::vector<double>& values = t.*c.values;
-    const h5::Shape shape = c.width == 0
-                                ? h5::Shape{frames}
-                                : h5::Shape{frames, frames == 0 ? 0 : values.size() / (frames * c.width), c.width};
-    group.write(c.name, values, shape);
+    group.write(c.name, values, shape_of(c, frames, values.size()));
     group.attribute_of(c.name, "unit", c.unit);
   }
 }
 
 Trajectory read_trajectory(const h5::Group& group) {
   Trajectory t;
-  for (const Column& c : kColumns) t.*c.values = group.doubles(c.name);
+  for (const Column& c : kColumns) {
+    std::vector<double>& values = t.*c.values;
+    values = group.doubles(c.name);
+    require_unit(group, c.name, c.unit);
+    require_shape(group, c.name, shape_of(c, t.time.size(), values.size()));
+  }
   return t;
 }
 

@@ -113,6 +113,27 @@ MeanError mean_of(const std::vector<SampleComparison>& samples, double SampleCom
   return mean_error(values);
 }
 
+void note_undefined(const SampleComparison& s, Comparison& result) {
+  const auto note = [&](double ratio, const char* side) {
+    if (!std::isfinite(ratio))
+      result.undefined.push_back(
+          fmt::format("{} sample {}: the {} carries no axial stress at strain {:.4g}: ratios to it are undefined",
+                      s.test, s.sample, side, s.strain_high));
+  };
+  note(s.axial_end_ratio, "reference");
+  if (std::isfinite(s.axial_end_ratio) && s.axial_end_ratio == 0.0) note(kNaN, "candidate");
+}
+
+/// A twin that never carries stress leaves the others to be compared.
+void add_sample(const MacroCurve& candidate, const MacroCurve& reference, Comparison& result) {
+  try {
+    result.samples.push_back(compare_sample(candidate, reference));
+    note_undefined(result.samples.back(), result);
+  } catch (const ZeroReference& e) {
+    result.undefined.push_back(fmt::format("{} sample {}: {}", candidate.test, candidate.sample, e.what()));
+  }
+}
+
 void add_speedups(Comparison& result) {
   Cost candidate;
   Cost reference;
@@ -164,7 +185,9 @@ double relative_difference(const std::vector<double>& candidate_x, const std::ve
     a0 = a1;
     b0 = b1;
   }
-  if (!(reference_squares > 0.0)) throw BadInput("compare: the reference is zero over the whole common range");
+  if (!(reference_squares > 0.0))
+    throw ZeroReference(
+        "compare: the reference is zero over the whole common range: no difference relative to it is defined");
   return std::sqrt(squares / reference_squares);
 }
 
@@ -179,12 +202,13 @@ Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::v
     const auto partner = references.find(key);
     const MacroCurve* other = partner == references.end() ? nullptr : partner->second;
     const std::string problem = obstacle(*curve, other);
-    if (problem.empty()) {
-      result.samples.push_back(compare_sample(*curve, *other));
-    } else {
+    if (problem.empty())
+      add_sample(*curve, *other, result);
+    else
       result.left_out.push_back(problem);
-    }
   }
+  if (result.samples.empty() && !result.undefined.empty())
+    throw ZeroReference("compare: no sample can be compared: " + result.undefined.front());
   if (result.samples.empty()) throw BadInput("compare: no sample can be compared: " + result.left_out.front());
   add_means(result);
   add_speedups(result);

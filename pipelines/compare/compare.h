@@ -5,15 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "common/core/error.h"
 #include "common/data/macro_result.h"
 #include "pipelines/compare/statistics.h"
 
 namespace softgrain {
 
+/// A reference that is zero: what is relative to it is not defined.
+struct ZeroReference : BadInput {
+  using BadInput::BadInput;
+};
+
 /// Relative L2 difference of two piecewise linear curves over their common range of x:
 /// sqrt( int (a - b)^2 dx / int b^2 dx ), b the reference; integrals exact on the union of both grids.
 /// Throws BadInput when a curve is shorter than two points, x does not increase, a value is not finite, there is no
-/// common range, or the reference is zero on it. Units cancel.
+/// common range; ZeroReference when the reference is zero on it. Units cancel.
 double relative_difference(const std::vector<double>& candidate_x, const std::vector<double>& candidate_y,
                            const std::vector<double>& reference_x, const std::vector<double>& reference_y);
 
@@ -38,8 +44,9 @@ struct SampleComparison {
 
 struct Comparison {
   std::vector<SampleComparison> samples;
-  std::vector<std::string> left_out;  ///< one sentence for each sample that could not be compared
-  MeanError axial_difference;         ///< over samples
+  std::vector<std::string> left_out;   ///< one sentence for each sample that could not be compared
+  std::vector<std::string> undefined;  ///< one for each side that carries no stress, so that ratios are not defined
+  MeanError axial_difference;          ///< over samples
   MeanError lateral_difference;
   MeanError axial_end_ratio;
   MeanError lateral_stress_ratio_candidate;

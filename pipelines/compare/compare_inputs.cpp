@@ -62,6 +62,8 @@ template <class Compare>
 void attempt(CompareResult& result, const std::string& what, Compare&& compare) {
   try {
     compare();
+  } catch (const ZeroReference& error) {
+    result.undefined.push_back(what + ": " + error.what());
   } catch (const BadInput& error) {
     result.remarks.push_back(what + ": " + error.what());
   }
@@ -72,6 +74,8 @@ void compare_engines(CompareResult& result, const std::vector<MacroCurve>& candi
   for (const auto& [a, b] : pairs) {
     attempt(result, "macro, " + a + " against " + b, [&, &a = a, &b = b] {
       result.macro.push_back({a, b, compare_curves(curves_of(candidate, a), curves_of(reference, b))});
+      for (const std::string& one : result.macro.back().result.undefined)
+        result.undefined.push_back("macro, " + a + " against " + b + ": " + one);
     });
   }
 }
@@ -117,7 +121,8 @@ void compare_with_published(CompareResult& result, const CompareSide& side, Pair
 }
 
 void require_something(const CompareResult& result) {
-  if (!result.macro.empty() || !result.relaxations.empty() || !result.measurements.empty() || !result.laws.empty())
+  if (!result.undefined.empty() || !result.macro.empty() || !result.relaxations.empty() ||
+      !result.measurements.empty() || !result.laws.empty())
     return;
   const std::string why = result.remarks.empty() ? "the sides hold no data of the same kind" : result.remarks.front();
   throw BadInput("compare: nothing can be compared: " + why);

@@ -43,6 +43,7 @@ json to_json(const MacroPart& part) {
           {"speedup_seconds", number(c.speedup_seconds)},
           {"speedup_contact_evaluations", number(c.speedup_contact_evaluations)},
           {"left_out", c.left_out},
+          {"undefined", c.undefined},
           {"samples", samples}};
 }
 
@@ -111,12 +112,16 @@ json to_json(const LawPartComparison& part) {
 }
 
 std::string with_error(double value, double error, int digits = 4) {
-  if (!std::isfinite(value)) return "-";
+  if (!std::isfinite(value)) return "undefined";
   return std::isfinite(error) ? fmt::format("{:.{}g} +- {:.2g}", value, digits, error)
                               : fmt::format("{:.{}g}", value, digits);
 }
 
-std::string percent(const MeanError& m) { return with_error(100.0 * m.mean, 100.0 * m.error, 3) + " %"; }
+std::string percent(const MeanError& m) {
+  return with_error(100.0 * m.mean, 100.0 * m.error, 3) + (std::isfinite(m.mean) ? " %" : "");
+}
+
+std::string factor(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "undefined"; }
 
 std::string text_of(const MacroPart& part) {
   const Comparison& c = part.result;
@@ -129,8 +134,8 @@ std::string text_of(const MacroPart& part) {
   out += fmt::format("  lateral over axial stress at the end    {} against {}\n",
                      with_error(c.lateral_stress_ratio_candidate.mean, c.lateral_stress_ratio_candidate.error),
                      with_error(c.lateral_stress_ratio_reference.mean, c.lateral_stress_ratio_reference.error));
-  out += fmt::format("  speed-up                                {:.3g} in seconds, {:.3g} in contact evaluations\n",
-                     c.speedup_seconds, c.speedup_contact_evaluations);
+  out += fmt::format("  speed-up                                {} in seconds, {} in contact evaluations\n",
+                     factor(c.speedup_seconds), factor(c.speedup_contact_evaluations));
   for (const std::string& reason : c.left_out) out += "  left out: " + reason + "\n";
   return out;
 }
@@ -171,9 +176,9 @@ std::string ratio_text(const Ratios& c) {
 
 template <class Comparison>
 std::string cost_text(const Comparison& c) {
-  const double speedup = c.reference_normal_cost.seconds / c.candidate_normal_cost.seconds;
+  const std::string speedup = factor(c.reference_normal_cost.seconds / c.candidate_normal_cost.seconds);
   return fmt::format(
-      "  cost of a normal point: {:.3g} against {:.3g} loop passes, {:.3g} against {:.3g} s (speed-up {:.3g})\n",
+      "  cost of a normal point: {:.3g} against {:.3g} loop passes, {:.3g} against {:.3g} s (speed-up {})\n",
       c.candidate_normal_cost.loop_passes, c.reference_normal_cost.loop_passes, c.candidate_normal_cost.seconds,
       c.reference_normal_cost.seconds, speedup);
 }
@@ -214,7 +219,8 @@ json to_json(const CompareResult& result) {
           {"relaxations", list_of(result.relaxations)},
           {"measurements", list_of(result.measurements)},
           {"laws", list_of(result.laws)},
-          {"remarks", result.remarks}};
+          {"remarks", result.remarks},
+          {"undefined", result.undefined}};
 }
 
 std::string to_text(const CompareResult& result) {
@@ -223,6 +229,7 @@ std::string to_text(const CompareResult& result) {
   for (const auto& part : result.relaxations) out += text_of(part);
   for (const auto& part : result.measurements) out += text_of(part);
   for (const auto& part : result.laws) out += text_of(part);
+  for (const std::string& one : result.undefined) out += "undefined: " + one + "\n";
   for (const std::string& remark : result.remarks) out += "not compared: " + remark + "\n";
   return out;
 }

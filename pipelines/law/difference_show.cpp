@@ -18,7 +18,7 @@ std::string interval(const Quantity& q) {
 }
 
 std::string kind_line(const LawFile& file, char letter, double solid_fraction) {
-  const std::string what = file.card ? fmt::format("law card, {} relaxation", file.card->relaxation)
+  const std::string what = file.card ? "law card, " + measured_text(*file.card)
                                      : fmt::format("law table, at solid fraction {:.4f}", solid_fraction);
   return wrapped(fmt::format("{}: {}: {}", letter, file.path, what), 3);
 }
@@ -46,8 +46,10 @@ std::string difference_text(const LawDifference& d, bool utf8) {
     rows.push_back({number(r.delta), number(r.a.value), interval(r.a), number(r.b.value), interval(r.b),
                     std::isfinite(r.relative) ? fmt::format("{:+.1f}", 100.0 * r.relative) : "-", verdict(r)});
   text += aligned(rows, 2, 0);
-  text += fmt::format("  root mean square {:.1f} % of A; largest {:.1f} % of the largest A\n",
-                      100.0 * d.root_mean_square, 100.0 * d.largest);
+  text += std::isfinite(d.root_mean_square)
+              ? fmt::format("  root mean square {:.1f} % of A; largest {:.1f} % of the largest A\n",
+                            100.0 * d.root_mean_square, 100.0 * d.largest)
+              : std::string("  root mean square and largest difference: undefined, as A is zero in the whole range\n");
   return d.quantity.starts_with("F") ? text + plot_of(d, utf8) : text;
 }
 

@@ -82,8 +82,10 @@ void judge(LawDifference& d) {
     largest = std::max(largest, std::abs(off));
     most = std::max(most, r.a.value);
   }
-  d.root_mean_square = all > 0.0 ? std::sqrt(square / all) : 0.0;
-  d.largest = most > 0.0 ? largest / most : 0.0;
+  // Against a law that is zero everywhere nothing is relative.
+  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+  d.root_mean_square = all > 0.0 ? std::sqrt(square / all) : kUndefined;
+  d.largest = most > 0.0 ? largest / most : kUndefined;
 }
 
 void add(std::vector<LawDifference>& out, PairKind kind, const Source& a, const Source& b, std::size_t points) {

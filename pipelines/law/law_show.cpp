@@ -122,21 +122,22 @@ std::string origin_text(const LawOrigin& o) {
 }
 
 std::string spec_text_for_people(const SoftParticleSpec& s) {
-  return fmt::format(
-      "Rs = {} m, E = {} Pa, nu = {}, mu = {}, {} kg/m^3; radii r^-{} with rmax/rmin = {}, rmax/Rs = {}, beta = {}, {} "
-      "trials{}",
-      number(s.shell_radius), number(s.youngs_modulus), number(s.poisson_ratio), number(s.friction), number(s.density),
-      number(s.exponent), number(s.polydispersity), number(s.rmax_over_shell), number(s.beta), s.trials,
-      s.placement == Placement::voids ? " in voids" : "");
+  const auto known = [](double x) { return is_known(x) ? number(x) : std::string("?"); };
+  std::string text = fmt::format("Rs = {} m, E = {} Pa, nu = {}, mu = {}, {} kg/m^3; ", number(s.shell_radius),
+                                 number(s.youngs_modulus), known(s.poisson_ratio), known(s.friction), known(s.density));
+  if (!packing_known(s)) return text + "what is inside is not known";
+  return text + fmt::format("radii r^-{} with rmax/rmin = {}, rmax/Rs = {}, beta = {}, {} trials{}", number(s.exponent),
+                            number(s.polydispersity), number(s.rmax_over_shell), number(s.beta), s.trials,
+                            s.placement == Placement::voids ? " in voids" : "");
 }
 
 std::string card_text_for_people(const LawFile& file, bool utf8) {
   const LawCard& card = *file.card;
-  std::string text =
-      wrapped(fmt::format("{}: law card, measured with the {} relaxation", file.path, card.relaxation), 2);
+  std::string text = wrapped(fmt::format("{}: law card, {}", file.path, measured_text(card)), 2);
   text += wrapped("  " + spec_text_for_people(card.spec), 2);
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
+  for (const std::string& note : card.notes) text += wrapped("  note: " + note, 4);
   for (const PairLaw& law : card.pairs) text += "\n" + pair_text(law, card.spec, utf8);
   return text + "\n" +
          wrapped(

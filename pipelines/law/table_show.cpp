@@ -116,6 +116,7 @@ std::string table_text_for_people(const LawFile& file, bool utf8) {
                              2);
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
+  for (const std::string& note : file.table->notes) text += wrapped("  note: " + note, 4);
   for (const LawTableEntry& e : file.table->entries) text += "\n" + entry_text(e, utf8);
   return text;
 }

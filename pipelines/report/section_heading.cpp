@@ -74,7 +74,7 @@ std::string run_line(const RunData& run) {
 
 std::string material_line(const RunData& run) {
   const SoftParticleSpec& s = run.measurements ? run.measurements->spec : run.card->spec;
-  if (!run.measurements && run.card->relaxation == "experiment")
+  if (!run.measurements && !packing_known(s))
     return fmt::format("Soft particle of an experiment: radius Rs = {} mm, E = {} MPa; what is inside is not known",
                        format_number(1e3 * s.shell_radius), format_number(1e-6 * s.youngs_modulus));
   return fmt::format(
@@ -126,6 +126,7 @@ std::string macro_line(const std::vector<MacroCurve>& macro) {
   if (laws.empty() || twins.empty()) return end_line(laws.empty() ? macro : laws);
   try {
     const Comparison c = compare_curves(laws, twins);
+    if (!c.undefined.empty()) return "Law and resolved twin: " + c.undefined.front() + ".";
     return fmt::format(
         "Stress by the law differs from the resolved twin by {} % ({} samples); {} times fewer contact "
         "evaluations, {} times faster.",

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "calibrate/crowd_problem.h"
 #include "calibrate/crowd_states.h"
@@ -31,7 +32,7 @@ bool belongs(const CrowdStates& c, const Group& g) {
   const auto& stages = c.configuration->stages;
   const auto loads = std::count_if(stages.begin(), stages.end(), [](const CrowdStage& s) { return s.name == "load"; });
   const CrowdUse wanted = g.held_out ? CrowdUse::predicted : CrowdUse::fitted;
-  return c.all_of(g.kind) && c.use == wanted && loads == 1 && c.states.size() > 1;
+  return c.all_of(g.kind) && c.use == wanted && loads == 1 && c.states.size() > 1 && !loading_states(c).empty();
 }
 
 double mean_force(const std::vector<double>& forces) {
@@ -92,6 +93,13 @@ std::string group_figure(const Group& group, const std::vector<CrowdStates>& sta
                             entry.best, group.held_out ? "; none of this was used in the fit" : ""));
 }
 
+/// "0.73 ± 0.19"; a number that is fixed has no error, one whose error is not known says so.
+std::string with_error(const Estimate& e) {
+  if (!std::isfinite(e.standard_error)) return format_number(e.value, 3) + " (error not known)";
+  return e.standard_error > 0.0 ? format_number(e.value, 3) + " ± " + format_number(e.standard_error, 2)
+                                : format_number(e.value, 3);
+}
+
 std::string error_table(const LawTableEntry& entry) {
   std::vector<std::string> header{"configuration", "use"};
   for (const CrowdLaw& law : entry.laws) header.push_back(law.form + " law: error [%]");
@@ -113,9 +121,7 @@ std::string parameter_table(const LawTableEntry& entry) {
                    "error, leave one out [%]", "information criterion"});
   for (const CrowdLaw& law : entry.laws) {
     std::vector<std::string> cells{law.form + (law.form == entry.best ? " (best)" : "")};
-    for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2})
-      cells.push_back(e->standard_error > 0.0 ? format_number(e->value, 3) + " ± " + format_number(e->standard_error, 2)
-                                              : format_number(e->value, 3));
+    for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2}) cells.push_back(with_error(*e));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross})
       cells.push_back(format_number(100.0 * x, 3));
     cells.push_back(format_number(law.criterion, 4));
@@ -128,12 +134,17 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeas
   std::string body = paragraph(fmt::format(
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Best by cross-validation: the {} law. Measured up to h/Rs = {:.2f} "
       "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Friction "
-      "limit and kt/kn: {:.2f}, {:.2f} against planes, {:.2f}, {:.2f} against solid spheres, {:.2f}, {:.2f} among soft "
-      "particles. Unloading is {:.2f} times as stiff as loading.",
+      "limit and kt/kn: {}, {} against planes, {}, {} against solid spheres, {}, {} among soft particles. Unloading is "
+      "{} "
+      "times as stiff as loading.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, entry.best, entry.overlap_max, entry.volume_max,
-      entry.grain_overlap_max, entry.slide_plane.friction.value, entry.slide_plane.kt_ratio.value,
-      entry.slide_solid.friction.value, entry.slide_solid.kt_ratio.value, entry.slide_soft.friction.value,
-      entry.slide_soft.kt_ratio.value, entry.retreat.value));
+      entry.grain_overlap_max, with_error(entry.slide_plane.friction), with_error(entry.slide_plane.kt_ratio),
+      with_error(entry.slide_solid.friction), with_error(entry.slide_solid.kt_ratio),
+      with_error(entry.slide_soft.friction), with_error(entry.slide_soft.kt_ratio), with_error(entry.retreat)));
+  for (const CrowdLaw& law : entry.laws)
+    if (law.status != "good")
+      body +=
+          paragraph("The " + law.form + " law is " + law.status + (law.reason.empty() ? "" : ": " + law.reason) + ".");
   body += parameter_table(entry) + error_table(entry);
   if (!crowd) return body;
   const std::vector<CrowdStates> states = average_states(*crowd);

@@ -78,6 +78,7 @@ std::string card_tables(const LawCard& card) {
     out += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + status_line(law, experiment ? "samples" : "packings") +
            (table.empty() ? "" : table.html());
   }
+  for (const std::string& note : card.notes) out += paragraph("Note: " + note + ".");
   out += paragraph(
       "F(Δ) = a Δ^b + c for Δ ≥ δ and zero below, c = -a δ^b. Standard errors from the covariance of the joint fit, "
       "intervals: " +

@@ -68,7 +68,7 @@ Plot stress_plot(const std::vector<MacroCurve>& curves, const std::string& test,
 /// (law - twin)/twin at the strains of the twin, where the twin's stress is above 2 % of its largest.
 Series difference_series(const MacroCurve& law, const MacroCurve& twin, Stress member) {
   Series s;
-  const double floor = 0.02 * *std::max_element((twin.*member).begin(), (twin.*member).end());
+  const double floor = std::max(0.02 * *std::max_element((twin.*member).begin(), (twin.*member).end()), 0.0);
   for (std::size_t i = 0; i < twin.strain.size(); ++i) {
     const double reference = (twin.*member)[i];
     if (reference <= floor || twin.strain[i] < law.strain.front() || twin.strain[i] > law.strain.back()) continue;
@@ -157,6 +157,7 @@ std::string comparison_table(const Comparison& c) {
                               format_number(c.speedup_seconds, 3), format_number(c.speedup_contact_evaluations, 3)));
   }
   for (const std::string& reason : c.left_out) out += paragraph("Left out: " + reason + ".");
+  for (const std::string& one : c.undefined) out += paragraph("Undefined: " + one + ".");
   return out;
 }
 

@@ -54,6 +54,21 @@ void add_samples(Plot& plot, const json& samples, const std::string& kind) {
 
 double force_unit(const SoftParticleSpec& spec) { return spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
 
+/// "Points as measured", or how many of them are drawn: of every stretch the lowest and the highest.
+std::string points_text(const json& samples, const std::string& kind) {
+  double all = 0.0;
+  double drawn = 0.0;
+  for (const json& sample : samples) {
+    if (find_text(sample, "kind") != kind) continue;
+    const auto n = static_cast<double>(numbers_of(sample, "delta").size());
+    drawn += n;
+    all += find_number(sample, "points").value_or(n);
+  }
+  if (drawn >= all) return "Points as measured";
+  return fmt::format("{} of {} measured points, of every stretch the lowest and the highest force (the fit is to all)",
+                     format_count(static_cast<std::int64_t>(drawn)), format_count(static_cast<std::int64_t>(all)));
+}
+
 std::string curve_figure(const RunData& run, const json& samples, const PairLaw& law) {
   const std::string kind = to_string(law.kind);
   Plot plot({.id = "own-" + kind,
@@ -64,7 +79,7 @@ std::string curve_figure(const RunData& run, const json& samples, const PairLaw&
   const double unit = force_unit(run.card->spec);
   add_law(plot, law, LawPart::normal, unit, "fitted law", palette::blue);
   const bool measured = law.points > 0;
-  return figure(plot.svg(), measured ? "Points as measured; the law is continuous and zero below δ."
+  return figure(plot.svg(), measured ? points_text(samples, kind) + "; the law is continuous and zero below δ."
                                      : "No points: this law follows from the other kind by symmetry.");
 }
 

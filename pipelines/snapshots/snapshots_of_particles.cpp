@@ -23,10 +23,15 @@ void require(bool fits, const char* what) {
   if (!fits) throw FileTrouble(fmt::format("data set '{}' does not fit the rest of the file", what));
 }
 
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
 std::vector<SnapshotParticle> read_particles(const h5::Group& bodies) {
   const std::vector<double> radius = bodies.doubles("radius");
   const std::vector<std::int64_t> material = bodies.integers("material");
   require(material.size() == radius.size(), "material");
+  require(std::all_of(radius.begin(), radius.end(), [](double r) { return std::isfinite(r) && r > 0.0; }), "radius");
   std::vector<std::int64_t> soft;
   if (bodies.has("material_is_soft")) soft = bodies.integers("material_is_soft");
   std::vector<SnapshotParticle> particles(radius.size());
@@ -51,12 +56,13 @@ std::vector<SnapshotWall> read_walls(const h5::Group& bodies, std::size_t partic
   const auto shells = static_cast<std::size_t>(counts[1]);
   const auto planes = static_cast<std::size_t>(counts[2]);
   require(spheres.size() == 4 * (particles + shells + planes), "sphere");
-  require(normals.size() == 3 * planes, "plane_normal");
+  require(normals.size() == 3 * planes && all_finite(normals), "plane_normal");
   std::vector<SnapshotWall> walls(shells + planes);
   for (std::size_t k = 0; k < walls.size(); ++k) {
     if (k < shells) {
       walls[k].shape = WallShape::sphere_inside;
       walls[k].radius = spheres[4 * (particles + k) + 3];
+      require(std::isfinite(walls[k].radius), "sphere");
     } else {
       for (std::size_t c = 0; c < 3; ++c) walls[k].normal.v[c] = normals[3 * (k - shells) + c];
     }
@@ -84,7 +90,9 @@ void require_fits(const Trajectory& t, const Bodies& bodies) {
   require(t.position.size() == 3 * frames * bodies.particles.size(), "position");
   require(t.velocity.size() == t.position.size(), "velocity");
   require(t.wall_position.size() == 3 * frames * bodies.walls.size(), "wall_position");
-  require(t.cell_edges.size() == 9 * frames, "cell_edges");
+  require(t.cell_edges.size() == 9 * frames && all_finite(t.cell_edges), "cell_edges");
+  require(all_finite(t.wall_position), "wall_position");
+  require(all_finite(t.time), "time");
 }
 
 Snapshot frame_of(const Trajectory& t, const Bodies& bodies, std::size_t frame) {

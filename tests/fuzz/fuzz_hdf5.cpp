@@ -1,15 +1,27 @@
-// Result files, checkpoints and tables: raw bytes, or (first byte above 15) a good small file with changes that keep
-// its checksums right, so that mutations reach our own readers instead of ending at the first sum that does not match.
+// Result files, checkpoints, kept states and tables: raw bytes, or (first byte above 15) a good small file with changes
+// that keep its checksums right, so that mutations reach our own readers instead of ending at the first sum that does
+// not match. What the readers let pass goes on to all that works with it: a number that makes no sense shows there.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 
+#include "calibrate/threshold_fit.h"
 #include "common/core/error.h"
+#include "common/data/crowd_replicates.h"
 #include "common/data/law_card.h"
 #include "common/data/law_card_format.h"
+#include "pipelines/compare/compare.h"
+#include "pipelines/compare/macro_scores.h"
+#include "pipelines/crowd_law_fit.h"
+#include "pipelines/crowd_summary.h"
+#include "pipelines/export/export.h"
+#include "pipelines/report/packing_data.h"
 #include "pipelines/report/powder_data.h"
+#include "pipelines/report/sections.h"
+#include "pipelines/run_summary.h"
+#include "pipelines/snapshots/snapshots.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/support/hdf5_edit.h"
 #include "tests/support/tiny_files.h"
@@ -19,22 +31,33 @@ namespace {
 using namespace softgrain;
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes bytes_of(void (*write)(const std::string&)) {
+/// A good file and the name that it has in a run directory.
+struct GoodFile {
+  const char* name;
+  Bytes bytes;
+};
+
+GoodFile good_file(const char* name, void (*write)(const std::string&)) {
   const std::string path = (std::filesystem::temp_directory_path() / ("fuzz-" + std::to_string(::getpid()) + ".h5"));
   write(path);
   std::ifstream in(path, std::ios::binary);
   Bytes bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   std::filesystem::remove(path);
-  return bytes;
+  return {name, std::move(bytes)};
 }
 
-void tiny_law_table(const std::string& path) { write_table(synthetic::card(), path, build_provenance()); }
+void tiny_law_table(const std::string& path) { write_table(synthetic::card(), path, build_provenance(), ""); }
 
-const std::vector<Bytes>& good_files() {
-  static const std::vector<Bytes> files{bytes_of(test::tiny_measurements), bytes_of(test::tiny_crowd),
-                                        bytes_of(test::tiny_macro),        bytes_of(test::tiny_grain_boxes),
-                                        bytes_of(test::tiny_powder),       bytes_of(test::tiny_checkpoint),
-                                        bytes_of(tiny_law_table)};
+const std::vector<GoodFile>& good_files() {
+  static const std::vector<GoodFile> files{good_file("measurements.h5", test::tiny_measurements),
+                                           good_file("crowd.h5", test::tiny_crowd),
+                                           good_file("macro.h5", test::tiny_macro),
+                                           good_file("grain_box.h5", test::tiny_grain_boxes),
+                                           good_file("powder.h5", test::tiny_powder),
+                                           good_file("checkpoint.h5", test::tiny_checkpoint),
+                                           good_file("law.h5", tiny_law_table),
+                                           good_file("states_tiny.h5", test::tiny_states),
+                                           good_file("run.h5", test::tiny_particles_run)};
   return files;
 }
 
@@ -55,18 +78,96 @@ void read_checkpoint(const std::string& path) {
   (void)contact_records(s);
 }
 
-/// As check, report and --resume do.
-void read(const std::string& path) {
+report::RunData run_of(const std::string& path) {
+  report::RunData run;
+  run.directory = std::filesystem::path(path).parent_path();
+  run.summary = nlohmann::json::object();
+  return run;
+}
+
+/// Drawn beside a table, summed up and (it takes a while: not always) fitted.
+void use_crowd(const std::string& path, bool fit) {
+  const CrowdMeasurements data = load_crowd(path);
+  report::RunData run = run_of(path);
+  LawTableEntry entry = synthetic::law_entry();
+  entry.solid_fraction = 0.0;
+  for (const PackingInfo& p : data.packings)
+    entry.solid_fraction += p.solid_fraction / static_cast<double>(data.packings.size());
+  run.law_table = LawTable{1, {entry}};
+  run.crowd = data;
+  (void)report::law_table_section(run);
+  (void)crowd_json(data, 0.04).dump();
+  (void)crowd_remarks(data, 0.04);
+  (void)crowd_text(data);
+  if (!fit) return;
+  CrowdLawFit laws;
+  CrowdFitOptions options;
+  options.replicates = 1;
+  options.min_packings = 2;
+  add_entry(laws, data, options, 0.04);
+}
+
+void use_measurements(const std::string& path, bool fit) {
+  report::RunData run = run_of(path);
+  run.measurements = load_measurements(path);
+  run.card = synthetic::card();
+  for (const auto section : {report::normal_section, report::tangential_section, report::stiffness_section,
+                             report::relaxations_section, report::radii_section})
+    attempt([&] { (void)section(run); });
+  (void)measurement_remarks(*run.measurements);
+  FitOptions options;
+  options.replicates = 2;
+  options.min_packings = 2;
+  if (fit) attempt([&] { (void)calibrate(*run.measurements, options, nullptr); });
+}
+
+void use_macro(const std::string& path) {
+  report::RunData run = run_of(path);
+  run.macro = load_macro(path);
+  attempt([&] { (void)report::macro_section(run); });
+  (void)score_table(score_engines(run.macro));
+  (void)macro_remarks(run.macro);
+  attempt([&] { (void)compare_curves(curves_of(run.macro, "law"), curves_of(run.macro, "shelled")); });
+}
+
+void use_states(const std::string& path) {
+  for_each_snapshot(path, SnapshotChoice::all, [](const Snapshot& s) {
+    for (const auto files : {vtp_files, dump_files, csv_files}) (void)files(s, 0);
+  });
+  for (const auto& series : report::packing_series_of(std::filesystem::path(path).parent_path(), 2)) (void)series;
+}
+
+/// As check, report, export, calibrate and --resume do.
+void read(const std::string& path, bool fit) {
   attempt([&] {
     const h5::Group root = h5::open_file(path);
-    if (root.has("configurations")) attempt([&] { (void)load_crowd(path); });
-    if (root.has("runs")) attempt([&] { (void)load_measurements(path); });
-    if (root.has("packs")) attempt([&] { (void)load_grain_boxes(path); });
-    if (root.has("curves")) attempt([&] { (void)load_macro(path); });
-    if (root.has("sample_0")) attempt([&] { (void)report::load_powder(path); });
+    if (root.has("configurations")) attempt([&] { use_crowd(path, fit); });
+    if (root.has("runs") && !root.has("configurations")) attempt([&] { use_measurements(path, fit); });
+    if (root.has("packs"))
+      attempt([&] {
+        report::RunData run = run_of(path);
+        run.grain_boxes = load_grain_boxes(path);
+        (void)report::grain_box_section(run);
+        use_states(path);
+      });
+    if (root.has("curves")) attempt([&] { use_macro(path); });
+    if (root.has("sample_0"))
+      attempt([&] {
+        report::RunData run = run_of(path);
+        run.powder = report::load_powder(path);
+        (void)report::powder_section(run);
+        use_states(path);
+      });
     if (root.has("system")) attempt([&] { read_checkpoint(path); });
+    if (root.has("states") || root.has("trajectory")) attempt([&] { use_states(path); });
     LawCard card = synthetic::card();
-    if (root.has("soft-solid")) attempt([&] { read_table(card, path); });
+    if (root.has("soft-solid"))
+      attempt([&] {
+        read_table(card, path);
+        report::RunData run = run_of(path);
+        run.card = card;
+        (void)report::laws_section(run);
+      });
   });
 }
 
@@ -117,19 +218,20 @@ void change(test::Hdf5Edit& file, Script& script) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 2) return 0;
+  if (size < 3) return 0;
+  const bool fit = data[1] == 0;
+  const GoodFile& good = good_files()[data[0] % good_files().size()];
   if (data[0] < 16) {
-    const fuzz::InputFile file(data + 1, size - 1);
-    read(file.path());
+    const fuzz::InputFile file(data + 2, size - 2, good.name);
+    read(file.path(), fit);
     return 0;
   }
-  const Bytes& good = good_files()[data[0] % good_files().size()];
-  const fuzz::InputFile file(good.data(), good.size());
-  Script script{data + 1, data + size};
+  const fuzz::InputFile file(good.bytes.data(), good.bytes.size(), good.name);
+  Script script{data + 2, data + size};
   for (int k = 0; k < 4 && script.at < script.end; ++k) {
     test::Hdf5Edit edit(file.path());
     change(edit, script);
   }
-  read(file.path());
+  read(file.path(), fit);
   return 0;
 }

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Runs one fuzz target for so many seconds of processor time:
 #   tests/fuzz/run.sh PROGRAM SECONDS DIRECTORY [options of libFuzzer]
-# PROGRAM is .../fuzz_scene, fuzz_law, fuzz_particles or fuzz_hdf5. DIRECTORY takes the seeds, the corpus that grows and
+# PROGRAM is .../fuzz_scene, fuzz_law, fuzz_particles, fuzz_csv or fuzz_hdf5. DIRECTORY takes the seeds, the corpus that grows and
 # what was found (crash-*, leak-*, timeout-*).
 set -eu
 program=$(realpath "$1") seconds=$2 directory=$3
@@ -17,11 +17,16 @@ case $target in
     printf ' 2 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/plain
     printf '\001\0002 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/packed
     printf '\001\0602 1 1 1\n0 0 1 0.01\n0.1 0.2 0.3 2e-3\n' > seeds/cut ;;
-  fuzz_hdf5) for kind in 16 17 18 19 20 21 22; do
-               for byte in 0 40 80 120 160 200; do
-                 printf "\\x$(printf %x $kind)\\x$(printf %x $((byte % 8)))\\x00\\x$(printf %x $byte)\\x01\\x05\\x01" > seeds/$kind-$byte
-               done
-             done ;;
+  fuzz_csv) # the first byte says what the command line gives, the second whether the curves are fitted
+    { printf ' 1'; head -c 1200 "$source/pipelines/press_test.csv"; } > seeds/press
+    printf '!0Delta, Fn [N], se [N], sample\n0.02,0,1e-3,A\n0.06,1e-3,1e-3,A\n0.1,0.1,0.01,A\n0.15,0.3,0.01,A\n0.2,0.7,0.01,A\n0.25,1.3,,A\n' > seeds/plain
+    printf '\001\000hn [mm]\tFn [mN]\tht [um]\tFt [mN]\n0,3\t0\t\t\n1\t3\t\t\n1\t3\t-14\t-1\n1\t3\t14\t1\n2\t70\t\t\n3\t300\t\t\n4\t800\t\t\n' > seeds/slide ;;
+  fuzz_hdf5) # kind of file, whether it is fitted, then changes: what, place (two bytes), attribute, numbers
+    for kind in 18 19 20 21 22 23 24 25 26; do
+      for byte in 0 40 80 120 160 200; do
+        printf "\\x$(printf %x $kind)\\x$(printf %x $((byte % 3)))\\x$(printf %x $((byte % 8)))\\x00\\x$(printf %x $byte)\\x01\\x05\\x01" > seeds/$kind-$byte
+      done
+    done ;;
 esac
 dictionary=()
 [[ $target == fuzz_scene || $target == fuzz_law ]] && dictionary=("-dict=$source/tests/fuzz/words.dict")

@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "tests/support/hdf5_contents.h"
 #include "tests/support/hdf5_edit.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -198,14 +199,46 @@ TEST_F(BadResults, Crowds) {
   bad([](Hdf5Edit& f) { f.set("runs/neighbours/normal", 2, kNan); }, {"'normal' holds a number that is not finite"});
   bad([](Hdf5Edit& f) { f.resize("runs/neighbours/overlap", 1); }, {"wrong length"});
   bad([](Hdf5Edit& f) { f.remove("runs"); }, {"runs: missing or damaged group"});
+  bad([](Hdf5Edit& f) { f.set("runs/neighbours/overlap", 1, -0.2); }, {"an overlap of -0.2", "none is below 0"});
+  bad([](Hdf5Edit& f) { f.set("runs/neighbours/overlap", 1, 7.0); }, {"'overlap' holds 7 in row 1; allowed: -2 to 2"});
+  bad([](Hdf5Edit& f) { f.set_attribute("runs/neighbours/overlap", "unit", std::string("mm")); },
+      {"'overlap' is in 'mm', 'Rs' is expected"});
+  bad([](Hdf5Edit& f) { f.remove_attribute("runs/neighbours/normal", "unit"); }, {"'normal' says no unit"});
+  bad([](Hdf5Edit& f) { f.set("configurations/partners/direction_x", 0, 3.0); }, {"no unit vector"});
+  bad([](Hdf5Edit& f) { f.set("configurations/partners/ratio", 0, 2.0); }, {"kind and ratio do not fit"});
+  bad([](Hdf5Edit& f) { f.set("configurations/stages/overlap", 0, -0.1); }, {"'overlap' holds -0.1 in row 0"});
+  bad([](Hdf5Edit& f) { f.set("packings/solid_fraction", 0, 1.5); }, {"'solid_fraction' holds 1.5 in row 0"});
+  bad([](Hdf5Edit& f) { f.set_attribute("spec", "friction", -0.1); }, {"'friction' is -0.1; allowed: 0 to"});
+  bad([](Hdf5Edit& f) { f.set_attribute("spec", "units", std::string("shell_radius mm")); },
+      {"units 'shell_radius mm'"});
+  bad([](Hdf5Edit& f) { f.set("runs/points/converged", 0, 5); }, {"'converged' holds 5 in row 0"});
+  // A configuration without path, or without neighbours, which fits everywhere else.
+  bad(
+      [](Hdf5Edit& f) {
+        f.remove("runs");
+        f.set("configurations/stage_count", 0, 0);
+        f.set("configurations/stage_count", 1, 3);
+        f.set("configurations/stages/overlaps", 1, 1);
+      },
+      {"has no neighbours, or no stages"});
 }
 
 TEST_F(BadResults, MacroCurvesAndGrainBoxes) {
   const auto macro = [&](const Edit& edit, const std::vector<std::string>& words) {
     expect_refused(tiny_macro, edit, words);
   };
-  macro([](Hdf5Edit& f) { f.resize("curves/curve_000001/stress_axial", 3); }, {"stress_axial: another length"});
-  macro([](Hdf5Edit& f) { f.set("curves/curve_000000/strain", 2, kNan); }, {"strain: holds a number that is not"});
+  macro([](Hdf5Edit& f) { f.resize("curves/curve_000001/stress_axial", 3); }, {"'stress_axial' has a wrong length"});
+  macro([](Hdf5Edit& f) { f.set("curves/curve_000000/strain", 2, kNan); },
+        {"curve_000000", "'strain' holds a number that is not finite"});
+  macro([](Hdf5Edit& f) { f.set("curves/curve_000000/stress_y", 1, kNan); }, {"'stress_y' holds a number that is not"});
+  macro([](Hdf5Edit& f) { f.set("curves/curve_000000/body_forces", 0, HUGE_VAL); }, {"'body_forces' holds a number"});
+  macro([](Hdf5Edit& f) { f.set_attribute("curves/curve_000001/stress_axial", "unit", std::string("kPa")); },
+        {"'stress_axial' is in 'kPa', 'Pa' is expected"});
+  macro([](Hdf5Edit& f) { f.remove_attribute("curves/curve_000000/stress_y", "unit"); }, {"'stress_y' says no unit"});
+  macro([](Hdf5Edit& f) { f.set("curves/curve_000000/coordination", 0, -1.0); }, {"'coordination' holds -1 in row 0"});
+  macro([](Hdf5Edit& f) { f.set_attribute("curves/curve_000000", "soft_volume_share", 3.0); },
+        {"'soft_volume_share' is 3; allowed: 0 to 1"});
+  macro([](Hdf5Edit& f) { f.set_attribute("curves/curve_000000", "bodies", -3LL); }, {"'bodies' is -3"});
   macro([](Hdf5Edit& f) { f.remove_attribute("curves/curve_000000", "usable"); }, {"usable: missing attribute"});
   macro([](Hdf5Edit& f) { f.replace("curves/odd", std::vector<double>{1.0}); }, {"odd: missing or damaged group"});
   const auto boxes = [&](const Edit& edit, const std::vector<std::string>& words) {
@@ -216,6 +249,30 @@ TEST_F(BadResults, MacroCurvesAndGrainBoxes) {
   boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/pack/wall_E_nu_mu", 9); }, {"'wall_point' has a wrong length"});
   boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/fits/ranges", 3); }, {"'ranges' has a wrong length"});
   boxes([](Hdf5Edit& f) { f.set_attribute("packs/pack_000", "phase", -1LL); }, {"a phase that is not known"});
+}
+
+/// Exports and the report read the states that runs keep.
+TEST_F(BadResults, KeptStates) {
+  const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {
+    const std::string path = directory_.file("states_tiny.h5");
+    tiny_states(path);
+    {
+      Hdf5Edit file(path);
+      ASSERT_TRUE(file.good());
+      edit(file);
+    }
+    expect("export '" + path + "' --to csv --out '" + out() + "'", 4, words, words.front());
+  };
+  const std::string state = "states/000000/";
+  bad([&](Hdf5Edit& f) { f.resize(state + "contacts/segment", 1); }, {"'segment' has a wrong shape"});
+  bad([&](Hdf5Edit& f) { f.set(state + "contacts/segment", 1, 40); }, {"'segment' holds 40 in row 0, where 1 belongs"});
+  bad([&](Hdf5Edit& f) { f.set(state + "contacts/pair", 1, 40); }, {"a body that is not there"});
+  bad([&](Hdf5Edit& f) { f.set(state + "contacts/ends", 2, kNan); }, {"'ends' holds a number that is not finite"});
+  bad([&](Hdf5Edit& f) { f.resize(state + "particles/position", 9); }, {"'position' has a wrong shape: 9, 3 x 3"});
+  bad([&](Hdf5Edit& f) { f.set(state + "particles/radius", 0, -1.0); }, {"'radius' holds -1 in row 0"});
+  bad([&](Hdf5Edit& f) { f.set_attribute(state + "contacts/force", "unit", std::string("kN")); },
+      {"'force' is in 'kN', 'N' is expected"});
+  bad([&](Hdf5Edit& f) { f.set_attribute("states/000000", "dimension", 4LL); }, {"4 dimensions"});
 }
 
 /// The report draws contacts of stored states.
@@ -256,21 +313,36 @@ TEST_F(BadResults, CutAnywhere) {
   }
 }
 
-/// A wrong byte is found, or lies where nobody looks.
+/// A wrong byte is found; where it is not, it lies where nothing is stored: everything in the file is as it was.
 TEST_F(BadResults, WrongBytes) {
   const std::string path = directory_.file("case.h5");
   RandomStream random(12, RandomPurpose::test, 0);
+  int found = 0;
+  int unread = 0;
   for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
     write(path);
     const std::string good = read_text(path);
+    const Hdf5Contents contents = hdf5_contents(path);
+    const std::string said = run_the_program("check '" + path + "'").output;
     for (int k = 0; k < 6; ++k) {
       std::string text = good;
-      text[random.below(text.size())] ^= static_cast<char>(1 + random.below(255));
+      const std::size_t place = random.below(text.size());
+      text[place] ^= static_cast<char>(1 + random.below(255));
       write_text_atomic(path, text);
       const ProgramOutcome outcome = run_the_program("check '" + path + "'");
-      EXPECT_TRUE(outcome.status == 0 || outcome.status == 4) << outcome.status << ": " << outcome.output;
+      if (outcome.status == 0) {
+        ++unread;
+        EXPECT_EQ(outcome.output, said) << "byte " << place;
+        EXPECT_TRUE(hdf5_contents(path) == contents) << "byte " << place << " was read";
+      } else {
+        ++found;
+        EXPECT_EQ(outcome.status, 4) << outcome.output;
+        EXPECT_NE(outcome.output.find("case.h5"), std::string::npos) << outcome.output;
+      }
     }
   }
+  EXPECT_GE(found, 6);
+  EXPECT_LE(unread, 18);
 }
 
 /// What a list of particles may look like when it did not come through.

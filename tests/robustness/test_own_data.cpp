@@ -2,6 +2,7 @@
 // tools; what is wrong is refused with exit status 2.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -125,6 +126,68 @@ TEST_F(OwnData, ACsvGivesALawThatAMacroRunTakes) {
                          file("macro") + "'"),
          0, {});
   expect(run_the_program("check '" + file("law") + "/law.toml'"), 0, {"experiment"});
+}
+
+/// What the data do not say is not known: absent in the card, read back so, and no twin is made of guesses.
+TEST_F(OwnData, WhatIsInsideIsNotInvented) {
+  write("plane.csv", "# mu = 0.25\n" + made_up_curve(1.0));
+  expect(calibrate("'" + file("plane.csv") + "'", "law", "--kind soft-solid --set mirror=true"), 0, {});
+  const std::string law = "'" + file("law") + "/law.toml'";
+  const std::string text = read_text(file("law") + "/law.toml");
+  for (const char* key : {"\nexponent = ", "\npolydispersity", "\nrmax_over_shell", "\nbeta", "\ntrials", "\nplacement",
+                          "\npoisson_ratio", "\ndensity", "\nrestitution"})
+    EXPECT_EQ(text.find(key), std::string::npos) << key;
+  EXPECT_NE(text.find("\nfriction = 0.25"), std::string::npos);
+  const LawCard card = load_card(file("law") + "/law.toml");
+  EXPECT_FALSE(packing_known(card.spec));
+  EXPECT_EQ(card.spec.friction, 0.25);
+  EXPECT_FALSE(is_known(card.spec.poisson_ratio));
+  EXPECT_EQ(card.spec.shell_radius, 0.016);
+  expect(run_the_program("law show " + law), 0, {"from an experiment", "what is inside is not known"});
+  EXPECT_NE(read_text(file("law") + "/report.html").find("what is inside is not known"), std::string::npos);
+
+  std::string scene = kMacro;
+  write("alone.toml", scene);
+  write("twin.toml", scene.replace(scene.find("resolved = false\n"), 17, ""));
+  const auto macro = [&](const std::string& command, const std::string& name) {
+    return run_the_program(command + " '" + file(name) + "' --quiet --law " + law +
+                           (command == "check" ? "" : " --out '" + file(name) + ".run'"));
+  };
+  for (const char* command : {"macrosim", "check"})
+    expect(macro(command, "twin.toml"), 2, {"resolved", "does not say what is inside", "law.toml"});
+  EXPECT_FALSE(fs::exists(file("twin.toml") + ".run/macro.h5"));
+  expect(macro("check", "alone.toml"), 0, {"nu = 0.3, density = 2500 kg/m^3"});
+  expect(macro("macrosim", "alone.toml"), 0, {});
+  EXPECT_NE(summary("alone.toml.run")["remarks"].dump().find("nu = 0.3, density = 2500 kg/m^3"), std::string::npos);
+}
+
+/// A report that nobody can open shows nothing: of very long series a part is drawn, and it says which.
+TEST_F(OwnData, AVeryLongSeriesIsThinnedForDrawingOnly) {
+  std::ostringstream text;
+  text << "# Rs = 16 mm\n# E = 0.5 MPa\nhn [mm]; Fn [N]\n";
+  RandomStream random(6, RandomPurpose::test, 0);
+  constexpr int kRows = 30000;
+  for (int k = 1; k <= kRows; ++k) {
+    const double d = 0.3 * k / kRows;
+    // One point far off, which must not be lost among the others.
+    const double odd = k == 12345 ? 0.5 : 0.0;
+    text.precision(10);
+    text << 16.0 * d << "; " << 128.0 * KnownLaw{}.value(d) + odd + 0.01 * normal_number(random) << "\n";
+  }
+  write("long.csv", text.str());
+  expect(calibrate("'" + file("long.csv") + "'", "law", "--kind soft-solid"), 0,
+         {"of 30000 points", "are drawn and in the summary; the fit is to all"});
+  const json drawn = summary("law")["experiment"][0];
+  EXPECT_LE(drawn["delta"].size(), 4000U);
+  EXPECT_GE(drawn["delta"].size(), 1000U);
+  EXPECT_EQ(drawn["points"], kRows);
+  EXPECT_DOUBLE_EQ(drawn["delta"].back().get<double>(), 0.3);
+  const std::vector<double> forces = drawn["force"];
+  EXPECT_GT(*std::max_element(forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(forces.size() / 2)), 0.45);
+  const std::string page = read_text(file("law") + "/report.html");
+  EXPECT_LT(page.size(), 3'000'000U);
+  EXPECT_NE(page.find("measured points, of every stretch the lowest and the highest force"), std::string::npos);
+  EXPECT_NEAR(load_card(file("law") + "/law.toml").pairs.at(0).normal.value(0.25) / KnownLaw{}.value(0.25), 1.0, 0.01);
 }
 
 TEST_F(OwnData, TwoKindsInTwoFilesMakeOneCard) {

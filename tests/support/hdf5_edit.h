@@ -9,7 +9,8 @@
 
 namespace softgrain::test {
 
-/// An HDF5 file open for changes; wrong names are ignored, so that edits may be tried blindly.
+/// An HDF5 file open for changes; wrong names are ignored, so that edits may be tried blindly. Attributes of a data set
+/// that is changed stay; shapes stay where the number of values does.
 class Hdf5Edit {
  public:
   explicit Hdf5Edit(const std::string& path) {
@@ -120,11 +121,54 @@ class Hdf5Edit {
     static_cast<std::vector<std::string>*>(out)->emplace_back(name);
     return 0;
   }
+  struct Attribute {
+    std::string name;
+    hid_t type = -1;
+    hid_t space = -1;
+    std::vector<char> bytes;
+  };
+  /// Attributes of fixed size of a data set; empty when it is none.
+  [[nodiscard]] std::vector<Attribute> kept_attributes(const std::string& item) const {
+    std::vector<Attribute> out;
+    const hid_t set = H5Dopen2(file_, item.c_str(), H5P_DEFAULT);
+    if (set < 0) return out;
+    for (const std::string& name : attributes(item)) {
+      const hid_t a = H5Aopen(set, name.c_str(), H5P_DEFAULT);
+      Attribute one{name, H5Aget_type(a), H5Aget_space(a), std::vector<char>(H5Aget_storage_size(a))};
+      H5Aread(a, one.type, one.bytes.data());
+      H5Aclose(a);
+      out.push_back(std::move(one));
+    }
+    H5Dclose(set);
+    return out;
+  }
+  [[nodiscard]] std::vector<hsize_t> shape_of(const std::string& item) const {
+    const hid_t set = H5Dopen2(file_, item.c_str(), H5P_DEFAULT);
+    if (set < 0) return {};
+    const hid_t space = H5Dget_space(set);
+    std::vector<hsize_t> out(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space), 0)));
+    H5Sget_simple_extent_dims(space, out.data(), nullptr);
+    H5Sclose(space);
+    H5Dclose(set);
+    return out;
+  }
   void write(const std::string& item, hid_t stored, hid_t native, const void* values, hsize_t count) {
+    std::vector<hsize_t> shape = shape_of(item);
+    hsize_t there = 1;
+    for (const hsize_t n : shape) there *= n;
+    if (shape.empty() || there != count) shape = {count};
+    const std::vector<Attribute> kept = kept_attributes(item);
     remove(item);
-    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
     const hid_t set = H5Dcreate2(file_, item.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (set >= 0 && count > 0) H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    for (const Attribute& a : kept) {
+      const hid_t made = H5Acreate2(set, a.name.c_str(), a.type, a.space, H5P_DEFAULT, H5P_DEFAULT);
+      H5Awrite(made, a.type, a.bytes.data());
+      H5Aclose(made);
+      H5Tclose(a.type);
+      H5Sclose(a.space);
+    }
     H5Dclose(set);
     H5Sclose(space);
   }

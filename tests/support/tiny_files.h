@@ -5,10 +5,12 @@
 
 #include "common/contact/crowd_from_table.h"
 #include "common/data/macro_result.h"
+#include "common/data/snapshot_io.h"
 #include "common/neighbours/verlet_list.h"
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
 #include "microsim/grain_box/record.h"
+#include "microsim/particles/particles_run.h"
 #include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "tests/support/synthetic_crowd.h"
@@ -40,7 +42,13 @@ inline void tiny_crowd(const std::string& path) {
 }
 
 inline void tiny_macro(const std::string& path) {
-  save_macro({synthetic::macro_curve("law", 0, 0.8, 4), synthetic::macro_curve("shelled", 0, 1.0, 4)}, path);
+  std::vector<MacroCurve> curves{synthetic::macro_curve("law", 0, 0.8, 4),
+                                 synthetic::macro_curve("shelled", 0, 1.0, 4)};
+  for (MacroCurve& c : curves) {
+    c.stress_y = c.stress_lateral;
+    c.body_forces = {0.5, 1.0, 2.0};
+  }
+  save_macro(curves, path);
 }
 
 /// Two grains between two walls, two points of the course, one failure on the way.
@@ -63,6 +71,72 @@ inline GrainBoxResult tiny_box() {
   pack.contacts[0].j = 1;
   pack.contacts[1].j = 2;
   return result;
+}
+
+/// Two spheres that meet on a plane, with all their frames.
+inline void tiny_particles_run(const std::string& path) {
+  const ParticlesScene scene = read_particles_scene(Scene::parse(R"(kind = "particles"
+[material.glass]
+density = 2500.0
+E = 1e6
+nu = 0.2
+[[contact]]
+pair = ["glass", "glass"]
+law = "hertz-tsuji"
+restitution = 0.9
+mu = 0.3
+[[particle]]
+material = "glass"
+radius = 0.1
+position = [0.0, 0.0, 0.0999]
+[[particle]]
+material = "glass"
+radius = 0.1
+position = [0.1999, 0.0, 0.0999]
+velocity = [-0.1, 0.0, 0.0]
+[[wall]]
+shape = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+material = "glass"
+[time]
+end = 1e-3
+step = 1e-4
+[output]
+every = 2e-4
+)",
+                                                                 "tiny.toml"));
+  save_particles_run(path, scene, run_particles(scene, {}), build_provenance());
+}
+
+/// Three spheres in a row beside a plane, in contact, as a run keeps them.
+inline void tiny_states(const std::string& path) {
+  Snapshot s;
+  s.kind = SnapshotKind::macro;
+  s.series = "law-0";
+  s.label = "law run, sample 0, strain 0.1";
+  s.strain = 0.1;
+  for (int k = 0; k < 3; ++k) {
+    SnapshotParticle p;
+    p.position = {{0.19 * k, 0.0, 0.1}};
+    p.radius = 0.1;
+    p.id = p.body = k;
+    s.particles.push_back(p);
+  }
+  s.walls.push_back({WallShape::plane, {}, {{0.0, 0.0, 1.0}}, 0.0, -1});
+  s.has_contacts = true;
+  for (std::int32_t k = 0; k < 2; ++k) {
+    SnapshotContact c;
+    c.i = k;
+    c.j = k + 1;
+    c.from = s.particles[static_cast<std::size_t>(k)].position;
+    c.to = s.particles[static_cast<std::size_t>(k) + 1].position;
+    c.point = (c.from + c.to) * 0.5;
+    c.force = {{-2.0, 0.0, 0.0}};
+    c.normal_force = 2.0;
+    s.contacts.push_back(c);
+  }
+  save_snapshots({s, s}, path, build_provenance());
 }
 
 inline void tiny_grain_boxes(const std::string& path) { save_grain_boxes(path, {tiny_box()}, build_provenance()); }

@@ -1,6 +1,7 @@
 // Comparison helpers on known answers: nothing differs, a known amount differs, nothing can be compared.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -117,6 +118,42 @@ TEST(CompareCurves, ALateralStressThatWasNotRecordedDoesNotHideTheAxialOne) {
   EXPECT_EQ(c.axial_difference.mean, 0.0);
   EXPECT_EQ(c.lateral_difference.n, 0U);
   EXPECT_TRUE(std::isnan(c.lateral_difference.mean));
+}
+
+/// Nothing is relative to a stress of zero; the other samples are still compared.
+TEST(CompareCurves, WhatIsRelativeToZeroIsUndefined) {
+  const auto silent = [](std::int64_t sample, const char* engine) {
+    MacroCurve c = macro_curve(engine, sample, 1.0, 4);
+    std::fill(c.stress_axial.begin(), c.stress_axial.end(), 0.0);
+    std::fill(c.stress_lateral.begin(), c.stress_lateral.end(), 0.0);
+    return c;
+  };
+  const std::vector<MacroCurve> twins{macro_curve("shelled", 0, 1.0, 4), macro_curve("shelled", 1, 1.0, 4)};
+  EXPECT_TRUE(compare_curves({macro_curve("law", 0, 0.9, 4)}, twins).undefined.empty());
+  const Comparison law = compare_curves({silent(0, "law"), macro_curve("law", 1, 0.9, 4)}, twins);
+  ASSERT_EQ(law.undefined.size(), 1U);
+  EXPECT_NE(law.undefined[0].find("sample 0: the candidate carries no axial stress"), std::string::npos);
+  EXPECT_EQ(law.samples.size(), 2U);
+  EXPECT_TRUE(std::isnan(law.samples[0].lateral_stress_ratio_candidate));
+  const Comparison twin = compare_curves({macro_curve("law", 0, 0.9, 4), macro_curve("law", 1, 0.9, 4)},
+                                         {silent(0, "shelled"), macro_curve("shelled", 1, 1.0, 4)});
+  EXPECT_EQ(twin.undefined.size(), 1U);
+  EXPECT_EQ(twin.samples.size(), 1U);
+  EXPECT_THROW((void)compare_curves({macro_curve("law", 0, 0.9, 4)}, {silent(0, "shelled")}), ZeroReference);
+
+  CompareSide a;
+  CompareSide b;
+  a.macro = {macro_curve("law", 0, 0.9, 4)};
+  b.macro = {silent(0, "shelled")};
+  const CompareResult result = compare_sides(a, b);
+  EXPECT_EQ(result.undefined.size(), 1U);
+  EXPECT_NE(to_text(result).find("undefined: "), std::string::npos);
+  b.macro = {macro_curve("shelled", 0, 0.9, 4)};
+  a.macro = {silent(0, "law")};
+  const std::string text = to_text(compare_sides(a, b));
+  EXPECT_NE(text.find("undefined against"), std::string::npos) << text;
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+  EXPECT_EQ(text.find("inf"), std::string::npos) << text;
 }
 
 TEST(Statistics, MeanDeviationAndErrorOfThreeNumbers) {

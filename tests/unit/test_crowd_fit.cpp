@@ -1,13 +1,16 @@
 // Fits of crowd laws to measurements made from a known law.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibrate/crowd_fit.h"
+#include "calibrate/crowd_form_fit.h"
 #include "calibrate/crowd_problem.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
+#include "pipelines/crowd_law_fit.h"
 #include "tests/support/synthetic_crowd.h"
 
 namespace softgrain {
@@ -167,6 +170,7 @@ TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
     for (std::size_t r = 0; r < a.laws[k].partners.size(); ++r)
       EXPECT_EQ(a.laws[k].partners[r].weight.value, b.laws[k].partners[r].weight.value);
     EXPECT_NE(a.laws[k].error_held_out, b.laws[k].error_held_out);
+    EXPECT_EQ(a.laws[k].error_cross, b.laws[k].error_cross) << "the choice of form does not look at them";
     EXPECT_EQ(a.laws[k].error_fitted, b.laws[k].error_fitted);
   }
   EXPECT_EQ(a.retreat.value, b.retreat.value);
@@ -191,6 +195,119 @@ TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
       (crowd_forces(model, {plane}, {0.25 + 1e-5})[0] - crowd_forces(model, {plane}, {0.25 - 1e-5})[0]) / 2e-5;
   EXPECT_NEAR(entry.slide_plane.kt_ratio.value, 0.06 / kn, 1e-3 * 0.06 / kn);
   EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
+}
+
+/// Errors of one configuration are those of its packings; of two that differ, the difference is in them too.
+TEST(CrowdFit, ErrorsOfSlidesAndRetreatsAreThoseOfPackingsAndConfigurations) {
+  const CrowdModel model = known(Crowd::bag);
+  auto list = arrangements();
+  list.resize(5);
+  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"));
+  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "slide"));
+  CrowdOptionsKnown o;
+  o.noise = 0.1;
+  o.retreat = 1.6;
+  o.kt = 0.06;
+  CrowdFitOptions options = quick();
+  options.replicates = 40;
+  const LawTableEntry one = fit_crowd_laws(crowd_measurements(model, list, o), options);
+  const auto expect_interval = [](const Estimate& e, const char* what) {
+    EXPECT_GT(e.standard_error, 1e-4 * e.value) << what;
+    EXPECT_LT(e.standard_error, 0.5 * e.value) << what;
+    EXPECT_LT(e.low, e.value) << what;
+    EXPECT_GT(e.high, e.value) << what;
+    EXPECT_GT(e.high - e.low, 2.0 * e.standard_error) << what;
+    EXPECT_LT(e.high - e.low, 6.0 * e.standard_error) << what;
+  };
+  expect_interval(one.slide_plane.kt_ratio, "kt/kn");
+  expect_interval(one.slide_plane.friction, "friction");
+  expect_interval(one.retreat, "retreat");
+  for (const SlideLaw& borrowed : {one.slide_solid, one.slide_soft}) {
+    EXPECT_EQ(borrowed.friction.value, one.slide_plane.friction.value);
+    EXPECT_TRUE(std::isinf(borrowed.friction.standard_error)) << "of other neighbours nothing was measured";
+    EXPECT_TRUE(std::isinf(borrowed.kt_ratio.high));
+  }
+
+  // Another configuration that slides three times as hard.
+  list.push_back(crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25, "slide"));
+  CrowdMeasurements apart = crowd_measurements(model, list, o);
+  for (CrowdRun& run : apart.runs)
+    if (run.configuration == static_cast<std::int64_t>(list.size()) - 1)
+      for (CrowdPoint& p : run.points) p.tangential[0] = p.tangential[0] * 3.0;
+  const LawTableEntry two = fit_crowd_laws(apart, options);
+  EXPECT_GT(two.slide_plane.kt_ratio.standard_error, 3.0 * one.slide_plane.kt_ratio.standard_error);
+
+  options.replicates = 9;  // too few to say anything
+  const LawTableEntry few = fit_crowd_laws(crowd_measurements(model, list, o), options);
+  EXPECT_TRUE(std::isinf(few.slide_plane.friction.standard_error));
+  EXPECT_TRUE(std::isinf(few.retreat.standard_error));
+  EXPECT_EQ(few.retreat.low, -std::numeric_limits<double>::infinity());
+}
+
+/// Draws of packings without any force have no law: they are counted, and their start values are no replicates.
+TEST(CrowdFit, RefitsWithoutAMinimumAreCountedAndLeftOut) {
+  auto list = arrangements();
+  list.resize(5);
+  CrowdOptionsKnown o;
+  o.packings = 4;
+  o.noise = 0.02;
+  CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, o);
+  for (CrowdRun& run : data.runs)
+    if (run.packing > 0)
+      for (CrowdPoint& p : run.points) std::fill(p.normal.begin(), p.normal.end(), 0.0);
+  CrowdFitOptions options = quick();
+  options.replicates = 60;
+  const LawTableEntry entry = fit_crowd_laws(data, options);
+  for (const CrowdLaw& law : entry.laws) {
+    EXPECT_GE(law.replicates_failed, 9) << law.form << ": a third of the draws is without the one packing with force";
+    EXPECT_EQ(law.replicates.size() + static_cast<std::size_t>(law.replicates_failed), 60U) << law.form;
+  }
+}
+
+TEST(CrowdFit, ARefitThatStalledIsNoRefit) {
+  FormFit fit;
+  fit.planes.end = fit.solid.end = FitEnd::converged;
+  EXPECT_EQ(fit.trouble(), "");
+  fit.solid.rank_deficient = true;  // a weight that is not determined says so by its error
+  EXPECT_EQ(fit.trouble(), "");
+  fit.solid.end = FitEnd::stalled;
+  fit.solid.message = "stalled: far";
+  EXPECT_EQ(fit.trouble(), "solid neighbours: stalled: far");
+  fit.planes.rank_deficient = true;
+  EXPECT_EQ(fit.trouble().substr(0, 6), "planes");
+}
+
+/// A law that is far off on what it has not seen is marked, whatever its fit; which form is best does not depend on it.
+TEST(CrowdFit, ALawFarOffOnWhatWasHeldOutIsInaccurate) {
+  CrowdOptionsKnown o;
+  o.noise = 0.01;
+  auto list = arrangements();
+  CrowdMeasurements data = crowd_measurements(known(Crowd::directional), list, o);
+  CrowdFitOptions options = quick();
+  const LawTableEntry near = fit_crowd_laws(data, options);
+  EXPECT_EQ(near.find(near.best)->status, "good");
+  for (CrowdRun& run : data.runs)
+    if (list[static_cast<std::size_t>(run.configuration)].held_out)
+      for (CrowdPoint& p : run.points)
+        for (double& f : p.normal) f *= 3.0;
+  const LawTableEntry far = fit_crowd_laws(data, options);
+  EXPECT_EQ(far.best, near.best);
+  const CrowdLaw& law = *far.find(far.best);
+  EXPECT_EQ(law.status, "inaccurate");
+  EXPECT_NE(law.reason.find("loadings that were held out; at most 50 % are allowed"), std::string::npos) << law.reason;
+  CrowdLawFit fit;
+  add_entry(fit, data, options, 0.04);
+  EXPECT_FALSE(fit.usable);
+  options.largest_error = 0.9;
+  EXPECT_EQ(fit_crowd_laws(data, options).find(far.best)->status, "good");
+}
+
+TEST(CrowdFit, WithOneLoadingThereIsNothingToLeaveOut) {
+  CrowdOptionsKnown o;
+  o.noise = 0.01;
+  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o), quick());
+  for (const CrowdLaw& law : entry.laws) EXPECT_TRUE(std::isnan(law.error_cross)) << law.form;
+  EXPECT_EQ(entry.best, "pair");
 }
 
 TEST(CrowdFit, BelowTheThresholdThereIsNoLaw) {

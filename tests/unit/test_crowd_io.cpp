@@ -21,7 +21,7 @@ std::string temporary(const std::string& name) {
 
 CrowdPoint sample_point(std::size_t neighbours, int k) {
   CrowdPoint p;
-  p.stage = k % 2;
+  p.stage = k == 0 || k == 2 ? 0 : 1;
   for (std::size_t n = 0; n < neighbours; ++n) {
     const double x = std::sqrt(static_cast<double>(n) + 0.1 * k);
     p.overlap.push_back(0.1 * x);

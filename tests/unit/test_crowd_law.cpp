@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
 #include "common/core/random.h"
+#include "common/data/crowd_replicates.h"
 #include "common/io/text_file.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/temporary_directory.h"
@@ -102,7 +103,7 @@ class CrowdLawIo : public ::testing::Test {
   /// The text of a good table of two entries with the first `from` after `after` replaced is refused with these words.
   void expect_refused(const std::string& after, const std::string& from, const std::string& to,
                       const std::vector<std::string>& words) {
-    std::string text = law_table_text({1, {law_entry(0.7), law_entry(0.75, 0.01)}}, build_provenance());
+    std::string text = law_table_text({1, {law_entry(0.7), law_entry(0.75, 0.01)}}, build_provenance(), "");
     const auto start = text.find(after);
     ASSERT_NE(start, std::string::npos) << after;
     const auto at = text.find(from, start);
@@ -170,6 +171,57 @@ TEST_F(CrowdLawIo, NumbersOutOfRangeAreRefusedWhereTheyStand) {
   expect_refused("[[entry]]", "solid_fraction = 0.7", "solid_fraction = 1.7", {"solid_fraction = 1.7"});
 }
 
+TEST_F(CrowdLawIo, NumbersOfNoContactAreRefused) {
+  expect_refused("[[entry.law]]", "a = { value = 0.7", "a = { value = -0.7", {"value = -0.7", "above 0"});
+  expect_refused("[[entry.law]]", "a = { value = 0.7", "a = { value = 0.0", {"value = 0.0", "above 0"});
+  expect_refused("[[entry.law]]", "b = { value = 2.8", "b = { value = 200.0", {"value = 200.0", "at most 50"});
+  expect_refused("[[entry.law]]", "m0 = { value = 1.0", "m0 = { value = 1e6", {"value = 1e6"});
+  expect_refused("kt_ratio", "value = 0.3", "value = -0.3", {"value = -0.3"});
+  expect_refused("kt_ratio", "value = 0.3", "value = 1e9", {"value = 1e9"});
+  expect_refused("[[entry]]", "overlap_max = 0.28", "overlap_max = 28.0", {"overlap_max = 28.0", "at most 2"});
+}
+
+/// Refits of another table are none of this one; after an edit they are not used, and the table says so.
+TEST_F(CrowdLawIo, TheFileOfAnotherTableIsRefused) {
+  LawTable table{1, {law_entry(0.7)}};
+  CrowdLaw& law = table.entries[0].laws[0];
+  law.replicates = {crowd_numbers(law), crowd_numbers(law)};
+  save_law_table(table, path());
+  LawTable read = load_law_table(path());
+  read_replicates(read, path());
+  EXPECT_EQ(read.entries[0].laws[0].replicates.size(), 2U);
+  EXPECT_TRUE(read.notes.empty());
+
+  const std::string own = read_text(path());
+  std::string text = own;
+  text.replace(text.find("a = { value = 0.7"), 17, "a = { value = 0.8");
+  write_text_atomic(path(), text);
+  LawTable edited = load_law_table(path());
+  read_replicates(edited, path());
+  EXPECT_TRUE(edited.entries[0].laws[0].replicates.empty());
+  ASSERT_EQ(edited.notes.size(), 1U);
+  EXPECT_NE(edited.notes[0].find("pair law"), std::string::npos) << edited.notes[0];
+
+  table.entries[0].packings += 1;
+  save_law_table(table, path());
+  write_text_atomic(path(), own);
+  LawTable other = load_law_table(path());
+  try {
+    read_replicates(other, path());
+    FAIL() << "the refits of another table were taken";
+  } catch (const BadInput& e) {
+    EXPECT_NE(std::string(e.what()).find("law_table.h5: this file belongs to another law"), std::string::npos);
+  }
+}
+
+/// What one entry does not know is not known between entries.
+TEST(LawTableEntryAt, AnUnknownErrorStaysUnknown) {
+  LawTable table{1, {law_entry(0.7), law_entry(0.75, 0.01)}};
+  table.entries[1].retreat = unknown(1.5);
+  std::string remark;
+  EXPECT_TRUE(std::isinf(entry_at(table, 0.72, RangePolicy::reject, remark).retreat.standard_error));
+}
+
 TEST_F(CrowdLawIo, RatiosAreOrdered) {
   expect_refused("[[entry.law.partner]]", "ratio = 2.0", "ratio = 0.4", {"ratios of one kind must ascend"});
   expect_refused("[[entry.law.partner]]", "ratio = 2.0", "ratio = 0.5", {"ratios of one kind must ascend"});
@@ -180,10 +232,10 @@ TEST_F(CrowdLawIo, EntriesMustMakeSense) {
   LawTableEntry entry = law_entry();
   entry.laws.erase(entry.laws.begin() + 1);
   entry.best = "bag";
-  refused(law_table_text({1, {entry}}, build_provenance()), {"best", "no form"});
-  refused(law_table_text({1, {law_entry(0.7), law_entry(0.7)}}, build_provenance()), {"must ascend"});
-  refused(law_table_text({1, {law_entry(0.75), law_entry(0.7)}}, build_provenance()), {"must ascend"});
-  refused(law_table_text({1, {}}, build_provenance()), {"[[entry]]"});
+  refused(law_table_text({1, {entry}}, build_provenance(), ""), {"best", "no form"});
+  refused(law_table_text({1, {law_entry(0.7), law_entry(0.7)}}, build_provenance(), ""), {"must ascend"});
+  refused(law_table_text({1, {law_entry(0.75), law_entry(0.7)}}, build_provenance(), ""), {"must ascend"});
+  refused(law_table_text({1, {}}, build_provenance(), ""), {"[[entry]]"});
   expect_refused("schema", "schema = 1", "schema = 2", {"schema"});
   expect_refused("[[entry.law]]", "\"pair\"", "\"pear\"", {"pear", "pair"});
 }

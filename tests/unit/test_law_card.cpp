@@ -182,6 +182,62 @@ TEST_F(LawCardFile, ALawThatJumpsIsRefused) {
             std::string::npos);
 }
 
+/// Numbers that fit each other and still are those of no contact.
+TEST_F(LawCardFile, AbsurdLawsAreRefused) {
+  const auto with = [&](double a, double b, double delta) {
+    card_.pairs[0].normal = published();
+    card_.pairs[0].normal.a.value = a;
+    card_.pairs[0].normal.b.value = b;
+    card_.pairs[0].normal.delta.value = delta;
+    card_.pairs[0].normal.c.value = -a * std::pow(delta, b);
+    return message_after("schema = 1", "schema = 1");
+  };
+  EXPECT_EQ(with(0.5, 2.8, 0.065), "");
+  EXPECT_NE(with(-0.5, 2.8, 0.065).find("value = -0.5: must be above 0"), std::string::npos);
+  EXPECT_NE(with(0.0, 2.8, 0.065).find("value = 0.0: must be above 0"), std::string::npos);
+  EXPECT_NE(with(0.5, 2.8, 2.0).find("value = 2.0: must be"), std::string::npos);
+  EXPECT_NE(with(0.5, 80.0, 0.065).find("value = 80.0: must be"), std::string::npos);
+  EXPECT_NE(with(0.5, 2.8, 0.4).find("must be below delta_max = 0.3"), std::string::npos);
+  (void)with(0.5, 2.8, 0.065);
+  card_.pairs[0].tangential_secant.a.value *= -1.0;
+  card_.pairs[0].tangential_secant.c.value *= -1.0;
+  EXPECT_NE(message_after("schema = 1", "schema = 1").find("must be above 0"), std::string::npos) << "kt < 0";
+}
+
+/// The .h5 of another law beside a card is no table of it.
+TEST_F(LawCardFile, ATableOfAnotherCardIsRefused) {
+  card_.pairs[0].band_delta = {0.1, 0.2};
+  card_.pairs[0].bands = {{"normal", {0.0, 0.1}, {0.1, 0.2}}};
+  const fs::path other = fs::path(path()).parent_path() / "other.toml";
+  LawCard changed = card_;
+  changed.pairs[0].normal.a.standard_error *= 2.0;
+  save_card(changed, other.string());
+  save_card(card_, path());
+  EXPECT_EQ(load_card(path()).pairs[0].bands.size(), 1U);
+  EXPECT_TRUE(load_card(path()).notes.empty());
+  const fs::path table = fs::path(path()).replace_extension(".h5");
+  fs::copy_file(fs::path(other).replace_extension(".h5"), table, fs::copy_options::overwrite_existing);
+  try {
+    (void)load_card(path());
+    FAIL() << "the table of another card was taken";
+  } catch (const BadInput& e) {
+    EXPECT_NE(std::string(e.what()).find("law.h5: this file belongs to another law"), std::string::npos) << e.what();
+  }
+
+  // Of a card that was edited the bands are not used, and it says so.
+  save_card(card_, path());
+  std::string text = read_text(path());
+  text.replace(text.find("[pair.normal.b]\nvalue = 2.799"), 30, "[pair.normal.b]\nvalue = 2.8  ");
+  const double c = -card_.pairs[0].normal.a.value * std::pow(0.065, 2.8);
+  const std::size_t at = text.find("[pair.normal.c]\nvalue = ") + 24;
+  text.replace(at, text.find("  #", at) - at, std::to_string(c * 1e6) + "e-6");
+  write_text_atomic(path(), text);
+  const LawCard edited = load_card(path());
+  EXPECT_TRUE(edited.pairs[0].bands.empty());
+  ASSERT_EQ(edited.notes.size(), 1U);
+  EXPECT_NE(edited.notes[0].find("soft-solid normal"), std::string::npos) << edited.notes[0];
+}
+
 TEST_F(LawCardFile, DamagedTablesAndMissingCardsAreFileTrouble) {
   save_card(card_, path());
   const fs::path table = fs::path(path()).replace_extension(".h5");

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/contact/crowd_from_table.h"
+#include "common/contact/crowd_table_file.h"
 #include "common/core/error.h"
 #include "common/io/text_file.h"
 #include "pipelines/report/error_cost.h"
@@ -13,6 +15,7 @@
 #include "pipelines/report/run_data.h"
 #include "pipelines/run_context.h"
 #include "tests/support/markup_check.h"
+#include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"
 
 namespace softgrain {
@@ -117,6 +120,29 @@ TEST(ErrorCosts, LawAndRelaxationAgainstTheirReferences) {
   EXPECT_NEAR(points[0].cost, 6.0e6 / 2.4e9, 1e-6);
   EXPECT_NEAR(points[1].error, 1.0 / 0.96 - 1.0, 0.02);
   EXPECT_NEAR(points[1].cost, 1.9e6 / 1.9e8, 1e-4);
+}
+
+/// A shell that moves may leave every neighbour: nothing was loaded then, and there is nothing to draw.
+TEST_F(Report, ACrowdThatNeverTouchedIsLeftOut) {
+  const CrowdModel model = crowd_model(synthetic::crowd_law("pair"));
+  CrowdMeasurements data =
+      synthetic::crowd_measurements(model,
+                                    {synthetic::crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
+                                     synthetic::crowd_configuration("cube", PartnerKind::plane, 0.0, 0.2)},
+                                    {});
+  data.configurations[1].centre_free = true;
+  for (CrowdRun& run : data.runs)
+    if (run.configuration == 1)
+      for (CrowdPoint& p : run.points)
+        for (double& x : p.overlap) x = -0.01;
+  LawTableEntry entry = synthetic::law_entry();
+  entry.solid_fraction = 0.0;
+  for (const PackingInfo& p : data.packings)
+    entry.solid_fraction += p.solid_fraction / static_cast<double>(data.packings.size());
+  save_crowd(data, path("crowd.h5"));
+  save_law_table({1, {entry}}, path("law_table.toml"));
+  const std::string html = written();
+  EXPECT_TRUE(contains(html, "crowd-planes"));
 }
 
 TEST_F(Report, TextsOfOthersAreEscaped) {

@@ -144,14 +144,14 @@ TEST(Snapshot, DamagedContactsAreFound) {
     file.commit();
     return h5::open_file(directory.file(name)).open("c");
   };
-  EXPECT_EQ(read_snapshot_contacts(written("good.h5", shot.contacts), 4, 5).size(), 4U);
-  EXPECT_THROW((void)read_snapshot_contacts(written("a.h5", shot.contacts), 4, 4), FileTrouble);
+  EXPECT_EQ(read_snapshot_contacts(written("good.h5", shot.contacts), {4, 5}, Snapshot{}).size(), 4U);
+  EXPECT_THROW((void)read_snapshot_contacts(written("a.h5", shot.contacts), {4, 4}, Snapshot{}), FileTrouble);
   auto negative = shot.contacts;
   negative[0].i = -1;
-  EXPECT_THROW((void)read_snapshot_contacts(written("b.h5", negative), 4, 5), FileTrouble);
+  EXPECT_THROW((void)read_snapshot_contacts(written("b.h5", negative), {4, 5}, Snapshot{}), FileTrouble);
   auto lost = shot.contacts;
   lost[1].force[2] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW((void)read_snapshot_contacts(written("c.h5", lost), 4, 5), FileTrouble);
+  EXPECT_THROW((void)read_snapshot_contacts(written("c.h5", lost), {4, 5}, Snapshot{}), FileTrouble);
 }
 
 TEST(Snapshot, KeptPointsAreSpreadAndEndWithTheLast) {

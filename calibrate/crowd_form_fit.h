@@ -1,0 +1,53 @@
+// One form of crowd law fitted to averaged states, and fitted again to packings drawn with replacement.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibrate/crowd_problem.h"
+
+namespace softgrain {
+
+/// Whether a configuration may be fitted and all its neighbours are of this kind.
+bool fits(const CrowdStates& c, PartnerKind kind);
+
+/// The pair law knows one contact only; the others use every configuration of planes that is not held out. `without`:
+/// left out besides.
+StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd crowd, const CrowdStates* without);
+
+/// Size of a neighbour as the tables know it: soft ones the same from either side.
+double table_ratio(const CrowdPartner& p);
+
+/// The parameters of one form, as one row: planes, then per kind ln w by ratio and m.
+struct FormFit {
+  CrowdModel model;
+  LeastSquaresFit planes;
+  std::vector<double> solid_ratios;
+  std::vector<double> soft_ratios;
+  LeastSquaresFit solid;  ///< not run without such neighbours
+  LeastSquaresFit soft;
+
+  [[nodiscard]] std::vector<double> parameters() const;
+  /// Why it is not the minimum that it should be, or not the only one; empty when it is.
+  [[nodiscard]] std::string trouble() const;
+};
+
+/// `thorough`: every strategy for the planes, and for the neighbours when the first one does not come to a minimum.
+FormFit fit_form(const std::string& form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
+                 const CrowdModel& start);
+
+/// How often each packing counts in replicate `r`.
+std::vector<double> packing_weights(std::size_t packings, std::uint64_t seed, int r);
+
+/// Refits that came to their minimum.
+struct FormRefits {
+  std::vector<std::vector<double>> columns;  ///< one per parameter, a value per refit
+  std::vector<int> draws;                    ///< number of the replicate behind each
+  int failed = 0;                            ///< the others, which count nowhere
+};
+
+/// Refits to packings drawn with replacement, from the fit to all of them.
+FormRefits refit_form(const CrowdMeasurements& data, const std::string& form, const FormFit& full,
+                      const CrowdFitOptions& options);
+
+}  // namespace softgrain

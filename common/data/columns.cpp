@@ -1,0 +1,72 @@
+#include "common/data/columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrain {
+
+namespace {
+
+std::string text_of(const h5::Shape& shape) {
+  std::string text;
+  for (const std::size_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
+  return text.empty() ? "1 number" : text;
+}
+
+std::string text_of(const Limits& limits) {
+  if (!std::isfinite(limits.high)) return fmt::format("at least {}", limits.low);
+  return fmt::format("{} to {}", limits.low, limits.high);
+}
+
+}  // namespace
+
+void require_unit(const h5::Group& group, const std::string& name, const std::string& unit) {
+  const std::string said = group.text_of(name, "unit");
+  if (said == unit) return;
+  throw FileTrouble(said.empty() ? fmt::format("data set '{}' says no unit, '{}' is expected", name, unit)
+                                 : fmt::format("data set '{}' is in '{}', '{}' is expected", name, said, unit));
+}
+
+void require_shape(const h5::Group& group, const std::string& name, const h5::Shape& shape) {
+  const h5::Shape there = group.shape(name);
+  if (there == shape) return;
+  throw FileTrouble(fmt::format("data set '{}' has a wrong {}: {}, {} expected", name,
+                                shape.size() == 1 && there.size() == 1 ? "length" : "shape", text_of(there),
+                                text_of(shape)));
+}
+
+void require_within(double value, const Limits& limits, const std::string& name, std::size_t row) {
+  if (!std::isfinite(value))
+    throw FileTrouble(fmt::format("data set '{}' holds a number that is not finite, in row {}", name, row));
+  if (value < limits.low || value > limits.high)
+    throw FileTrouble(fmt::format("data set '{}' holds {} in row {}; allowed: {}", name, value, row, text_of(limits)));
+}
+
+std::vector<double> read_numbers(const h5::Group& group, const std::string& name, const std::string& unit,
+                                 const h5::Shape& shape, const Limits& limits) {
+  require_shape(group, name, shape);
+  require_unit(group, name, unit);
+  std::vector<double> values = group.doubles(name);
+  const std::size_t width =
+      shape.size() > 1 ? std::max<std::size_t>(values.size() / std::max<std::size_t>(shape[0], 1), 1) : 1;
+  for (std::size_t k = 0; k < values.size(); ++k) require_within(values[k], limits, name, k / width);
+  return values;
+}
+
+double read_attribute(const h5::Group& group, const std::string& name, const Limits& limits) {
+  const double value = group.number(name);
+  if (!std::isfinite(value)) throw FileTrouble(fmt::format("attribute '{}' is not finite", name));
+  if (value < limits.low || value > limits.high)
+    throw FileTrouble(fmt::format("attribute '{}' is {}; allowed: {}", name, value, text_of(limits)));
+  return value;
+}
+
+std::size_t column_length(const h5::Group& group, const std::string& name) {
+  const h5::Shape shape = group.shape(name);
+  if (shape.size() != 1) throw FileTrouble("data set '" + name + "' has a wrong shape: " + text_of(shape));
+  return group.integers(name).size();
+}
+
+}  // namespace softgrain

@@ -1,0 +1,31 @@
+// Any text as a table of an experiment; what is read goes on to what calibrate does before it fits, and (second byte 0)
+// to the fit.
+#include <cstddef>
+#include <cstdint>
+
+#include "calibrate/experiment_fit.h"
+#include "common/core/error.h"
+#include "common/data/force_curves.h"
+#include "tests/fuzz/input_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace softgrain;
+  if (size < 3) return 0;
+  ForceCurveOptions options;
+  if (data[0] % 2 == 1) {
+    options.kind = PairKind::soft_soft;
+    options.shell_radius = 0.016;
+    options.youngs_modulus = 5e5;
+  }
+  options.drop_unloading = data[0] % 4 > 1;
+  const fuzz::InputFile file(data + 2, size - 2, "input.csv");
+  try {
+    const std::vector<ForceCurves> curves = read_force_curve_files({file.path()}, options);
+    for (const ForceCurves& one : curves) (void)mean_curve(one);
+    FitOptions fit;
+    fit.replicates = 3;
+    if (data[1] == 0) (void)fit_experiment(curves, fit, true);
+  } catch (const Error&) {
+  }
+  return 0;
+}
