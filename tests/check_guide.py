@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Holds the guide to the sources: every key that a reader of scenes asks for stands in a table of the page of its kind, every
-key in those tables is asked for by a reader, every link and picture is there.
+key in those tables is asked for by a reader, every link and picture is there. Results that are kept are small, or named as large.
 
 Keys are found in the sources by the calls that read them (t.number("key", ...), read_range(t, "key", ...)); which page a
 source belongs to is written down below, and a source that reads scenes and is in no list is an error.
@@ -8,6 +8,7 @@ source belongs to is written down below, and a source that reads scenes and is i
     check_guide.py ROOT | --self-test
 """
 import re
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -28,9 +29,9 @@ PAGES = {
         {"material", "packing"}, set()),
     "scene_particles.md": (
         ["microsim/particles/guards.cpp", "microsim/particles/particles_scene.cpp", "microsim/particles/scene_bodies.cpp",
-         "microsim/particles/scene_cell.cpp", "microsim/particles/scene_materials.cpp",
-         "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
-        {"beyond"}, {"energy_unwatched"}),
+         "microsim/particles/scene_cell.cpp", "microsim/particles/scene_contacts.cpp",
+         "microsim/particles/scene_materials.cpp", "microsim/particles/scene_soft_laws.cpp", "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
+        {"beyond"}, {"energy_unwatched", "entry"}),
     "scene_powder.md": (
         ["pipelines/powder_setup.cpp", "pipelines/powder_variants.cpp", "pipelines/variant_name.cpp"],
         {"Phi", "z", "Phi_error", "z_error"}, set()),
@@ -50,7 +51,7 @@ NO_SCENES = {
 READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"
 CALL = re.compile(r'(?:\.|->)\s*(?:%s)\(\s*"([A-Za-z_]\w*)"' % READERS)
 # A table and a key handed to a helper: read_friction(t, "wall_mu", ...).
-HANDED = re.compile(r'\b(?:t|root|table|scene|macro|law|walls|material|loading)\s*,\s*"([A-Za-z_]\w*)"')
+HANDED = re.compile(r'\b(?:t|root|table|scene|macro|law|walls|material|loading|escape)\s*,\s*"([A-Za-z_]\w*)"')
 KEY = re.compile(r"`\[{0,2}([A-Za-z_][\w.]*)\]{0,2}`")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
@@ -120,8 +121,23 @@ def check_links(root):
     return problems
 
 
+LARGEST_RESULT = 200_000  # bytes
+
+
+def check_sizes(root, kept=None):
+    """Files under results/ that the repository keeps; without git there is no telling them from runs."""
+    if kept is None:
+        listed = subprocess.run(["git", "-C", str(root), "ls-files", "results"], capture_output=True, text=True)
+        kept = listed.stdout.split() if listed.returncode == 0 else []
+    page = root / "results/README.md"
+    named = page.read_text() if page.exists() else ""
+    return [f"{name} has {(root / name).stat().st_size} bytes, more than {LARGEST_RESULT}: make it smaller, or name it in "
+            "results/README.md" for name in kept
+            if (root / name).exists() and (root / name).stat().st_size > LARGEST_RESULT and name.removeprefix("results/") not in named]
+
+
 def check(root):
-    problems = check_sources(root) + check_links(root)
+    problems = check_sources(root) + check_links(root) + check_sizes(root)
     for name, page in PAGES.items():
         problems += check_page(root, name, *page)
     return problems
@@ -140,6 +156,12 @@ def self_test():
         assert "'low'" in check_page(root, "p.md", ["a.cpp"], set())[0]
         page.write_text(table + "| `colour` | none |\n")
         assert "no reader asks for key 'colour'" in check_page(root, "p.md", ["a.cpp"], set())[0]
+        (root / "results").mkdir()
+        (root / "results/small").write_bytes(b"x" * LARGEST_RESULT)
+        (root / "results/large").write_bytes(b"x" * (LARGEST_RESULT + 1))
+        assert [p.split()[0] for p in check_sizes(root, ["results/small", "results/large"])] == ["results/large"]
+        (root / "results/README.md").write_text("one `large` file")
+        assert check_sizes(root, ["results/small", "results/large"]) == []
         page.write_text("[x](nowhere.md) [y](p.md#z) [z](https://example.org)")
         (root / "README.md").write_text("")
         assert check_links(root) == [f"{GUIDE}/p.md: nowhere.md is not there"]
