@@ -43,7 +43,9 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
                                                 "grain-box", "law-table", "cohesive-powder", "hierarchy", "inverse"});
   out.add("kind", kind, "scene of kind " + kind);
   if (!options.law.empty() && kind != "macro") throw BadInput("check: --law goes with scenes of kind \"macro\"");
-  if (kind == "particles")
+  if (kind == "particles" && particles_dimension(scene) == 2)
+    check_particles(read_particles_scene<2>(scene), out);
+  else if (kind == "particles")
     check_particles(read_particles_scene(scene), out);
   else if (kind == "grain-box")
     check_grain_box(read_grain_box(scene), out);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/solid_sphere.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
@@ -24,30 +25,34 @@ constexpr std::int64_t kTrialSteps = 200;
 constexpr double kTrialSeconds = 0.5;
 
 /// Wall time per step, with one pass before it that makes the neighbour list. Moves the system.
-double step_seconds(System3& s, const SceneTime& time) {
-  VelocityVerlet<3> integrator(time.step);
+template <int D>
+double step_seconds(System<D>& s, const SceneTime& time) {
+  VelocityVerlet<D> integrator(time.step);
   integrator.initialise(s);
   return seconds_per_call([&] { integrator.step(s); }, kTrialSeconds, std::min(kTrialSteps, time.steps));
 }
 
 /// Of a cell that is periodic along all axes.
-void add_solid_fraction(const System3& s, Findings& out) {
-  if (!s.cell.periodic[0] || !s.cell.periodic[1] || !s.cell.periodic[2]) return;
+template <int D>
+void add_solid_fraction(const System<D>& s, Findings& out) {
+  if (!std::all_of(s.cell.periodic.begin(), s.cell.periodic.end(), [](bool along) { return along; })) return;
   double volume = 0.0;
   for (Slot i = 0; i < s.particles.grains; ++i) {
     const double r = s.particles.sphere[static_cast<std::size_t>(i)].r;
-    volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    volume += D == 3 ? kSphereVolume * r * r * r : std::numbers::pi * r * r;
   }
   const double fraction = volume / s.cell.volume();
   out.add("solid_fraction", fraction, fmt::format("solid fraction of the cell: {:.3f}", fraction));
-  constexpr double kDensest = 0.74;
+  constexpr double kDensest = D == 3 ? 0.74 : 0.907;
   if (fraction > kDensest)
-    out.warn(fmt::format("the cell is filled to {:.2f}: more than equal spheres can be without overlap", fraction));
+    out.warn(fmt::format("the cell is filled to {:.2f}: more than equal {} can be without overlap", fraction,
+                         D == 3 ? "spheres" : "disks"));
 }
 
 /// What the first frame shows of the contacts.
-void add_overlap(const System3& s, Findings& out) {
-  const ContactWatch<3> watch = watch_contacts(s);
+template <int D>
+void add_overlap(const System<D>& s, Findings& out) {
+  const ContactWatch<D> watch = watch_contacts(s);
   if (!(watch.overlap > 0.0)) return;
   out.add("overlap", watch.overlap,
           fmt::format("largest overlap at the start: {:.3g} of the smaller radius (bodies {} and {})", watch.overlap,
@@ -61,7 +66,8 @@ void add_overlap(const System3& s, Findings& out) {
 }
 
 /// Frames of the trajectory: place, turn, velocity and spin of every body.
-double recorded_bytes(const ParticlesScene& scene, const System3& s) {
+template <int D>
+double recorded_bytes(const ParticlesSceneOf<D>& scene, const System<D>& s) {
   constexpr double kBytesPerBody = 13.0 * 8.0;
   if (!scene.record) return 0.0;
   const double frames =
@@ -86,10 +92,11 @@ void warn_of_step(const SceneTime& time, Findings& out) {
 
 }  // namespace
 
-void check_particles(const ParticlesScene& scene, Findings& out) {
-  System3 s = scene.system;
+template <int D>
+void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
+  System<D> s = scene.system;
   const StepLimit limit = step_limit(s);
-  out.add("bodies", s.particles.size(), fmt::format("{} grains, {} walls", s.particles.grains, scene.wall_name.size()));
+  out.add("bodies", s.particles.size(), fmt::format("{} {}, {} walls", s.particles.grains, D == 3 ? "grains" : "disks", scene.wall_name.size()));
   out.add("time_step", scene.time.step,
           fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
   if (limit.body >= 0)
@@ -99,22 +106,26 @@ void check_particles(const ParticlesScene& scene, Findings& out) {
     out.add("limited_by", scene.time.limited_by, "the step is " + scene.time.limited_by);
   add_solid_fraction(s, out);
   force_pass(s, 0.0);
-  const System3 first = s;
+  const System<D> first = s;
   const double seconds = step_seconds(s, scene.time) * static_cast<double>(scene.time.steps);
-  const ContactTotals totals = contact_totals(s);
+  const ContactTotals<D> totals = contact_totals(s);
   out.add("contacts", totals.contacts,
           fmt::format("contacts at the start: {}, {:.2f} per grain; {} pairs listed", totals.contacts,
                       totals.coordination_number, s.contacts.size()));
-  const double memory = estimated_memory(s.particles.grains, static_cast<double>(s.contacts.size()));
+  const double memory = estimated_memory(s.particles.grains, static_cast<double>(s.contacts.size()), D);
   out.add("bytes", memory, fmt::format("memory: about {:.1f} MB beside the program's own", memory / 1e6));
   const double recorded = recorded_bytes(scene, s);
   if (recorded > 0.0) out.add_disk(recorded);
   add_overlap(first, out);
+  for (const std::string& remark : scene.remarks) out.warn(remark);
   warn_of_step(scene.time, out);
   constexpr double kDay = 86400.0;
   if (seconds > kDay) out.warn("it takes about " + time_text(seconds));
   out.add("seconds", seconds,
           fmt::format("expected time: about {:.3g} s with {} threads", seconds, omp_get_max_threads()));
 }
+
+template void check_particles<2>(const ParticlesSceneOf<2>&, Findings&);
+template void check_particles<3>(const ParticlesSceneOf<3>&, Findings&);
 
 }  // namespace softgrain

@@ -8,6 +8,7 @@ namespace softgrain {
 
 /// Counts, solid fraction of periodic cells, time step and what limits it, contacts and their overlaps at the start,
 /// memory, disk, expected time from a short trial of the loop; and what to mind.
-void check_particles(const ParticlesScene& scene, Findings& out);
+template <int D>
+void check_particles(const ParticlesSceneOf<D>& scene, Findings& out);
 
 }  // namespace softgrain

@@ -17,26 +17,26 @@ namespace {
 
 using nlohmann::json;
 
-ParticlesResult run_with_progress(const ParticlesScene& scene, System3 start, const RunContext& context) {
+template <int D>
+ParticlesResultOf<D> run_with_progress(const ParticlesSceneOf<D>& scene, System<D> start, const RunContext& context) {
   Progress progress("particles", static_cast<double>(scene.time.steps), context.quiet());
   ParticlesControl control;
   control.checkpoint = context.path("checkpoint.h5");
   control.resume = context.resume();
   control.say = [&](const std::string& line) { context.say(line); };
   control.progress = [&](std::int64_t step) { progress.set(static_cast<double>(step)); };
-  ParticlesResult result = run_particles(scene, std::move(start), control);
+  ParticlesResultOf<D> result = run_particles(scene, std::move(start), control);
   progress.finish();
   return result;
 }
 
-}  // namespace
-
-ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options) {
+template <int D>
+ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
-  ParticlesScene setup = read_particles_scene(scene);
+  ParticlesSceneOf<D> setup = read_particles_scene<D>(scene);
   const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
   const Provenance provenance = context.provenance(scene, context.seed(0));
-  const ParticlesResult result = run_with_progress(setup, std::move(setup.system), context);
+  const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), context);
   json summary = particles_summary(setup, result, memory_before);
   std::string text = particles_text(result);
   if (summary.contains("remarks"))
@@ -53,6 +53,12 @@ ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options)
   context.finish(std::move(summary), text);
   remove_checkpoint(context.path("checkpoint.h5"));
   return result.usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace
+
+ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options) {
+  return particles_dimension(scene) == 2 ? run_scene<2>(scene, options) : run_scene<3>(scene, options);
 }
 
 }  // namespace softgrain

@@ -16,7 +16,8 @@ using nlohmann::json;
 
 constexpr Slot kMostListed = 1000;
 
-json particles_json(const System3& s) {
+template <int D>
+json particles_json(const System<D>& s) {
   json out = json::array();
   for (Slot i = 0; i < std::min(s.particles.grains, kMostListed); ++i) {
     const auto u = static_cast<std::size_t>(i);
@@ -28,7 +29,8 @@ json particles_json(const System3& s) {
   return out;
 }
 
-json walls_json(const ParticlesScene& scene, const System3& s) {
+template <int D>
+json walls_json(const ParticlesSceneOf<D>& scene, const System<D>& s) {
   json out = json::array();
   for (std::size_t w = 0; w < scene.wall_name.size(); ++w) {
     const std::size_t u = static_cast<std::size_t>(s.particles.grains) + w;
@@ -40,12 +42,14 @@ json walls_json(const ParticlesScene& scene, const System3& s) {
 }
 
 /// Ids of particles, names of walls.
-json body_json(const ParticlesScene& scene, const System3& s, Slot slot) {
+template <int D>
+json body_json(const ParticlesSceneOf<D>& scene, const System<D>& s, Slot slot) {
   if (slot < s.particles.grains) return slot;
   return scene.wall_name[static_cast<std::size_t>(slot - s.particles.grains)];
 }
 
-json contacts_json(const ParticlesScene& scene, const ParticlesResult& result) {
+template <int D>
+json contacts_json(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result) {
   json out = json::array();
   for (const ContactHistory& c : result.contacts)
     out.push_back({{"pair", {body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)}},
@@ -66,7 +70,8 @@ json record_json(const GuardRecord& r, const GuardRule& rule, double limit) {
 }
 
 /// What the guards saw; counts are looks, not events.
-json guards_json(const GuardSpec& spec, const GuardReport& g, const System3& s) {
+template <int D>
+json guards_json(const GuardSpec& spec, const GuardReport& g, const System<D>& s) {
   json out = {{"looks", g.looks},
               {"steps_between_looks", g.every},
               {"overlap", record_json(g.overlap, spec.overlap, spec.overlap.limit)},
@@ -86,7 +91,8 @@ json guards_json(const GuardSpec& spec, const GuardReport& g, const System3& s) 
 }
 
 /// What was counted, in words.
-json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System3& s) {
+template <int D>
+json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System<D>& s) {
   json out = json::array();
   const auto counted = [&](const GuardRecord& r, double limit, const char* what) {
     if (r.count > 0)
@@ -109,11 +115,13 @@ json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System3& s
 json time_json(double seconds) { return std::isfinite(seconds) ? json(seconds) : json(nullptr); }
 
 /// The state of all contacts at the end; see ContactTotals.
-json contact_state_json(const ContactTotals& totals) {
+template <int D>
+json contact_state_json(const ContactTotals<D>& totals) {
   json out = {{"contacts", totals.contacts}, {"coordination_number", totals.coordination_number}};
   if (!totals.has_stress) return out;
   out["pressure"] = totals.pressure;
-  out["stress"] = {totals.stress[0].v, totals.stress[1].v, totals.stress[2].v};
+  out["stress"] = json::array();
+  for (const Vec<D>& row : totals.stress.row) out["stress"].push_back(row.v);
   return out;
 }
 
@@ -126,7 +134,8 @@ json part_json(const LoopPart& part) {
 }
 
 /// Speed counts the contacts at the end, as other programs can be asked for them too.
-json measured_json(const LoopPart& part, const System3& s, const ContactTotals& totals) {
+template <int D>
+json measured_json(const LoopPart& part, const System<D>& s, const ContactTotals<D>& totals) {
   json out = part_json(part);
   const auto steps = static_cast<double>(part.steps);
   if (!(part.seconds > 0.0) || part.steps == 0) return out;
@@ -135,9 +144,10 @@ json measured_json(const LoopPart& part, const System3& s, const ContactTotals& 
   return out;
 }
 
-json cost_json(const ParticlesScene& scene, const ParticlesResult& result, const ContactTotals& totals,
+template <int D>
+json cost_json(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result, const ContactTotals<D>& totals,
                double memory_before) {
-  const System3& s = result.system;
+  const System<D>& s = result.system;
   json out = {{"loop_passes", s.cost.loop_passes},
               {"contact_evaluations", s.cost.contact_evaluations},
               {"rebuilds", s.neighbours.rebuilds},
@@ -152,11 +162,13 @@ json cost_json(const ParticlesScene& scene, const ParticlesResult& result, const
 
 }  // namespace
 
-json particles_summary(const ParticlesScene& scene, const ParticlesResult& result, double memory_before) {
-  const System3& s = result.system;
+template <int D>
+json particles_summary(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result, double memory_before) {
+  const System<D>& s = result.system;
   json out = {{"status", result.usable ? "good" : "not usable"},
               {"kind", "particles"},
               {"title", scene.title},
+              {"dimension", D},
               {"particle_count", s.particles.grains},
               {"time", s.time},
               {"steps", s.step},
@@ -168,22 +180,29 @@ json particles_summary(const ParticlesScene& scene, const ParticlesResult& resul
               {"frames", result.trajectory.time.size()},
               {"particles", particles_json(s)},
               {"walls", walls_json(scene, s)}};
-  const ContactTotals totals = contact_totals(s);
+  const ContactTotals<D> totals = contact_totals(s);
   out["contact_state"] = contact_state_json(totals);
   out["cost"] = cost_json(scene, result, totals, memory_before);
   if (result.watched) out["contacts"] = contacts_json(scene, result);
   out["guards"] = guards_json(scene.guards, result.guards, s);
-  const json remarks = guard_remarks(scene.guards, result.guards, s);
+  json remarks = guard_remarks(scene.guards, result.guards, s);
+  for (const std::string& remark : scene.remarks) remarks.push_back(remark);
   if (!remarks.empty()) out["remarks"] = remarks;
   if (!result.usable) out["reason"] = result.reason;
   return out;
 }
 
-std::string particles_text(const ParticlesResult& result) {
-  const System3& s = result.system;
+template <int D>
+std::string particles_text(const ParticlesResultOf<D>& result) {
+  const System<D>& s = result.system;
   const std::string end = result.usable ? "" : "NOT USABLE: " + result.reason + "\n";
   return end + fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J",
                            s.particles.grains, s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
 }
+
+template json particles_summary<2>(const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&, double);
+template json particles_summary<3>(const ParticlesSceneOf<3>&, const ParticlesResultOf<3>&, double);
+template std::string particles_text<2>(const ParticlesResultOf<2>&);
+template std::string particles_text<3>(const ParticlesResultOf<3>&);
 
 }  // namespace softgrain

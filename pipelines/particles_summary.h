@@ -10,9 +10,12 @@ namespace softgrain {
 
 /// Everything but provenance and files: state, contacts, cost. `memory_before`: peak of the process before the scene
 /// was read [bytes].
-nlohmann::json particles_summary(const ParticlesScene& scene, const ParticlesResult& result, double memory_before);
+template <int D>
+nlohmann::json particles_summary(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result,
+                                 double memory_before);
 
 /// A line or two.
-std::string particles_text(const ParticlesResult& result);
+template <int D>
+std::string particles_text(const ParticlesResultOf<D>& result);
 
 }  // namespace softgrain

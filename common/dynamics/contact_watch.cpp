@@ -13,8 +13,22 @@ namespace softgrain {
 namespace {
 
 template <class Law>
+constexpr bool is_cohesive() {
+  return requires(const Law& law) { law.adhesion; };
+}
+
+template <class Law>
 constexpr bool stores_energy() {
-  return requires(const Law& law) { law.stored_energy(0.0, PairConstants{}); };
+  return is_cohesive<Law>() || requires(const Law& law) { law.stored_energy(0.0, PairConstants{}); };
+}
+
+/// Work of the elastic force from the end of the reach of a cohesive disk to this overlap (negative: a gap); below 0
+/// where disks are bound.
+template <class Law>
+double cohesive_energy(const Law& law, double overlap) {
+  if (overlap > 0.0) return 0.5 * law.normal * overlap * overlap - law.adhesion * (overlap + 0.5 * law.reach());
+  const double left = law.reach() + overlap;
+  return left > 0.0 ? -0.5 * law.adhesion * left * left / law.range : 0.0;
 }
 
 template <class Law>
@@ -76,10 +90,14 @@ class Watcher {
   template <class Law>
   void note_energy(const Law& law, const ContactState<D>& state) {
     if constexpr (stores_energy<Law>()) {
-      out_.stored += law.stored_energy(state.overlap, state.constants);
+      if constexpr (is_cohesive<Law>())
+        out_.stored += cohesive_energy(law, state.overlap);
+      else
+        out_.stored += law.stored_energy(state.overlap, state.constants);
       if constexpr (Law::has_tangential) {
         const ContactResponse<D> r = law.evaluate(state);
         if (r.tangential_stiffness > 0.0) out_.stored += 0.5 * norm2(r.tangential_force) / r.tangential_stiffness;
+        if constexpr (resists_rolling<Law>()) out_.stored += 0.5 * norm2(r.rolling_moment) / law.rolling;
       }
     } else {
       out_.energy_known = false;

@@ -21,7 +21,7 @@ struct ContactWatch {
   std::int64_t behind_planes = 0;  ///< grains whose centre is behind a plane (once per plane)
   Slot behind = -1;                ///< one of them
   double stored = 0.0;             ///< elastic energy of all contacts, tangential springs included [J]
-  bool energy_known = true;        ///< false when a law in use has no energy of its own contact (crowd laws, cohesion)
+  bool energy_known = true;        ///< false when a law in use has no energy of its own contact (crowd laws)
   LawUse laws;
 };
 

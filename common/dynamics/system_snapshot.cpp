@@ -4,19 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "common/core/in_space.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/spatial_order.h"
 
 namespace softgrain {
 
 namespace {
-
-template <int D>
-Vec3 in_space(const Vec<D>& a) {
-  Vec3 out{};
-  for (int k = 0; k < D; ++k) out[k] = a[k];
-  return out;
-}
 
 /// The steps along periodic edges that `gap` is made of, as a vector of exactly these edges.
 template <int D>

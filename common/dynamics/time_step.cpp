@@ -1,5 +1,6 @@
 #include "common/dynamics/time_step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -26,8 +27,7 @@ CrowdSum<3> crowded(const Law& law, ContactState<3> state) {
 double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
       [&]<class Law>(const Law& law) {
-        constexpr bool kSoft = !requires { law.k; }
-        &&!std::is_same_v<Law, LinearSpring>;
+        constexpr bool kSoft = requires { law.delta; } || requires { law.form; };
         ContactState<3> state;
         state.overlap = radius * (kSoft ? kSoftOverlap : overlap_ratio);
         state.normal = {{1.0, 0.0, 0.0}};
@@ -37,6 +37,10 @@ double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, doubl
           const CrowdSum<3> sum = crowded(law, state);
           state.sum_i = state.sum_j = &sum;
           return law.evaluate(state).normal_stiffness;
+        } else if constexpr (requires { law.adhesion; }) {
+          // Springs across the contact, against rolling (K_r m/I of a disk), and the slope of the attraction.
+          const double slope = law.reach() > 0.0 ? law.adhesion / law.range : 0.0;
+          return std::max({law.normal, law.tangential, 2.0 * law.rolling / (radius * radius), slope});
         } else {
           return law.evaluate(state).normal_stiffness;
         }

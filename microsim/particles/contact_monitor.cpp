@@ -11,21 +11,23 @@ namespace softgrain {
 namespace {
 
 /// Keeps the normal force of each contact.
+template <int D>
 struct ForceSink {
   std::vector<double>& force;
   void apart(std::size_t c) { force[c] = 0.0; }
   template <bool kTorque>
-  void touch(std::size_t c, std::size_t, std::size_t, const ContactGeometry<3>&, const ContactResponse<3>& r) {
+  void touch(std::size_t c, std::size_t, std::size_t, const ContactGeometry<D>&, const ContactResponse<D>& r) {
     force[c] = r.normal_force;
   }
 };
 
 /// Overlap of a listed pair; negative: gap.
-double signed_overlap(const System3& s, std::size_t c) {
+template <int D>
+double signed_overlap(const System<D>& s, std::size_t c) {
   const auto& p = s.particles;
   const Slot j = s.contacts.j[c];
-  const Sphere<3>& a = p.sphere[static_cast<std::size_t>(s.contacts.i[c])];
-  const Sphere<3>& b = p.sphere[static_cast<std::size_t>(j)];
+  const Sphere<D>& a = p.sphere[static_cast<std::size_t>(s.contacts.i[c])];
+  const Sphere<D>& b = p.sphere[static_cast<std::size_t>(j)];
   if (j >= p.first_plane()) return a.r - dot(a.x - b.x, p.normal_of(j));
   if (j >= p.grains) return norm(a.x - b.x) - (b.r - a.r);
   return a.r + b.r - norm(a.x - b.x - s.cell.image_shift(s.contacts.image[c]));
@@ -45,16 +47,17 @@ void ContactMonitor::Peak::add(double value) {
   last = value;
 }
 
-void ContactMonitor::match_list(const System3& s) {
-  if (build_ == s.contacts.build && of_contact_.size() == s.contacts.i.size()) return;
-  build_ = s.contacts.build;
+template <int D>
+void ContactMonitor::match_list(const ContactList<D>& list) {
+  if (build_ == list.build && of_contact_.size() == list.i.size()) return;
+  build_ = list.build;
   std::map<Key, Watched> kept;
   for (const auto& [key, w] : watched_)
     if (w.count > 0) kept.emplace(key, w);
   // Pairs that stay in the list keep their last gap.
-  of_contact_.resize(s.contacts.i.size());
+  of_contact_.resize(list.i.size());
   for (std::size_t c = 0; c < of_contact_.size(); ++c) {
-    const Key key{s.contacts.i[c], s.contacts.j[c]};
+    const Key key{list.i[c], list.j[c]};
     const auto old = watched_.find(key);
     Watched fresh;
     fresh.seen = -1.0;
@@ -82,13 +85,17 @@ void ContactMonitor::update(Watched& w, double time, double overlap, double forc
   w.overlap = overlap;
 }
 
-void ContactMonitor::observe(System3& s) {
-  match_list(s);
+template <int D>
+void ContactMonitor::observe(System<D>& s) {
+  match_list(s.contacts);
   force_.assign(s.contacts.i.size(), 0.0);
-  ForceSink sink{force_};
+  ForceSink<D> sink{force_};
   pair_loop(s, 0.0, sink);
   for (std::size_t c = 0; c < of_contact_.size(); ++c) update(*of_contact_[c], s.time, signed_overlap(s, c), force_[c]);
 }
+
+template void ContactMonitor::observe<2>(System<2>&);
+template void ContactMonitor::observe<3>(System<3>&);
 
 std::vector<ContactHistory> ContactMonitor::histories() const {
   std::vector<ContactHistory> out;

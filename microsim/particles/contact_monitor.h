@@ -18,7 +18,7 @@ struct ContactHistory {
   Slot j = 0;
   std::int64_t count = 0;    ///< how many times they touched
   double duration = 0.0;     ///< total [s]
-  double max_force = 0.0;    ///< largest normal force [N]
+  double max_force = 0.0;    ///< largest normal force that pushes [N]; 0 when it only pulled
   double max_overlap = 0.0;  ///< [m]
 };
 
@@ -27,7 +27,8 @@ class ContactMonitor {
  public:
   /// To be called after every step, and once before the first. Looks at the committed state; writes nothing but scratch
   /// of the contact list that the next pass overwrites.
-  void observe(System3& system);
+  template <int D>
+  void observe(System<D>& system);
 
   /// All pairs that have touched, by slots; contacts that last are counted up to the last observation.
   [[nodiscard]] std::vector<ContactHistory> histories() const;
@@ -55,7 +56,8 @@ class ContactMonitor {
   };
   using Key = std::pair<Slot, Slot>;
 
-  void match_list(const System3& system);
+  template <int D>
+  void match_list(const ContactList<D>& contacts);
   void update(Watched& w, double time, double overlap, double force) const;
 
   std::map<Key, Watched> watched_;

@@ -18,7 +18,8 @@ constexpr std::int64_t kGrainFrames = 200'000;
 
 }  // namespace
 
-void record_contacts(FrameContacts& to, std::int64_t frame, const System3& system) {
+template <int D>
+void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& system) {
   const std::vector<SnapshotContact> now = snapshot_contacts(system);
   const auto sound = [](const SnapshotContact& c) {
     return std::isfinite(norm2(c.force)) && std::isfinite(norm2(c.from)) && std::isfinite(norm2(c.to));
@@ -28,6 +29,9 @@ void record_contacts(FrameContacts& to, std::int64_t frame, const System3& syste
   to.count.push_back(static_cast<std::int64_t>(now.size()));
   to.contacts.insert(to.contacts.end(), now.begin(), now.end());
 }
+
+template void record_contacts<2>(FrameContacts&, std::int64_t, const System<2>&);
+template void record_contacts<3>(FrameContacts&, std::int64_t, const System<3>&);
 
 void write_frame_contacts(const h5::Group& group, const FrameContacts& c) {
   group.write("frame", std::span<const std::int64_t>(c.frame));

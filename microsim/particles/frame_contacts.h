@@ -18,7 +18,8 @@ struct FrameContacts {
 };
 
 /// Appends those of the system as it is. Never changes it.
-void record_contacts(FrameContacts& to, std::int64_t frame, const System3& system);
+template <int D>
+void record_contacts(FrameContacts& to, std::int64_t frame, const System<D>& system);
 
 /// Data sets frame, count and those of write_snapshot_contacts (snapshot_io.h); a segment list for the largest count.
 void write_frame_contacts(const h5::Group& group, const FrameContacts& contacts);

@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "common/core/error.h"
+#include "common/core/in_space.h"
 #include "common/dynamics/verlet.h"
+#include "microsim/particles/scene_vector.h"
 
 namespace softgrain {
 
@@ -25,8 +27,9 @@ GuardAction read_action(const SceneTable& t, GuardAction fallback) {
 }
 
 /// Why the mechanical energy of a scene may grow; empty when it may not.
-std::string driven_by(const System3& s) {
-  for (int k = 0; k < 3; ++k) {
+template <int D>
+std::string driven_by(const System<D>& s) {
+  for (int k = 0; k < D; ++k) {
     if (norm2(s.cell.velocity_gradient[k]) > 0.0) return "the cell is deformed";
     if (s.cell.periodic[at(k)] && s.gravity[k] != 0.0) return "gravity points along a periodic axis";
   }
@@ -39,7 +42,8 @@ std::string driven_by(const System3& s) {
 }
 
 /// Of gravity and of the loads on planes [J].
-double potential_energy(const System3& s) {
+template <int D>
+double potential_energy(const System<D>& s) {
   const auto& p = s.particles;
   double sum = 0.0;
   for (Slot i = 0; i < p.first_plane(); ++i)
@@ -51,7 +55,8 @@ double potential_energy(const System3& s) {
 }
 
 /// Twice the longest way of a wall moved by forces through all grains; infinite without such walls or grains.
-double default_travel(const System3& s) {
+template <int D>
+double default_travel(const System<D>& s) {
   const auto& p = s.particles;
   double longest = 0.0;
   for (Slot w = p.first_plane(); w < p.size(); ++w) {
@@ -76,7 +81,8 @@ bool has_measured_law(const LawSet& laws) {
   return false;
 }
 
-std::string body(const System3& s, Slot slot) {
+template <int D>
+std::string body(const System<D>& s, Slot slot) {
   if (slot >= s.particles.grains) return "wall " + std::to_string(slot - s.particles.grains);
   const auto& id = s.particles.id;
   return "particle " + std::to_string(id.empty() ? slot : id[at(slot)]);
@@ -99,7 +105,16 @@ const char* to_string(GuardAction action) {
   return action == GuardAction::count ? "count" : "ignore";
 }
 
-GuardSpec read_guards(const SceneTable& t) {
+namespace {
+
+/// Of as many components as the scene has dimensions; the others are zero and never looked at.
+Vec3 read_corner(const SceneTable& t, const std::string& key, int dimension) {
+  return dimension == 3 ? t.vector3(key, Unit::length) : in_space<2>(read_vector<2>(t, key, Unit::length));
+}
+
+}  // namespace
+
+GuardSpec read_guards(const SceneTable& t, int dimension) {
   GuardSpec out;
   const SceneTable overlap = t.table_or_empty("overlap");
   out.overlap.limit = overlap.number("limit", Unit::none, Range::positive(), out.overlap.limit);
@@ -108,9 +123,9 @@ GuardSpec read_guards(const SceneTable& t) {
   out.energy.limit = energy.number("limit", Unit::none, Range::positive(), out.energy.limit);
   out.energy.action = read_action(energy, out.energy.action);
   const SceneTable escape = t.table_or_empty("escape");
-  if (escape.has("low")) out.low = escape.vector3("low", Unit::length);
-  if (escape.has("high")) out.high = escape.vector3("high", Unit::length);
-  for (int k = 0; out.low && out.high && k < 3; ++k)
+  if (escape.has("low")) out.low = read_corner(escape, "low", dimension);
+  if (escape.has("high")) out.high = read_corner(escape, "high", dimension);
+  for (int k = 0; out.low && out.high && k < dimension; ++k)
     if (!((*out.low)[k] < (*out.high)[k])) escape.reject("high", "must be above low along every axis");
   out.escape.action = read_action(escape, out.escape.action);
   const SceneTable wall = t.table_or_empty("wall");
@@ -119,7 +134,8 @@ GuardSpec read_guards(const SceneTable& t) {
   return out;
 }
 
-Guards::Guards(const GuardSpec& spec, const System3& start) : spec_(spec) {
+template <int D>
+Guards<D>::Guards(const GuardSpec& spec, const System<D>& start) : spec_(spec) {
   const auto& p = start.particles;
   report_.every = p.grains <= kFewGrains ? 64 : 512;
   report_.energy_unwatched = driven_by(start);
@@ -132,22 +148,24 @@ Guards::Guards(const GuardSpec& spec, const System3& start) : spec_(spec) {
   least_ = kInfinite;
 }
 
-void Guards::note(const GuardRule& rule, double value, double time, GuardRecord& record, const std::string& what) {
+template <int D>
+void Guards<D>::note(const GuardRule& rule, double value, double time, GuardRecord& record, const std::string& what) {
   record.worst = std::max(record.worst, value);
   if (!(value > rule.limit)) return;
   if (record.count++ == 0) record.first_time = time;
   if (rule.action == GuardAction::stop) throw NotUsable(what);
 }
 
-void Guards::look_at_energy(const System3& s, const ContactWatch<3>& watch) {
+template <int D>
+void Guards<D>::look_at_energy(const System<D>& s, const ContactWatch<D>& watch) {
   if (!report_.energy_unwatched.empty()) return;
   if (!watch.energy_known) {
     report_.energy_unwatched = "a contact law has no energy of its own";
     return;
   }
-  const double moved = kinetic_energy(s.particles) + watch.stored;
-  const double energy = moved + potential_energy(s);
-  scale_ = std::max(scale_, moved);
+  const double kinetic = kinetic_energy(s.particles);
+  const double energy = kinetic + watch.stored + potential_energy(s);
+  scale_ = std::max(scale_, kinetic + std::abs(watch.stored));
   if (energy < least_) least_ = energy;
   if (!(scale_ > 0.0)) return;
   const double growth = (energy - least_) / scale_;
@@ -158,7 +176,8 @@ void Guards::look_at_energy(const System3& s, const ContactWatch<3>& watch) {
   note(spec_.energy, growth, s.time, report_.energy, what.str());
 }
 
-void Guards::look_at_grains(const System3& s, const ContactWatch<3>& watch) {
+template <int D>
+void Guards<D>::look_at_grains(const System<D>& s, const ContactWatch<D>& watch) {
   const auto& p = s.particles;
   if (spec_.overlap.action != GuardAction::ignore && watch.i >= 0) {
     std::ostringstream what;
@@ -170,9 +189,9 @@ void Guards::look_at_grains(const System3& s, const ContactWatch<3>& watch) {
   std::int64_t outside = watch.behind_planes;
   Slot first = watch.behind;
   for (Slot i = 0; (spec_.low || spec_.high) && i < p.grains; ++i) {
-    const Vec3& x = p.sphere[at(i)].x;
+    const Vec<D>& x = p.sphere[at(i)].x;
     bool in = true;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < D; ++k)
       in = in && !(spec_.low && x[k] < (*spec_.low)[k]) && !(spec_.high && x[k] > (*spec_.high)[k]);
     if (in) continue;
     ++outside;
@@ -184,7 +203,8 @@ void Guards::look_at_grains(const System3& s, const ContactWatch<3>& watch) {
                        (first == watch.behind ? "its centre is behind a wall" : "it is outside guards.escape"));
 }
 
-void Guards::look_at_walls(const System3& s) {
+template <int D>
+void Guards<D>::look_at_walls(const System<D>& s) {
   if (spec_.wall_travel.action == GuardAction::ignore) return;
   const auto& p = s.particles;
   for (Slot w = p.first_plane(); w < p.size(); ++w) {
@@ -197,9 +217,10 @@ void Guards::look_at_walls(const System3& s) {
   }
 }
 
-void Guards::look(const System3& s) {
+template <int D>
+void Guards<D>::look(const System<D>& s) {
   if (!watches_) return;
-  const ContactWatch<3> watch = watch_contacts(s);
+  const ContactWatch<D> watch = watch_contacts(s);
   ++report_.looks;
   report_.laws += watch.laws;
   look_at_grains(s, watch);
@@ -208,7 +229,8 @@ void Guards::look(const System3& s) {
   if (watch.laws.refused > 0) throw NotUsable("soft contacts: " + law_use_text(watch.laws));
 }
 
-void Guards::save(const h5::Group& g) const {
+template <int D>
+void Guards<D>::save(const h5::Group& g) const {
   write_record(g, "overlap", report_.overlap);
   write_record(g, "energy", report_.energy);
   write_record(g, "escape", report_.escape);
@@ -219,7 +241,8 @@ void Guards::save(const h5::Group& g) const {
   g.attribute("energy_unwatched", report_.energy_unwatched);
 }
 
-void Guards::load(const h5::Group& g) {
+template <int D>
+void Guards<D>::load(const h5::Group& g) {
   report_.overlap = read_record(g, "overlap");
   report_.energy = read_record(g, "energy");
   report_.escape = read_record(g, "escape");
@@ -233,5 +256,8 @@ void Guards::load(const h5::Group& g) {
   scale_ = n[1];
   report_.energy_unwatched = g.text("energy_unwatched");
 }
+
+template class Guards<2>;
+template class Guards<3>;
 
 }  // namespace softgrain

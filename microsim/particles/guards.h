@@ -37,8 +37,8 @@ struct GuardSpec {
   GuardRule wall_travel{0.0, GuardAction::stop};  ///< of walls moved by forces [m]; 0: twice the way through all grains
 };
 
-/// Throws BadInput.
-GuardSpec read_guards(const SceneTable& table);
+/// `dimension` is that of the vectors. Throws BadInput.
+GuardSpec read_guards(const SceneTable& table, int dimension = 3);
 
 /// What one guard saw.
 struct GuardRecord {
@@ -60,17 +60,18 @@ struct GuardReport {
   LawUse laws;                     ///< summed over all looks
 };
 
+template <int D>
 class Guards {
  public:
   /// `start`: the system before the first step, also of a run that goes on from a checkpoint.
-  Guards(const GuardSpec& spec, const System3& start);
+  Guards(const GuardSpec& spec, const System<D>& start);
 
   /// Steps between two looks: small systems are looked at more often, so that looking never costs more than a few
   /// percent of the steps between.
   [[nodiscard]] std::int64_t every() const { return report_.every; }
 
   /// Looks at a state after a step. Throws NotUsable when a guard stops the run.
-  void look(const System3& system);
+  void look(const System<D>& system);
 
   [[nodiscard]] const GuardReport& report() const { return report_; }
 
@@ -79,16 +80,16 @@ class Guards {
 
  private:
   void note(const GuardRule& rule, double value, double time, GuardRecord& record, const std::string& what);
-  void look_at_energy(const System3& s, const ContactWatch<3>& watch);
-  void look_at_grains(const System3& s, const ContactWatch<3>& watch);
-  void look_at_walls(const System3& s);
+  void look_at_energy(const System<D>& s, const ContactWatch<D>& watch);
+  void look_at_grains(const System<D>& s, const ContactWatch<D>& watch);
+  void look_at_walls(const System<D>& s);
 
   GuardSpec spec_;
   bool watches_ = true;  ///< false: every guard is ignored and no law has a range
   GuardReport report_;
-  std::vector<Vec3> wall_start_;
+  std::vector<Vec<D>> wall_start_;
   double least_ = 0.0;  ///< smallest energy so far [J]
-  double scale_ = 0.0;  ///< largest kinetic + stored energy so far [J]
+  double scale_ = 0.0;  ///< largest kinetic + stored energy so far, bound disks by amount [J]
 };
 
 }  // namespace softgrain

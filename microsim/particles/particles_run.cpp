@@ -16,6 +16,7 @@
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
 #include "microsim/particles/scene_memory.h"
+#include "microsim/particles/soft_sides.h"
 
 namespace softgrain {
 
@@ -33,25 +34,31 @@ constexpr std::int64_t kGrainStepsPerLook = 4'000'000;
 
 using Clock = std::chrono::steady_clock;
 
-/// What a checkpoint belongs to: the scene, and the particles, which may lie in a file of their own. Hashed piece by
+/// What a checkpoint belongs to: the scene, and particles and laws, which may lie in files of their own. Hashed piece by
 /// piece: large scenes are not in memory twice.
-std::string identity_of(const ParticlesScene& scene, const System3& start) {
+template <int D>
+std::string identity_of(const ParticlesSceneOf<D>& scene, const System<D>& start) {
   constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes
   const auto& p = start.particles;
   std::string bytes;
   const auto add = [&bytes](double x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof x); };
   for (std::size_t u = 0; u < p.sphere.size(); ++u) {
     add(p.sphere[u].r);
-    for (int k = 0; k < 3; ++k)
-      for (const double x : {p.sphere[u].x[k], p.velocity[u][k], p.spin[u][k]}) add(x);
+    for (int k = 0; k < D; ++k) {
+      add(p.sphere[u].x[k]);
+      add(p.velocity[u][k]);
+      if (k < static_cast<int>(p.spin[u].v.size())) add(p.spin[u][k]);
+    }
     if (bytes.size() > kPiece) bytes = short_hash(bytes);
   }
-  return scene.text + "\n# particles " + short_hash(bytes);
+  const std::string laws = scene.law_files.empty() ? "" : "\n# laws " + short_hash(scene.law_files);
+  return scene.text + "\n# particles " + short_hash(bytes) + laws;
 }
 
+template <int D>
 class ParticlesRun {
  public:
-  ParticlesRun(const ParticlesScene& scene, System3 start, const ParticlesControl& control)
+  ParticlesRun(const ParticlesSceneOf<D>& scene, System<D> start, const ParticlesControl& control)
       : scene_(scene),
         control_(control),
         identity_(control.checkpoint.empty() ? "" : identity_of(scene, start)),
@@ -61,7 +68,7 @@ class ParticlesRun {
         due_(scene.checkpoint_seconds),
         started_(Clock::now()) {}
 
-  ParticlesResult run();
+  ParticlesResultOf<D> run();
 
  private:
   void begin();
@@ -79,14 +86,14 @@ class ParticlesRun {
   [[nodiscard]] std::int64_t frames() const;
   [[nodiscard]] bool watched() const { return scene_.record && system_.particles.grains <= kMostWatched; }
   [[nodiscard]] bool frame_due() const { return scene_.output_stride > 0 && system_.step % scene_.output_stride == 0; }
-  ParticlesResult result(bool usable, const std::string& reason);
+  ParticlesResultOf<D> result(bool usable, const std::string& reason);
 
-  const ParticlesScene& scene_;
+  const ParticlesSceneOf<D>& scene_;
   const ParticlesControl& control_;
   std::string identity_;
-  System3 system_;
-  VelocityVerlet<3> integrator_;
-  Guards guards_;
+  System<D> system_;
+  VelocityVerlet<D> integrator_;
+  Guards<D> guards_;
   Trajectory trajectory_;
   FrameContacts frame_contacts_;
   ContactMonitor monitor_;
@@ -96,13 +103,15 @@ class ParticlesRun {
   Clock::time_point started_;
 };
 
-void ParticlesRun::count_time() {
+template <int D>
+void ParticlesRun<D>::count_time() {
   const auto now = Clock::now();
   system_.cost.seconds += std::chrono::duration<double>(now - started_).count();
   started_ = now;
 }
 
-bool ParticlesRun::restore() {
+template <int D>
+bool ParticlesRun<D>::restore() {
   if (!control_.resume || control_.checkpoint.empty()) return false;
   std::string note;
   const auto saved = open_checkpoint(control_.checkpoint, identity_, note);
@@ -122,7 +131,8 @@ bool ParticlesRun::restore() {
   return true;
 }
 
-void ParticlesRun::begin() {
+template <int D>
+void ParticlesRun<D>::begin() {
   if (restore()) return;
   order_grains();
   integrator_.initialise(system_);
@@ -132,11 +142,13 @@ void ParticlesRun::begin() {
 }
 
 /// Of a run that comes to its end: the first and the last state, and those in between.
-std::int64_t ParticlesRun::frames() const {
+template <int D>
+std::int64_t ParticlesRun<D>::frames() const {
   return 2 + (scene_.output_stride > 0 ? (scene_.time.steps - 1) / scene_.output_stride : 0);
 }
 
-void ParticlesRun::record(bool with_contacts) {
+template <int D>
+void ParticlesRun<D>::record(bool with_contacts) {
   if (!scene_.record) return;
   const auto frame = static_cast<std::int64_t>(trajectory_.time.size());
   if (with_contacts && is_snapshot(frame, frames(), scene_.snapshots)) record_contacts(frame_contacts_, frame, system_);
@@ -144,12 +156,14 @@ void ParticlesRun::record(bool with_contacts) {
 }
 
 /// Grains that were neighbours drift apart; watched systems are small and keep their order.
-void ParticlesRun::order_grains() {
+template <int D>
+void ParticlesRun<D>::order_grains() {
   if (system_.particles.grains >= kOrderedGrains && !watched()) reorder_grains(system_, spatial_order(system_));
 }
 
 /// The first step after this one at which there is something to do.
-std::int64_t ParticlesRun::next_event(std::int64_t end) const {
+template <int D>
+std::int64_t ParticlesRun<D>::next_event(std::int64_t end) const {
   if (watched()) return system_.step + 1;
   const auto next = [&](std::int64_t interval) {
     return interval > 0 ? (system_.step / interval + 1) * interval : end;
@@ -161,7 +175,8 @@ std::int64_t ParticlesRun::next_event(std::int64_t end) const {
 }
 
 /// No number is lost and nothing moves its own radius in a step: it would pass through others unseen.
-void ParticlesRun::require_sound() const {
+template <int D>
+void ParticlesRun<D>::require_sound() const {
   const auto& p = system_.particles;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
@@ -174,7 +189,8 @@ void ParticlesRun::require_sound() const {
   }
 }
 
-void ParticlesRun::save() {
+template <int D>
+void ParticlesRun<D>::save() {
   count_time();
   write_checkpoint(control_.checkpoint, identity_, [&](const h5::Group& root) {
     write_system(root.create("system"), system_);
@@ -185,7 +201,8 @@ void ParticlesRun::save() {
   });
 }
 
-void ParticlesRun::save_if_due() {
+template <int D>
+void ParticlesRun<D>::save_if_due() {
   if (control_.checkpoint.empty()) return;
   if (interrupt_requested()) {
     save();
@@ -197,7 +214,8 @@ void ParticlesRun::save_if_due() {
   if (by_steps || by_time) save();
 }
 
-void ParticlesRun::observe() {
+template <int D>
+void ParticlesRun<D>::observe() {
   if (watched()) monitor_.observe(system_);
   if (system_.step % kCheckInterval == 0) {
     require_sound();
@@ -207,7 +225,8 @@ void ParticlesRun::observe() {
   if (frame_due() && system_.step < scene_.time.steps) record();
 }
 
-LoopPart ParticlesRun::advance_to(std::int64_t step) {
+template <int D>
+LoopPart ParticlesRun<D>::advance_to(std::int64_t step) {
   const auto from = Clock::now();
   const std::clock_t cpu_from = std::clock();
   LoopPart part{-system_.step, 0.0, 0.0, -system_.cost.contact_evaluations, -system_.neighbours.rebuilds};
@@ -225,14 +244,16 @@ LoopPart ParticlesRun::advance_to(std::int64_t step) {
   return part;
 }
 
-void ParticlesRun::advance() {
+template <int D>
+void ParticlesRun<D>::advance() {
   warm_up_ = advance_to(scene_.time.warm_up_steps);
   measured_ = advance_to(scene_.time.steps);
   require_sound();
   if (system_.step % guards_.every() != 0) guards_.look(system_);
 }
 
-ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
+template <int D>
+ParticlesResultOf<D> ParticlesRun<D>::result(bool usable, const std::string& reason) {
   const double peak = peak_memory();  // before the copies that are made for output
   count_time();
   restore_order(system_);
@@ -250,7 +271,8 @@ ParticlesResult ParticlesRun::result(bool usable, const std::string& reason) {
           peak};
 }
 
-ParticlesResult ParticlesRun::run() {
+template <int D>
+ParticlesResultOf<D> ParticlesRun<D>::run() {
   try {
     begin();
     advance();
@@ -265,32 +287,36 @@ ParticlesResult ParticlesRun::run() {
 
 }  // namespace
 
-ParticlesResult run_particles(const ParticlesScene& scene, System3 start, const ParticlesControl& control) {
-  return ParticlesRun(scene, std::move(start), control).run();
+template <int D>
+ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, System<D> start, const ParticlesControl& control) {
+  return ParticlesRun<D>(scene, std::move(start), control).run();
 }
 
-ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control) {
+template <int D>
+ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, const ParticlesControl& control) {
   return run_particles(scene, scene.system, control);
 }
 
 namespace {
 
 /// Materials of soft particles: those that some law takes as the soft body.
-std::vector<std::int64_t> soft_materials(const System3& s) {
+template <int D>
+std::vector<std::int64_t> soft_materials(const System<D>& s) {
   const auto n = static_cast<std::int32_t>(s.materials.size());
   std::vector<std::int64_t> soft(s.materials.size(), 0);
   for (std::int32_t a = 0; a < n; ++a)
     for (std::int32_t b = 0; b < n; ++b) {
       const std::int32_t index = s.laws.index(a, b);
-      const auto* law = index == LawSet::kNoContact ? nullptr : std::get_if<SoftContact>(&s.laws.law(index));
-      if (law == nullptr) continue;
-      if (law->partner_is_soft || law->i_is_soft) soft[static_cast<std::size_t>(a)] = 1;
-      if (law->partner_is_soft || !law->i_is_soft) soft[static_cast<std::size_t>(b)] = 1;
+      if (index == LawSet::kNoContact) continue;
+      const SoftSides sides = soft_sides(s.laws.law(index));
+      if (sides.i) soft[static_cast<std::size_t>(a)] = 1;
+      if (sides.j) soft[static_cast<std::size_t>(b)] = 1;
     }
   return soft;
 }
 
-void write_bodies(const h5::Group& g, const ParticlesScene& scene, const System3& s) {
+template <int D>
+void write_bodies(const h5::Group& g, const ParticlesSceneOf<D>& scene, const System<D>& s) {
   const auto& p = s.particles;
   const auto n = static_cast<std::size_t>(p.grains);
   std::vector<double> radius;
@@ -327,11 +353,13 @@ void write_histories(const h5::Group& g, const std::vector<ContactHistory>& cont
 
 }  // namespace
 
-void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result,
+template <int D>
+void save_particles_run(const std::string& path, const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result,
                         const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
   root.attribute("kind", "particles");
+  root.attribute("dimension", std::int64_t{D});
   root.attribute("status", result.usable ? "good" : "not usable");
   root.attribute("reason", result.reason);
   write_provenance(root, provenance);
@@ -342,5 +370,14 @@ void save_particles_run(const std::string& path, const ParticlesScene& scene, co
   write_system(root.create("final"), result.system);
   file.commit();
 }
+
+template ParticlesResultOf<2> run_particles<2>(const ParticlesSceneOf<2>&, System<2>, const ParticlesControl&);
+template ParticlesResultOf<3> run_particles<3>(const ParticlesSceneOf<3>&, System<3>, const ParticlesControl&);
+template ParticlesResultOf<2> run_particles<2>(const ParticlesSceneOf<2>&, const ParticlesControl&);
+template ParticlesResultOf<3> run_particles<3>(const ParticlesSceneOf<3>&, const ParticlesControl&);
+template void save_particles_run<2>(const std::string&, const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&,
+                                    const Provenance&);
+template void save_particles_run<3>(const std::string&, const ParticlesSceneOf<3>&, const ParticlesResultOf<3>&,
+                                    const Provenance&);
 
 }  // namespace softgrain

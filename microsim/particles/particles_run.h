@@ -34,8 +34,9 @@ struct LoopPart {
   std::int64_t rebuilds = 0;  ///< of the neighbour list
 };
 
-struct ParticlesResult {
-  System3 system;  ///< final state
+template <int D>
+struct ParticlesResultOf {
+  System<D> system;  ///< final state
   Trajectory trajectory;
   FrameContacts frame_contacts;
   bool watched = false;                  ///< contacts were watched
@@ -48,17 +49,22 @@ struct ParticlesResult {
   double peak_memory = 0.0;  ///< of the process at the end of the loop [bytes]; 0 when unknown
 };
 
+using ParticlesResult = ParticlesResultOf<3>;
+
 /// Runs to the end of the scene's time. The trajectory does not depend on output, checkpoints, threads or
 /// interruptions. Throws Interrupted after writing the checkpoint when a signal came; BadInput, FileTrouble for the
 /// checkpoint.
-ParticlesResult run_particles(const ParticlesScene& scene, const ParticlesControl& control);
+template <int D>
+ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, const ParticlesControl& control);
 
 /// The same from a state that is handed over, so that large scenes are not in memory twice.
-ParticlesResult run_particles(const ParticlesScene& scene, System3 start, const ParticlesControl& control);
+template <int D>
+ParticlesResultOf<D> run_particles(const ParticlesSceneOf<D>& scene, System<D> start, const ParticlesControl& control);
 
 /// run.h5: provenance, bodies, trajectory, contacts of some frames and over the whole run, and the final state in full.
 /// Atomic. Throws FileTrouble.
-void save_particles_run(const std::string& path, const ParticlesScene& scene, const ParticlesResult& result,
+template <int D>
+void save_particles_run(const std::string& path, const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result,
                         const Provenance& provenance);
 
 }  // namespace softgrain

@@ -5,12 +5,16 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 
 #include "common/core/error.h"
 #include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/scene_bodies.h"
 #include "microsim/particles/scene_cell.h"
+#include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
+#include "microsim/particles/scene_vector.h"
+#include "microsim/particles/soft_sides.h"
 
 namespace softgrain {
 
@@ -21,20 +25,24 @@ constexpr double kMostFrameBytes = 8.0 * 1024 * 1024 * 1024;
 std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
 
 /// Walls have no periodic images.
-void require_walls_fit_cell(const SceneTable& root, const Cell<3>& cell) {
+template <int D>
+void require_walls_fit_cell(const SceneTable& root, const Cell<D>& cell) {
   if (!cell.any_periodic()) return;
   for (const SceneTable& t : root.tables("wall")) {
     if (t.text("shape") != "plane") t.reject("shape", "the inside of a sphere cannot be combined with a periodic cell");
-    const Vec3 normal = t.vector3("normal", Unit::none);
-    for (int k = 0; k < 3; ++k)
+    const Vec<D> normal = read_vector<D>(t, "normal", Unit::none);
+    for (int k = 0; k < D; ++k)
       if (cell.periodic[static_cast<std::size_t>(k)] && normal[k] != 0.0)
         t.reject("normal", "must not point along a periodic axis of the cell");
   }
 }
 
-/// Materials that may meet, each pair once, lower index first.
-std::set<std::pair<std::int32_t, std::int32_t>> meeting_materials(const Particles<3>& p) {
-  std::set<std::pair<std::int32_t, std::int32_t>> out;
+using MaterialPairs = std::set<std::pair<std::int32_t, std::int32_t>>;
+
+/// Materials of grains that may meet, each pair once, lower index first.
+template <int D>
+MaterialPairs meeting_grains(const Particles<D>& p) {
+  MaterialPairs out;
   std::vector<std::int32_t> seen;
   const auto meet = [&](std::int32_t a, std::int32_t b) { out.emplace(std::min(a, b), std::max(a, b)); };
   for (Slot i = 0; i < p.grains; ++i) {
@@ -45,15 +53,29 @@ std::set<std::pair<std::int32_t, std::int32_t>> meeting_materials(const Particle
       for (const std::int32_t other : seen) meet(m, other);
       seen.push_back(m);
     }
-    if (p.shell[at(i)] >= 0) meet(m, p.material[at(p.shell[at(i)])]);
   }
-  for (Slot plane = p.first_plane(); plane < p.size(); ++plane)
-    for (const std::int32_t m : seen) meet(m, p.material[at(plane)]);
   return out;
 }
 
-void require_contacts(const Scene& scene, const System3& s) {
-  for (const auto& [a, b] : meeting_materials(s.particles)) {
+/// Materials of a grain and of a wall that it may meet.
+template <int D>
+MaterialPairs grains_at_walls(const Particles<D>& p) {
+  MaterialPairs out;
+  std::set<std::int32_t> grains;
+  for (Slot i = 0; i < p.grains; ++i) {
+    grains.insert(p.material[at(i)]);
+    if (p.shell[at(i)] >= 0) out.emplace(p.material[at(i)], p.material[at(p.shell[at(i)])]);
+  }
+  for (Slot plane = p.first_plane(); plane < p.size(); ++plane)
+    for (const std::int32_t m : grains) out.emplace(m, p.material[at(plane)]);
+  return out;
+}
+
+template <int D>
+void require_contacts(const Scene& scene, const System<D>& s) {
+  MaterialPairs pairs = meeting_grains(s.particles);
+  for (const auto& [m, wall] : grains_at_walls(s.particles)) pairs.emplace(std::min(m, wall), std::max(m, wall));
+  for (const auto& [a, b] : pairs) {
     if (s.laws.index(a, b) != LawSet::kNoContact) continue;
     throw BadInput(scene.root().where("contact") + ": contact: no law for the materials '" +
                    s.materials[static_cast<std::size_t>(a)].name + "' and '" +
@@ -62,29 +84,39 @@ void require_contacts(const Scene& scene, const System3& s) {
   }
 }
 
-/// A law of soft contacts measures overlaps by the radius of the soft body, which walls do not have.
-void require_walls_solid(const Scene& scene, const System3& s, const std::vector<std::string>& description) {
-  const auto& p = s.particles;
-  for (Slot wall = p.grains; wall < p.size(); ++wall)
-    for (Slot i = 0; i < p.grains; ++i) {
-      const std::int32_t index = s.laws.index(p.material[at(i)], p.material[at(wall)]);
-      if (index == LawSet::kNoContact) continue;
-      const auto* law = std::get_if<SoftContact>(&s.laws.law(index));
-      if (law != nullptr && (law->partner_is_soft || !law->i_is_soft))
-        throw BadInput(scene.root().where("wall") + ": wall: " + description[static_cast<std::size_t>(index)] +
-                       " makes a wall the soft body; walls must be solid");
-    }
+/// A law of soft contacts measures overlaps by the radius of the soft body, which walls do not have; some laws know
+/// walls only, or none.
+template <int D>
+void require_partners(const Scene& scene, const System<D>& s, const SceneLaws& laws) {
+  const auto refuse = [&](std::int32_t law, const char* why) {
+    throw BadInput(scene.root().where("wall") + ": wall: " + laws.description[static_cast<std::size_t>(law)] + why);
+  };
+  for (const auto& [m, wall] : grains_at_walls(s.particles)) {
+    const std::int32_t law = s.laws.index(m, wall);
+    if (law == LawSet::kNoContact) continue;
+    if (soft_sides(s.laws.law(law)).j) refuse(law, " makes a wall the soft body; walls must be solid");
+    if (laws.serves[static_cast<std::size_t>(law)] == Serves::grains)
+      refuse(law, D == 2 ? " attracts at a distance, which walls cannot: give the wall a material of its own and a law "
+                           "with adhesion = 0, or \"linear-spring\""
+                         : " was measured with grains: give the wall a material of its own and kind = \"soft-wall\"");
+  }
+  for (const auto& [a, b] : meeting_grains(s.particles)) {
+    const std::int32_t law = s.laws.index(a, b);
+    if (law != LawSet::kNoContact && laws.serves[static_cast<std::size_t>(law)] == Serves::walls)
+      refuse(law, " was measured with walls (kind = \"soft-wall\") and would serve particles: \"soft-solid\" does");
+  }
 }
 
 /// Overlaps are differences of coordinates: far from the origin nothing is left of them. At 1e-7 of the radius a slow
 /// impact still comes out to a few 1e-4.
-void require_resolved(const Scene& scene, const System3& s) {
+template <int D>
+void require_resolved(const Scene& scene, const System<D>& s) {
   constexpr double kCoarsest = 1e-7;
   const auto& p = s.particles;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto& sphere = p.sphere[at(i)];
     double far = 0.0;
-    for (int k = 0; k < 3; ++k) far = std::max(far, std::abs(sphere.x[k]));
+    for (int k = 0; k < D; ++k) far = std::max(far, std::abs(sphere.x[k]));
     const double spacing = std::nextafter(far, std::numeric_limits<double>::infinity()) - far;
     if (spacing <= kCoarsest * sphere.r) continue;
     std::ostringstream text;
@@ -95,7 +127,8 @@ void require_resolved(const Scene& scene, const System3& s) {
   }
 }
 
-void read_output(const SceneTable& t, ParticlesScene& out) {
+template <int D>
+void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   out.record = t.flag("record", true);
   if (!out.record && t.has("snapshots"))
     t.reject("snapshots", "cannot be combined with record = false, which records nothing");
@@ -113,39 +146,49 @@ void read_output(const SceneTable& t, ParticlesScene& out) {
                           std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
 }
 
-void read_checkpoint(const SceneTable& t, ParticlesScene& out) {
+template <int D>
+void read_checkpoint(const SceneTable& t, ParticlesSceneOf<D>& out) {
   out.checkpoint_steps = t.count("every_steps", 0, std::int64_t{1} << 53, out.checkpoint_steps);
   out.checkpoint_seconds = t.number("every_seconds", Unit::time, Range::positive(), out.checkpoint_seconds);
 }
 
 }  // namespace
 
-ParticlesScene read_particles_scene(const Scene& scene) {
+int particles_dimension(const Scene& scene) { return static_cast<int>(scene.root().count("dimension", 2, 3, 3)); }
+
+template <int D>
+ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
   const SceneTable root = scene.root();
   (void)root.choice("kind", {"particles"});
-  ParticlesScene out;
+  if (particles_dimension(scene) != D) throw std::logic_error("a scene of another number of dimensions");
+  ParticlesSceneOf<D> out;
   out.title = root.text("title", "");
   out.text = scene.text();
-  System3& s = out.system;
-  s.gravity = root.vector3("gravity", Unit::acceleration, {});
-  s.materials = read_materials(root);
-  SceneLaws laws = read_contacts(scene, s.materials);
-  s.laws = std::move(laws.laws);
-  SceneBodies bodies = read_bodies(scene, s.materials);
+  System<D>& s = out.system;
+  s.gravity = read_vector<D>(root, "gravity", Unit::acceleration, {});
+  s.materials = read_materials(root, D);
+  SceneLaws laws = read_contacts(scene, s.materials, D);
+  s.laws = laws.laws;
+  out.law_files = std::move(laws.files);
+  out.remarks = laws.remarks;
+  SceneBodies<D> bodies = read_bodies<D>(scene, s.materials);
   s.cell = read_cell(root, bodies);
   s.particles = std::move(bodies.particles);
   out.wall_name = std::move(bodies.wall_name);
   require_walls_fit_cell(root, s.cell);
   require_contacts(scene, s);
   require_resolved(scene, s);
-  require_walls_solid(scene, s, laws.description);
+  require_partners(scene, s, laws);
   out.time = read_time(root.table("time"), s, laws.description);
   require_wide_cell(root, s.particles, s.cell);
   read_output(root.table_or_empty("output"), out);
   read_checkpoint(root.table_or_empty("checkpoint"), out);
-  out.guards = read_guards(root.table_or_empty("guards"));
+  out.guards = read_guards(root.table_or_empty("guards"), D);
   root.finish();
   return out;
 }
+
+template ParticlesSceneOf<2> read_particles_scene<2>(const Scene&);
+template ParticlesSceneOf<3> read_particles_scene<3>(const Scene&);
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-// Scene kind "particles": explicit particles, walls, gravity, a cell, any contact law.
+// Scene kind "particles": explicit particles, walls, gravity, a cell, in space or (disks) in the plane.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,10 @@
 namespace softgrain {
 
 /// A scene ready to run.
-struct ParticlesScene {
+template <int D>
+struct ParticlesSceneOf {
   std::string title;
-  System3 system;                      ///< bodies in their first positions, nothing evaluated yet
+  System<D> system;                    ///< bodies in their first positions, nothing evaluated yet
   std::vector<std::string> wall_name;  ///< of the slots from particles.grains on
   SceneTime time;
   bool record = true;                 ///< false: no frames, no watched contacts, no file of the run; the summary alone
@@ -24,11 +25,19 @@ struct ParticlesScene {
   std::int64_t checkpoint_steps = 0;  ///< 0: by wall time alone
   double checkpoint_seconds = 300.0;  ///< wall time between checkpoints [s]
   GuardSpec guards;
-  std::string text;  ///< the scene as it is used
+  std::string text;                  ///< the scene as it is used
+  std::string law_files;             ///< text of the law cards and tables that it takes laws from
+  std::vector<std::string> remarks;  ///< what to mind about these laws
 };
 
-/// Reads and checks everything, computes the step. Throws BadInput with file:line (also for particles that lie in a
+using ParticlesScene = ParticlesSceneOf<3>;
+
+/// Key `dimension`: 3 unless the scene says 2. Throws BadInput.
+int particles_dimension(const Scene& scene);
+
+/// Reads and checks everything, computes the step. `D` is the dimension of the scene. Throws BadInput with file:line (also for particles that lie in a
 /// file of their own), FileTrouble for files that cannot be read.
-ParticlesScene read_particles_scene(const Scene& scene);
+template <int D = 3>
+ParticlesSceneOf<D> read_particles_scene(const Scene& scene);
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
 #include "microsim/particles/scene_memory.h"
+#include "microsim/particles/scene_vector.h"
 #include "microsim/particles/scene_walls.h"
 #include "microsim/particles/xyzr_file.h"
 
@@ -15,53 +16,90 @@ namespace softgrain {
 namespace {
 
 /// Everything that turns tables into bodies.
+template <int D>
 struct Builder {
   const Scene& scene;
   const std::vector<Material>& materials;
-  std::vector<SceneWall> walls;
-  SceneBodies out;
-  std::vector<NewBody<3>> grains;
+  std::vector<SceneWall<D>> walls;
+  SceneBodies<D> out;
+  std::vector<NewBody<D>> grains;
   std::vector<std::ptrdiff_t> wall_of;  ///< per grain: index of its sphere-inside, -1 none
 };
 
-double density_of(const Builder& b, const SceneTable& t, std::int32_t material) {
+NewBody<2> solid_grain(const Vec2& x, double r, double density, std::int32_t material) {
+  return solid_disk(x, r, density, material);
+}
+NewBody<3> solid_grain(const Vec3& x, double r, double density, std::int32_t material) {
+  return solid_sphere(x, r, density, material);
+}
+
+/// About the axis out of the plane in two dimensions.
+template <int D>
+Rot<D> read_spin(const SceneTable& t) {
+  if constexpr (D == 3)
+    return t.vector3("spin", Unit::angular_velocity, {});
+  else
+    return {{t.number("spin", Unit::angular_velocity, Range::any(), 0.0)}};
+}
+
+template <int D>
+double density_of(const Builder<D>& b, const SceneTable& t, std::int32_t material) {
   const Material& m = b.materials[static_cast<std::size_t>(material)];
   if (!(m.density > 0.0)) t.reject("material", "has no density, which particles need");
   return m.density;
 }
 
-bool holds_centre(const SceneWall& wall, const Vec3& x) { return !wall.plane && norm(x - wall.body.x) < wall.body.r; }
+template <int D>
+bool holds_centre(const SceneWall<D>& wall, const Vec<D>& x) {
+  return !wall.plane && norm(x - wall.body.x) < wall.body.r;
+}
 
 /// The first sphere-inside that holds the centre, -1 without.
-std::ptrdiff_t wall_around(const Builder& b, const Vec3& x) {
+template <int D>
+std::ptrdiff_t wall_around(const Builder<D>& b, const Vec<D>& x) {
   const auto found =
-      std::find_if(b.walls.begin(), b.walls.end(), [&](const SceneWall& w) { return holds_centre(w, x); });
+      std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return holds_centre(w, x); });
   return found == b.walls.end() ? -1 : found - b.walls.begin();
 }
 
-std::ptrdiff_t chosen_wall(const Builder& b, const SceneTable& t, const Vec3& x) {
+template <int D>
+std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D>& x) {
   if (!t.has("inside")) return wall_around(b, x);
   const std::string name = t.text("inside");
   if (name == "none") return -1;
-  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const SceneWall& w) { return w.name == name; });
+  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return w.name == name; });
   if (found == b.walls.end()) t.reject("inside", "no wall of this name");
   if (found->plane) t.reject("inside", "this wall is a plane, not a \"sphere-inside\"");
   if (!holds_centre(*found, x)) t.reject("inside", "the particle's centre is outside this sphere");
   return found - b.walls.begin();
 }
 
-void add_table(Builder& b, const SceneTable& t) {
+template <int D>
+void add_table(Builder<D>& b, const SceneTable& t) {
   const std::int32_t material = material_index(b.materials, t, "material");
   const double r = t.number("radius", Unit::length, Range::positive());
-  NewBody<3> body = solid_sphere(t.vector3("position", Unit::length), r, density_of(b, t, material), material);
-  body.velocity = t.vector3("velocity", Unit::velocity, {});
-  body.spin = t.vector3("spin", Unit::angular_velocity, {});
+  NewBody<D> body = solid_grain(read_vector<D>(t, "position", Unit::length), r, density_of(b, t, material), material);
+  body.velocity = read_vector<D>(t, "velocity", Unit::velocity, {});
+  body.spin = read_spin<D>(t);
   b.grains.push_back(body);
   b.wall_of.push_back(chosen_wall(b, t, body.x));
   b.out.where.push_back(t.where("position"));
 }
 
-void add_file(Builder& b, const SceneTable& t) {
+/// A file has three coordinates always; disks lie in z = 0.
+template <int D>
+Vec<D> flat(const Vec3& x, const std::string& path, std::size_t k) {
+  if constexpr (D == 3) {
+    return x;
+  } else {
+    if (x[2] != 0.0)
+      throw BadInput(path + ":" + std::to_string(xyzr_line(k)) + ": z must be 0, as the scene has dimension = 2");
+    return {{x[0], x[1]}};
+  }
+}
+
+template <int D>
+void add_file(Builder<D>& b, const SceneTable& t) {
   if (!t.has("file")) return;
   const std::int32_t material = material_index(b.materials, t, "material");
   const double density = density_of(b, t, material);
@@ -72,12 +110,14 @@ void add_file(Builder& b, const SceneTable& t) {
   });
   b.out.many_box = file.box;
   for (std::size_t k = 0; k < file.radius.size(); ++k) {
-    b.grains.push_back(solid_sphere(file.position[k], file.radius[k], density, material));
-    b.wall_of.push_back(wall_around(b, file.position[k]));
+    const Vec<D> x = flat<D>(file.position[k], b.out.many_file, k);
+    b.grains.push_back(solid_grain(x, file.radius[k], density, material));
+    b.wall_of.push_back(wall_around(b, x));
   }
 }
 
-void require_distinct_centres(const Builder& b) {
+template <int D>
+void require_distinct_centres(const Builder<D>& b) {
   std::vector<Slot> order(b.grains.size());
   std::iota(order.begin(), order.end(), 0);
   const auto centre = [&](Slot k) -> const auto& { return b.grains[static_cast<std::size_t>(k)].x.v; };
@@ -90,9 +130,10 @@ void require_distinct_centres(const Builder& b) {
                      b.out.where_of(order[k - 1]) + ")");
 }
 
-void require_fits(const Builder& b, Slot k) {
-  const NewBody<3>& grain = b.grains[static_cast<std::size_t>(k)];
-  const SceneWall& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
+template <int D>
+void require_fits(const Builder<D>& b, Slot k) {
+  const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
+  const SceneWall<D>& wall = b.walls[static_cast<std::size_t>(b.wall_of[static_cast<std::size_t>(k)])];
   if (grain.r < wall.body.r) return;
   throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) + ": must be below " +
                  std::to_string(wall.body.r) + ", the radius of the sphere around it, '" + wall.name + "' (" +
@@ -100,15 +141,17 @@ void require_fits(const Builder& b, Slot k) {
 }
 
 /// Radii and densities so extreme that the mass is no number.
-void require_mass(const Builder& b, Slot k) {
-  const NewBody<3>& grain = b.grains[static_cast<std::size_t>(k)];
+template <int D>
+void require_mass(const Builder<D>& b, Slot k) {
+  const NewBody<D>& grain = b.grains[static_cast<std::size_t>(k)];
   if (grain.inertia > 0.0 && std::isfinite(grain.mass) && std::isfinite(1.0 / grain.inertia)) return;
   throw BadInput(b.out.where_of(k) + ": radius = " + std::to_string(grain.r) +
                  ": the mass of this particle is out of the range of numbers");
 }
 
 /// Slots of the walls: sphere-insides follow the particles, planes come last.
-std::vector<Slot> wall_slots(const Builder& b) {
+template <int D>
+std::vector<Slot> wall_slots(const Builder<D>& b) {
   std::vector<Slot> slots(b.walls.size());
   auto next = static_cast<Slot>(b.grains.size());
   for (const bool plane : {false, true})
@@ -117,7 +160,8 @@ std::vector<Slot> wall_slots(const Builder& b) {
   return slots;
 }
 
-void place_grains(Builder& b, const std::vector<Slot>& slots) {
+template <int D>
+void place_grains(Builder<D>& b, const std::vector<Slot>& slots) {
   for (std::size_t k = 0; k < b.grains.size(); ++k) {
     require_mass(b, static_cast<Slot>(k));
     if (b.wall_of[k] >= 0) {
@@ -128,19 +172,20 @@ void place_grains(Builder& b, const std::vector<Slot>& slots) {
   }
 }
 
-void place_walls(Builder& b) {
+template <int D>
+void place_walls(Builder<D>& b) {
   double total = 0.0;
   double heaviest = 0.0;
-  for (const NewBody<3>& grain : b.grains) {
+  for (const NewBody<D>& grain : b.grains) {
     total += grain.mass;
     heaviest = std::max(heaviest, grain.mass);
   }
-  for (SceneWall& w : b.walls) {
+  for (SceneWall<D>& w : b.walls) {
     if (w.plane) continue;
     add_shell(b.out.particles, w.body);
     b.out.wall_name.push_back(w.name);
   }
-  for (SceneWall& w : b.walls) {
+  for (SceneWall<D>& w : b.walls) {
     if (!w.plane) continue;
     if (w.needs_mass) w.body.mass = total;
     if (w.body.mass > 0.0 && w.body.mass < heaviest)
@@ -156,14 +201,16 @@ void place_walls(Builder& b) {
 
 }  // namespace
 
-std::string SceneBodies::where_of(Slot particle) const {
+template <int D>
+std::string SceneBodies<D>::where_of(Slot particle) const {
   const auto k = static_cast<std::size_t>(particle);
   return k < where.size() ? where[k] : many_file + ":" + std::to_string(xyzr_line(k - where.size()));
 }
 
-SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materials) {
+template <int D>
+SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials) {
   const SceneTable root = scene.root();
-  Builder b{scene, materials, read_walls(root, materials), {}, {}, {}};
+  Builder<D> b{scene, materials, read_walls<D>(root, materials), {}, {}, {}};
   for (const SceneTable& t : root.tables("particle")) add_table(b, t);
   add_file(b, root.table_or_empty("particles"));
   if (b.grains.empty())
@@ -173,5 +220,10 @@ SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materia
   place_walls(b);
   return std::move(b.out);
 }
+
+template struct SceneBodies<2>;
+template struct SceneBodies<3>;
+template SceneBodies<2> read_bodies<2>(const Scene&, const std::vector<Material>&);
+template SceneBodies<3> read_bodies<3>(const Scene&, const std::vector<Material>&);
 
 }  // namespace softgrain

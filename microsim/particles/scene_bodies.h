@@ -12,8 +12,9 @@
 namespace softgrain {
 
 /// Bodies as slots: particles in the order of the scene ([[particle]] tables, then the file), sphere-insides, planes.
+template <int D>
 struct SceneBodies {
-  Particles<3> particles;
+  Particles<D> particles;
   std::vector<std::string>
       wall_name;  ///< slot order (from `particles.grains` on); given, or "wall-1", "wall-2"... in scene order
   std::vector<std::string> where;  ///< "file:line" of particles that have a table of their own
@@ -26,6 +27,7 @@ struct SceneBodies {
 
 /// [[particle]], [particles] and [[wall]]. Throws BadInput: no particle, coincident centres, a particle without
 /// density, one that does not fit into its sphere, more than there is memory for.
-SceneBodies read_bodies(const Scene& scene, const std::vector<Material>& materials);
+template <int D>
+SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials);
 
 }  // namespace softgrain

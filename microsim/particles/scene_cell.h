@@ -10,10 +10,12 @@ namespace softgrain {
 /// Table [cell]: `size` (or "file": the box of [particles] file), `periodic`, `shear_rate` (the top moves along x, the
 /// velocity gradient d vx/dy; images move with it, as between Lees-Edwards boundaries). Without the table: open
 /// everywhere. Throws BadInput.
-Cell<3> read_cell(const SceneTable& root, const SceneBodies& bodies);
+template <int D>
+Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies);
 
 /// A grain may meet each neighbour under one image alone: throws BadInput when a periodic axis is narrower than two
 /// diameters of the largest grain.
-void require_wide_cell(const SceneTable& root, const Particles<3>& particles, const Cell<3>& cell);
+template <int D>
+void require_wide_cell(const SceneTable& root, const Particles<D>& particles, const Cell<D>& cell);
 
 }  // namespace softgrain

@@ -28,8 +28,9 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-double estimated_memory(std::int64_t grains, double pairs) {
-  return kBytesPerGrain * static_cast<double>(grains) + kBytesPerPair * pairs;
+double estimated_memory(std::int64_t grains, double pairs, int dimension) {
+  const auto n = static_cast<double>(grains);
+  return dimension == 3 ? kBytesPerGrain * n + kBytesPerPair * pairs : kBytesPerDisk * n + kBytesPerDiskPair * pairs;
 }
 
 std::string memory_problem(std::int64_t grains, double available) {

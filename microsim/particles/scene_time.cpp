@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kDefaultFraction = 0.05;
 constexpr double kStepsPerImpact = 200.0;
+constexpr double kStepsPerSlope = 10.0;  ///< for the way through an attraction at a distance
 constexpr double kMostSteps = 1e12;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
@@ -30,18 +31,19 @@ std::string shown(double value) {
 template <class Vector>
 double spread(const std::vector<Vector>& values) {
   if (values.empty()) return 0.0;
-  Vec3 low = values.front();
-  Vec3 high = low;
-  for (const Vec3& v : values)
-    for (int k = 0; k < 3; ++k) {
+  Vector low = values.front();
+  Vector high = low;
+  for (const Vector& v : values)
+    for (int k = 0; k < static_cast<int>(low.v.size()); ++k) {
       low[k] = std::min(low[k], v[k]);
       high[k] = std::max(high[k], v[k]);
     }
-  return norm(high - low);
+  return std::sqrt(norm2(high - low));
 }
 
-double largest_relative_speed(const System3& s, double end) {
-  std::vector<Vec3> places;
+template <int D>
+double largest_relative_speed(const System<D>& s, double end) {
+  std::vector<Vec<D>> places;
   for (const auto& sphere : s.particles.sphere) places.push_back(sphere.x);
   const double g = norm(s.gravity);
   const double fall = g > 0.0 ? std::min(g * end, std::sqrt(2.0 * g * spread(places))) : 0.0;
@@ -54,7 +56,10 @@ double impact_time(const AnyLaw& any, double r, double inverse_mass, double spee
   const double m12 = bodies.effective_mass();
   return std::visit(
       [&]<class Law>(const Law& law) {
-        if constexpr (!std::is_same_v<Law, LinearSpring> && !requires { law.k; }) {
+        if constexpr (requires { law.adhesion; }) {
+          const double slope = law.reach() > 0.0 ? kStepsPerImpact / kStepsPerSlope * law.range / speed : kForever;
+          return std::min(std::numbers::pi * std::sqrt(m12 / law.normal), slope);
+        } else if constexpr (!std::is_same_v<Law, LinearSpring> && !requires { law.k; }) {
           return kForever;  // judged by its stiffness alone
         } else if constexpr (std::is_same_v<Law, LinearSpring>) {
           return std::numbers::pi * std::sqrt(m12 / law.normal);
@@ -67,7 +72,8 @@ double impact_time(const AnyLaw& any, double r, double inverse_mass, double spee
       any);
 }
 
-std::string limit_sentence(const StepLimit& limit, const System3& s, const std::vector<std::string>& law_description) {
+template <int D>
+std::string limit_sentence(const StepLimit& limit, const System<D>& s, const std::vector<std::string>& law_description) {
   const double r = s.particles.sphere[static_cast<std::size_t>(limit.body)].r;
   return "set by particle " + std::to_string(limit.body) + " (radius " + shown(r) + " m) with " +
          law_description[static_cast<std::size_t>(limit.law)];
@@ -93,13 +99,19 @@ void choose_step(const SceneTable& t, double fraction, SceneTime& out) {
   out.step = out.end / static_cast<double>(out.steps);
 }
 
-void take_step(const SceneTable& t, SceneTime& out) {
+void take_step(const SceneTable& t, double largest, SceneTime& out) {
   out.step = t.number("step", Unit::time, Range::positive());
-  const double limit = kLargestStepFraction * out.natural_time;
+  const double limit = largest * out.natural_time;
   if (out.step > limit)
-    t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(kLargestStepFraction) + " sqrt(m/k), " +
+    t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " +
                          out.limited_by);
   if (out.steps == 0) out.steps = steps_to(t, out.end, out.step);
+}
+
+/// Disks have stiff dashpots, which chatter at longer steps: single contacts at 0.2, whole packs from 0.5 on.
+template <int D>
+constexpr double largest_fraction() {
+  return D == 3 ? kLargestStepFraction : 0.2;
 }
 
 /// Either `end` or `steps`; what is not given is left at infinity and 0.
@@ -115,7 +127,8 @@ void read_extent(const SceneTable& t, SceneTime& out) {
 
 }  // namespace
 
-double shortest_impact(const System3& s, double end) {
+template <int D>
+double shortest_impact(const System<D>& s, double end) {
   const double speed = largest_relative_speed(s, end);
   double shortest = kForever;
   if (!(speed > 0.0)) return shortest;
@@ -131,11 +144,12 @@ double shortest_impact(const System3& s, double end) {
   return shortest;
 }
 
-SceneTime read_time(const SceneTable& t, const System3& system, const std::vector<std::string>& law_description) {
+template <int D>
+SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vector<std::string>& law_description) {
   SceneTime out;
   read_extent(t, out);
   const double fraction =
-      t.number("step_fraction", Unit::none, Range{0.0, kLargestStepFraction, true, false}, kDefaultFraction);
+      t.number("step_fraction", Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
   const StepLimit limit = step_limit(system);
   out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
   if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);
@@ -144,10 +158,15 @@ SceneTime read_time(const SceneTable& t, const System3& system, const std::vecto
   if (automatic)
     choose_step(t, fraction, out);
   else
-    take_step(t, out);
+    take_step(t, largest_fraction<D>(), out);
   if (!std::isfinite(out.end)) out.end = static_cast<double>(out.steps) * out.step;
   out.warm_up_steps = t.count("warm_up_steps", 0, out.steps - 1, 0);
   return out;
 }
+
+template double shortest_impact<2>(const System<2>&, double);
+template double shortest_impact<3>(const System<3>&, double);
+template SceneTime read_time<2>(const SceneTable&, const System<2>&, const std::vector<std::string>&);
+template SceneTime read_time<3>(const SceneTable&, const System<3>&, const std::vector<std::string>&);
 
 }  // namespace softgrain

@@ -1,32 +1,38 @@
 #include "microsim/particles/scene_walls.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "microsim/particles/scene_vector.h"
 
 namespace softgrain {
 
 namespace {
 
-Vec3 read_normal(const SceneTable& t) {
-  const Vec3 n = t.vector3("normal", Unit::none);
+template <int D>
+Vec<D> read_normal(const SceneTable& t) {
+  const Vec<D> n = read_vector<D>(t, "normal", Unit::none);
   const double length = norm(n);
   if (!(length > 0.0) || !std::isfinite(1.0 / length)) t.reject("normal", "must not be the zero vector");
   return length == 1.0 ? n : n * (1.0 / length);
 }
 
-void read_shape(const SceneTable& t, SceneWall& wall) {
+template <int D>
+void read_shape(const SceneTable& t, SceneWall<D>& wall) {
   wall.plane = t.choice("shape", {"plane", "sphere-inside"}) == "plane";
   if (wall.plane) {
-    wall.body.x = t.vector3("point", Unit::length);
-    wall.normal = read_normal(t);
+    wall.body.x = read_vector<D>(t, "point", Unit::length);
+    wall.normal = read_normal<D>(t);
   } else {
-    wall.body.x = t.vector3("center", Unit::length);
+    wall.body.x = read_vector<D>(t, "center", Unit::length);
     wall.body.r = t.number("radius", Unit::length, Range::positive());
   }
 }
 
-void read_motion(const SceneTable& t, SceneWall& wall) {
+template <int D>
+void read_motion(const SceneTable& t, SceneWall<D>& wall) {
   const std::string motion = t.choice("motion", {"fixed", "velocity", "force"}, "fixed");
-  if (motion == "velocity") wall.body.velocity = t.vector3("velocity", Unit::velocity);
+  if (motion == "velocity") wall.body.velocity = read_vector<D>(t, "velocity", Unit::velocity);
   if (motion != "force") return;
   if (!wall.plane)
     t.reject("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
@@ -35,17 +41,19 @@ void read_motion(const SceneTable& t, SceneWall& wall) {
   if (!wall.needs_mass) wall.body.mass = t.number("mass", Unit::mass, Range::positive());
 }
 
-void require_new_name(const SceneTable& t, const std::vector<SceneWall>& walls, const std::string& name) {
-  const auto same = std::find_if(walls.begin(), walls.end(), [&](const SceneWall& w) { return w.name == name; });
+template <int D>
+void require_new_name(const SceneTable& t, const std::vector<SceneWall<D>>& walls, const std::string& name) {
+  const auto same = std::find_if(walls.begin(), walls.end(), [&](const auto& w) { return w.name == name; });
   if (same != walls.end()) t.reject("name", "another wall is called '" + name + "' (" + same->where + ")");
 }
 
 }  // namespace
 
-std::vector<SceneWall> read_walls(const SceneTable& root, const std::vector<Material>& materials) {
-  std::vector<SceneWall> walls;
+template <int D>
+std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<Material>& materials) {
+  std::vector<SceneWall<D>> walls;
   for (const SceneTable& t : root.tables("wall")) {
-    SceneWall wall;
+    SceneWall<D> wall;
     read_shape(t, wall);
     read_motion(t, wall);
     wall.body.material = material_index(materials, t, "material");
@@ -56,5 +64,8 @@ std::vector<SceneWall> read_walls(const SceneTable& root, const std::vector<Mate
   }
   return walls;
 }
+
+template std::vector<SceneWall<2>> read_walls<2>(const SceneTable&, const std::vector<Material>&);
+template std::vector<SceneWall<3>> read_walls<3>(const SceneTable&, const std::vector<Material>&);
 
 }  // namespace softgrain

@@ -11,10 +11,11 @@
 namespace softgrain {
 
 /// One wall, not yet a body.
+template <int D>
 struct SceneWall {
-  NewBody<3> body;  ///< radius 0 for planes; mass only for planes moved by a force
+  NewBody<D> body;  ///< radius 0 for planes; mass only for planes moved by a force
   bool plane = true;
-  Vec3 normal{};            ///< unit
+  Vec<D> normal{};            ///< unit
   double load = 0.0;        ///< along the normal [N]
   bool needs_mass = false;  ///< moved by a force, mass not given: that of all particles is taken
   std::string name;
@@ -23,7 +24,8 @@ struct SceneWall {
 
 /// Planes: point, normal into the side of the particles. Sphere insides: center, radius. Motion "fixed", "velocity"
 /// (constant), "force" (planes: along the normal under a force, positive towards the particles, with a servo mass).
-/// Throws BadInput.
-std::vector<SceneWall> read_walls(const SceneTable& root, const std::vector<Material>& materials);
+/// In two dimensions planes are lines and spheres circles. Throws BadInput.
+template <int D>
+std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<Material>& materials);
 
 }  // namespace softgrain

@@ -8,7 +8,7 @@
 
 namespace softgrain {
 
-/// One entry, or one block of 3 numbers per body, per frame; frames follow each other.
+/// One entry, or one block of 3 numbers per body, per frame; frames follow each other. Disks have z = 0 and spin about z.
 struct Trajectory {
   std::vector<double> time;                  ///< [s]
   std::vector<double> position;              ///< of particles [m]
@@ -22,7 +22,8 @@ struct Trajectory {
 };
 
 /// Appends the system as it is.
-void record_frame(Trajectory& trajectory, const System3& system);
+template <int D>
+void record_frame(Trajectory& trajectory, const System<D>& system);
 
 /// Data sets with units: time [frames], position [frames, particles, 3], ...
 void write_trajectory(const h5::Group& group, const Trajectory& trajectory);

@@ -17,6 +17,7 @@ struct Bodies {
   std::vector<SnapshotParticle> particles;
   std::vector<SnapshotWall> walls;
   std::array<bool, 3> periodic{};
+  int dimension = 3;
 };
 
 void require(bool fits, const char* what) {
@@ -46,8 +47,8 @@ std::vector<SnapshotParticle> read_particles(const h5::Group& bodies) {
   return particles;
 }
 
-/// Of the state in full that ends the file.
-std::vector<SnapshotWall> read_walls(const h5::Group& bodies, std::size_t particles) {
+/// Of the state in full that ends the file, which has as many coordinates as the run has dimensions.
+std::vector<SnapshotWall> read_walls(const h5::Group& bodies, std::size_t particles, std::size_t dimension) {
   const std::vector<std::int64_t> counts = bodies.integers("counts");
   const std::vector<double> spheres = bodies.doubles("sphere");
   const std::vector<double> normals = bodies.doubles("plane_normal");
@@ -55,16 +56,16 @@ std::vector<SnapshotWall> read_walls(const h5::Group& bodies, std::size_t partic
           "counts");
   const auto shells = static_cast<std::size_t>(counts[1]);
   const auto planes = static_cast<std::size_t>(counts[2]);
-  require(spheres.size() == 4 * (particles + shells + planes), "sphere");
-  require(normals.size() == 3 * planes && all_finite(normals), "plane_normal");
+  require(spheres.size() == (dimension + 1) * (particles + shells + planes), "sphere");
+  require(normals.size() == dimension * planes && all_finite(normals), "plane_normal");
   std::vector<SnapshotWall> walls(shells + planes);
   for (std::size_t k = 0; k < walls.size(); ++k) {
     if (k < shells) {
       walls[k].shape = WallShape::sphere_inside;
-      walls[k].radius = spheres[4 * (particles + k) + 3];
+      walls[k].radius = spheres[(dimension + 1) * (particles + k) + dimension];
       require(std::isfinite(walls[k].radius), "sphere");
     } else {
-      for (std::size_t c = 0; c < 3; ++c) walls[k].normal.v[c] = normals[3 * (k - shells) + c];
+      for (std::size_t c = 0; c < dimension; ++c) walls[k].normal.v[c] = normals[dimension * (k - shells) + c];
     }
   }
   return walls;
@@ -74,10 +75,13 @@ Bodies read_bodies(const h5::Group& root) {
   Bodies out;
   out.particles = read_particles(root.open("bodies"));
   const h5::Group last = root.open("final");
-  out.walls = read_walls(last.open("bodies"), out.particles.size());
+  if (root.has_attribute("dimension")) out.dimension = static_cast<int>(root.integer("dimension"));
+  require(out.dimension == 2 || out.dimension == 3, "dimension");
+  const auto dimension = static_cast<std::size_t>(out.dimension);
+  out.walls = read_walls(last.open("bodies"), out.particles.size(), dimension);
   const std::vector<std::int64_t> periodic = last.open("cell").integers("periodic");
-  require(periodic.size() == 3, "periodic");
-  for (std::size_t k = 0; k < 3; ++k) out.periodic[k] = periodic[k] != 0;
+  require(periodic.size() == dimension, "periodic");
+  for (std::size_t k = 0; k < dimension; ++k) out.periodic[k] = periodic[k] != 0;
   return out;
 }
 
@@ -102,6 +106,7 @@ Snapshot frame_of(const Trajectory& t, const Bodies& bodies, std::size_t frame) 
   s.time = t.time[frame];
   s.label = fmt::format("particles at {:.4g} s", s.time);
   s.has_velocity = true;
+  s.dimension = bodies.dimension;
   s.particles = bodies.particles;
   s.walls = bodies.walls;
   s.periodic = bodies.periodic;

@@ -34,7 +34,8 @@ void read(const Scene& scene) {
   if (kind == "soft-particle") (void)read_measure_setup(root);
   if (kind == "macro") read_macro(scene);
   if (kind == "macro-comparison") (void)read_macro_comparison(scene);
-  if (kind == "particles") (void)read_particles_scene(scene);
+  if (kind == "particles" && particles_dimension(scene) == 2) (void)read_particles_scene<2>(scene);
+  if (kind == "particles" && particles_dimension(scene) == 3) (void)read_particles_scene<3>(scene);
   if (kind == "grain-box") (void)read_grain_box(scene);
   if (kind == "law-table") (void)read_law_table(scene);
   if (kind == "hierarchy") (void)read_hierarchy_setup(root);

@@ -84,11 +84,15 @@ def _particles(path, last):
         radius = bodies["radius"][()]
         time = trajectory["time"][()]
         soft = bodies["material_is_soft"][()] if "material_is_soft" in bodies else np.zeros(1 << 16, dtype=int)
-        spheres = final["bodies"]["sphere"][()].reshape(-1, 4)[len(radius):]
-        planes = final["bodies"]["plane_normal"][()].reshape(-1, 3)
+        dimension = int(file.attrs.get("dimension", 3))  # the state in full has as many coordinates, disks two
+        spheres = final["bodies"]["sphere"][()].reshape(-1, dimension + 1)[len(radius):]
+        planes = np.zeros((final["bodies"]["plane_normal"].size // dimension, 3))
+        planes[:, :dimension] = final["bodies"]["plane_normal"][()].reshape(-1, dimension)
+        periodic = np.zeros(3, dtype=bool)
+        periodic[:dimension] = final["cell"]["periodic"][()] != 0
         shells = len(spheres) - len(planes)
         walls = {"shape": np.r_[np.ones(shells, int), np.zeros(len(planes), int)],
-                 "normal": np.r_[np.zeros((shells, 3)), planes], "radius": spheres[:, 3], "body": np.full(len(spheres), -1)}
+                 "normal": np.r_[np.zeros((shells, 3)), planes], "radius": spheres[:, dimension], "body": np.full(len(spheres), -1)}
         kept = {}
         if "frame_contacts" in file:
             ends = np.cumsum(file["frame_contacts"]["count"][()])
@@ -102,7 +106,7 @@ def _particles(path, last):
                 position=trajectory["position"][k], radius=radius, role=soft[bodies["material"][()]],
                 body=np.arange(len(radius)), velocity=trajectory["velocity"][k],
                 walls={**walls, "point": trajectory["wall_position"][k]}, cell_edges=matrix.T,
-                periodic=final["cell"]["periodic"][()] != 0,
+                periodic=periodic,
                 contacts=_contacts(file["frame_contacts"], kept[k]) if k in kept else None))
         return out
 

@@ -1,0 +1,29 @@
+// The contact laws of a scene of explicit particles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/contact/law_set.h"
+#include "common/core/material.h"
+#include "common/io/scene.h"
+
+namespace softgrain {
+
+/// What a law may meet: what it says of the other body holds for grains or walls alone.
+enum class Serves { any, grains, walls };
+
+/// Laws per pair of materials and how to call each in a message.
+struct SceneLaws {
+  LawSet laws;
+  std::vector<std::string> description;  ///< per law: "hertz-tsuji of glass and steel (file:line)"
+  std::vector<Serves> serves;           ///< per law
+  std::vector<std::string> remarks;      ///< what to mind about laws from files
+  std::string files;                     ///< text of the cards and tables that laws come from
+};
+
+/// The tables [[contact]]. Spheres have hertz-tsuji, linear-spring and law-card, disks (dimension 2) linear-spring and
+/// cohesive. Throws BadInput; FileTrouble for law cards and tables that cannot be read.
+SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materials, int dimension);
+
+}  // namespace softgrain

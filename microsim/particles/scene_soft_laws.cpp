@@ -1,0 +1,165 @@
+#include "microsim/particles/scene_soft_laws.h"
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/contact/law_file.h"
+#include "common/contact/soft_contact_from_card.h"
+#include "common/core/error.h"
+#include "common/data/card_text.h"
+#include "common/data/crowd_law.h"
+#include "common/data/law_card.h"
+#include "common/io/text_file.h"
+#include "microsim/particles/scene_materials.h"
+#include "microsim/particles/soft_sides.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Young's modulus that the law is scaled with.
+double read_modulus(const SceneTable& t) { return t.number("E", Unit::pressure, Range::positive()); }
+
+SoftContact card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
+  const double modulus = read_modulus(t);
+  const double friction = t.number("mu", Unit::none, Range::not_negative());
+  const double damping = t.number("damping", Unit::none, Range::closed(0.0, 1.0));
+  const bool secant = t.choice("kt", {"initial", "secant"}) == "secant";
+  const std::optional<Beyond> beyond = read_beyond(t);
+  try {
+    return make_soft_contact(card, kind, modulus, friction, damping, secant, beyond);
+  } catch (const Error& e) {
+    t.reject("file", e.what());
+  }
+}
+
+LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string& remark) {
+  const RangePolicy range =
+      t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
+  if (!t.has("solid_fraction")) {
+    if (table.entries.size() == 1) return table.entries.front();
+    std::ostringstream text;
+    text << "the table has laws of " << table.entries.size() << " solid fractions, "
+         << table.entries.front().solid_fraction << " to " << table.entries.back().solid_fraction
+         << ": say which by solid_fraction, that of the grains inside a soft particle";
+    t.reject("file", text.str());
+  }
+  const double fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
+  try {
+    return entry_at(table, fraction, range, remark);
+  } catch (const Error& e) {
+    t.reject("solid_fraction", e.what());
+  }
+}
+
+CrowdChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
+  CrowdChoices choices;
+  choices.form = t.choice("form", {"pair", "bag", "directional", "best"}, "best");
+  if (choices.form == "best") choices.form = entry.best;
+  choices.modulus = read_modulus(t);
+  if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
+  choices.unloading = t.flag("unloading", false);
+  choices.beyond = read_beyond(t);
+  return choices;
+}
+
+/// All that decides on the sums of a soft particle, friction left out: that may differ from contact to contact.
+std::string choice_text(const std::string& path, const LawTableEntry& entry, const CrowdChoices& c) {
+  std::ostringstream text;
+  text.precision(17);
+  text << path << ", form " << c.form << ", E = " << c.modulus << " Pa, solid fraction " << entry.solid_fraction
+       << (c.unloading ? ", with" : ", without") << " unloading, beyond " << to_string(c.beyond.value_or(entry.beyond));
+  return text.str();
+}
+
+}  // namespace
+
+void SoftLawReader::read(const SceneTable& t, const PairOfMaterials& pair) {
+  const std::string path = scene_.resolve(t.text("file"));
+  out_.files += read_text(path);
+  if (Scene::load(path).root().has("entry"))
+    read_table(t, pair, path);
+  else
+    read_card(t, pair, path);
+}
+
+std::int32_t SoftLawReader::soft_of(const SceneTable& t, const PairOfMaterials& pair) const {
+  if (pair.first == pair.second) t.reject("pair", "a soft-solid contact needs two different materials");
+  const std::int32_t soft = material_index(materials_, t, "which_soft");
+  if (soft != pair.first && soft != pair.second) t.reject("which_soft", "must be one of the pair");
+  return soft;
+}
+
+void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
+  for (const char* key : {"form", "solid_fraction", "range", "unloading"})
+    if (t.has(key)) t.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+  const std::string kind = t.choice("kind", {"soft-solid", "soft-soft"});
+  const LawCard card = load_card(path);
+  if (kind == "soft-soft") {
+    out_.laws.set(pair.first, pair.second, card_law(t, card, PairKind::soft_soft));
+    return;
+  }
+  SoftContact law = card_law(t, card, PairKind::soft_solid);
+  const std::int32_t soft = soft_of(t, pair);
+  const std::int32_t solid = pair.first + pair.second - soft;
+  law.i_is_soft = true;
+  out_.laws.set(soft, solid, law, true);
+  law.i_is_soft = false;
+  out_.laws.set(solid, soft, law, true);
+}
+
+void SoftLawReader::read_table(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
+  for (const char* key : {"damping", "kt"})
+    if (t.has(key))
+      t.reject(key, "goes with a law card; " + path + " is a law table, whose laws have no dashpots and one kt");
+  const LawTable table = load_law_table(path);
+  std::string remark;
+  const LawTableEntry entry = read_entry(t, table, remark);
+  const CrowdChoices choices = read_choices(t, entry);
+  if (!remark.empty()) out_.remarks.push_back(t.where("solid_fraction") + ": " + remark);
+  CrowdLaws laws;
+  try {
+    laws = make_crowd_laws(entry, choices);
+  } catch (const Error& e) {
+    t.reject("file", e.what());
+  }
+  const std::string choice = choice_text(path, entry, choices);
+  const std::string kind = t.choice("kind", {"soft-solid", "soft-soft", "soft-wall"});
+  if (kind == "soft-soft") {
+    agree(t, pair.first, choice);
+    agree(t, pair.second, choice);
+    out_.laws.set(pair.first, pair.second, laws.soft_soft);
+    out_.serves.push_back(Serves::grains);
+    return;
+  }
+  const std::int32_t soft = soft_of(t, pair);
+  const std::int32_t solid = pair.first + pair.second - soft;
+  agree(t, soft, choice);
+  const AnyLaw& law = kind == "soft-wall" ? laws.soft_plane : laws.soft_solid;
+  out_.laws.set(soft, solid, law, true);
+  out_.laws.set(solid, soft, mirrored(law), true);
+  out_.serves.resize(static_cast<std::size_t>(out_.laws.size()), kind == "soft-wall" ? Serves::walls : Serves::grains);
+}
+
+void SoftLawReader::agree(const SceneTable& t, std::int32_t soft, const std::string& choice) {
+  const auto [at, fresh] = choices_.try_emplace(soft, Choice{choice, t.where("file")});
+  if (fresh || at->second.text == choice) return;
+  t.reject("file", "the contacts of a soft particle add up, so that all of '" +
+                       materials_[static_cast<std::size_t>(soft)].name + "' need one law; here: " + choice +
+                       "; before: " + at->second.text + " (" + at->second.where + ")");
+}
+
+void SoftLawReader::require_whole() const {
+  for (const auto& [soft, choice] : choices_)
+    for (std::int32_t m = 0; m < out_.laws.materials(); ++m) {
+      const std::int32_t index = out_.laws.index(soft, m);
+      if (index == LawSet::kNoContact || is_table_law(out_.laws.law(index))) continue;
+      throw BadInput(choice.where + ": the law table of '" + materials_[static_cast<std::size_t>(soft)].name +
+                     "' adds up all contacts of a soft particle, and cannot be combined with " +
+                     out_.description[static_cast<std::size_t>(index)]);
+    }
+}
+
+}  // namespace softgrain
