@@ -123,7 +123,7 @@ void StressCellVerlet<D>::move(System<D>& s) {
   for (int k = 0; k < D; ++k) {
     const double before = s.cell.edges[k][k];
     const double after = before + dt_ * rate_[k];
-    growth[k] = 0.5 * dt_ * s.cell.velocity_gradient[k][k];
+    growth[k] = 0.5 * dt_ * rate_[k] / before;
     stretch[k] = after / before;
     way[k] = dt_ * after / (0.5 * (before + after));
     s.cell.edges[k][k] = after;
@@ -135,7 +135,8 @@ void StressCellVerlet<D>::move(System<D>& s) {
     move_bodies<true>(s, growth, stretch, way);
 }
 
-/// Velocities at the end of the step, from the forces there. A rebuild may have carried a body to another image; its
+/// Velocities at the end of the step, from the forces there: the mirror image in time of the first half, so that free
+/// flight is exact, v/L = v'/L'. A rebuild may have carried a body to another image; its
 /// stored velocity went along, the peculiar one stayed.
 template <int D>
 template <bool kDrag>
@@ -143,13 +144,15 @@ void StressCellVerlet<D>::correct_bodies(System<D>& s) {
   const auto& p = s.particles;
   const double half = 0.5 * dt_;
   Vec<D> growth;
-  for (int k = 0; k < D; ++k) growth[k] = 1.0 + half * s.cell.velocity_gradient[k][k];
+  for (int k = 0; k < D; ++k) growth[k] = s.cell.velocity_gradient[k][k];
   Vec<D> kinetic{};
   for (std::size_t u = 0; u < peculiar_.size(); ++u) {
-    const double left = kDrag ? 1.0 / (1.0 + half * drag_[u]) : 1.0;
+    const double drag = kDrag ? drag_[u] : 0.0;
+    const double left = kDrag ? 1.0 / (1.0 + half * drag) : 1.0;
     spin_[u] = (middle_spin_[u] + static_cast<Rot<D>>(p.torque[u]) * (half * p.inverse_inertia[u])) * left;
     for (int k = 0; k < D; ++k) {
-      const double v = (growth[k] * middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u])) * left;
+      const double kicked = middle_[u][k] + half * (p.force[u][k] * p.inverse_mass[u]);
+      const double v = kicked / (1.0 + half * (drag - growth[k]));
       peculiar_[u][k] = v;
       kinetic[k] += mass_[u] * v * v;
     }
