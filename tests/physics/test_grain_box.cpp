@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/statics/least_work.h"
 #include "microsim/grain_box/analysis.h"
 #include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/grain_box_run.h"
@@ -51,19 +52,40 @@ TEST(GrainBox, CompactionReachesThePressureWithFourContactsEverywhere) {
   EXPECT_EQ(end.shear, 0.0);
 }
 
+/// What opposite walls differ by is borne by friction on the four others, and nothing else. About 40 contacts on a
+/// wall, each with at most mu P in some direction, leave a component of mu/sqrt(2 * 40) = 3 % of its normal force; the
+/// largest of twelve is about twice that. The publication has two orders less than the normal stress between walls that
+/// hold eleven times as many grains.
 TEST(GrainBox, EveryStateIsInEquilibriumAndItsWallsAgree) {
+  constexpr double kRounding = 1e-6;
   for (const BoxPoint& p : uniaxial().state.points) {
     EXPECT_LE(p.effort.residual, small_spec().solver.residual_tolerance);
-    EXPECT_LT(p.imbalance, 0.3);  // friction on the lateral walls takes the rest
-    EXPECT_LT(p.shear, 0.1 * p.pressure);
+    const auto [least, most] = std::minmax_element(p.stress.v.begin(), p.stress.v.end());
+    const auto [shortest, longest] = std::minmax_element(p.lengths.v.begin(), p.lengths.v.end());
+    const double areas = *longest / *shortest;
+    EXPECT_LE(p.imbalance, 4.0 * p.shear * areas / *least + kRounding);
+    EXPECT_LE(p.shear, p.phase == BoxPhase::compaction ? 0.0 : 0.07 * *most);
   }
+  Vec3 sum;
+  double largest = 0.0;
+  for (const Vec3& f : wall_forces(uniaxial().state.pack)) {
+    sum += f;
+    largest = std::max(largest, norm(f));
+  }
+  EXPECT_LT(norm(sum), kRounding * largest);
 }
 
 TEST(GrainBox, FrictionPhaseEndsBySlidingThatHasSaturated) {
   const auto points = uniaxial().points_of(BoxPhase::friction);
   ASSERT_GE(points.size(), 20U);
-  EXPECT_GT(points.back()->sliding_share, 0.05);
-  EXPECT_LT(points.back()->sliding_share, 0.7);
+  const auto mean_share = [&](std::size_t first) {
+    double sum = 0.0;
+    for (std::size_t k = first; k < first + 10; ++k) sum += 0.1 * points[k]->sliding_share;
+    return sum;
+  };
+  const double last = mean_share(points.size() - 10);
+  EXPECT_NEAR(last, mean_share(points.size() - 20), small_spec().generation.saturation);
+  EXPECT_GT(last, 2.0 * points.front()->sliding_share);
   // G falls first (contacts begin to slide), and grows in the end.
   const auto smallest = std::min_element(points.begin(), points.end(), [](const BoxPoint* a, const BoxPoint* b) {
     return a->shear_modulus < b->shear_modulus;
@@ -71,13 +93,28 @@ TEST(GrainBox, FrictionPhaseEndsBySlidingThatHasSaturated) {
   EXPECT_LT((*smallest)->shear_modulus, points.front()->shear_modulus);
 }
 
-TEST(GrainBox, ModuliArePositiveAndOfTheRightSize) {
-  for (const BoxPoint* p : uniaxial().points_of(BoxPhase::loading)) {
-    EXPECT_GT(p->bulk, 0.3e9);
-    EXPECT_LT(p->bulk, 5e9);
-    EXPECT_GT(p->shear_modulus, 0.0);
-    EXPECT_LT(p->shear_modulus, 5e9);
-    EXPECT_GT(p->stress[2], p->stress[0]);
+/// K and G of every interval are Hooke's [QS 2.3]. Their size: sphere packs have K of the effective medium and, because
+/// grains rearrange under shear, a third to two thirds of its G (Makse, Gland, Johnson, Schwartz 1999); and they lie in
+/// the printed ranges, K 0.8 to 3 GPa and G 0.6 to 3 GPa.
+TEST(GrainBox, ModuliAreHookesAndOfTheRightSize) {
+  const std::vector<const BoxPoint*> points = uniaxial().points_of(BoxPhase::loading);
+  ASSERT_GE(points.size(), 20U);
+  const BoxPoint* before = uniaxial().points_of(BoxPhase::friction).back();
+  for (const BoxPoint* p : points) {
+    const Vec3 ds = p->stress - before->stress;
+    const double lateral = 0.5 * (ds[0] + ds[1]);
+    const double de = p->strain[2] - before->strain[2];
+    EXPECT_NEAR(p->bulk * 3.0 * de / (ds[2] + 2.0 * lateral), 1.0, 1e-9);
+    EXPECT_NEAR(p->shear_modulus * 2.0 * de / (ds[2] - lateral), 1.0, 1e-9);
+    before = p;
+    EXPECT_GT(p->bulk, 0.9 * p->bulk_medium);
+    EXPECT_LT(p->bulk, 1.1 * p->bulk_medium);
+    EXPECT_GT(p->shear_modulus, 0.33 * p->shear_medium);
+    EXPECT_LT(p->shear_modulus, 0.67 * p->shear_medium);
+    EXPECT_GT(p->bulk, 0.8e9);
+    EXPECT_LT(p->bulk, 3e9);
+    EXPECT_GT(p->shear_modulus, 0.6e9);
+    EXPECT_LT(p->shear_modulus, 3e9);
   }
 }
 
@@ -87,7 +124,7 @@ TEST(GrainBox, ElasticProbeIsStifferThanAnIntervalInWhichContactsSlide) {
     if (!std::isfinite(p->shear_probe)) continue;
     ++probed;
     EXPECT_GT(p->shear_probe, p->shear_modulus);
-    EXPECT_GT(p->bulk_probe, 0.8 * p->bulk);
+    EXPECT_GT(p->bulk_probe, p->bulk);
     EXPECT_LT(p->bulk_probe, 2.0 * p->bulk);
   }
   EXPECT_GE(probed, 2);
@@ -118,8 +155,13 @@ TEST(GrainBox, IsotropicLoadingIsIsotropicWithinScatter) {
   spec.loading.end_strain = 0.002;
   const GrainBoxResult result = run(spec);
   for (const BoxPoint* p : result.points_of(BoxPhase::loading)) {
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(p->stress[k] / p->pressure, 1.0, 0.2);
-    EXPECT_GT(p->bulk, 0.3e9);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(p->stress[k] / p->pressure, 1.0, 0.1);
+    // Smooth walls bear nothing along themselves, so that opposite ones agree to the residual.
+    EXPECT_EQ(p->shear, 0.0);
+    EXPECT_LT(p->imbalance, 1e-5);
+    // Grains that may slide move otherwise than the strain, which can only make the pack softer than the medium.
+    EXPECT_GT(p->bulk, 0.7 * p->bulk_medium);
+    EXPECT_LT(p->bulk, p->bulk_medium);
     EXPECT_TRUE(std::isnan(p->shear_modulus));
     EXPECT_TRUE(std::isnan(p->sliding_share));
     // Without friction nothing is lost: the elastic probe is the modulus, but for contacts that open or close.

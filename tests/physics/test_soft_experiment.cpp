@@ -254,5 +254,75 @@ TEST(SoftExperiment, AMeasurementRecordsItsPlan) {
   EXPECT_NEAR(state.experiment.normal_overlap, 0.20 * state.experiment.spec.shell_radius, 1e-15);
 }
 
+/// Each angle starts afresh from the relaxed state: what another angle did before is not felt. A cumulative sweep goes
+/// on from one to the next.
+TEST(SoftExperiment, AnAngleDoesNotFeelTheOneBefore) {
+  const auto at_the_last_angle = [](const std::vector<double>& angles, bool cumulative) {
+    MeasurementState state;
+    state.experiment = make_soft_solid(small_spec(), small_packing(0), false);
+    MeasurementPlan plan{{0.25}, {0.25}, angles, 0.01, true};
+    plan.cumulative = cumulative;
+    measure(
+        state, plan, *make_damped_protocol({.increment = 0.02}), [](const MeasurementState&, double) {}, 1e9);
+    return state.run.tangential.back();
+  };
+  const TangentialPoint alone = at_the_last_angle({0.2}, false);
+  const TangentialPoint after = at_the_last_angle({0.1, 0.2}, false);
+  EXPECT_EQ(after.angle_deg, 0.2);
+  EXPECT_EQ(after.force_parallel, alone.force_parallel);
+  EXPECT_EQ(after.force_perpendicular, alone.force_perpendicular);
+  EXPECT_NE(at_the_last_angle({0.1, 0.2}, true).force_parallel, alone.force_parallel);
+}
+
+struct Mean {
+  double sum = 0.0;
+  double squares = 0.0;
+  int n = 0;
+  void add(double x) {
+    sum += x;
+    squares += x * x;
+    ++n;
+  }
+  [[nodiscard]] double mean() const { return sum / n; }
+  [[nodiscard]] double error() const { return std::sqrt((squares / n - mean() * mean()) / (n - 1)); }
+};
+
+/// The ensemble of packings knows no direction but the normal: without rotation both components across it average to
+/// zero, and with it the one along the axis [SP 1.4]; the one that is dragged along does not.
+TEST(SoftExperiment, TheForceAcrossTheRotationAveragesToZero) {
+  constexpr int kPackings = 16;
+  SoftParticleSpec spec;
+  spec.trials = 200;
+  Mean normal, before_y, before_z, across, dragged;
+  for (std::uint64_t k = 0; k < kPackings; ++k) {
+    SoftExperiment e = make_soft_solid(spec, generate_shell_packing(spec, 3, k), false);
+    for (int step = 0; step < 15; ++step) {
+      e.push(0.02 * spec.shell_radius);
+      rest(e, step < 14 ? 0.1 : 1e-4);
+    }
+    const Vec3 before = e.force_on_second();
+    normal.add(before[0]);
+    before_y.add(before[1]);
+    before_z.add(before[2]);
+    Mean drags, pushes;  // both signs of one packing are one sample
+    for (const double sign : {-1.0, 1.0}) {
+      SoftExperiment turned = e;
+      turned.rotate_first(sign * 0.5, 0.05, true);
+      rest(turned, 1e-4);
+      const Vec3 change = turned.force_on_second() - before;
+      pushes.add(sign * change[2]);
+      drags.add(sign * change[1]);
+    }
+    across.add(pushes.mean());
+    dragged.add(drags.mean());
+  }
+  EXPECT_LT(std::abs(before_y.mean()), 3.0 * before_y.error());
+  EXPECT_LT(std::abs(before_z.mean()), 3.0 * before_z.error());
+  EXPECT_LT(std::abs(across.mean()), 3.0 * across.error()) << across.mean() << " +- " << across.error();
+  EXPECT_LT(across.error(), 0.15 * dragged.mean()) << "or zero says nothing";
+  EXPECT_LT(before_z.error(), 0.03 * normal.mean());
+  EXPECT_GT(dragged.mean(), 5.0 * dragged.error());
+}
+
 }  // namespace
 }  // namespace softgrain

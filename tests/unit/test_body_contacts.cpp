@@ -95,5 +95,34 @@ TEST(BodyContacts, AGrainBetweenSixWallsIsSymmetric) {
   EXPECT_DOUBLE_EQ(body_coordination(m, between), 6.0);
 }
 
+/// A contact with a wall reaches from the centre to the wall along its normal, wherever on the wall it is: what it
+/// bears along the wall does no work on the stress of that direction. V sigma_zz = sum of P (R - h) over the planes
+/// across z.
+TEST(BodyContacts, FrictionAlongAWallIsNoStressAcrossIt) {
+  constexpr double kRadius = 1.0;
+  System3 s;
+  s.materials = {{"glass", 2500.0, 1e7, 0.25, false}};
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, hertz_law(HertzCoefficients::of(s.materials[0], s.materials[0], 1e3, 1.0), false));
+  NewBody<3> grain;
+  grain.x = {{0.004, -0.003, 0.006}};
+  grain.r = kRadius;
+  grain.mass = grain.inertia = 1.0;
+  grain.velocity = {{0.2, -0.3, 0.5}};
+  add_grain(s.particles, grain);
+  const Box box = add_box(s, {{-0.99, -0.99, -0.99}}, {{0.99, 0.99, 0.99}}, 0);
+  force_pass(s, 1e-2);
+  s.contacts.commit();
+  Vec3 sum{};
+  double along = 0.0;
+  for (const ContactRecord<3>& c : contact_records(s)) {
+    for (int k = 0; k < 3; ++k) sum[k] += std::abs(c.normal[k]) * c.normal_force * (kRadius - c.overlap);
+    along = std::max(along, norm(c.tangential_force) / c.normal_force);
+  }
+  ASSERT_GT(along, 0.1) << "no friction to tell apart";
+  const Vec3 stress = contact_stress(s, box);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(stress[k] / (sum[k] / (1.98 * 1.98 * 1.98)), 1.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 // The interval that replicates of a bootstrap give.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -27,6 +28,26 @@ TEST(Interval95, HoldsItsShareWithFewReplicatesToo) {
 TEST(Interval95, FewValuesGiveTheirExtremesAndNoneNothing) {
   EXPECT_EQ(interval95(counted(5)), std::make_pair(1.0, 5.0));
   EXPECT_EQ(interval95({}).second, HUGE_VAL);
+}
+
+/// Of a sample: sum (x - mean)(y - mean)/(n - 1).
+TEST(ReplicateCovariance, IsThatOfASample) {
+  std::vector<std::array<double, 7>> replicates(3);
+  const double x[] = {1.0, 2.0, 6.0};
+  const double y[] = {4.0, 1.0, 1.0};
+  for (std::size_t r = 0; r < 3; ++r) {
+    replicates[r][2] = x[r];
+    replicates[r][5] = y[r];
+  }
+  const std::vector<double> c = replicate_covariance(replicates);
+  ASSERT_EQ(c.size(), 49U);
+  EXPECT_NEAR(c[2 * 7 + 2], 7.0, 1e-12);
+  EXPECT_NEAR(c[5 * 7 + 5], 3.0, 1e-12);
+  EXPECT_NEAR(c[2 * 7 + 5], -3.0, 1e-12);
+  EXPECT_NEAR(c[5 * 7 + 2], -3.0, 1e-12);
+  EXPECT_EQ(c[0], 0.0);
+  replicates.resize(1);
+  EXPECT_EQ(replicate_covariance(replicates), std::vector<double>(49, 0.0));
 }
 
 }  // namespace

@@ -362,6 +362,25 @@ TEST(CrowdStates, WeightsAreRepetitions) {
   }
 }
 
+/// Mean and sqrt(sum (x - mean)^2/(n (n - 1))) over packings.
+TEST(CrowdStates, ErrorsAreThoseOfAMean) {
+  CrowdOptionsKnown o;
+  o.noise = 0.1;
+  o.packings = 3;
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o);
+  const auto states = average_states(data);
+  ASSERT_EQ(data.runs.size(), 3U);
+  const std::size_t last = states[0].states.size() - 1;
+  std::vector<double> force;
+  for (const CrowdRun& run : data.runs) force.push_back(run.points[last].normal[0]);
+  const double mean = (force[0] + force[1] + force[2]) / 3.0;
+  double squares = 0.0;
+  for (const double f : force) squares += (f - mean) * (f - mean);
+  ASSERT_GT(squares, 0.0);
+  EXPECT_NEAR(states[0].states[last].mean[0], mean, 1e-12 * mean);
+  EXPECT_NEAR(states[0].states[last].error[0] / std::sqrt(squares / 6.0), 1.0, 1e-6);
+}
+
 TEST(CrowdStates, WhatDidNotConvergeDoesNotCount) {
   CrowdOptionsKnown o;
   o.packings = 3;

@@ -2,6 +2,7 @@
 #include "calibrate/inverse_search.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -156,11 +157,25 @@ TEST(InverseSearch, MissingForcesAreLeftOut) {
 
 TEST(InverseSearch, DoesNotDependOnThreads) {
   const InverseTarget t = target_at({0.5, 0.5}, 4, 0.1, 1);
-  const auto done = search(t, 2, 4, 0.1, 2);
-  const InverseAnswer a = answer(done, t, 2, 30);
-  const InverseAnswer b = answer(done, t, 2, 30);
-  EXPECT_EQ(a.low, b.low);
-  EXPECT_EQ(a.high, b.high);
+  const int before = omp_get_max_threads();
+  std::vector<InverseAnswer> answers;
+  std::vector<std::vector<std::vector<double>>> points;
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    const auto done = search(t, 2, 4, 0.1, 2);
+    answers.push_back(answer(done, t, 2, 30));
+    points.push_back(next_points(done, t, 2, 4));
+  }
+  omp_set_num_threads(before);
+  for (std::size_t k = 1; k < answers.size(); ++k) {
+    EXPECT_EQ(answers[0].u, answers[k].u);
+    EXPECT_EQ(answers[0].low, answers[k].low);
+    EXPECT_EQ(answers[0].high, answers[k].high);
+    EXPECT_EQ(answers[0].misfit, answers[k].misfit);
+    EXPECT_EQ(points[0], points[k]);
+  }
+  const InverseAnswer other = answer(search(t, 2, 4, 0.1, 3), t, 3, 30);
+  EXPECT_NE(answers[0].low, other.low) << "another seed is another search";
 }
 
 }  // namespace

@@ -156,6 +156,48 @@ TEST(Neighbours, NoContactIsMissedWhileACellIsSheared) {
   shear_and_watch<3>(5.0);
 }
 
+/// Grains that stand still meet their images when a cell beside walls shrinks: every body takes half of what the image
+/// comes nearer.
+TEST(Neighbours, NoImageIsMissedWhileACellBesideAWallShrinks) {
+  for (const double start : {1.3, 1.4, 1.5}) {
+    System3 s = hertz_system<3>(0.0, 1.0, false);
+    s.cell = box_cell<3>({{2.0, 2.0, 2.0}}, {true, true, false});
+    add_grain(s.particles, solid_sphere<3>({{0.15, 0.5, 1.0}}, 0.1, 2500.0));
+    add_grain(s.particles, solid_sphere<3>({{start, 0.5, 1.0}}, 0.1, 2500.0));
+    NewBody<3> plane;
+    add_plane(s.particles, plane, Vec3{{0.0, 0.0, 1.0}});
+    bool met = false;
+    while (s.cell.edges[0][0] > start + 0.02 && !::testing::Test::HasFatalFailure()) {
+      s.cell.edges[0][0] -= 1e-3;
+      update_neighbours(s);
+      expect_complete_list(s);
+      met = met || s.contacts.size() > 0;
+    }
+    EXPECT_TRUE(met);
+  }
+}
+
+/// Grains that follow a cell which is pressed together come nearer by the strain times their distance, though none
+/// moves against the cell: their own size counts.
+TEST(Neighbours, NoContactIsMissedWhileGrainsFollowAShrinkingCell) {
+  for (const double gap : {0.03, 0.05, 0.1}) {
+    System3 s = hertz_system<3>(0.0, 1.0, false);
+    s.cell = box_cell<3>({{2.0, 2.0, 2.0}}, {true, true, true});
+    add_grain(s.particles, solid_sphere<3>({{0.5, 0.5, 1.0}}, 0.1, 2500.0));
+    add_grain(s.particles, solid_sphere<3>({{0.7 + gap, 0.5, 1.0}}, 0.1, 2500.0));
+    const auto apart = [&] { return s.particles.sphere[1].x[0] - s.particles.sphere[0].x[0]; };
+    update_neighbours(s);
+    ASSERT_EQ(s.contacts.size(), 0);
+    while (apart() > 0.195 && !::testing::Test::HasFatalFailure()) {
+      s.cell.edges[0][0] *= 0.999;
+      for (auto& sphere : s.particles.sphere) sphere.x[0] *= 0.999;
+      update_neighbours(s);
+      expect_complete_list(s);
+    }
+    EXPECT_EQ(s.contacts.size(), 1);
+  }
+}
+
 /// The reduced cell spans the same lattice: every old edge is a whole combination of new ones.
 TEST(Neighbours, ATiltedCellIsReplacedByTheSameLattice) {
   System3 s = hertz_system<3>(0.0, 1.0, false);
