@@ -88,6 +88,12 @@ void warn_of_step(const SceneTime& time, Findings& out) {
   if (std::isfinite(time.contact_time) && time.step > time.contact_time / 20.0)
     out.warn(
         fmt::format("the shortest impact takes {:.2g} steps: its outcome will be off", time.contact_time / time.step));
+  constexpr double kCoarse = 3.0;
+  if (time.step > time.reach_time / kCoarse)
+    out.warn(
+        fmt::format("at the largest speed the attraction at a distance is crossed in {:.2g} steps: what it takes "
+                    "from the motion will be off",
+                    time.reach_time / time.step));
 }
 
 }  // namespace
@@ -96,7 +102,8 @@ template <int D>
 void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   System<D> s = scene.system;
   const StepLimit limit = step_limit(s);
-  out.add("bodies", s.particles.size(), fmt::format("{} {}, {} walls", s.particles.grains, D == 3 ? "grains" : "disks", scene.wall_name.size()));
+  out.add("bodies", s.particles.size(),
+          fmt::format("{} {}, {} walls", s.particles.grains, D == 3 ? "grains" : "disks", scene.wall_name.size()));
   out.add("time_step", scene.time.step,
           fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
   if (limit.body >= 0)

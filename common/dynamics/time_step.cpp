@@ -27,7 +27,8 @@ CrowdSum<3> crowded(const Law& law, ContactState<3> state) {
 double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
       [&]<class Law>(const Law& law) {
-        constexpr bool kSoft = requires { law.delta; } || requires { law.form; };
+        constexpr bool kSoft = requires { law.delta; }
+        || requires { law.form; };
         ContactState<3> state;
         state.overlap = radius * (kSoft ? kSoftOverlap : overlap_ratio);
         state.normal = {{1.0, 0.0, 0.0}};

@@ -15,8 +15,8 @@ struct StepLimit {
 
 /// sqrt(m/k) of the lightest, stiffest pairing: for every grain and every law its material takes part in, k is the
 /// tangent stiffness against an equal partner at an overlap of `overlap_ratio` of its radius (soft contacts: at Delta =
-/// 0.35; cohesive disks: the stiffest of their springs and of the slope of the attraction). A stable step is a fraction of it: 0.2 is as good as 0.05 in soft-particle measurements, 0.4 is biased by
-/// 7-16 %.
+/// 0.35; cohesive disks: the stiffest of their springs and of the slope of the attraction). A stable step is a fraction
+/// of it: 0.2 is as good as 0.05 in soft-particle measurements, 0.4 is biased by 7-16 %.
 template <int D>
 StepLimit step_limit(const System<D>& system, double overlap_ratio = 0.05);
 

@@ -34,8 +34,8 @@ constexpr std::int64_t kGrainStepsPerLook = 4'000'000;
 
 using Clock = std::chrono::steady_clock;
 
-/// What a checkpoint belongs to: the scene, and particles and laws, which may lie in files of their own. Hashed piece by
-/// piece: large scenes are not in memory twice.
+/// What a checkpoint belongs to: the scene, and particles and laws, which may lie in files of their own. Hashed piece
+/// by piece: large scenes are not in memory twice.
 template <int D>
 std::string identity_of(const ParticlesSceneOf<D>& scene, const System<D>& start) {
   constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes

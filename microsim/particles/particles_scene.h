@@ -35,8 +35,8 @@ using ParticlesScene = ParticlesSceneOf<3>;
 /// Key `dimension`: 3 unless the scene says 2. Throws BadInput.
 int particles_dimension(const Scene& scene);
 
-/// Reads and checks everything, computes the step. `D` is the dimension of the scene. Throws BadInput with file:line (also for particles that lie in a
-/// file of their own), FileTrouble for files that cannot be read.
+/// Reads and checks everything, computes the step. `D` is the dimension of the scene. Throws BadInput with file:line
+/// (also for particles that lie in a file of their own), FileTrouble for files that cannot be read.
 template <int D = 3>
 ParticlesSceneOf<D> read_particles_scene(const Scene& scene);
 

@@ -57,8 +57,7 @@ bool holds_centre(const SceneWall<D>& wall, const Vec<D>& x) {
 /// The first sphere-inside that holds the centre, -1 without.
 template <int D>
 std::ptrdiff_t wall_around(const Builder<D>& b, const Vec<D>& x) {
-  const auto found =
-      std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return holds_centre(w, x); });
+  const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return holds_centre(w, x); });
   return found == b.walls.end() ? -1 : found - b.walls.begin();
 }
 

@@ -88,8 +88,8 @@ void require_dimension(const SceneTable& t, const std::string& law, int dimensio
   if (dimension == 3 && law == "cohesive")
     t.reject("law", "\"cohesive\" is a law of disks in the plane: give the scene dimension = 2");
   if (dimension == 2 && (law == "hertz-tsuji" || law == "law-card"))
-    t.reject("law", "\"" + law +
-                        "\" is a law of spheres; a scene with dimension = 2 has \"linear-spring\" and \"cohesive\"");
+    t.reject("law",
+             "\"" + law + "\" is a law of spheres; a scene with dimension = 2 has \"linear-spring\" and \"cohesive\"");
 }
 
 void read_contact(const SceneTable& t, const std::vector<Material>& materials, int dimension, SoftLawReader& soft,

@@ -17,7 +17,7 @@ enum class Serves { any, grains, walls };
 struct SceneLaws {
   LawSet laws;
   std::vector<std::string> description;  ///< per law: "hertz-tsuji of glass and steel (file:line)"
-  std::vector<Serves> serves;           ///< per law
+  std::vector<Serves> serves;            ///< per law
   std::vector<std::string> remarks;      ///< what to mind about laws from files
   std::string files;                     ///< text of the cards and tables that laws come from
 };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDefaultFraction = 0.05;
 constexpr double kStepsPerImpact = 200.0;
-constexpr double kStepsPerSlope = 10.0;  ///< for the way through an attraction at a distance
+constexpr double kStepsPerReach = 10.0;
 constexpr double kMostSteps = 1e12;
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
@@ -57,8 +57,7 @@ double impact_time(const AnyLaw& any, double r, double inverse_mass, double spee
   return std::visit(
       [&]<class Law>(const Law& law) {
         if constexpr (requires { law.adhesion; }) {
-          const double slope = law.reach() > 0.0 ? kStepsPerImpact / kStepsPerSlope * law.range / speed : kForever;
-          return std::min(std::numbers::pi * std::sqrt(m12 / law.normal), slope);
+          return std::numbers::pi * std::sqrt(m12 / law.normal);
         } else if constexpr (!std::is_same_v<Law, LinearSpring> && !requires { law.k; }) {
           return kForever;  // judged by its stiffness alone
         } else if constexpr (std::is_same_v<Law, LinearSpring>) {
@@ -72,8 +71,21 @@ double impact_time(const AnyLaw& any, double r, double inverse_mass, double spee
       any);
 }
 
+/// Time in which a gap as wide as the shortest attraction closes.
 template <int D>
-std::string limit_sentence(const StepLimit& limit, const System<D>& s, const std::vector<std::string>& law_description) {
+double shortest_reach(const System<D>& s, double end) {
+  double reach = kForever;
+  for (std::int32_t k = 0; k < s.laws.size(); ++k) {
+    const double own = std::visit([](const auto& law) { return reach_of(law); }, s.laws.law(k));
+    if (own > 0.0) reach = std::min(reach, own);
+  }
+  const double speed = largest_relative_speed(s, end);
+  return speed > 0.0 ? reach / speed : kForever;
+}
+
+template <int D>
+std::string limit_sentence(const StepLimit& limit, const System<D>& s,
+                           const std::vector<std::string>& law_description) {
   const double r = s.particles.sphere[static_cast<std::size_t>(limit.body)].r;
   return "set by particle " + std::to_string(limit.body) + " (radius " + shown(r) + " m) with " +
          law_description[static_cast<std::size_t>(limit.law)];
@@ -89,7 +101,8 @@ std::int64_t steps_to(const SceneTable& t, double end, double step) {
 }
 
 void choose_step(const SceneTable& t, double fraction, SceneTime& out) {
-  const double wanted = std::min({fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.end});
+  const double wanted = std::min(
+      {fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.reach_time / kStepsPerReach, out.end});
   if (!std::isfinite(wanted)) t.reject("step", "\"auto\" needs a contact law that the particles take part in");
   if (out.steps > 0) {
     out.step = wanted;
@@ -103,8 +116,8 @@ void take_step(const SceneTable& t, double largest, SceneTime& out) {
   out.step = t.number("step", Unit::time, Range::positive());
   const double limit = largest * out.natural_time;
   if (out.step > limit)
-    t.reject("step", "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " +
-                         out.limited_by);
+    t.reject("step",
+             "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.limited_by);
   if (out.steps == 0) out.steps = steps_to(t, out.end, out.step);
 }
 
@@ -154,6 +167,7 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
   out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
   if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);
   out.contact_time = shortest_impact(system, out.end);
+  out.reach_time = shortest_reach(system, out.end);
   const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
   if (automatic)
     choose_step(t, fraction, out);

@@ -15,7 +15,7 @@ template <int D>
 struct SceneWall {
   NewBody<D> body;  ///< radius 0 for planes; mass only for planes moved by a force
   bool plane = true;
-  Vec<D> normal{};            ///< unit
+  Vec<D> normal{};          ///< unit
   double load = 0.0;        ///< along the normal [N]
   bool needs_mass = false;  ///< moved by a force, mass not given: that of all particles is taken
   std::string name;

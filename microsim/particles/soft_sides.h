@@ -28,7 +28,11 @@ inline SoftSides soft_sides(const AnyLaw& any) {
 
 /// Whether a law knows of the other contacts of a soft particle, or is of a table whose other forms do.
 inline bool is_table_law(const AnyLaw& any) {
-  return std::visit([](const auto& law) { return requires { law.form; }; }, any);
+  return std::visit(
+      [](const auto& law) {
+        return requires { law.form; };
+      },
+      any);
 }
 
 }  // namespace softgrain

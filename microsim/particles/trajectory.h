@@ -8,7 +8,8 @@
 
 namespace softgrain {
 
-/// One entry, or one block of 3 numbers per body, per frame; frames follow each other. Disks have z = 0 and spin about z.
+/// One entry, or one block of 3 numbers per body, per frame; frames follow each other. Disks have z = 0 and spin about
+/// z.
 struct Trajectory {
   std::vector<double> time;                  ///< [s]
   std::vector<double> position;              ///< of particles [m]

@@ -117,11 +117,13 @@ TEST(PythonReader, ReadsAPipeline) {
 TEST(PythonReader, ReadsParticles) {
   const std::string python = python_with_h5py();
   if (python.empty()) GTEST_SKIP() << "no Python with h5py (Debian: python3-h5py python3-numpy)";
-  const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
-  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a", {"--set", "output.snapshots=5"}))), 0));
-  const json seen = read_with_python(python, runs.out("a"));
-  expect_same_states(seen["snapshots"], read_snapshots(runs.out("a")));
-  EXPECT_EQ(seen["last"].size(), 1U);
+  for (const std::string& scene : {tiny_particles("0.2"), tiny_disks("15.0")}) {
+    const KindRuns runs({"particles", "microsim", scene, 0});
+    ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a", {"--set", "output.snapshots=5"}))), 0));
+    const json seen = read_with_python(python, runs.out("a"));
+    expect_same_states(seen["snapshots"], read_snapshots(runs.out("a")));
+    EXPECT_EQ(seen["last"].size(), 1U);
+  }
 }
 
 TEST(PythonReader, ExampleRuns) {

@@ -131,6 +131,23 @@ TEST(Snapshots, OfParticlesAreTheFrames) {
   EXPECT_NEAR(last[0].time, 0.2, 1e-9);
 }
 
+TEST(Snapshots, OfDisksAreFlat) {
+  const KindRuns runs({"disks", "microsim", tiny_disks("15.0"), 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a"))), 0));
+  const auto states = read_snapshots(runs.out("a"));
+  ASSERT_EQ(states.size(), 6U);
+  const Snapshot& s = states.back();
+  EXPECT_EQ(s.dimension, 2);
+  EXPECT_EQ(s.particles.size(), 36U);
+  ASSERT_EQ(s.walls.size(), 2U);
+  EXPECT_EQ(s.walls[0].radius, 6.0);
+  EXPECT_EQ(s.walls[1].normal, (Vec3{{0.0, 1.0, 0.0}}));
+  EXPECT_EQ(s.walls[1].point[1], -4.0);
+  EXPECT_GT(s.contacts.size(), 10U);
+  for (const SnapshotParticle& p : s.particles) EXPECT_EQ(p.position[2], 0.0);
+  for (const SnapshotContact& c : s.contacts) EXPECT_EQ(c.force[2], 0.0);
+}
+
 TEST(Snapshots, OfPowdersAndBoxes) {
   const KindRuns powder(scene_of("powder"));
   ASSERT_TRUE(ended_with(wait_for(start_program(powder.arguments("a"))), 0));

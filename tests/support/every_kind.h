@@ -154,6 +154,56 @@ end = )" + end + "\n";
   return text;
 }
 
+/// Cohesive disks that resist rolling fall into a circle that a line cuts.
+inline std::string tiny_disks(const std::string& end = "60.0") {
+  std::string text = R"(kind = "particles"
+dimension = 2
+gravity = [0.0, -0.05]
+[material.powder]
+density = 1.2732395447351628
+[[contact]]
+pair = ["powder", "powder"]
+law = "cohesive"
+normal_stiffness = 1e3
+tangential_stiffness = 1e3
+mu = 0.5
+zeta = 0.8
+adhesion = 1.0
+range = 1e-2
+rolling_stiffness = 0.1
+rolling_limit = 5e-3
+[[contact]]
+pair = ["powder", "rigid"]
+law = "linear-spring"
+restitution = 0.3
+mu = 0.5
+normal_stiffness = 1e3
+tangential_stiffness = 1e3
+[[wall]]
+shape = "sphere-inside"
+center = [0.0, 0.0]
+radius = 6.0
+material = "rigid"
+[[wall]]
+shape = "plane"
+point = [0.0, -4.0]
+normal = [0.0, 1.0]
+material = "rigid"
+[output]
+every = 3.0
+[checkpoint]
+every_steps = 500
+[time]
+step = 3e-3
+end = )" + end + "\n";
+  RandomStream random(5, RandomPurpose::test, 0);
+  for (int n = 0; n < 36; ++n)
+    text += "[[particle]]\nmaterial = \"powder\"\nradius = " + std::to_string(0.3 + 0.2 * random.uniform()) +
+            "\nposition = [" + std::to_string(1.1 * (n % 6 - 2.5) + 0.1 * random.uniform()) + ", " +
+            std::to_string(1.1 * (n / 6 - 2.5) + 0.1 * random.uniform()) + "]\nspin = 0.1\n";
+  return text;
+}
+
 struct KindScene {
   std::string name;
   std::string command;
@@ -172,6 +222,7 @@ inline std::vector<KindScene> every_kind() {
           {"law-table", "run", std::string(kTinyLawTable) + kTinyLawFit, 0},
           {"hierarchy", "run", kTinyHierarchy, 3},
           {"particles", "microsim", tiny_particles(), 0},
+          {"disks", "microsim", tiny_disks(), 0},
           {"powder", "microsim", kTinyPowder, 0},
           {"powder-variants", "microsim", kTinyPowderVariants, 0},
           {"grain-box", "microsim", kTinyGrainBox, 0}};

@@ -111,8 +111,9 @@ TEST(ParticlesDisks, TheCoulombConeBeginsAtMinusTheAdhesion) {
 TEST(ParticlesDisks, RollingIsLimitedByTheElasticRepulsion) {
   const double spin = 0.5;
   const auto moment_after = [&](double end) {
-    const std::string text = head() + disk(0.0, 0.0, 0.0, 0.0, spin) + disk(1.0 - 1.0 / kStiffness, 0.0, 0.0, 0.0, -spin) +
-                             "[time]\nend = " + number(end) + "\nstep = 1e-5\n";
+    const std::string text = head() + disk(0.0, 0.0, 0.0, 0.0, spin) +
+                             disk(1.0 - 1.0 / kStiffness, 0.0, 0.0, 0.0, -spin) + "[time]\nend = " + number(end) +
+                             "\nstep = 1e-5\n";
     const auto records = contact_records(run(text).system);
     EXPECT_EQ(records.size(), 1U);
     EXPECT_NEAR(norm(records.at(0).tangential_force), 0.0, 1e-9);
@@ -220,12 +221,13 @@ TEST(ParticlesDisks, ThreadsAndRestartsKeepTheBits) {
 
 /// Gravity, a rising line, a circle: walls of two dimensions, and what is recorded of them.
 TEST(ParticlesDisks, WallsAreLinesAndCircles) {
-  const std::string wall = "[[contact]]\npair = [\"disk\", \"rigid\"]\nlaw = \"linear-spring\"\nrestitution = 0.2\nmu = 0.3\n"
-                           "normal_stiffness = 1e4\ntangential_stiffness = 1e4\n"
-                           "[[wall]]\nshape = \"plane\"\npoint = [0.0, -2.0]\nnormal = [0.0, 1.0]\nmaterial = \"rigid\"\n"
-                           "[[wall]]\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0]\nradius = 4.0\nmaterial = \"rigid\"\n";
-  const ParticlesResultOf<2> out =
-      run("gravity = [0.0, -1.0]\n" + head(0.8) + disk(0.0, -1.0) + disk(1.5, 1.0) + wall + "[time]\nend = 10.0\nstep = 1e-3\n");
+  const std::string wall =
+      "[[contact]]\npair = [\"disk\", \"rigid\"]\nlaw = \"linear-spring\"\nrestitution = 0.2\nmu = 0.3\n"
+      "normal_stiffness = 1e4\ntangential_stiffness = 1e4\n"
+      "[[wall]]\nshape = \"plane\"\npoint = [0.0, -2.0]\nnormal = [0.0, 1.0]\nmaterial = \"rigid\"\n"
+      "[[wall]]\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0]\nradius = 4.0\nmaterial = \"rigid\"\n";
+  const ParticlesResultOf<2> out = run("gravity = [0.0, -1.0]\n" + head(0.8) + disk(0.0, -1.0) + disk(1.5, 1.0) + wall +
+                                       "[time]\nend = 10.0\nstep = 1e-3\n");
   ASSERT_TRUE(out.usable) << out.reason;
   const auto& p = out.system.particles;
   EXPECT_NEAR(p.sphere[0].x[1], -1.5, 1e-3);
@@ -250,7 +252,10 @@ TEST(ParticlesDisks, TheStepFollowsTheStiffestSpringAndTheAttraction) {
   const SceneTime moving = read(head() + disk(0.0, 0.0, 1.0) + disk(1.1, 0.0) + "[time]\nend = 1.0\n").time;
   EXPECT_THROW((void)with("end = 1.0", "end = 1.0\nstep = 2.1e-3"), BadInput);
   EXPECT_NO_THROW((void)with("end = 1.0", "end = 1.0\nstep = 1.9e-3"));
-  EXPECT_NEAR(moving.contact_time, 20.0 * kReach, 1e-9) << "ten steps of 1/200 of it for D0 at speed 1";
+  EXPECT_NEAR(moving.contact_time, std::numbers::pi * std::sqrt(0.5 / kStiffness), 1e-9);
+  EXPECT_NEAR(moving.reach_time, kReach, 1e-12) << "at speed 1";
+  EXPECT_LE(moving.step, kReach / 10.0);
+  EXPECT_GT(moving.step, 0.99 * kReach / 10.0);
 }
 
 TEST(ParticlesDisks, WhatCannotBeCombinedIsRefused) {
@@ -285,11 +290,12 @@ TEST(ParticlesDisks, WhatCannotBeCombinedIsRefused) {
   refused(good, "range = 0.001", "range = 0.0", {"range"});
   refused(good, "density = " + number(4.0 / std::numbers::pi), "density = \"2500 kg/m^3\"", {"density", "kg/m^2"});
   refused(head(0.0, false) + rest, "mu = 0.5", "mu = 0.0", {"tangential_stiffness", "friction"});
-  refused(good, "[time]",
-          "[[contact]]\npair = [\"disk\", \"rigid\"]\nlaw = \"cohesive\"\nnormal_stiffness = 1e4\nmu = 0.0\nzeta = 0.8\n"
-          "adhesion = 1.0\nrange = 1e-3\n[[wall]]\nshape = \"plane\"\npoint = [0, -1]\nnormal = [0, 1]\n"
-          "material = \"rigid\"\n[time]",
-          {"wall", "attracts at a distance", "adhesion = 0"});
+  refused(
+      good, "[time]",
+      "[[contact]]\npair = [\"disk\", \"rigid\"]\nlaw = \"cohesive\"\nnormal_stiffness = 1e4\nmu = 0.0\nzeta = 0.8\n"
+      "adhesion = 1.0\nrange = 1e-3\n[[wall]]\nshape = \"plane\"\npoint = [0, -1]\nnormal = [0, 1]\n"
+      "material = \"rigid\"\n[time]",
+      {"wall", "attracts at a distance", "adhesion = 0"});
   refused(good, "[time]", "[cell]\nsize = [5, 5]\nperiodic = [true, true, true]\n[time]", {"periodic", "two flags"});
 }
 

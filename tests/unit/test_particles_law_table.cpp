@@ -153,6 +153,25 @@ TEST_F(ParticlesLawTable, TheEntryIsThatOfTheSolidFraction) {
                  {"solid_fraction", "0.900", "clamp"});
 }
 
+/// Planes, solid and soft neighbours slide differently, unless the contact says its own friction.
+TEST_F(ParticlesLawTable, FrictionIsThatOfTheKindOfNeighbour) {
+  const ParticlesScene scene = read(contacts("file = \"one.toml\"\nform = \"bag\"\n") + squeezed(true));
+  const auto law = [](const ParticlesScene& of, std::int32_t a, std::int32_t b) {
+    return std::get<SoftCrowd<Crowd::bag, false>>(of.system.laws.law(of.system.laws.index(a, b)));
+  };
+  constexpr std::int32_t kBag = 0, kStone = 1, kRigid = 2;
+  EXPECT_DOUBLE_EQ(law(scene, kBag, kRigid).friction, 0.25);
+  EXPECT_DOUBLE_EQ(law(scene, kBag, kStone).friction, 0.35);
+  EXPECT_DOUBLE_EQ(law(scene, kStone, kBag).friction, 0.35);
+  EXPECT_DOUBLE_EQ(law(scene, kBag, kBag).friction, 0.45);
+  EXPECT_DOUBLE_EQ(law(scene, kBag, kRigid).kt_ratio, 0.3);
+  EXPECT_TRUE(law(scene, kStone, kBag).j_is_soft);
+  EXPECT_FALSE(law(scene, kStone, kBag).i_is_soft);
+  const ParticlesScene own = read(contacts("file = \"one.toml\"\nform = \"bag\"\nmu = 0.1\n") + squeezed(true));
+  EXPECT_DOUBLE_EQ(law(own, kBag, kRigid).friction, 0.1);
+  EXPECT_DOUBLE_EQ(law(own, kBag, kBag).friction, 0.1);
+}
+
 TEST_F(ParticlesLawTable, WhatDoesNotAddUpIsRefused) {
   const std::string good = contacts("file = \"one.toml\"\n") + squeezed(true);
   EXPECT_NO_THROW((void)read(good));
@@ -161,13 +180,16 @@ TEST_F(ParticlesLawTable, WhatDoesNotAddUpIsRefused) {
     const auto at = text.rfind(from);
     return text.replace(at, from.size(), to);
   };
-  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nform = \"bag\"\n"), {"add up", "'bag'", "form bag"});
+  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nform = \"bag\"\n"),
+                 {"add up", "'bag'", "form bag"});
   expect_refused(last("E = \"0.5 MPa\"", "E = \"0.6 MPa\""), {"add up", "E = 600000"});
-  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nunloading = true\n"), {"add up", "with unloading"});
+  expect_refused(last("file = \"one.toml\"\n", "file = \"one.toml\"\nunloading = true\n"),
+                 {"add up", "with unloading"});
   expect_refused(with(good, "kind = \"soft-wall\"", "kind = \"soft-solid\""), {"wall", "soft-wall"});
   expect_refused(with(good, "kind = \"soft-solid\"", "kind = \"soft-wall\""), {"walls", "soft-solid"});
   expect_refused(with(good, "which_soft = \"bag\"", "which_soft = \"rigid\""), {"which_soft", "one of the pair"});
-  expect_refused(with(good, "which_soft = \"bag\"\n", "which_soft = \"bag\"\ndamping = 0.1\n"), {"damping", "law card"});
+  expect_refused(with(good, "which_soft = \"bag\"\n", "which_soft = \"bag\"\ndamping = 0.1\n"),
+                 {"damping", "law card"});
   expect_refused(with(good, "which_soft = \"bag\"\n", "which_soft = \"bag\"\nkt = \"secant\"\n"), {"kt", "law card"});
   const auto at = good.find("[[contact]]\npair = [\"rigid\", \"bag\"]");
   const auto end = good.find("[[contact]]", at + 1);
@@ -205,8 +227,9 @@ std::string lattice() {
     const double shake = 0.02 * std::sin(12.9898 * n);
     text += ball(n % 3 == 0 ? "stone" : "bag", kRadius, (x * 1.86 + Vec3{{shake, -shake, 0.5 * shake}}) * kRadius);
   }
-  return text + "[cell]\nsize = [0.4836, 0.4836, 0.4836]\nperiodic = [true, true, true]\n"
-                "[time]\nsteps = 150\n[checkpoint]\nevery_steps = 50\n";
+  return text +
+         "[cell]\nsize = [0.4836, 0.4836, 0.4836]\nperiodic = [true, true, true]\n"
+         "[time]\nsteps = 150\n[checkpoint]\nevery_steps = 50\n";
 }
 
 TEST_F(ParticlesLawTable, ThreadsAndRestartsKeepTheBits) {
