@@ -11,8 +11,8 @@ namespace softgrain {
 namespace {
 
 MeasureSetup read(const std::string& measure, const std::string& reference = "") {
-  const std::string text =
-      "[packing]\ncount = 1\n[measure]\n" + measure + "\n[measure.soft_solid]\ndeltas = [0.1]\n" + reference;
+  const std::string text = "[packing]\ncount = 1\ntrials = 100\npolydispersity = 4.0\n[measure]\n" + measure +
+                           "\n[measure.soft_solid]\ndeltas = [0.1]\n" + reference;
   const Scene scene = Scene::parse(text, "scene.toml");
   MeasureSetup setup = read_measure_setup(scene.root());
   scene.root().finish();
@@ -27,8 +27,9 @@ TEST(MeasureSetup, LeastWorkWithoutIncrementsOfLeastWorkIsCalledSlowDynamics) {
   EXPECT_EQ(read(kNone).series[0].relaxation, "slow-dynamics");
   EXPECT_EQ(read("relaxation = \"slow-dynamics\"").series[0].relaxation, "slow-dynamics");
   EXPECT_EQ(read("relaxation = \"damped\"\n" + kNone).series[0].relaxation, "damped");
-  const MeasureSetup beside = read("relaxation = \"slow-dynamics\"",
-                                   "[reference]\nrelaxation = \"least-work\"\n[reference.soft_solid]\ndeltas = [0.1]\n");
+  const MeasureSetup beside =
+      read("relaxation = \"slow-dynamics\"",
+           "[reference]\nrelaxation = \"least-work\"\n[reference.soft_solid]\ndeltas = [0.1]\n");
   EXPECT_EQ(beside.series[1].relaxation, "least-work");
 }
 
