@@ -48,7 +48,7 @@ TEST(GrainBox, CompactionReachesThePressureWithFourContactsEverywhere) {
   EXPECT_GT(end.coordination, 5.0);
   EXPECT_LT(end.coordination, 7.0);
   // Isotropic within the scatter of a box seven grains wide.
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(end.stress[k] / end.pressure, 1.0, 0.2);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(end.stress[k] / end.pressure, 1.0, 0.1);
   EXPECT_EQ(end.shear, 0.0);
 }
 

@@ -3,6 +3,7 @@
 #include "common/contact/cohesive_disk.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <cmath>
 
@@ -224,21 +225,26 @@ TEST(CohesiveDisk, WithoutFrictionNothingButSpinsIsMissing) {
 TEST(CohesiveDisk, ThreadsChangeNoBit) {
   std::vector<Vec<2>> x;
   for (int k = 0; k < 4900; ++k) x.push_back({{0.9999 * (k % 70) + 0.5, 0.9999 * (k / 70) + 0.5}});
-  System2 one = disks(published<true>(1e4), x, 0.5, 70.0);
-  for (std::size_t k = 0; k < x.size(); ++k) one.particles.spin[k][0] = 0.01 * static_cast<double>(k % 13);
-  force_pass(one, 1e-3);
-  ASSERT_GT(one.contacts.size(), 8000);
-  std::vector<double> torque(x.size());
-  System2 again = one;
-  again.particles.spin = one.particles.spin;
-  BodyStiffness serial;  // this pass never runs in parallel
-  again.neighbours.reference.clear();
-  again.contacts = {};
-  force_pass(again, 1e-3, serial);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    EXPECT_EQ(one.particles.torque[k], again.particles.torque[k]) << k;
-    EXPECT_EQ(one.particles.force[k], again.particles.force[k]) << k;
+  const int before = omp_get_max_threads();
+  std::vector<System2> passed;
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    passed.push_back(disks(published<true>(1e4), x, 0.5, 70.0));
+    System2& s = passed.back();
+    for (std::size_t k = 0; k < x.size(); ++k) s.particles.spin[k][0] = 0.01 * static_cast<double>(k % 13);
+    force_pass(s, 1e-3);
   }
+  omp_set_num_threads(before);
+  ASSERT_GT(passed[0].contacts.size(), 8000) << "too small for the parallel path";
+  bool turns = false;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    turns = turns || passed[0].particles.torque[k][0] != 0.0;
+    for (const std::size_t other : {1U, 2U}) {
+      EXPECT_EQ(passed[0].particles.torque[k], passed[other].particles.torque[k]) << k;
+      EXPECT_EQ(passed[0].particles.force[k], passed[other].particles.force[k]) << k;
+    }
+  }
+  EXPECT_TRUE(turns);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The laws of soft particles with several contacts: geometry against quadrature, forces against the energy they come
 // from, Newton's third law, the limits.
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <cmath>
 #include <numbers>
@@ -238,22 +239,27 @@ TYPED_TEST(SoftCrowdLaws, UnloadingReturnsLessWork) {
 }
 
 TYPED_TEST(SoftCrowdLaws, ThreadsChangeNoBit) {
+  constexpr int kEdge = 15;
   std::vector<std::pair<double, bool>> bodies;
   std::vector<Vec3> places;
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < kEdge * kEdge * kEdge; ++k) {
     bodies.push_back({0.01, k % 3 != 0});
-    places.push_back({{0.0185 * (k % 10), 0.0185 * ((k / 10) % 10), 0.0185 * (k / 100)}});
+    places.push_back(Vec3{{double(k % kEdge), double(k / kEdge % kEdge), double(k / (kEdge * kEdge))}} * 0.0185);
   }
-  System3 one = crowd<TypeParam>(bodies, places);
-  force_pass(one, 0.0);
-  System3 again = crowd<TypeParam>(bodies, places);
-  std::vector<Vec3> sum(bodies.size());
-  for (const ContactRecord<3>& c : contact_records(again)) {
-    const Vec3 f = c.normal * c.normal_force + c.tangential_force;
-    sum[static_cast<std::size_t>(c.i)] += f;
-    sum[static_cast<std::size_t>(c.j)] -= f;
+  const int before = omp_get_max_threads();
+  std::vector<System3> passed;
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    passed.push_back(crowd<TypeParam>(bodies, places));
+    force_pass(passed.back(), 0.0);
   }
-  for (std::size_t k = 0; k < sum.size(); ++k) EXPECT_EQ(sum[k], static_cast<Vec3>(one.particles.force[k])) << k;
+  omp_set_num_threads(before);
+  ASSERT_GT(passed[0].contacts.size(), 8000) << "too small for the parallel path";
+  EXPECT_NE(passed[0].particles.force[0], (Stored<3>{}));
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    EXPECT_EQ(passed[0].particles.force[k], passed[1].particles.force[k]) << k;
+    EXPECT_EQ(passed[0].particles.force[k], passed[2].particles.force[k]) << k;
+  }
 }
 
 /// Bag and directional law against the plain double sum over pairs of contacts.
