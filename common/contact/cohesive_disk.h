@@ -21,6 +21,7 @@ struct CohesiveDisk {
   static constexpr int dimension = 2;
   static constexpr bool has_tangential = kFriction;
   static constexpr bool has_memory = kRolling;
+  static constexpr bool memory_has_sides = kRolling;  ///< theta, of i against j
   static constexpr bool has_rolling = kRolling;
   static constexpr bool needs_velocity = true;
   static constexpr bool needs_particle_pass = false;

@@ -78,6 +78,14 @@ constexpr bool resists_rolling() {
   return false;
 }
 
+/// Whether the memory of a law changes its sign when the pair is seen from the other body, as an angle of i against j
+/// does and a depth does not.
+template <class Law>
+constexpr bool memory_has_sides() {
+  if constexpr (requires { Law::memory_has_sides; }) return Law::memory_has_sides;
+  return false;
+}
+
 /// Keeps a spring in the tangent plane as the normal turns: projects, keeps the magnitude. In two dimensions the
 /// tangent is one direction, and the spring a length along it.
 template <int D>

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <stdexcept>
+#include <tuple>
 
 #include "common/neighbours/verlet_list.h"
 
@@ -66,47 +68,79 @@ void permute(std::vector<T>& values, const std::vector<Slot>& order) {
   values.swap(out);
 }
 
-/// A pair under its new names.
+/// A pair under its new names. They may put it under another law: one that asks which of two bodies is the soft one.
 template <int D>
 struct RenamedPair {
+  Geometry geometry = Geometry::sphere_sphere;
+  std::int32_t law = 0;
   Slot i = 0;
   Slot j = 0;
   std::int32_t image = 0;
   Stored<D> spring{};
   double memory = 0.0;
+
+  /// As in a list that has just been made.
+  friend bool operator<(const RenamedPair& a, const RenamedPair& b) {
+    return std::tie(a.geometry, a.law, a.i, a.j) < std::tie(b.geometry, b.law, b.i, b.j);
+  }
 };
+
+bool memory_has_sides_under(const AnyLaw& any) {
+  return std::visit([]<class Law>(const Law&) { return memory_has_sides<Law>(); }, any);
+}
 
 /// The body with the smaller slot is i: where that changes, the pair is seen from the other side.
 template <int D>
-RenamedPair<D> renamed(const ContactList<D>& list, std::size_t c, const std::vector<Slot>& slot_of) {
-  const auto name = [&](Slot s) {
-    return s < static_cast<Slot>(slot_of.size()) ? slot_of[static_cast<std::size_t>(s)] : s;
+RenamedPair<D> renamed(const System<D>& s, const ContactSection& section, std::size_t c,
+                       const std::vector<Slot>& slot_of) {
+  const ContactList<D>& list = s.contacts;
+  const auto name = [&](Slot slot) {
+    return slot < static_cast<Slot>(slot_of.size()) ? slot_of[static_cast<std::size_t>(slot)] : slot;
   };
-  RenamedPair<D> pair{name(list.i[c]), name(list.j[c]), list.image[c], {}, 0.0};
+  RenamedPair<D> pair{section.geometry, section.law, name(list.i[c]), name(list.j[c]), list.image[c], {}, 0.0};
   if (list.has_spring) pair.spring = list.spring[c];
   if (list.has_memory) pair.memory = list.memory[c];
   if (pair.i < pair.j) return pair;
   std::swap(pair.i, pair.j);
+  pair.law = s.laws.index(s.particles.material[static_cast<std::size_t>(pair.i)],
+                          s.particles.material[static_cast<std::size_t>(pair.j)]);
+  if (pair.law == LawSet::kNoContact) throw std::logic_error("two materials have a contact law in one order alone");
   pair.image = image_count<D>() - 1 - pair.image;
   pair.spring = -pair.spring;
+  if (memory_has_sides_under(s.laws.law(pair.law))) pair.memory = -pair.memory;
   return pair;
 }
 
+/// One section per geometry and law.
+template <int D>
+void list_pairs(ContactList<D>& list, const std::vector<RenamedPair<D>>& pairs) {
+  list.sections.clear();
+  for (std::size_t c = 0; c < pairs.size(); ++c) {
+    const RenamedPair<D>& pair = pairs[c];
+    const auto at = static_cast<std::int32_t>(c);
+    const bool goes_on = !list.sections.empty() && list.sections.back().geometry == pair.geometry &&
+                         list.sections.back().law == pair.law;
+    if (!goes_on) list.sections.push_back({at, at, pair.geometry, pair.law});
+    list.sections.back().end = at + 1;
+    list.i[c] = pair.i;
+    list.j[c] = pair.j;
+    list.image[c] = pair.image;
+  }
+}
+
+/// The particles have their new names already.
 template <int D>
 void rename_pairs(System<D>& s, const std::vector<Slot>& order) {
   ContactList<D>& list = s.contacts;
   std::vector<Slot> slot_of(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) slot_of[static_cast<std::size_t>(order[k])] = static_cast<Slot>(k);
   std::vector<RenamedPair<D>> pairs;
-  for (std::size_t c = 0; c < list.i.size(); ++c) pairs.push_back(renamed(list, c, slot_of));
+  pairs.reserve(list.i.size());
   for (const ContactSection& section : list.sections)
-    std::sort(pairs.begin() + section.begin, pairs.begin() + section.end,
-              [](const auto& a, const auto& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
-  for (std::size_t c = 0; c < pairs.size(); ++c) {
-    list.i[c] = pairs[c].i;
-    list.j[c] = pairs[c].j;
-    list.image[c] = pairs[c].image;
-  }
+    for (std::int32_t c = section.begin; c < section.end; ++c)
+      pairs.push_back(renamed(s, section, static_cast<std::size_t>(c), slot_of));
+  std::sort(pairs.begin(), pairs.end());
+  list_pairs(list, pairs);
   adopt_list(s);
   for (std::size_t c = 0; c < pairs.size(); ++c) {
     if (list.has_spring) list.spring[c] = pairs[c].spring;

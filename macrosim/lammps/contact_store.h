@@ -41,7 +41,7 @@ struct ContactStore {
 /// What one atom remembers of a contact: `partner` is the tag of an atom, or minus the number of a plane from 1.
 struct Remembered {
   int partner = 0;
-  Vec<3> spring{};
+  Vec<3> spring{};  ///< seen from this atom, as is a memory that has sides
   double memory = 0.0;
 };
 

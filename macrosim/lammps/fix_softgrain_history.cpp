@@ -5,6 +5,7 @@
 
 #include "atom.h"
 #include "error.h"
+#include "macrosim/lammps/contact_loop.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
 #include "macrosim/lammps/pair_softgrain.h"
 #include "update.h"
@@ -65,13 +66,16 @@ void FixSoftgrainHistory::store() {
   const auto own = static_cast<std::size_t>(atom->nlocal);
   for (std::size_t i = 0; i < own; ++i) memory_[i].clear();
   const bridge::ContactStore& s = pair->store;
-  for (std::size_t c = 0; c < s.size(); ++c) {
-    if (s.touched[c] == 0) continue;
-    const auto i = static_cast<std::size_t>(s.i[c]);
-    const auto j = static_cast<std::size_t>(s.j[c]);
-    memory_[i].push_back({atom->tag[j], s.spring[c], s.memory[c]});
-    if (j < own) memory_[j].push_back({atom->tag[i], -s.spring[c], s.memory[c]});
-  }
+  bridge::over_sections(s, pair->laws, [&]<class Law>(const Law&, const bridge::Section& section) {
+    constexpr double kOtherSide = softgrain::memory_has_sides<Law>() ? -1.0 : 1.0;
+    for (std::size_t c = section.begin; c < section.end; ++c) {
+      if (s.touched[c] == 0) continue;
+      const auto i = static_cast<std::size_t>(s.i[c]);
+      const auto j = static_cast<std::size_t>(s.j[c]);
+      memory_[i].push_back({atom->tag[j], s.spring[c], s.memory[c]});
+      if (j < own) memory_[j].push_back({atom->tag[i], -s.spring[c], kOtherSide * s.memory[c]});
+    }
+  });
   int before = 0;
   for (const FixSoftgrainWall* wall : pair->walls) {
     const bridge::ContactStore& w = wall->store;

@@ -2,34 +2,13 @@
 // been.
 #include <gtest/gtest.h>
 
-#include <map>
-#include <sstream>
-
+#include "tests/lammps/dump_file.h"
 #include "tests/lammps/macro_scene.h"
 #include "tests/lammps/run_ranks.h"
 #include "tests/support/temporary_directory.h"
 
 namespace softgrain::test {
 namespace {
-
-using State = std::map<int, std::vector<double>>;
-
-/// A dump: id, then numbers.
-State read_dump(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  while (std::getline(file, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
-  }
-  State out;
-  while (std::getline(file, line)) {
-    std::istringstream words(line);
-    int id = 0;
-    words >> id;
-    double x = 0.0;
-    while (words >> x) out[id].push_back(x);
-  }
-  return out;
-}
 
 /// Largest difference of any number over `scale`.
 double difference(const State& a, const State& b, double scale) {

@@ -1,4 +1,5 @@
 // Scenes of explicit particles whose contacts follow a law card.
+#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -75,6 +76,41 @@ TEST_F(ParticlesLawCard, UnusableCombinationsAreBadInput) {
       "[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, -0.05]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"bag\"\n";
   EXPECT_THROW((void)read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", true, solid_wall),
                BadInput);
+}
+
+/// Pairs of a soft and a solid ball far from each other, either one first in turn.
+System3 pairs_apart(const System3& pair, int count) {
+  System3 s = pair;
+  s.particles = {};
+  const auto& from = pair.particles;
+  for (int k = 0; k < count; ++k)
+    for (const std::size_t u : k % 2 == 0 ? std::array<std::size_t, 2>{0, 1} : std::array<std::size_t, 2>{1, 0}) {
+      NewBody<3> body;
+      body.x = from.sphere[u].x + Vec3{{0.5 * (k * 7 % 11), 0.5 * (k * 5 % 13), 0.5 * (k % 17)}};
+      body.x += Vec3{{6.0 * (k / 2431), 0.0, 0.0}};
+      body.r = from.sphere[u].r;
+      body.mass = 1.0 / from.inverse_mass[u];
+      body.inertia = 1.0 / from.inverse_inertia[u];
+      body.material = from.material[u];
+      add_grain(s.particles, body);
+    }
+  return s;
+}
+
+/// From 2000 grains on they are put in another order: pairs of which the second body has become the first.
+TEST_F(ParticlesLawCard, ForceOfAPairDoesNotDependOnHowManyThereAre) {
+  ParticlesScene scene = read("[\"bag\", \"stone\"]", "kind = \"soft-solid\"\nwhich_soft = \"bag\"\n", true);
+  scene.time.steps = 3;
+  scene.record = false;
+  const double expected =
+      contact_records(run_particles(scene, pairs_apart(scene.system, 1), {}).system).at(0).normal_force;
+  ASSERT_GT(expected, 0.0);
+  for (const int count : {990, 1010}) {
+    const ParticlesResult out = run_particles(scene, pairs_apart(scene.system, count), {});
+    const auto contacts = contact_records(out.system);
+    ASSERT_EQ(contacts.size(), static_cast<std::size_t>(count));
+    for (const auto& c : contacts) ASSERT_NEAR(c.normal_force, expected, 1e-9 * expected) << count;
+  }
 }
 
 }  // namespace
