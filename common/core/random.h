@@ -32,8 +32,15 @@ class RandomStream {
   RandomStream(std::uint64_t seed, RandomPurpose purpose, std::uint64_t index)
       : key_{{seed, static_cast<std::uint64_t>(purpose)}}, counter_{{0, index, 0, 0}} {}
 
-  /// Uniform in the open interval (0, 1), 53 bits: (k + 1/2) / 2^53.
-  double uniform() { return (static_cast<double>(next() >> 11) + 0.5) * 0x1p-53; }
+  /// Uniform in the open interval (0, 1), 53 bits.
+  double uniform() { return open_unit(next()); }
+
+  /// (k + 1/2) / 2^53 with k the upper 53 bits, as a number; the last one of all, which would be rounded to 1, stays
+  /// below.
+  static double open_unit(std::uint64_t bits) {
+    const double u = (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;
+    return u < 1.0 ? u : 1.0 - 0x1p-53;
+  }
 
   /// Uniform integer in [0, n), n > 0, by rejection (unbiased).
   std::uint64_t below(std::uint64_t n) {
