@@ -89,7 +89,9 @@ class Loop {
       transpose(t[0], t[1], t[2], t[3]);
       Quad distance2 = t[0] * t[0];
       for (std::size_t axis = 1; axis < D; ++axis) distance2 += t[axis] * t[axis];
-      const int touch = sign_bits(distance2 < t[3] * t[3]) & ((1 << valid) - 1);
+      // Apart is what is known to be: a distance that is not a number makes a force that is none, as in the scalar
+      // loop.
+      const int touch = ~sign_bits(distance2 >= t[3] * t[3]) & ((1 << valid) - 1);
       for (int l = 0; l < 4; ++l) {
         record[n] = d[u(l)];
         pair[n] = c[u(l)];
@@ -200,8 +202,8 @@ class Loop {
     const Lanes distance = sqrt(norm2(normal));
     const Lanes overlap = block_.reach.at(g) - distance;
     normal *= 1.0 / distance;
-    where(!(distance > 0.0), normal[0]) = Lanes(1.0);  // coincident centres: an arbitrary, fixed normal
-    for (int c = 1; c < D; ++c) where(!(distance > 0.0), normal[c]) = Lanes(0.0);
+    const auto known = distance > 0.0;  // of coincident centres the normal is an arbitrary, fixed one
+    for (int c = 0; c < D; ++c) normal[c] = choose(known, normal[c], Lanes(c == 0 ? 1.0 : 0.0));
     const Lanes root_h = sqrt(overlap);
     const Lanes contact_radius = block_.a.at(g) * root_h;
     Lanes normal_force = contact_radius * overlap * law_.k.inverse_d;
@@ -243,9 +245,7 @@ class Loop {
     } else {
       const Vec<D, Lanes> flat = old - normal * dot(old, normal);
       const Lanes after = norm2(flat);
-      Lanes stretch(1.0);
-      where(after > 0.0, stretch) = sqrt(norm2(old) / after);
-      return flat * stretch;
+      return flat * choose(after > 0.0, sqrt(norm2(old) / after), Lanes(1.0));
     }
   }
 
@@ -259,9 +259,7 @@ class Loop {
     Vec<D, Lanes> old = at<D>(block_.spring, g);
     if constexpr (Law::has_memory) {
       const Lanes memory = block_.memory.at(g);
-      Lanes share(1.0);
-      where(memory > 0.0 && contact_radius > memory, share) = memory / contact_radius;
-      old *= share;
+      old *= choose(memory > 0.0 && contact_radius > memory, memory / contact_radius, Lanes(1.0));
       block_.memory.put(g, contact_radius);
     }
     Vec<D, Lanes> spring = carried(old, normal) + sliding * Lanes(dt_);
@@ -274,16 +272,11 @@ class Loop {
       Vec<D, Lanes> damped = force - sliding * eta;
       const Lanes damped2 = norm2(damped);
       const auto capped = damped2 > limit2;
-      if (any_of(capped && !slides)) {
-        Lanes share(1.0);
-        where(capped, share) = limit / sqrt(damped2);
-        damped *= share;
-      }
-      for (int c = 0; c < D; ++c) where(!slides, force[c]) = damped[c];
+      if (any_of(capped && !slides)) damped *= choose(capped, limit / sqrt(damped2), Lanes(1.0));
+      for (int c = 0; c < D; ++c) force[c] = choose(slides, force[c], damped[c]);
     }
     if (any_of(slides)) {
-      Lanes share(1.0);
-      where(slides, share) = limit / sqrt(size2);
+      const Lanes share = choose(slides, limit / sqrt(size2), Lanes(1.0));
       spring *= share;
       force *= share;
     }

@@ -17,6 +17,18 @@ using Lanes = std::experimental::native_simd<double>;
 constexpr int kLanes = static_cast<int>(Lanes::size());
 constexpr auto kAligned = std::experimental::vector_aligned;
 
+/// Lane by lane: `yes` where the mask holds, else `no`.
+inline Lanes choose(const Lanes::mask_type& mask, const Lanes& yes, Lanes no) {
+#if defined __clang__ && defined __AVX512F__
+  // where() of libstdc++ takes one side for all lanes here: its _S_blend_avx512 (bits/simd_x86.h) has no blend for
+  // clang but a boolean choice, marked FIXME.
+  return Lanes([&](auto lane) { return mask[lane] ? yes[lane] : no[lane]; });
+#else
+  where(mask, no) = yes;
+  return no;
+#endif
+}
+
 /// Pairs looked at in one go. All that a block needs stays in the first-level cache.
 constexpr int kBlock = 128;
 

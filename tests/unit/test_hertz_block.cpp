@@ -180,6 +180,20 @@ TEST(HertzBlock, LeavesHistoryAloneWhenAskedTo) {
   for (std::size_t c = 0; c < spring.size(); ++c) ASSERT_EQ(spring[c], s.contacts.spring[c]);
 }
 
+TEST(HertzBlock, ADistanceThatIsNoNumberMakesAForceThatIsNone) {
+  System<3> scalar = crowd<3>({}, 300);
+  const ContactSection& section = scalar.contacts.sections.front();
+  const auto lost = static_cast<std::size_t>(scalar.contacts.i[static_cast<std::size_t>(section.begin)]);
+  scalar.particles.sphere[lost].x[1] = std::numeric_limits<double>::quiet_NaN();
+  System<3> fast = scalar;
+  scalar_pass(scalar, 0.01, History::advance);
+  fast_pass(fast, 0.01, History::advance);
+  EXPECT_TRUE(std::isnan(scalar.particles.force[lost][0]));
+  for (std::size_t u = 0; u < fast.particles.force.size(); ++u)
+    for (int k = 0; k < 3; ++k)
+      ASSERT_EQ(std::isnan(scalar.particles.force[u][k]), std::isnan(fast.particles.force[u][k])) << "body " << u;
+}
+
 TEST(HertzBlock, CoincidentCentresHaveAFixedNormal) {
   System<3> s;
   Material m;
