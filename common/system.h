@@ -24,7 +24,7 @@ struct NeighbourState {
   std::int64_t passes_at_build = 0;  ///< loop passes when the list was made
   // Follow from the margins (note_skin), not part of a saved state.
   std::vector<double> inverse_skin2;  ///< [1/m^2]
-  double slimmest = 0.0;              ///< largest ratio of radius to margin
+  double slimmest = 0.0;              ///< largest ratio of radius and half the reach to margin
 };
 
 template <int D>

@@ -61,7 +61,7 @@ double image_drift(const System<D>& s) {
 template <int D>
 class Uses {
  public:
-  explicit Uses(const System<D>& s) : s_(s), flows_(follows_cell(s)) {
+  explicit Uses(const System<D>& s) : s_(s), flows_(follows_cell(s)), half_reach_(half_reach(s.laws)) {
     if (flows_ && !(s.cell.edges == s.neighbours.reference_edges)) {
       f_ = deformation(s.cell, s.neighbours.reference_edges);
       strain_ = frobenius(without_unit(f_));
@@ -75,13 +75,14 @@ class Uses {
     const auto& n = s_.neighbours;
     const Sphere<D>& sphere = s_.particles.sphere[u];
     const Vec<D> from = strain_ > 0.0 ? f_ * n.reference[u] : n.reference[u];
-    const double used = (norm(sphere.x - from) + drift_ + strain_ * (sphere.r + n.skin[u])) / n.skin[u];
+    const double used = (norm(sphere.x - from) + drift_ + strain_ * (sphere.r + half_reach_ + n.skin[u])) / n.skin[u];
     return std::isfinite(used) ? used : kNever;
   }
 
  private:
   const System<D>& s_;
   bool flows_;
+  double half_reach_;
   Matrix<D> f_;
   double strain_ = 0.0;
   double drift_ = 0.0;
@@ -138,6 +139,13 @@ constexpr double kNarrowest = 0.01;        // of the radius of the smallest
 
 }  // namespace
 
+double half_reach(const LawSet& laws) {
+  double reach = 0.0;
+  for (std::int32_t l = 0; l < laws.size(); ++l)
+    reach = std::max(reach, std::visit([](const auto& law) { return reach_of(law); }, laws.law(l)));
+  return 0.5 * reach;
+}
+
 template <int D>
 std::vector<double> default_skin(const Particles<D>& p) {
   const double smallest = smallest_radius(p);
@@ -167,15 +175,16 @@ void note_skin(System<D>& s) {
   NeighbourState<D>& n = s.neighbours;
   n.inverse_skin2.resize(n.skin.size());
   n.slimmest = 0.0;
+  const double half = half_reach(s.laws);
   for (std::size_t u = 0; u < n.skin.size(); ++u) {
     n.inverse_skin2[u] = 1.0 / (n.skin[u] * n.skin[u]);
-    n.slimmest = std::max(n.slimmest, s.particles.sphere[u].r / n.skin[u]);
+    n.slimmest = std::max(n.slimmest, (s.particles.sphere[u].r + half) / n.skin[u]);
   }
 }
 
 template <int D>
 void fit_skin_to_cell(System<D>& s) {
-  const double room = 0.249 * shortest_period(s.cell);
+  const double room = 0.249 * shortest_period(s.cell) - half_reach(s.laws);
   for (Slot i = 0; i < s.particles.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
     const double r = s.particles.sphere[u].r;

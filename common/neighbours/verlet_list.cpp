@@ -42,14 +42,6 @@ bool has_onset(const AnyLaw& any) {
   return std::visit([]<class Law>(const Law&) { return Law::has_onset; }, any);
 }
 
-/// Half the largest gap at which a pair of grains interacts; 0 for laws of contact alone.
-double half_reach(const LawSet& laws) {
-  double reach = 0.0;
-  for (std::int32_t l = 0; l < laws.size(); ++l)
-    reach = std::max(reach, std::visit([](const auto& law) { return reach_of(law); }, laws.law(l)));
-  return 0.5 * reach;
-}
-
 /// Margins of the search: a pair's is the sum of both, so that whatever may come within reach is found.
 template <int D>
 std::vector<double> search_margins(const System<D>& s) {

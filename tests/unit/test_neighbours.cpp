@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
+#include "common/dynamics/verlet.h"
 #include "common/neighbours/verlet_list.h"
 #include "tests/support/impact.h"
 
@@ -252,6 +253,65 @@ TEST(Neighbours, HistoryIsLostOnSeparation) {
   ASSERT_EQ(s.contacts.size(), 1) << "still listed";
   EXPECT_EQ(norm(s.contacts.spring[0]), 0.0);
   EXPECT_EQ(s.contacts.memory[0], 0.0);
+}
+
+/// Two disks whose attraction reaches far, near each other in a cell that is squeezed. No pair may come within reach
+/// unlisted.
+System<2> distant_disks(double gap) {
+  System<2> s;
+  s.materials.resize(1);
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, CohesiveDisk<false, false>{100.0, 0.0, 0.0, 0.0, 1.0, 4.0, 0.0, 0.0});
+  s.cell = box_cell<2>({{30.0, 30.0}}, {true, true});
+  for (const double x : {10.0, 12.0 + gap}) add_grain(s.particles, solid_sphere<2>({{x, 15.0}}, 1.0, 1.0));
+  rebuild_neighbours(s);
+  return s;
+}
+
+void squeeze(System<2>& s, double strain) {
+  s.cell.edges[0][0] *= 1.0 - strain;
+  for (auto& sphere : s.particles.sphere) sphere.x[0] *= 1.0 - strain;
+}
+
+TEST(VerletList, AttractionAtADistanceIsSeenInAStrainedCell) {
+  for (const double gap : {4.26, 4.3, 4.5}) {
+    System<2> s = distant_disks(gap);
+    ASSERT_EQ(s.contacts.size(), 0) << gap;
+    for (int k = 0; k < 40; ++k) {
+      squeeze(s, 0.005);
+      force_pass(s, 0.0, History::none);
+      const double now = s.particles.sphere[1].x[0] - s.particles.sphere[0].x[0] - 2.0;
+      const double expected = now < 4.0 ? 1.0 - now / 4.0 : 0.0;
+      ASSERT_NEAR(s.particles.force[0][0], expected, 1e-12) << gap << ", strained " << k + 1 << " times";
+    }
+  }
+}
+
+TEST(VerletList, AttractionAtADistanceIsSeenWhileACellFlows) {
+  System<2> s = distant_disks(4.3);
+  s.cell.velocity_gradient[0][0] = -1.0;
+  s.particles.inverse_mass.assign(2, 0.0);
+  for (std::size_t u = 0; u < 2; ++u) s.particles.velocity[u][0] = -s.particles.sphere[u].x[0];
+  VelocityVerlet<2> integrator(1e-3);
+  integrator.initialise(s);
+  for (int k = 0; k < 100; ++k) {
+    integrator.step(s);
+    const double now = s.particles.sphere[1].x[0] - s.particles.sphere[0].x[0] - 2.0;
+    const double expected = now < 4.0 ? 1.0 - now / 4.0 : 0.0;
+    ASSERT_NEAR(s.particles.force[0][0], expected, 1e-12) << k;
+    for (std::size_t u = 0; u < 2; ++u) s.particles.velocity[u][0] = -s.particles.sphere[u].x[0];
+  }
+}
+
+/// Half the distance between images belongs to a grain with margin and reach: a cell that is wide enough for the reach
+/// must not be refused because of the margin.
+TEST(VerletList, MarginsLeaveRoomForTheReach) {
+  System<2> s = distant_disks(0.5);
+  s.cell = box_cell<2>({{12.2, 12.2}}, {true, true});
+  s.particles.sphere[0].x = {{3.0, 3.0}};
+  s.particles.sphere[1].x = {{5.5, 3.0}};
+  EXPECT_NO_THROW(rebuild_neighbours(s));
+  EXPECT_EQ(s.contacts.size(), 1);
 }
 
 }  // namespace
