@@ -60,7 +60,7 @@ struct CrowdPressure {
   [[nodiscard]] Value at(double s) const {
     const double end = range.clamp_at();
     const double d = cap_depth(std::min(s, end));
-    if (!(d > delta)) return {};
+    if (d <= delta) return {};  // not a number goes on
     const double force = a * (std::pow(d, b) - std::pow(delta, b));
     const double disk = 0.75 * d * (2.0 - d);
     const double p = force / disk;
@@ -167,7 +167,7 @@ struct LostVolume {
 };
 
 inline LostVolume lost_volume(const Lens& l, double w, double m) {
-  if (!(l.volume > 0.0)) return {};
+  if (l.volume <= 0.0) return {};  // not a number goes on
   if (m == 1.0) return {w * l.volume, w * l.slope, w * l.curvature};
   const double nu = w * std::pow(l.volume, m);
   const double first = m * nu / l.volume;

@@ -1,9 +1,9 @@
 // How far fitted laws are asked beyond what was measured.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
-#include <algorithm>
 #include <cstdint>
 
+#include "common/core/larger_or_nan.h"
 #include "common/core/law_range.h"
 
 namespace softgrain {
@@ -19,8 +19,8 @@ struct LawUse {
 
   void add(double value_over_end, Beyond policy) {
     ++asked;
-    largest = std::max(largest, value_over_end);
-    if (!(value_over_end > 1.0)) return;
+    largest = larger_or_nan(largest, value_over_end);
+    if (value_over_end <= 1.0) return;
     ++beyond;
     refused += policy == Beyond::error ? 1 : 0;
     clamped += policy == Beyond::clamp ? 1 : 0;
@@ -28,7 +28,7 @@ struct LawUse {
   LawUse& operator+=(const LawUse& other) {
     asked += other.asked;
     beyond += other.beyond;
-    largest = std::max(largest, other.largest);
+    largest = larger_or_nan(largest, other.largest);
     refused += other.refused;
     clamped += other.clamped;
     return *this;

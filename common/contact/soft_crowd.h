@@ -121,7 +121,7 @@ struct SoftCrowd {
   template <int D>
   void add_side(const ContactState<D>& s, bool of_i, ContactResponse<D>& out) const {
     const LostVolume nu = lost(s, of_i);
-    if (!(nu.nu > 0.0)) return;
+    if (nu.nu <= 0.0) return;  // not a number goes on
     const double radius = of_i ? s.radius_i : s.radius_j;
     double gain = 0.0;
     double gain_slope = 0.0;

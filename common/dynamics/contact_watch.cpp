@@ -33,8 +33,7 @@ double cohesive_energy(const Law& law, double overlap) {
 
 template <class Law>
 constexpr bool is_crowd() {
-  return requires { Law::needs_particle_pass; }
-  &&requires(const Law& law) { law.form; };
+  return requires(const Law& law) { law.form; };
 }
 
 /// Sections one after another; sums of crowd laws are made anew, because those of the last pass are scratch.
@@ -48,7 +47,7 @@ class Watcher {
       detail::with_types(s_, section,
                          [&](const auto& law, auto geometry, auto) { look<decltype(geometry)::value>(section, law); });
     for (std::size_t u = 0; u < sums_.size(); ++u)
-      if (sums_[u].square > 0.0) add_volume(form_[u]->equivalent_volume(sums_[u]), *form_[u]);
+      if (sums_[u].square != 0.0) add_volume(form_[u]->equivalent_volume(sums_[u]), *form_[u]);
     return out_;
   }
 
@@ -80,8 +79,9 @@ class Watcher {
       ++out_.behind_planes;
       out_.behind = s_.contacts.i[c];
     }
-    if (g.overlap / smaller <= out_.overlap) return;
-    out_.overlap = g.overlap / smaller;
+    const double depth = g.overlap / smaller;
+    if (depth <= out_.overlap || std::isnan(out_.overlap)) return;
+    out_.overlap = depth;
     out_.i = s_.contacts.i[c];
     out_.j = s_.contacts.j[c];
   }
@@ -119,7 +119,7 @@ class Watcher {
     if constexpr (!Law::needs_particle_pass) {
       CrowdSum<D> own;
       law.share(state, of_i, own);
-      if (own.square > 0.0) add_volume(own.volume, law.form);
+      if (own.square != 0.0) add_volume(own.volume, law.form);
     } else {
       if (sums_.empty()) {
         sums_.resize(s_.particles.sphere.size());

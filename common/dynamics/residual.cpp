@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/larger_or_nan.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {
@@ -51,7 +52,7 @@ Residual residual(const System<D>& s) {
   }
   out.worst_force = std::sqrt(std::max(worst, 0.0));
   for (const ContactRecord<D>& c : contact_records(s)) {
-    out.max_overlap = std::max(out.max_overlap, c.overlap / smaller_radius(s, c));
+    out.max_overlap = larger_or_nan(out.max_overlap, c.overlap / smaller_radius(s, c));
     out.mean_contact += std::abs(c.normal_force);
     ++out.contacts;
   }

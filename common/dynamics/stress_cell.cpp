@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/larger_or_nan.h"
 #include "common/dynamics/pair_loop.h"
 #include "common/dynamics/scatter_sink.h"
 #include "common/neighbours/verlet_list.h"
@@ -108,7 +109,7 @@ void StressCellVerlet<D>::move_bodies(System<D>& s, const Vec<D>& growth, const 
     }
     p.force[u] = {};
     p.torque[u] = {};
-    fastest2 = std::max(fastest2, norm2(middle_[u]) * s.neighbours.inverse_skin2[u]);
+    fastest2 = larger_or_nan(fastest2, norm2(middle_[u]) * s.neighbours.inverse_skin2[u]);
   }
   used_ += dt_ * (std::sqrt(fastest2) + SkinUse<D>(s).strain_rate());
 }
@@ -201,8 +202,8 @@ PowderResidual<D> powder_residual(const System<D>& s, const Vec<D>& imposed, con
   double kinetic = 0.0;
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    out.force = std::max(out.force, norm(static_cast<Vec<D>>(p.force[u])));
-    out.moment = std::max(out.moment, std::sqrt(norm2(static_cast<Rot<D>>(p.torque[u]))));
+    out.force = larger_or_nan(out.force, norm(static_cast<Vec<D>>(p.force[u])));
+    out.moment = larger_or_nan(out.moment, std::sqrt(norm2(static_cast<Rot<D>>(p.torque[u]))));
     // Nothing slows a disk in free flight, nor its spin: it is a rattler, and the pack may rest without it.
     if (static_cast<Vec<D>>(p.force[u]) == Vec<D>{} && static_cast<Rot<D>>(p.torque[u]) == Rot<D>{}) continue;
     Vec<D> v = p.velocity[u];
@@ -215,7 +216,7 @@ PowderResidual<D> powder_residual(const System<D>& s, const Vec<D>& imposed, con
       kinetic / static_cast<double>(std::max<Slot>(p.grains, 1)) / (kPowderKineticLimit * f1 * largest_diameter);
   for (int k = 0; lengths_free && k < D; ++k)
     out.pressure =
-        std::max(out.pressure, std::abs(imposed[k] - measured[k]) * largest_diameter / (kPowderForceLimit * f1));
+        larger_or_nan(out.pressure, std::abs(imposed[k] - measured[k]) * largest_diameter / (kPowderForceLimit * f1));
   return out;
 }
 

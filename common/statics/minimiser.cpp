@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/larger_or_nan.h"
+
 namespace softgrain::statics {
 
 namespace {
@@ -44,11 +46,10 @@ double worst_residual(const PackForces& forces, const GrainPack& pack, int strid
   double worst = 0.0;
   for (std::size_t g = 0; g < forces.largest2.size(); ++g) {
     double net2 = 0.0;
-    for (std::size_t k = 0; k < step; k += 3) net2 = std::max(net2, norm2(triple(forces.force, g * step + k)));
+    for (std::size_t k = 0; k < step; k += 3) net2 = larger_or_nan(net2, norm2(triple(forces.force, g * step + k)));
     const double load = pack.weight.empty() ? 0.0 : pack.weight[g];
     const double scale = std::max({std::sqrt(forces.largest2[g]), load, floor_force});
-    const double ratio = net2 > 0.0 ? std::sqrt(net2) / scale : 0.0;
-    if (!(ratio <= worst)) worst = ratio;  // keeps what is not a number
+    worst = larger_or_nan(worst, net2 == 0.0 ? 0.0 : std::sqrt(net2) / scale);
   }
   return worst;
 }

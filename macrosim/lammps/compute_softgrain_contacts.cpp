@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <type_traits>
 
 #include "atom.h"
+#include "common/core/larger_or_nan.h"
 #include "error.h"
 #include "force.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
@@ -112,7 +114,7 @@ void ComputeSoftgrainContacts::look_at(const bridge::ContactStore& store, const 
       note_use(law, bridge::state_of(store, c, surface, g), i, kPlanes ? atom->nlocal : j, mine);
       if (!mine) continue;
       const double smaller = kPlanes ? b.r(i) : std::min(b.r(i), surface.radius_j(j));
-      values_[kOverlap] = std::max(values_[kOverlap], g.overlap / smaller);
+      values_[kOverlap] = softgrain::larger_or_nan(values_[kOverlap], g.overlap / smaller);
       if (kPlanes && g.overlap > b.r(i)) values_[kBehind] += 1.0;
       const ContactResponse<3> r = bridge::response_of(law, store, c, surface, g, still);
       if (r.elastic_force == 0.0 && r.normal_force == 0.0) continue;
@@ -163,8 +165,12 @@ void ComputeSoftgrainContacts::compute_vector() {
   invoked_vector = update->ntimestep;
   look();
   MPI_Allreduce(values_.data(), vector, kValues, MPI_DOUBLE, MPI_SUM, world);
-  for (const int k : {kOverlap, kLargest})
-    MPI_Allreduce(&values_[static_cast<std::size_t>(k)], vector + k, 1, MPI_DOUBLE, MPI_MAX, world);
+  for (const int k : {kOverlap, kLargest}) {
+    // MPI promises nothing for the maximum of what is not a number.
+    double& own = values_[static_cast<std::size_t>(k)];
+    if (std::isnan(own)) own = std::numeric_limits<double>::infinity();
+    MPI_Allreduce(&own, vector + k, 1, MPI_DOUBLE, MPI_MAX, world);
+  }
   double pairs = 0.0;
   MPI_Allreduce(&pairs_, &pairs, 1, MPI_DOUBLE, MPI_SUM, world);
   vector[kFabric] = pairs > 0.0 ? vector[kFabric] / pairs : 0.0;

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/in_space.h"
+#include "common/core/larger_or_nan.h"
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/scene_vector.h"
 
@@ -150,8 +151,8 @@ Guards<D>::Guards(const GuardSpec& spec, const System<D>& start) : spec_(spec) {
 
 template <int D>
 void Guards<D>::note(const GuardRule& rule, double value, double time, GuardRecord& record, const std::string& what) {
-  record.worst = std::max(record.worst, value);
-  if (!(value > rule.limit)) return;
+  record.worst = larger_or_nan(record.worst, value);
+  if (value <= rule.limit) return;
   if (record.count++ == 0) record.first_time = time;
   if (rule.action == GuardAction::stop) throw NotUsable(what);
 }
@@ -165,9 +166,9 @@ void Guards<D>::look_at_energy(const System<D>& s, const ContactWatch<D>& watch)
   }
   const double kinetic = kinetic_energy(s.particles);
   const double energy = kinetic + watch.stored + potential_energy(s);
-  scale_ = std::max(scale_, kinetic + std::abs(watch.stored));
+  scale_ = larger_or_nan(scale_, kinetic + std::abs(watch.stored));
   if (energy < least_) least_ = energy;
-  if (!(scale_ > 0.0)) return;
+  if (scale_ == 0.0) return;
   const double growth = (energy - least_) / scale_;
   std::ostringstream what;
   what << "energy grows although nothing drives the scene: by " << 100.0 * growth

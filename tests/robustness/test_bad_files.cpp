@@ -275,6 +275,45 @@ TEST_F(BadResults, KeptStates) {
   bad([&](Hdf5Edit& f) { f.set_attribute("states/000000", "dimension", 4LL); }, {"4 dimensions"});
 }
 
+/// What is worked out from a number that is none is none either, or worse, looks like one.
+TEST_F(BadResults, MacroCurvesWithNumbersThatAreNotFinite) {
+  std::filesystem::create_directories(directory_.file("good"));
+  tiny_macro(directory_.file("good") + "/macro.h5");
+  EXPECT_EQ(run_the_program("report '" + directory_.file("good") + "'").status, 0);
+  const std::string run = directory_.file("bad");
+  std::filesystem::create_directories(run);
+  const auto bad = [&](const Edit& edit, const std::string& word) {
+    tiny_macro(run + "/macro.h5");
+    {
+      Hdf5Edit file(run + "/macro.h5");
+      edit(file);
+    }
+    const std::vector<std::string> words{"macro.h5", word};
+    expect("report '" + run + "'", 4, words, word);
+    expect("compare '" + directory_.file("good") + "' '" + run + "'", 4, words, word);
+    expect("compare '" + run + "' '" + directory_.file("good") + "'", 4, words, word);
+    expect("check '" + run + "/macro.h5'", 4, words, word);
+  };
+  const double infinite = std::numeric_limits<double>::infinity();
+  const std::string curve = "curves/curve_000001/";
+  bad([&](Hdf5Edit& f) { f.set(curve + "coordination", 1, kNan); }, "'coordination' holds a number that is not finite");
+  bad([&](Hdf5Edit& f) { f.set(curve + "residual", 3, kNan); }, "'residual' holds a number that is not finite");
+  bad([&](Hdf5Edit& f) { f.set(curve + "stress_axial_contacts", 0, infinite); },
+      "'stress_axial_contacts' holds a number that is not finite");
+  bad(
+      [&](Hdf5Edit& f) {
+        f.replace(curve + "body_forces", std::vector<double>{1.0, kNan});
+      },
+      "'body_forces' holds a number that is not finite");
+  bad(
+      [&](Hdf5Edit& f) {
+        f.replace(curve + "fabric", std::vector<double>{1.0, 0.0, kNan, 0.0});
+      },
+      "'fabric' holds a number that is not finite");
+  bad([&](Hdf5Edit& f) { f.set_attribute("curves/curve_000001", "solid_fraction", kNan); }, "solid_fraction");
+  bad([&](Hdf5Edit& f) { f.set_attribute("curves/curve_000001", "seconds", infinite); }, "seconds");
+}
+
 /// The report draws contacts of stored states.
 TEST_F(BadResults, PowdersOfAReport) {
   const auto bad = [&](const Edit& edit, const std::vector<std::string>& words) {

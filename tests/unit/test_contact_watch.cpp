@@ -150,6 +150,51 @@ TEST(ContactWatch, AClampedCrowdLawKeepsItsPressure) {
   EXPECT_EQ(clamped.at(0.2).p, open.at(0.2).p);
 }
 
+TEST(ContactWatch, WhatIsNoNumberIsTheWorst) {
+  LinearSpring spring;
+  spring.normal = 7.0;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Slot lost : {0, 1}) {  // before and after the sound pair in the list
+    System3 s = two_spheres(spring, 0.2);
+    s.laws.set(0, 0, spring);
+    add_grain(s.particles, {Vec3{{-1.7, 0.0, 0.0}}, 0.9, 2.0, 0.8, 0});
+    force_pass(s, 0.0);
+    ASSERT_EQ(s.contacts.size(), 2);
+    s.particles.sphere[static_cast<std::size_t>(lost + 1)].x[2] = nan;
+    EXPECT_TRUE(std::isnan(watch_contacts(s).overlap)) << lost;
+  }
+}
+
+TEST(ContactWatch, UsesOfALawThatAreNoNumberLieBeyondIt) {
+  System3 s = two_spheres(soft_law({0.2, Beyond::error}), 0.15);
+  force_pass(s, 0.0);
+  s.particles.sphere[1].x[2] = std::numeric_limits<double>::quiet_NaN();
+  const LawUse use = watch_contacts(s).laws;
+  EXPECT_EQ(use.beyond, 1);
+  EXPECT_TRUE(std::isnan(use.largest));
+}
+
+/// Crowd laws ask whether there is lost volume at all: not a number is not nothing.
+template <Crowd kCrowd>
+void expect_lost() {
+  SoftCrowd<kCrowd, false> law;
+  law.form.pressure = {0.6, 2.5, 0.05};
+  law.modulus = 10.0;
+  System3 s = two_spheres(law, 0.3);
+  force_pass(s, 0.0);
+  ASSERT_GT(std::abs(s.particles.force[0][0]), 0.0);
+  s.particles.sphere[1].x[2] = std::numeric_limits<double>::quiet_NaN();
+  s.particles.force.assign(s.particles.force.size(), {});
+  add_contact_forces(s, 0.0, History::none);
+  EXPECT_TRUE(std::isnan(s.particles.force[0][0]));
+}
+
+TEST(ContactWatch, CrowdLawsLoseNoNumber) {
+  expect_lost<Crowd::pair>();
+  expect_lost<Crowd::bag>();
+  expect_lost<Crowd::directional>();
+}
+
 TEST(ContactWatch, LooksAndTouchesNothing) {
   System3 s = two_spheres(hertz_law({3.0, 1.0, 0.3, 0.4}, true), 0.2);
   s.particles.velocity[1] = Vec3{{0.0, 1.0, 0.0}};
