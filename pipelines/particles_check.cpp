@@ -109,6 +109,9 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   if (limit.body >= 0)
     out.add("step_limit", limit.natural_time,
             fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));
+  if (std::isfinite(scene.time.stable_step))
+    out.add("stable_step", scene.time.stable_step,
+            fmt::format("the contacts of the start are stable to steps of at least {:.4g} s", scene.time.stable_step));
   if (!scene.time.limited_by.empty())
     out.add("limited_by", scene.time.limited_by, "the step is " + scene.time.limited_by);
   add_solid_fraction(s, out);

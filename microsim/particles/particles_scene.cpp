@@ -179,8 +179,8 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
   require_contacts(scene, s);
   require_resolved(scene, s);
   require_partners(scene, s, laws);
-  out.time = read_time(root.table("time"), s, laws.description);
   require_wide_cell(root, s.particles, s.cell);
+  out.time = read_time(root.table("time"), s, laws.description);
   read_output(root.table_or_empty("output"), out);
   read_checkpoint(root.table_or_empty("checkpoint"), out);
   out.guards = read_guards(root.table_or_empty("guards"), D);

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "common/core/error.h"
+#include "common/dynamics/stable_step.h"
 #include "common/dynamics/time_step.h"
 
 namespace softgrain {
@@ -91,6 +92,22 @@ std::string limit_sentence(const StepLimit& limit, const System<D>& s,
          law_description[static_cast<std::size_t>(limit.law)];
 }
 
+/// Contacts of the start, all that a body has together. `wanted`: the step that is to be judged.
+template <int D>
+void judge_contacts(const System<D>& s, double wanted, SceneTime& out) {
+  if (!std::isfinite(wanted)) return;
+  StableStep stable;
+  try {
+    stable = stable_step(s, wanted / kLargestStableShare);
+  } catch (const NotUsable&) {
+    return;  // no state to start from, as the run will say
+  }
+  out.stable_step = stable.step;
+  if (stable.body >= 0)
+    out.crowded = "particle " + std::to_string(stable.body) + " has " + std::to_string(stable.contacts) +
+                  " contacts, which together are stiffer than one";
+}
+
 /// As many steps as fill the time.
 std::int64_t steps_to(const SceneTable& t, double end, double step) {
   const double steps = std::ceil(end / step * (1.0 - 1e-12));
@@ -100,10 +117,13 @@ std::int64_t steps_to(const SceneTable& t, double end, double step) {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
-void choose_step(const SceneTable& t, double fraction, SceneTime& out) {
-  const double wanted = std::min(
+template <int D>
+void choose_step(const SceneTable& t, const System<D>& s, double fraction, SceneTime& out) {
+  double wanted = std::min(
       {fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.reach_time / kStepsPerReach, out.end});
   if (!std::isfinite(wanted)) t.reject("step", "\"auto\" needs a contact law that the particles take part in");
+  judge_contacts(s, wanted, out);
+  wanted = std::min(wanted, kLargestStableShare * out.stable_step);
   if (out.steps > 0) {
     out.step = wanted;
     return;
@@ -112,12 +132,18 @@ void choose_step(const SceneTable& t, double fraction, SceneTime& out) {
   out.step = out.end / static_cast<double>(out.steps);
 }
 
-void take_step(const SceneTable& t, double largest, SceneTime& out) {
+template <int D>
+void take_step(const SceneTable& t, const System<D>& s, double largest, SceneTime& out) {
   out.step = t.number("step", Unit::time, Range::positive());
   const double limit = largest * out.natural_time;
   if (out.step > limit)
     t.reject("step",
              "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.limited_by);
+  judge_contacts(s, out.step, out);
+  const double crowded = kLargestStableShare * out.stable_step;
+  if (out.step > crowded)
+    t.reject("step", "above the stable limit " + shown(crowded) + " s = " + shown(kLargestStableShare) +
+                         " of the largest stable step of the contacts at the start: " + out.crowded);
   if (out.steps == 0) out.steps = steps_to(t, out.end, out.step);
 }
 
@@ -168,11 +194,12 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
   if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);
   out.contact_time = shortest_impact(system, out.end);
   out.reach_time = shortest_reach(system, out.end);
+  out.stable_step = kForever;
   const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
   if (automatic)
-    choose_step(t, fraction, out);
+    choose_step(t, system, fraction, out);
   else
-    take_step(t, largest_fraction<D>(), out);
+    take_step(t, system, largest_fraction<D>(), out);
   if (!std::isfinite(out.end)) out.end = static_cast<double>(out.steps) * out.step;
   out.warm_up_steps = t.count("warm_up_steps", 0, out.steps - 1, 0);
   return out;

@@ -83,17 +83,51 @@ std::string compressed_lattice(const std::string& step) {
   return text;
 }
 
+/// A step that its scene would refuse: what reading cannot see, contacts that form on the way, comes to the same.
+ParticlesResult run_with_step(const std::string& text, double step) {
+  ParticlesScene scene = read_particles_scene(Scene::parse(text, "scene.toml"));
+  scene.time.step = step;
+  return run_particles(scene, {});
+}
+
 TEST(Guards, EnergyThatGrowsOfItselfStopsTheRun) {
-  const ParticlesResult sound = run(compressed_lattice("3e-4"));
+  const std::string text = compressed_lattice("3e-4");
+  const ParticlesResult sound = run(text);
   EXPECT_TRUE(sound.usable) << sound.reason;
   EXPECT_LT(sound.guards.energy.worst, 1e-3);
-  const std::string text = compressed_lattice("9e-4");
-  const ParticlesResult r = run(text);
+  const ParticlesResult r = run_with_step(text, 9e-4);
   EXPECT_FALSE(r.usable);
   EXPECT_NE(r.reason.find("energy grows although nothing drives the scene"), std::string::npos) << r.reason;
-  const ParticlesResult counted = run(text + "[guards.energy]\naction = \"count\"\n");
+  const ParticlesResult counted = run_with_step(text + "[guards.energy]\naction = \"count\"\n", 9e-4);
   EXPECT_GT(counted.guards.energy.worst, 0.05);
   EXPECT_GT(counted.guards.energy.count, 0);
+}
+
+TEST(Guards, StepsThatManyContactsMakeUnstableAreRefusedOrNotTaken) {
+  const auto refusal = [](const std::string& step) -> std::string {
+    try {
+      (void)read_particles_scene(Scene::parse(compressed_lattice(step), "scene.toml"));
+    } catch (const BadInput& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("3e-4"), "");
+  for (const char* step : {"4e-4", "6e-4", "9e-4", "1.4e-3"}) {
+    const std::string message = refusal(step);
+    EXPECT_NE(message.find("above the stable limit"), std::string::npos) << step << message;
+    EXPECT_NE(message.find("has 12 contacts, which together are stiffer than one"), std::string::npos) << message;
+  }
+  // The largest fraction of one contact's time that "auto" may be asked for; without it, what one contact asks for.
+  const ParticlesScene most =
+      read_particles_scene(Scene::parse(compressed_lattice("\"auto\"\nstep_fraction = 0.6"), "scene.toml"));
+  EXPECT_LT(most.time.step, 0.2 * most.time.natural_time);
+  EXPECT_GT(most.time.step, 0.1 * most.time.natural_time);
+  const ParticlesResult r = run_particles(most, {});
+  EXPECT_TRUE(r.usable) << r.reason;
+  EXPECT_LT(r.guards.energy.worst, 1e-2);
+  const ParticlesScene usual = read_particles_scene(Scene::parse(compressed_lattice("\"auto\""), "scene.toml"));
+  EXPECT_EQ(usual.time.step, 0.05 * usual.time.natural_time);
 }
 
 TEST(Guards, DrivenScenesSayThatTheirEnergyIsNotWatched) {

@@ -1,0 +1,118 @@
+// The largest stable step of a network of contacts: closed forms, and steps just below and above it.
+#include "common/dynamics/stable_step.h"
+
+#include <gtest/gtest.h>
+
+#include "common/dynamics/verlet.h"
+#include "tests/support/small_packing.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+constexpr double kRadius = 0.01;
+constexpr double kMass = 2500.0 * 4.0 / 3.0 * std::numbers::pi * kRadius * kRadius * kRadius;
+constexpr double kStiffness = 1000.0;
+
+System3 pair_of_springs(double tangential, double damping) {
+  LinearSpring law;
+  law.normal = kStiffness;
+  law.tangential = tangential;
+  law.friction = tangential > 0.0 ? 1e9 : 0.0;
+  law.damping = damping;
+  System3 s;
+  s.materials.resize(1);
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, law);
+  for (const double x : {0.0, 1.9 * kRadius}) add_grain(s.particles, solid_sphere<3>({{x, 0.0, 0.0}}, kRadius, 2500.0));
+  return s;
+}
+
+double network_step(const System3& s) { return stable_step(s, std::numeric_limits<double>::infinity()).step; }
+
+TEST(StableStep, OfTwoGrainsIsThatOfTheirOscillators) {
+  EXPECT_EQ(stable_step(hertz_system<3>(0.3, 0.9, false), 1.0).step, std::numeric_limits<double>::infinity());
+  const double unit = std::sqrt(kMass / kStiffness);
+  EXPECT_NEAR(network_step(pair_of_springs(0.0, 0.0)), std::sqrt(2.0) * unit, 2e-3 * unit)
+      << "2/omega, omega^2 = 2 k/m";
+  // omega^2 = 2 k/m, gamma = 2 zeta omega
+  for (const double zeta : {0.05, 0.3, 1.0}) {
+    const double omega = std::sqrt(2.0) / unit;
+    const double gamma = 2.0 * zeta * omega;
+    EXPECT_NEAR(network_step(pair_of_springs(0.0, zeta)),
+                2.0 * (std::sqrt(omega * omega + gamma * gamma) - gamma) / (omega * omega), 3e-3 * unit)
+        << zeta;
+  }
+  // Sliding and both spins: slip^2 at the contact over sum m u^2 + I w^2 has 2/m + 2 a^2/I = (2 + 5 a^2/R^2)/m.
+  const double across = 2.0 + 5.0 * 0.95 * 0.95;
+  EXPECT_NEAR(network_step(pair_of_springs(kStiffness, 0.0)), std::sqrt(2.0 / across) * unit, 2e-3 * unit)
+      << "tangential springs: sqrt(2)/omega";
+}
+
+TEST(StableStep, ABoundFromSumsIsBelowItAndNotFar) {
+  for (const double tangential : {0.0, 300.0, kStiffness})
+    for (const double zeta : {0.0, 0.2}) {
+      const System3 s = pair_of_springs(tangential, zeta);
+      const double bound = stable_step(s, 0.0).step;
+      const double exact = network_step(s);
+      EXPECT_LE(bound, 1.002 * exact);
+      EXPECT_GT(bound, 0.5 * exact);
+    }
+}
+
+/// Face-centred lattice `overlap` radii deep, every grain with twelve contacts; all move a little.
+System3 lattice(double overlap, double friction, double restitution) {
+  System3 s = hertz_system<3>(friction, restitution, true, {"a", 2500.0, 1e6, 0.2, false});
+  const double edge = (2.0 - overlap) * kRadius * std::sqrt(2.0);
+  s.cell = box_cell<3>({{3.0 * edge, 3.0 * edge, 3.0 * edge}}, {true, true, true});
+  RandomStream random(1, RandomPurpose::test, 0);
+  const double base[4][3] = {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.0, 0.5}, {0.0, 0.5, 0.5}};
+  for (int n = 0; n < 27; ++n)
+    for (const auto& b : base) {
+      const int cell[3] = {n % 3, n / 3 % 3, n / 9};
+      Vec3 x;
+      for (int k = 0; k < 3; ++k) x[k] = edge * (cell[k] + b[k]);
+      NewBody<3> grain = solid_sphere(x, kRadius, 2500.0);
+      for (double& v : grain.velocity.v) v = 1e-5 * (random.uniform() - 0.5);
+      for (double& w : grain.spin.v) w = 1e-3 * (random.uniform() - 0.5);
+      add_grain(s.particles, grain);
+    }
+  return s;
+}
+
+/// Whether small motion grows in 300 steps.
+bool grows(System3 s, double step) {
+  VelocityVerlet<3> integrator(step);
+  integrator.initialise(s);
+  const double start = kinetic_energy(s.particles);
+  for (int k = 0; k < 60; ++k) {
+    integrator.advance(s, 5);
+    if (kinetic_energy(s.particles) > 100.0 * start) return true;
+  }
+  return false;
+}
+
+TEST(StableStep, StepsBelowItHoldAndStepsAboveItDoNot) {
+  for (const double overlap : {0.4, 0.05})
+    for (const double friction : {0.0, 0.3})
+      for (const double restitution : {1.0, 0.5, 0.1}) {
+        const System3 s = lattice(overlap, friction, restitution);
+        const double limit = network_step(s);
+        EXPECT_FALSE(grows(s, kLargestStableShare * limit)) << overlap << " " << friction << " " << restitution;
+        EXPECT_TRUE(grows(s, 1.15 * limit)) << overlap << " " << friction << " " << restitution;
+        EXPECT_LE(stable_step(s, 0.0).step, limit);
+      }
+}
+
+TEST(StableStep, LooksAndTouchesNothing) {
+  const System3 s = lattice(0.05, 0.3, 0.5);
+  const System3 before = s;
+  const StableStep a = stable_step(s, 1.0);
+  const StableStep b = stable_step(s, 1.0);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.contacts, 12);
+  expect_same_state(before, s);
+}
+
+}  // namespace
