@@ -2,7 +2,11 @@
 #include <omp.h>
 
 #include "common/dynamics/verlet.h"
+#include "common/io/hdf5_file.h"
+#include "common/neighbours/spatial_order.h"
+#include "microsim/particles/particles_run.h"
 #include "tests/support/small_packing.h"
+#include "tests/support/temporary_directory.h"
 
 namespace {
 
@@ -49,6 +53,62 @@ TEST(Threads, AnyNumberGivesTheSameBits) {
   for (const int threads : {2, 3, 8}) {
     SCOPED_TRACE(threads);
     expect_same_state(one, run_with(threads, 60));
+  }
+}
+
+/// A run of many grains just before the step at which they are put in order for the second time.
+ParticlesResult ordered_twice(int threads, const std::string& checkpoint) {
+  constexpr std::int64_t kSecondOrder = 8192;
+  ParticlesScene scene;
+  scene.record = false;
+  scene.checkpoint_steps = kSecondOrder;
+  scene.time.step = 1e-4;
+  scene.time.steps = kSecondOrder + 8;
+  for (GuardRule* rule : {&scene.guards.overlap, &scene.guards.energy, &scene.guards.escape, &scene.guards.wall_travel})
+    rule->action = GuardAction::ignore;
+  System3 start = large_packing();
+  start.step = kSecondOrder - 12;
+  for (auto& v : start.particles.velocity) v = v * 60.0;  // so that they soon have other neighbours
+  ParticlesControl control;
+  control.checkpoint = checkpoint;
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  ParticlesResult out = run_particles(scene, start, control);
+  omp_set_num_threads(before);
+  EXPECT_TRUE(out.usable) << out.reason;
+  return out;
+}
+
+/// Which grain was in which slot when a run was saved.
+std::vector<std::int32_t> saved_order(const std::string& checkpoint) {
+  const auto ids = h5::open_file(checkpoint).open("system").open("bodies").integers("id");
+  return {ids.begin(), ids.end()};
+}
+
+TEST(Threads, GrainsPutInOrderAgainGoOnAsIfTheyHadNotBeen) {
+  const TemporaryDirectory directory;
+  const System3 one = ordered_twice(1, directory.file("1.h5")).system;
+  const System3 start = large_packing();
+  const std::vector<Slot> first = spatial_order(start);
+  const std::vector<std::int32_t> second = saved_order(directory.file("1.h5"));
+  ASSERT_EQ(second.size(), first.size());
+  std::size_t others = 0;
+  for (std::size_t k = 0; k < first.size(); ++k) others += first[k] != second[k] ? 1 : 0;
+  EXPECT_GT(others, first.size() / 10) << "the second order is another one";
+  for (const int threads : {2, 3, 8}) {
+    const std::string name = directory.file(std::to_string(threads) + ".h5");
+    expect_same_state(one, ordered_twice(threads, name).system);
+    EXPECT_EQ(saved_order(name), second) << threads;
+  }
+  System3 plain = large_packing();
+  for (auto& v : plain.particles.velocity) v = v * 60.0;
+  VelocityVerlet<3> integrator(1e-4);
+  integrator.initialise(plain);
+  integrator.advance(plain, 20);
+  ASSERT_TRUE(one.particles.id.empty());
+  for (std::size_t u = 0; u < plain.particles.sphere.size(); ++u) {
+    EXPECT_LT(norm(one.particles.sphere[u].x - plain.particles.sphere[u].x), 1e-10) << u;
+    EXPECT_LT(norm(one.particles.velocity[u] - plain.particles.velocity[u]), 1e-6) << u;
   }
 }
 
