@@ -290,15 +290,16 @@ struct Mean {
 /// The ensemble of packings knows no direction but the normal: without rotation both components across it average to
 /// zero, and with it the one along the axis [SP 1.4]; the one that is dragged along does not.
 TEST(SoftExperiment, TheForceAcrossTheRotationAveragesToZero) {
-  constexpr int kPackings = 16;
+  constexpr int kPackings = 96;
   SoftParticleSpec spec;
   spec.trials = 200;
+  spec.polydispersity = 5.0;
   Mean normal, before_y, before_z, across, dragged;
   for (std::uint64_t k = 0; k < kPackings; ++k) {
     SoftExperiment e = make_soft_solid(spec, generate_shell_packing(spec, 3, k), false);
     for (int step = 0; step < 15; ++step) {
       e.push(0.02 * spec.shell_radius);
-      rest(e, step < 14 ? 0.1 : 1e-4);
+      rest(e, step < 14 ? 0.1 : 1e-3);
     }
     const Vec3 before = e.force_on_second();
     normal.add(before[0]);
@@ -319,7 +320,7 @@ TEST(SoftExperiment, TheForceAcrossTheRotationAveragesToZero) {
   EXPECT_LT(std::abs(before_y.mean()), 3.0 * before_y.error());
   EXPECT_LT(std::abs(before_z.mean()), 3.0 * before_z.error());
   EXPECT_LT(std::abs(across.mean()), 3.0 * across.error()) << across.mean() << " +- " << across.error();
-  EXPECT_LT(across.error(), 0.15 * dragged.mean()) << "or zero says nothing";
+  EXPECT_LT(across.error(), 0.25 * dragged.mean()) << "or zero says nothing";
   EXPECT_LT(before_z.error(), 0.03 * normal.mean());
   EXPECT_GT(dragged.mean(), 5.0 * dragged.error());
 }
