@@ -230,12 +230,12 @@ FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>
   return out;
 }
 
-/// The packings and the law of every replicate.
-std::vector<CrowdDraw> draws_of(const CrowdMeasurements& data, const FittedLaw& fitted, const CrowdFitOptions& o) {
-  std::vector<CrowdDraw> out;
+/// Of the packings and the law of every replicate.
+std::vector<SideValues> drawn_sides(const CrowdMeasurements& data, const FittedLaw& fitted, const CrowdFitOptions& o) {
+  std::vector<SideValues> out;
   for (std::size_t k = 0; k < fitted.draws.size(); ++k)
-    out.push_back({average_states(data, packing_weights(data.packings.size(), o.seed, fitted.draws[k])),
-                   crowd_model(with_numbers(fitted.law, fitted.law.replicates[k]))});
+    out.push_back(side_values(average_states(data, packing_weights(data.packings.size(), o.seed, fitted.draws[k])),
+                              crowd_model(with_numbers(fitted.law, fitted.law.replicates[k]))));
   return out;
 }
 
@@ -311,7 +311,7 @@ LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOption
   entry.best = best->law.form;
   const CrowdModel model = crowd_model(best->law);
   describe_range(states, model, entry);
-  fit_sides(states, model, draws_of(data, *best, options), options.seed, entry);
+  fit_sides(side_values(states, model), drawn_sides(data, *best, options), options.seed, entry);
   for (FittedLaw& f : laws) {
     judge_accuracy(f.law, options.largest_error);
     entry.laws.push_back(std::move(f.law));

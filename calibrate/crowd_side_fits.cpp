@@ -30,18 +30,15 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// A quantity by configuration: of the measurement, and of every draw.
-struct SideValues {
-  std::vector<double> measured;
-  std::vector<std::vector<double>> drawn;
-};
-
-/// Mean over configurations; each draw takes as many of its own with replacement.
-Estimate estimate_of(const SideValues& v, std::uint64_t seed) {
-  Estimate out = guessed(mean_of(v.measured));
+/// Mean over configurations; each draw takes as many of its own with replacement. `of` finds the values by
+/// configuration.
+template <class Of>
+Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& drawn, std::uint64_t seed,
+                     const Of& of) {
+  Estimate out = guessed(mean_of(of(measured)));
   std::vector<double> means;
-  for (std::size_t r = 0; r < v.drawn.size(); ++r) {
-    const std::vector<double>& values = v.drawn[r];
+  for (std::size_t r = 0; r < drawn.size(); ++r) {
+    const std::vector<double>& values = of(drawn[r]);
     if (values.empty()) continue;
     RandomStream random(seed, RandomPurpose::bootstrap, kSideStream + static_cast<std::uint64_t>(r));
     double sum = 0.0;
@@ -108,27 +105,16 @@ bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& ou
   return true;
 }
 
-/// kt/kn and friction of every configuration of one kind of neighbour that slides.
-void collect_slides(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind,
-                    std::vector<double>& kt, std::vector<double>& friction) {
+/// Every configuration of one kind of neighbour that slides.
+SideValues::Slides slides(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind) {
+  SideValues::Slides out;
   for (const CrowdStates& c : states) {
     SlideResult slide;
     if (c.states.empty() || c.configuration->held_out || !c.all_of(kind) || !slide_result(c, model, slide)) continue;
-    kt.push_back(slide.kt_ratio);
-    friction.push_back(slide.friction);
+    out.kt_ratio.push_back(slide.kt_ratio);
+    out.friction.push_back(slide.friction);
   }
-}
-
-/// `fallback` when no configuration of this kind slides.
-SlideLaw slide_law(const std::vector<CrowdStates>& states, const CrowdModel& model, const std::vector<CrowdDraw>& draws,
-                   std::uint64_t seed, PartnerKind kind, const SlideLaw& fallback) {
-  SideValues kt;
-  SideValues friction;
-  collect_slides(states, model, kind, kt.measured, friction.measured);
-  if (kt.measured.empty()) return fallback;
-  for (const CrowdDraw& d : draws)
-    collect_slides(d.states, d.model, kind, kt.drawn.emplace_back(), friction.drawn.emplace_back());
-  return {estimate_of(kt, seed), estimate_of(friction, seed)};
+  return out;
 }
 
 /// States of the retreat that follows the deepest one, every neighbour going back.
@@ -186,17 +172,28 @@ std::vector<double> retreats(const std::vector<CrowdStates>& states, const Crowd
 
 }  // namespace
 
-void fit_sides(const std::vector<CrowdStates>& states, const CrowdModel& model, const std::vector<CrowdDraw>& draws,
-               std::uint64_t seed, LawTableEntry& entry) {
-  const auto slide = [&](PartnerKind kind, const SlideLaw& fallback) {
-    return slide_law(states, model, draws, seed, kind, fallback);
+SideValues side_values(const std::vector<CrowdStates>& states, const CrowdModel& model) {
+  return {slides(states, model, PartnerKind::plane), slides(states, model, PartnerKind::solid),
+          slides(states, model, PartnerKind::soft), retreats(states, model)};
+}
+
+void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn, std::uint64_t seed,
+               LawTableEntry& entry) {
+  const auto slide = [&](SideValues::Slides SideValues::*kind, const SlideLaw& fallback) -> SlideLaw {
+    if ((measured.*kind).kt_ratio.empty()) return fallback;
+    const auto part = [&](std::vector<double> SideValues::Slides::*quantity) {
+      return estimate_of(
+          measured, drawn, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
+    };
+    return {part(&SideValues::Slides::kt_ratio), part(&SideValues::Slides::friction)};
   };
-  entry.slide_plane = slide(PartnerKind::plane, {guessed(0.3), guessed(entry.spec.friction)});
-  entry.slide_solid = slide(PartnerKind::solid, borrowed(entry.slide_plane));
-  entry.slide_soft = slide(PartnerKind::soft, borrowed(entry.slide_solid));
-  SideValues retreat{retreats(states, model), {}};
-  for (const CrowdDraw& d : draws) retreat.drawn.push_back(retreats(d.states, d.model));
-  entry.retreat = retreat.measured.empty() ? guessed(1.0) : estimate_of(retreat, seed);
+  entry.slide_plane = slide(&SideValues::plane, {guessed(0.3), guessed(entry.spec.friction)});
+  entry.slide_solid = slide(&SideValues::solid, borrowed(entry.slide_plane));
+  entry.slide_soft = slide(&SideValues::soft, borrowed(entry.slide_solid));
+  entry.retreat = measured.retreat.empty()
+                      ? guessed(1.0)
+                      : estimate_of(
+                            measured, drawn, seed, [](const SideValues& v) -> const auto& { return v.retreat; });
 }
 
 }  // namespace softgrain

@@ -171,7 +171,9 @@ std::string question_text(const law::CrowdQuestion& q, const law::CrowdAnswer& a
 /// What a colleague would add to numbers of a table: how far off the law is, and where it was not measured.
 std::string table_remark(const law::CrowdAnswer& a) {
   const CrowdLaw& form = *a.entry.find(a.form);
-  std::string text = fmt::format("off by {:.1f} % leaving one loading of planes out", 100.0 * form.error_cross);
+  std::string text = std::isnan(form.error_cross)
+                         ? std::string("fitted to one loading of planes, so that nothing could be left out")
+                         : fmt::format("off by {:.1f} % leaving one loading of planes out", 100.0 * form.error_cross);
   return a.remark.empty() ? text : text + "; " + a.remark;
 }
 

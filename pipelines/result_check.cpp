@@ -10,11 +10,14 @@
 #include "common/data/crowd_measurements.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
+#include "common/data/snapshot_io.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
 #include "microsim/grain_box/record.h"
 #include "pipelines/law_check.h"
 #include "pipelines/report/powder_data.h"
+#include "pipelines/snapshots/snapshots.h"
+#include "pipelines/snapshots/snapshots_of_kinds.h"
 
 namespace softgrain {
 
@@ -79,6 +82,31 @@ void check_powder_file(const std::string& path, Findings& out) {
   if (unusable > 0) out.warn(fmt::format("{} samples did not come to rest", unusable));
 }
 
+void check_states_file(const std::string& path, Findings& out) {
+  const h5::Group states = open_snapshots(path).open("states");
+  std::size_t contacts = 0;
+  for (const std::string& name : states.children()) {
+    try {
+      contacts += read_snapshot(states.open(name)).contacts.size();
+    } catch (const FileTrouble& e) {
+      throw FileTrouble(path + ": state " + name + ": " + e.what());
+    }
+  }
+  out.add("kind", "states",
+          fmt::format("kept states: {}, with {} contacts in all", states.children().size(), contacts));
+}
+
+void check_particles_file(const std::string& path, Findings& out) {
+  std::size_t frames = 0;
+  try {
+    visit_particles(path, SnapshotChoice::all, [&](const Snapshot&) { ++frames; });
+  } catch (const FileTrouble& e) {
+    const std::string text = e.what();
+    throw FileTrouble(text.starts_with(path) ? text : path + ": " + text);
+  }
+  out.add("kind", "particles", fmt::format("particles: {} recorded frames", frames));
+}
+
 void check_other(const h5::Group& root, Findings& out) {
   std::string names;
   for (const std::string& child : root.children()) names += (names.empty() ? "" : ", ") + child;
@@ -115,6 +143,10 @@ void check_data(const std::string& path, Findings& out) {
     check_macro_file(path, out);
   else if (root.has("sample_0") && root.has("spec"))
     check_powder_file(path, out);
+  else if (root.has("states"))
+    check_states_file(path, out);
+  else if (root.has("trajectory"))
+    check_particles_file(path, out);
   else
     check_other(root, out);
   std::error_code failed;

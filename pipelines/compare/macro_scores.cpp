@@ -50,8 +50,10 @@ double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
   return difference(xa, a, xb, b);
 }
 
+/// Empty where the mean is zero: nothing is relative to it.
 std::vector<double> over_mean(std::vector<double> forces) {
   const double mean = mean_and_variation(forces).first;
+  if (mean == 0.0) return {};
   for (double& f : forces) f /= mean;
   return forces;
 }
@@ -160,7 +162,10 @@ std::pair<double, double> mean_and_variation(const std::vector<double>& forces) 
 }
 
 double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b) {
-  if (a.empty() || b.empty()) return kNaN;
+  const auto unordered = [](const std::vector<double>& v) {
+    return std::any_of(v.begin(), v.end(), [](double x) { return std::isnan(x); });
+  };
+  if (a.empty() || b.empty() || unordered(a) || unordered(b)) return kNaN;
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());
   double worst = 0.0;

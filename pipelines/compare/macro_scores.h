@@ -46,7 +46,8 @@ std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves);
 /// Mean and coefficient of variation (sample deviation over mean); NaN without forces.
 std::pair<double, double> mean_and_variation(const std::vector<double>& forces);
 
-/// Largest difference of the cumulative distributions of two samples of values; NaN when one is empty.
+/// Largest difference of the cumulative distributions of two samples of values; NaN when one is empty or holds
+/// a NaN.
 double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b);
 
 /// Column names and cells of the score table, the same for Markdown, CSV and the report. Values as plain numbers.

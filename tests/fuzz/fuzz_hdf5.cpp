@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 
+#include "calibrate/crowd_side_fits.h"
 #include "calibrate/threshold_fit.h"
 #include "common/core/error.h"
 #include "common/data/crowd_replicates.h"
@@ -14,7 +15,6 @@
 #include "common/data/law_card_format.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/macro_scores.h"
-#include "pipelines/crowd_law_fit.h"
 #include "pipelines/crowd_summary.h"
 #include "pipelines/export/export.h"
 #include "pipelines/report/packing_data.h"
@@ -85,8 +85,8 @@ report::RunData run_of(const std::string& path) {
   return run;
 }
 
-/// Drawn beside a table, summed up and (it takes a while: not always) fitted.
-void use_crowd(const std::string& path, bool fit) {
+/// Drawn beside a table, summed up, its slides and retreats taken; a whole fit takes too long here.
+void use_crowd(const std::string& path) {
   const CrowdMeasurements data = load_crowd(path);
   report::RunData run = run_of(path);
   LawTableEntry entry = synthetic::law_entry();
@@ -99,12 +99,7 @@ void use_crowd(const std::string& path, bool fit) {
   (void)crowd_json(data, 0.04).dump();
   (void)crowd_remarks(data, 0.04);
   (void)crowd_text(data);
-  if (!fit) return;
-  CrowdLawFit laws;
-  CrowdFitOptions options;
-  options.replicates = 1;
-  options.min_packings = 2;
-  add_entry(laws, data, options, 0.04);
+  (void)side_values(average_states(data), crowd_model(entry.laws.front()));
 }
 
 void use_measurements(const std::string& path, bool fit) {
@@ -141,7 +136,7 @@ void use_states(const std::string& path) {
 void read(const std::string& path, bool fit) {
   attempt([&] {
     const h5::Group root = h5::open_file(path);
-    if (root.has("configurations")) attempt([&] { use_crowd(path, fit); });
+    if (root.has("configurations")) attempt([&] { use_crowd(path); });
     if (root.has("runs") && !root.has("configurations")) attempt([&] { use_measurements(path, fit); });
     if (root.has("packs"))
       attempt([&] {

@@ -122,7 +122,7 @@ TEST(CompareCurves, ALateralStressThatWasNotRecordedDoesNotHideTheAxialOne) {
 
 /// Nothing is relative to a stress of zero; the other samples are still compared.
 TEST(CompareCurves, WhatIsRelativeToZeroIsUndefined) {
-  const auto silent = [](std::int64_t sample, const char* engine) {
+  const auto silent = [](int sample, const char* engine) {
     MacroCurve c = macro_curve(engine, sample, 1.0, 4);
     std::fill(c.stress_axial.begin(), c.stress_axial.end(), 0.0);
     std::fill(c.stress_lateral.begin(), c.stress_lateral.end(), 0.0);

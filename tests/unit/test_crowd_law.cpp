@@ -173,12 +173,12 @@ TEST_F(CrowdLawIo, NumbersOutOfRangeAreRefusedWhereTheyStand) {
 
 TEST_F(CrowdLawIo, NumbersOfNoContactAreRefused) {
   expect_refused("[[entry.law]]", "a = { value = 0.7", "a = { value = -0.7", {"value = -0.7", "above 0"});
-  expect_refused("[[entry.law]]", "a = { value = 0.7", "a = { value = 0.0", {"value = 0.0", "above 0"});
-  expect_refused("[[entry.law]]", "b = { value = 2.8", "b = { value = 200.0", {"value = 200.0", "at most 50"});
-  expect_refused("[[entry.law]]", "m0 = { value = 1.0", "m0 = { value = 1e6", {"value = 1e6"});
+  expect_refused("[[entry.law]]", "a = { value = 0.7", "a = { value = 0.0", {"value = 0:", "above 0"});
+  expect_refused("[[entry.law]]", "b = { value = 2.8", "b = { value = 200.0", {"value = 200:", "at most 50"});
+  expect_refused("[[entry.law]]", "m0 = { value = 1.0", "m0 = { value = 1e6", {"value = 1000000:"});
   expect_refused("kt_ratio", "value = 0.3", "value = -0.3", {"value = -0.3"});
-  expect_refused("kt_ratio", "value = 0.3", "value = 1e9", {"value = 1e9"});
-  expect_refused("[[entry]]", "overlap_max = 0.28", "overlap_max = 28.0", {"overlap_max = 28.0", "at most 2"});
+  expect_refused("kt_ratio", "value = 0.3", "value = 1e9", {"value = 1000000000:"});
+  expect_refused("[[entry]]", "overlap_max = 0.28", "overlap_max = 28.0", {"overlap_max = 28:", "from 0 to 2"});
 }
 
 /// Refits of another table are none of this one; after an edit they are not used, and the table says so.

@@ -26,11 +26,21 @@ TEST(MacroScores, MeanAndVariation) {
   EXPECT_TRUE(std::isnan(mean_and_variation({}).first));
 }
 
+/// Found by fuzzing: forces over a mean of zero, and a comparison that never ended.
+TEST(MacroScores, ForcesOfZeroHaveNoDistance) {
+  MacroCurve silent = curve("law", 0, 0.9);
+  silent.body_forces = {0.0, 0.0, 0.0};
+  const auto scores = score_engines({silent, curve("shelled", 0, 1.0)});
+  EXPECT_EQ(scores[0].shelled.force_distance.n, 0U);
+  EXPECT_EQ(scores[0].shelled.axial.n, 1U);
+}
+
 TEST(MacroScores, KolmogorovSmirnovDistance) {
   EXPECT_DOUBLE_EQ(kolmogorov_smirnov({3.0, 1.0, 2.0}, {1.0, 2.0, 3.0}), 0.0);
   EXPECT_DOUBLE_EQ(kolmogorov_smirnov({1.0, 2.0}, {5.0, 6.0, 7.0}), 1.0);
   EXPECT_DOUBLE_EQ(kolmogorov_smirnov({1.0, 3.0}, {2.0, 4.0}), 0.5);
   EXPECT_TRUE(std::isnan(kolmogorov_smirnov({}, {1.0})));
+  EXPECT_TRUE(std::isnan(kolmogorov_smirnov({std::nan(""), 1.0}, {1.0}))) << "found by fuzzing: it never ended";
 }
 
 TEST(MacroScores, EveryEngineAgainstEveryTwin) {
