@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <iostream>
 
+#include "common/io/text_file.h"
 #include "microsim/particles/particles_scene.h"
 #include "pipelines/crowd_check.h"
 #include "pipelines/grain_box_check.h"
@@ -95,11 +95,12 @@ ExitStatus command_check(const CommonOptions& options) {
   out.facts["status"] = "good";
   out.facts["warnings"] = out.warnings();
   if (options.json) {
-    std::cout << out.facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    write_standard_output(out.facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return ExitStatus::good;
   }
-  std::cout << path << ": sound\n" << out.lines;
-  for (const std::string& warning : out.warnings()) std::cout << "  mind: " << warning << "\n";
+  std::string text = path + ": sound\n" + out.lines;
+  for (const std::string& warning : out.warnings()) text += "  mind: " + warning + "\n";
+  write_standard_output(text);
   return ExitStatus::good;
 }
 

@@ -2,10 +2,10 @@
 // Makes no run directory of its own, so that the run's summary stays as it is.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common/io/text_file.h"
 #include "pipelines/export/export.h"
 #include "pipelines/run_context.h"
 
@@ -28,14 +28,15 @@ nlohmann::json to_json(const ExportedSeries& s) {
           {"open", s.files}};
 }
 
-void print(const std::vector<ExportedSeries>& all, const std::string& directory) {
+std::string text_of(const std::vector<ExportedSeries>& all, const std::string& directory) {
+  std::string text;
   for (const ExportedSeries& s : all) {
     std::string files;
     for (const std::string& f : s.files) files += (files.empty() ? "" : ", ") + f;
-    std::printf("%s (%s): %lld states, %lld with contacts; open %s\n", s.name.c_str(), to_string(s.kind).c_str(),
-                static_cast<long long>(s.states), static_cast<long long>(s.with_contacts), files.c_str());
+    text += fmt::format("{} ({}): {} states, {} with contacts; open {}\n", s.name, to_string(s.kind), s.states,
+                        s.with_contacts, files);
   }
-  std::printf("files: %s\n", directory.c_str());
+  return text + "files: " + directory + "\n";
 }
 
 }  // namespace
@@ -47,13 +48,13 @@ ExitStatus command_export(const CommonOptions& options) {
   const std::string directory = options.out.empty() ? default_directory(run, options.to) : options.out;
   const std::vector<ExportedSeries> all = export_states(run, format, directory);
   if (!options.json) {
-    print(all, directory);
+    write_standard_output(text_of(all, directory));
     return ExitStatus::good;
   }
   nlohmann::json summary{{"command", "export"}, {"status", "good"}, {"to", options.to}, {"directory", directory}};
   summary["series"] = nlohmann::json::array();
   for (const ExportedSeries& s : all) summary["series"].push_back(to_json(s));
-  std::printf("%s\n", summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  write_standard_output(summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return ExitStatus::good;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/io/scene.h"
@@ -25,7 +24,7 @@ using law::ValueTable;
 using law::ValueUnits;
 using nlohmann::json;
 
-void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print(const std::string& text) { write_standard_output(text); }
 void print(const json& object) { print(object.dump(2, ' ', false, json::error_handler_t::replace) + "\n"); }
 
 bool has(const std::vector<std::string>& names, const std::string& name) {

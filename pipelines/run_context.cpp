@@ -96,8 +96,7 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
   if (!shows_) return;
   std::string shown = options_.json ? text : people;
   if (!shown.empty() && shown.back() != '\n') shown += '\n';
-  if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size() || std::fflush(stdout) != 0)
-    throw FileTrouble("standard output: cannot be written");
+  write_standard_output(shown);
 }
 
 void RunContext::guard(const std::function<void()>& work) const {

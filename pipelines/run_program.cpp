@@ -1,5 +1,7 @@
 // The command line: what there is to ask for, and how errors become messages and exit statuses.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include <cstdio>
 #include <limits>
 #include <new>
+#include <sstream>
 #include <system_error>
 
 #include "common/io/interrupt.h"
@@ -183,6 +186,9 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   add_law_command(app, law);
   require_command(argc, argv);
   app.parse(argc, argv);
+  // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
+  std::signal(SIGXFSZ, SIG_IGN);
+  end_at_once_on_signals();
   if (!law.action.empty()) return command_law(law);
   if (chosen == nullptr) {
     std::fputs(app.help().c_str(), stderr);
@@ -195,22 +201,26 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   }
   if (!options.out.empty()) require_writable_directory(options.out);
   if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
-  install_interrupt_handler();
-  // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
-  std::signal(SIGXFSZ, SIG_IGN);
+  if (chosen->function != command_check) install_interrupt_handler();
   const ExitStatus status = chosen->function(options);
   if (!observables.empty()) write_observables(options.out, options.overrides, observables);
   return status;
 }
 
 int complain(ExitStatus status, const std::string& message) {
-  fmt::print(stderr, "softgrain: {}\n", message);
+  // Not by fmt: it throws where standard error cannot be written, and the status is what is left to tell then.
+  (void)std::fputs(("softgrain: " + message + "\n").c_str(), stderr);
   return static_cast<int>(status);
 }
 
 /// Help and version go to standard output with status 0, mistakes to standard error with status 2.
 int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
-  if (e.get_exit_code() == 0) return app.exit(e);
+  if (e.get_exit_code() == 0) {
+    std::ostringstream text;
+    (void)app.exit(e, text, text);
+    write_standard_output(text.str());
+    return static_cast<int>(ExitStatus::good);
+  }
   std::string message = e.what();
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
   for (const std::string option : {"--threads", "--seed", "--ranks"})
@@ -218,17 +228,31 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
   return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)");
 }
 
+int parse_and_run_or_explain(CLI::App& app, int argc, char** argv) {
+  try {
+    return static_cast<int>(parse_and_run(app, argc, argv));
+  } catch (const CLI::ParseError& e) {
+    return end_of_parsing(app, e);
+  }
+}
+
+/// A standard stream that came closed stays unusable: its number must not go to the next file that is opened, which
+/// would then receive what is meant for people.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  occupy_closed_streams();
   CLI::App app{"softgrain: contact laws of soft particles for extremely polydisperse packings", "softgrain"};
   const Provenance build = build_provenance();
   app.set_version_flag("--version", "softgrain " + build.version + " (" + build.commit + ")");
   app.footer(kFooter);
   try {
-    return static_cast<int>(parse_and_run(app, argc, argv));
-  } catch (const CLI::ParseError& e) {
-    return end_of_parsing(app, e);
+    return parse_and_run_or_explain(app, argc, argv);
   } catch (const Error& e) {
     return complain(e.status(), e.what());
   } catch (const std::bad_alloc&) {

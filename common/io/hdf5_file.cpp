@@ -8,6 +8,7 @@
 #include "common/io/atomic_rename.h"
 #include "common/io/file_seal.h"
 #include "common/io/hdf5_handle.h"
+#include "common/io/text_file.h"
 
 namespace softgrain::h5 {
 
@@ -73,9 +74,7 @@ Group root_of(std::shared_ptr<File> file) {
 
 Group open_file(const std::string& path) {
   silence_library();
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) throw FileTrouble(path + ": no such file");
-  if (fs::is_directory(path, ignored)) throw FileTrouble(path + ": is a directory, not a file");
+  require_readable_file(path);
   const Handle access = access_list();
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (file.id() < 0)

@@ -1,5 +1,7 @@
 #include "common/io/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <string>
 
@@ -12,18 +14,22 @@ namespace {
 volatile std::sig_atomic_t requested = 0;
 
 extern "C" void softgrain_note_signal(int) { requested = 1; }
+extern "C" void softgrain_end_at_once(int) { ::_exit(static_cast<int>(ExitStatus::interrupted)); }
 
-}  // namespace
-
-void install_interrupt_handler() {
+void install(void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = softgrain_note_signal;
+  action.sa_handler = handler;
   // The first signal asks for an orderly end, a second one of the same kind ends the program at once.
   action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
+
+}  // namespace
+
+void install_interrupt_handler() { install(softgrain_note_signal); }
+void end_at_once_on_signals() { install(softgrain_end_at_once); }
 
 bool interrupt_requested() { return requested != 0; }
 void request_interrupt() { requested = 1; }

@@ -4,6 +4,9 @@
 namespace softgrain {
 
 void install_interrupt_handler();
+/// For commands that have nothing to save: both signals end the program at once, with status 130, whatever it waits
+/// for.
+void end_at_once_on_signals();
 [[nodiscard]] bool interrupt_requested();
 void request_interrupt();  ///< what the handler does; for tests
 void clear_interrupt();

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -39,7 +40,45 @@ void write_file(const std::string& path, const std::string& text) {
   if (!good || !closed) throw FileTrouble(path + ": cannot be written: " + (good ? system_message() : reason));
 }
 
+/// What a path names that is no plain file; empty for one.
+const char* other_than_file(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::directory:
+      return "a directory";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::character:
+    case fs::file_type::block:
+      return "a device";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
+
+void write_standard_output(std::string_view text) {
+  const bool flushed = std::fflush(stdout) == 0;  // what was printed before comes first
+  if (!flushed || !write_all(STDOUT_FILENO, text))
+    throw FileTrouble("standard output: cannot be written: " + system_message());
+}
+
+void require_readable_file(const std::string& path) {
+  std::error_code trouble;
+  const fs::file_status status = fs::status(path, trouble);
+  if (status.type() == fs::file_type::not_found) throw FileTrouble(path + ": no such file");
+  const std::string other = other_than_file(status.type());
+  if (!other.empty()) throw FileTrouble(path + ": is " + other + ", not a file");
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) throw FileTrouble(path + ": cannot be read: " + system_message());
+  char first = 0;
+  const bool good = ::read(descriptor, &first, 1) >= 0;
+  const std::string reason = system_message();
+  ::close(descriptor);
+  if (!good) throw FileTrouble(path + ": cannot be read: " + reason);
+}
 
 void write_text_atomic(const std::string& path, const std::string& text) {
   try {
@@ -53,10 +92,7 @@ void write_text_atomic(const std::string& path, const std::string& text) {
 }
 
 std::string read_text(const std::string& path) {
-  std::error_code trouble;
-  const fs::file_status status = fs::status(path, trouble);
-  if (status.type() == fs::file_type::not_found) throw FileTrouble(path + ": no such file");
-  if (fs::is_directory(status)) throw FileTrouble(path + ": is a directory, not a file");
+  require_readable_file(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw FileTrouble(path + ": cannot be read: " + system_message());
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -6,12 +6,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <string_view>
-#include <system_error>
 
 #include "common/core/error.h"
+#include "common/io/text_file.h"
 
 namespace softgrain {
 
@@ -23,10 +22,10 @@ constexpr std::size_t kLongestLine = 4096;
 /// Lines of a file one by one, so that files of any size need little memory; zlib passes plain files through.
 class LineReader {
  public:
-  explicit LineReader(const std::string& path) : path_(path), file_(gzopen(path.c_str(), "rb"), gzclose) {
-    if (!file_) throw FileTrouble(path + ": no such file, or it cannot be read");
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) throw FileTrouble(path + ": is a directory, not a file");
+  explicit LineReader(const std::string& path) : path_(path), file_(nullptr, gzclose) {
+    require_readable_file(path);
+    file_.reset(gzopen(path.c_str(), "rb"));
+    if (!file_) throw FileTrouble(path + ": cannot be read");
     gzbuffer(file_.get(), 1U << 17U);
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/core/error.h"
+#include "common/io/interrupt.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/snapshots/snapshots.h"
@@ -141,6 +142,8 @@ std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat f
   Exporter exporter(format, directory);
   bool any = false;
   for_each_snapshot(run, SnapshotChoice::all, [&](const Snapshot& s) {
+    if (interrupt_requested())
+      throw Interrupted("stopped by a signal while exporting; " + directory + " is incomplete");
     if (!any) require_writable_directory(directory);
     any = true;
     exporter.add(s);

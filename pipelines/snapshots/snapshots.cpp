@@ -31,12 +31,16 @@ void visit_states(const std::string& path, SnapshotChoice choice, const Visit& v
 
 void visit_file(const std::string& path, const std::string& prefix, SnapshotChoice choice, const Visit& visit) {
   const std::string name = fs::path(path).filename().string();
+  bool reading = true;  // trouble of the visitor is its own
   const Visit renamed = [&](const Snapshot& s) {
-    if (prefix.empty()) return visit(s);
     Snapshot named = s;
-    named.series = prefix + "/" + s.series;
-    named.label = prefix + ": " + s.label;
+    if (!prefix.empty()) {
+      named.series = prefix + "/" + s.series;
+      named.label = prefix + ": " + s.label;
+    }
+    reading = false;
     visit(named);
+    reading = true;
   };
   try {
     if (is_states_file(name)) return visit_states(path, choice, renamed);
@@ -45,6 +49,7 @@ void visit_file(const std::string& path, const std::string& prefix, SnapshotChoi
     if (name == "grain_box.h5") return visit_grain_boxes(path, renamed);
   } catch (const FileTrouble& e) {
     const std::string text = e.what();
+    if (!reading) throw;
     throw FileTrouble(text.find(path) != std::string::npos ? text : path + ": damaged: " + text);
   }
   throw BadInput(path +
