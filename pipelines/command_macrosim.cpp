@@ -9,6 +9,7 @@
 #include "pipelines/kept_states.h"
 #include "pipelines/lammps/lammps_program.h"
 #include "pipelines/lammps_stage.h"
+#include "pipelines/macro_memory.h"
 #include "pipelines/macro_stage.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
@@ -92,6 +93,7 @@ MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   out.spec = measured_spec(out.law);
   out.setup = read_macro_setup(root.table("macro"), out.spec);
   require_known_contents(root.table("macro"), out.setup, out.spec, out.law_file);
+  require_macro_memory(root.table("macro"), out.setup, out.spec);
   out.setup.kept_states = read_kept_states(root);
   out.contents = root.count("contents", 1, 100000, out.contents);
   root.finish();

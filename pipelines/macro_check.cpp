@@ -15,6 +15,7 @@
 #include "pipelines/lammps/lammps_program.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/macro_comparison.h"
+#include "pipelines/macro_memory.h"
 #include "pipelines/measure_check.h"
 
 namespace softgrain {
@@ -249,9 +250,7 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSourc
                  Findings& out) {
   const BodyCounts count = count_bodies(setup);
   const double resolved = count.all + count.soft * grains_per_soft;
-  constexpr double kBytesPerGrain = 300.0;
-  constexpr double kBytesPerContact = 160.0;
-  const double memory = resolved * (kBytesPerGrain + 3.0 * kBytesPerContact);
+  const double memory = macro_memory(resolved);
   out.add("macro_bodies", count.all,
           fmt::format("macro: {} sample{} of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
                       setup.samples, setup.samples == 1 ? "" : "s", count.all, count.soft, setup.spec.test,
@@ -288,6 +287,7 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
   (void)read_kept_states(root);
   const MacroSetup macro = read_macro_setup(root.table("macro"), spec);
   require_known_contents(root.table("macro"), macro, spec, path);
+  require_macro_memory(root.table("macro"), macro, spec);
   root.finish();
   if (const std::string assumed = assumed_text(macro); !assumed.empty()) out.warn(assumed);
   if (path.empty()) {

@@ -5,6 +5,7 @@
 
 #include "pipelines/kept_states.h"
 #include "pipelines/macro_comparison.h"
+#include "pipelines/macro_memory.h"
 #include "pipelines/measure_setup.h"
 
 namespace softgrain {
@@ -19,10 +20,12 @@ bool sound_name(const std::string& name) {
   });
 }
 
-ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const std::vector<ComparisonScene>& before) {
+ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const SoftParticleSpec& content,
+                           const std::vector<ComparisonScene>& before) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
   require_own_preparation(t, scene.setup);
+  require_macro_memory(t, scene.setup, content);
   std::string name = default_name(scene.setup.spec);
   std::replace(name.begin(), name.end(), '.', '-');
   scene.name = t.text("name", name);
@@ -47,7 +50,8 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   require_own_preparation(root.table("macro"), base);
   if (!root.table("macro").has("resolved")) base.twins = {"shelled", "free"};
   base.kept_states = read_kept_states(root);
-  for (const SceneTable& t : root.tables("scene")) setup.scenes.push_back(read_scene(t, base, setup.scenes));
+  for (const SceneTable& t : root.tables("scene"))
+    setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes));
   if (setup.scenes.empty()) root.reject("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
   const SceneTable law = root.table("law");
   setup.laws = read_law_sources(scene, law);

@@ -1,5 +1,7 @@
 #include "pipelines/pipeline_setup.h"
 
+#include "pipelines/macro_memory.h"
+
 namespace softgrain {
 
 FitOptions read_fit_options(const SceneTable& t) {
@@ -23,6 +25,7 @@ PipelineSetup read_pipeline_setup(const SceneTable& root) {
   if (root.has("macro")) {
     setup.macro = read_macro_setup(root.table("macro"), setup.measure.spec);
     require_own_preparation(root.table("macro"), *setup.macro);
+    require_macro_memory(root.table("macro"), *setup.macro, setup.measure.spec);
   }
   if (setup.macro) setup.macro->kept_states = setup.measure.kept_states;
   root.finish();
