@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -54,6 +55,19 @@ inline int wait_for(pid_t child) {
 
 inline bool ended_with(int wait_status, int exit_status) {
   return WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == exit_status;
+}
+
+/// True when SIGINT met the program in the middle, after `ready`, so that it ended as an interrupted one. A program
+/// that was quicker is started afresh, without what it left in `directory`; one that always is makes the test fail.
+inline bool interrupted_in_the_middle(const std::function<pid_t()>& start, const std::function<bool()>& ready,
+                                      const std::string& directory) {
+  constexpr int kTries = 20;
+  for (int k = 0; k < kTries; ++k) {
+    std::filesystem::remove_all(directory);
+    const int status = signal_when(start(), ready, SIGINT);
+    if (ended_with(status, 130)) return true;
+  }
+  return false;
 }
 
 /// For start_program: standard error goes to a file.

@@ -145,16 +145,27 @@ void compare(const Case& c) {
 
 class HertzBlock : public testing::TestWithParam<int> {};
 
+Case case_of(int code) {
+  return {(code & 1) != 0, (code & 2) != 0, (code & 4) != 0, (code & 8) != 0, (code & 16) != 0 ? 0.05 : 0.0};
+}
+
+/// Without friction there is no spring to rescale, and an open cell does not shear.
+std::vector<int> cases_that_exist() {
+  std::vector<int> codes;
+  for (int code = 0; code < 32; ++code) {
+    const Case c = case_of(code);
+    if ((!c.rescaled || c.friction) && (c.shear == 0.0 || c.periodic)) codes.push_back(code);
+  }
+  return codes;
+}
+
 TEST_P(HertzBlock, GivesTheBitsOfTheScalarLoop) {
-  const int code = GetParam();
-  const Case c{(code & 1) != 0, (code & 2) != 0, (code & 4) != 0, (code & 8) != 0, (code & 16) != 0 ? 0.05 : 0.0};
-  if (c.rescaled && !c.friction) GTEST_SKIP() << "no spring to rescale";
-  if (c.shear != 0.0 && !c.periodic) GTEST_SKIP() << "an open cell does not shear";
+  const Case c = case_of(GetParam());
   compare<3>(c);
   compare<2>(c);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, HertzBlock, testing::Range(0, 32));
+INSTANTIATE_TEST_SUITE_P(Laws, HertzBlock, testing::ValuesIn(cases_that_exist()));
 
 /// Blocks of any length, their ends inside a vector register.
 TEST(HertzBlock, TakesPartsOfAList) {
