@@ -194,7 +194,7 @@ TEST(ParticlesDisks, ThePackHasTheForcesOfThePowderAndOfAllPairs) {
 /// So many that they are put into spatial order on the way.
 TEST(ParticlesDisks, ThreadsAndRestartsKeepTheBits) {
   const TemporaryDirectory directory;
-  const std::string text = scene_of(crowd(46), directory, "[time]\nsteps = 300\n[checkpoint]\nevery_steps = 100\n");
+  const std::string text = scene_of(crowd(66), directory, "[time]\nsteps = 300\n[checkpoint]\nevery_steps = 100\n");
   const Scene2 scene = read(text, directory.file("scene.toml"));
   ASSERT_GE(scene.system.particles.grains, 2000);
   const int threads = omp_get_max_threads();
@@ -203,6 +203,7 @@ TEST(ParticlesDisks, ThreadsAndRestartsKeepTheBits) {
   omp_set_num_threads(3);
   const ParticlesResultOf<2> parallel = run_particles(scene, {});
   omp_set_num_threads(threads);
+  ASSERT_GT(whole.system.contacts.size(), 8000) << "too small for the parallel path";
   expect_same_state(whole.system, parallel.system);
   ParticlesControl control;
   control.checkpoint = directory.file("checkpoint.h5");
