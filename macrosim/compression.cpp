@@ -1,5 +1,6 @@
 #include "macrosim/compression.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "common/core/error.h"
@@ -7,6 +8,7 @@
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/io/interrupt.h"
+#include "common/io/short_hash.h"
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/curve_notes.h"
@@ -73,6 +75,28 @@ RelaxationResult counted_step(DampedRelaxation<3>& relaxation, CompressionState&
   return rest;
 }
 
+/// Of box and bodies, bit by bit.
+std::string hash_of(const MacroPacking& packing) {
+  std::string bytes;
+  const auto add = [&bytes](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (const Vec3& corner : {packing.low, packing.high})
+    for (int a = 0; a < 3; ++a) add(corner[a]);
+  for (const MacroBody& body : packing.bodies) {
+    for (int a = 0; a < 3; ++a) add(body.x[a]);
+    add(body.r);
+    add(body.soft);
+  }
+  return short_hash(bytes);
+}
+
+MacroStart start_of(const MacroSpec& spec, const MacroPacking& packing) {
+  const auto [least, most] = std::minmax_element(packing.bodies.begin(), packing.bodies.end(),
+                                                 [](const MacroBody& a, const MacroBody& b) { return a.r < b.r; });
+  const bool any = !packing.bodies.empty();
+  return {any ? least->r : 0.0, any ? most->r : 0.0, spec.youngs_modulus, spec.poisson_ratio,
+          spec.friction,        spec.wall_friction,  hash_of(packing)};
+}
+
 }  // namespace
 
 MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,
@@ -84,6 +108,7 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   curve.bodies = static_cast<std::int64_t>(packing.bodies.size());
   curve.soft = packing.soft_count();
   curve.grains = macro.inner_grains;
+  curve.start = start_of(spec, packing);
   curve.preload = preload_points(spec) > 0 ? spec.preload : 0.0;
   curve.soft_volume_share = packing.soft_volume_share();
   curve.solid_fraction = packing.solid_fraction();

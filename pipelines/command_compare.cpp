@@ -11,9 +11,10 @@ ExitStatus command_compare(const CommonOptions& options) {
         "run to compare within");
   }
   const bool within = options.inputs.size() == 1;
+  if (within && options.different) throw BadInput("compare: --different goes with two runs");
   const CompareSide candidate = load_side(options.inputs.front());
-  const CompareResult result =
-      within ? compare_within(candidate) : compare_sides(candidate, load_side(options.inputs.back()));
+  const CompareResult result = within ? compare_within(candidate)
+                                      : compare_sides(candidate, load_side(options.inputs.back()), options.different);
   const RunContext context(options, "compare", "compare");
   nlohmann::json summary = to_json(result);
   const bool usable = result.undefined.empty();

@@ -40,6 +40,7 @@ struct CommonOptions {
   std::string radius;                              ///< --radius "16 mm" of them
   std::string modulus;                             ///< --modulus "0.5 MPa" of them
   std::string law_cache;                           ///< --law-cache DIR; empty: nothing is kept between runs
+  bool different = false;                          ///< --different (compare)
   std::string to;                                  ///< --to vtp, lammps-dump or csv (export)
   std::string command_line;                        ///< as given, for provenance
 };

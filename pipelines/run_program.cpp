@@ -114,6 +114,9 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--law-cache", o.law_cache,
                    "Keeps finished measurements of law tables here and takes from here what is known already")
         ->option_text("DIR");
+  if (command.function == command_compare)
+    app.add_flag("--different", o.different,
+                 "Compares runs that differ in bodies, materials, tests or packings too, and lists in what");
   if (command.function == command_export)
     app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump or csv")->option_text("FORM");
   if (command.function == command_run || command.function == command_microsim || command.function == command_macrosim)

@@ -63,6 +63,47 @@ std::int64_t read_count(const h5::Group& group, const char* name) {
   return value;
 }
 
+/// A number of a curve and its name as an attribute.
+template <class T>
+struct Number {
+  const char* name;
+  double T::*value;
+};
+
+constexpr Number<LawIdentity> kLawNumbers[] = {{"law_solid_fraction", &LawIdentity::solid_fraction},
+                                               {"law_youngs_modulus", &LawIdentity::youngs_modulus},
+                                               {"law_poisson_ratio", &LawIdentity::poisson_ratio},
+                                               {"law_friction", &LawIdentity::friction}};
+constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radius_min},
+                                                {"radius_max", &MacroStart::radius_max},
+                                                {"youngs_modulus", &MacroStart::youngs_modulus},
+                                                {"poisson_ratio", &MacroStart::poisson_ratio},
+                                                {"friction", &MacroStart::friction},
+                                                {"wall_friction", &MacroStart::wall_friction}};
+
+void write_origin(const h5::Group& group, const MacroCurve& curve) {
+  if (!curve.start.bodies.empty()) {
+    group.attribute("start", curve.start.bodies);
+    for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
+  }
+  if (curve.law.form.empty()) return;
+  group.attribute("law_form", curve.law.form);
+  group.attribute("law_hash", curve.law.hash);
+  for (const auto& n : kLawNumbers) group.attribute(n.name, curve.law.*n.value);
+}
+
+/// Files of before say neither.
+void read_origin(const h5::Group& group, MacroCurve& curve) {
+  if (group.has_attribute("start")) {
+    curve.start.bodies = group.text("start");
+    for (const auto& n : kStartNumbers) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
+  }
+  if (!group.has_attribute("law_form")) return;
+  curve.law.form = group.text("law_form");
+  curve.law.hash = group.text("law_hash");
+  for (const auto& n : kLawNumbers) curve.law.*n.value = read_attribute(group, n.name, kNotNegative);
+}
+
 struct Count {
   const char* name;
   std::int64_t MacroCurve::*value;
@@ -74,6 +115,13 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
                              {"grains", &MacroCurve::grains}};
 
 }  // namespace
+
+std::string identity_text(const LawIdentity& law) {
+  if (law.form.empty()) return "not recorded";
+  return fmt::format("{} law{}, measured with nu = {:g}, mu = {:g}, taken with E = {:g} Pa; numbers {}", law.form,
+                     law.solid_fraction > 0.0 ? fmt::format(" at solid fraction {:.4f}", law.solid_fraction) : "",
+                     law.poisson_ratio, law.friction, law.youngs_modulus, law.hash);
+}
 
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("engine", curve.engine);
@@ -87,6 +135,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("contact_evaluations", curve.cost.contact_evaluations);
   group.attribute("seconds", curve.cost.seconds);
   group.attribute("preload", curve.preload);
+  write_origin(group, curve);
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
   write_if_any(group, curve, kBodyForces);
@@ -104,6 +153,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   curve.cost = {read_count(group, "loop_passes"), read_count(group, "contact_evaluations"),
                 read_attribute(group, "seconds", kNotNegative)};
   if (group.has_attribute("preload")) curve.preload = read_attribute(group, "preload", Limits::flag());
+  read_origin(group, curve);
   const std::size_t points = group.doubles(kColumns[0].name).size();
   for (const Column& c : kColumns) read_column(group, curve, c, points);
   for (const Column& c : kOptionalColumns)

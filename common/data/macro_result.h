@@ -11,6 +11,35 @@
 
 namespace softgrain {
 
+/// The law that a curve was made with: two runs with the same hash had the same forces.
+struct LawIdentity {
+  std::string form;             ///< "pair", "bag" or "directional"; empty: a twin, or a file of before
+  double solid_fraction = 0.0;  ///< at which a table was taken; 0: a law card
+  double youngs_modulus = 0.0;  ///< that scales its forces [Pa]
+  double poisson_ratio = 0.0;   ///< of the grains that it was measured with
+  double friction = 0.0;        ///< mu of them
+  std::string hash;             ///< of every number that forces depend on
+
+  friend bool operator==(const LawIdentity&, const LawIdentity&) = default;
+};
+
+/// "directional law at solid fraction 0.7048, measured with nu = 0.3, mu = 0.3, taken with E = 5e+05 Pa; numbers
+/// 0123456789abcdef".
+std::string identity_text(const LawIdentity& law);
+
+/// What a curve starts from; runs that are set side by side should agree in it. Zeros: a file of before.
+struct MacroStart {
+  double radius_min = 0.0;      ///< of the bodies [m]
+  double radius_max = 0.0;      ///< [m]
+  double youngs_modulus = 0.0;  ///< of solid grains and of what is inside the soft particles [Pa]
+  double poisson_ratio = 0.0;
+  double friction = 0.0;
+  double wall_friction = 0.0;
+  std::string bodies;  ///< hash of the box and of places, radii and kinds of all bodies
+
+  friend bool operator==(const MacroStart&, const MacroStart&) = default;
+};
+
 /// One macro run of one sample. Stresses are compressive positive [Pa]; strain is from the start of the test.
 struct MacroCurve {
   /// "law" (soft particles with the pair law of a card), "pair" (the same), or another law's name; or a resolved twin:
@@ -23,7 +52,9 @@ struct MacroCurve {
   std::int64_t grains = 0;  ///< grains resolved inside soft particles (0 for laws)
   double soft_volume_share = 0.0;
   double solid_fraction = 0.0;  ///< of bodies in the box at the start
-  double preload = 0.0;         ///< shear: isotropic strain before; recorded at strains from -preload to 0
+  MacroStart start;
+  LawIdentity law;
+  double preload = 0.0;  ///< shear: isotropic strain before; recorded at strains from -preload to 0
   std::vector<double> strain;
   std::vector<double> stress_axial;           ///< from wall forces
   std::vector<double> stress_lateral;         ///< from wall forces, mean of both directions

@@ -207,6 +207,9 @@ Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::v
     else
       result.left_out.push_back(problem);
   }
+  for (const auto& [key, curve] : references)
+    if (!candidates.contains(key))
+      result.left_out.push_back(fmt::format("{} sample {}: the candidate has no such sample", key.first, key.second));
   if (result.samples.empty() && !result.undefined.empty())
     throw ZeroReference("compare: no sample can be compared: " + result.undefined.front());
   if (result.samples.empty()) throw BadInput("compare: no sample can be compared: " + result.left_out.front());

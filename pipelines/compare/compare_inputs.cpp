@@ -80,6 +80,52 @@ void compare_engines(CompareResult& result, const std::vector<MacroCurve>& candi
   }
 }
 
+/// Curves of the same test and sample; of the same sample where the two sides share no test.
+Differences macro_differences(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference) {
+  Differences same_test;
+  Differences same_sample;
+  bool any = false;
+  for (const MacroCurve& a : candidate)
+    for (const MacroCurve& b : reference) {
+      if (a.sample != b.sample) continue;
+      any = any || a.test == b.test;
+      (a.test == b.test ? same_test : same_sample).add(differences(a, b));
+    }
+  return any ? same_test : same_sample;
+}
+
+Differences all_differences(const CompareSide& candidate, const CompareSide& reference, const NamePairs& engines) {
+  Differences out;
+  for (const auto& [a, b] : engines)
+    out.add(macro_differences(curves_of(candidate.macro, a), curves_of(reference.macro, b)));
+  if (candidate.measurements && reference.measurements) {
+    out.add(differences(candidate.measurements->spec, reference.measurements->spec));
+    if (candidate.measurements->shell_turns != reference.measurements->shell_turns)
+      out.said.emplace_back("the first shell turned with its grains on one side alone");
+  }
+  if (candidate.card && reference.card) out.add(differences(candidate.card->spec, reference.card->spec));
+  return out;
+}
+
+void refuse(const CompareSide& candidate, const CompareSide& reference, const std::vector<std::string>& obstacles) {
+  std::string text;
+  for (const std::string& one : obstacles) text += "\n  " + one;
+  throw BadInput("compare: " + candidate.name + " and " + reference.name +
+                 " are not of the same, and a difference of their results would say nothing (--different compares them "
+                 "all the same):" +
+                 text);
+}
+
+/// One test stands for another: what is asked for with --different.
+void rename_test(std::vector<MacroCurve>& reference, const std::vector<MacroCurve>& candidate) {
+  const auto same = [](const std::vector<MacroCurve>& curves) {
+    return std::all_of(curves.begin(), curves.end(),
+                       [&](const MacroCurve& c) { return c.test == curves.front().test; });
+  };
+  if (candidate.empty() || reference.empty() || !same(candidate) || !same(reference)) return;
+  for (MacroCurve& c : reference) c.test = candidate.front().test;
+}
+
 StiffnessAngles angles_of(const CompareSide& side, PairKind kind) {
   const PairLaw* law = side.card ? side.card->find(kind) : nullptr;
   if (law == nullptr) return {};
@@ -93,6 +139,10 @@ void compare_relaxed(CompareResult& result, const CompareSide& candidate, const 
     attempt(result, "measurements, " + to_string(kind), [&, &a = a, &b = b] {
       result.measurements.push_back(compare_measurements(*candidate.measurements, a, *reference.measurements, b, kind,
                                                          angles_of(reference, kind)));
+      const char* others = "packings: not the same ones on both sides; how they scatter is in the errors";
+      if (!result.measurements.back().paired &&
+          std::find(result.differences.begin(), result.differences.end(), others) == result.differences.end())
+        result.differences.emplace_back(others);
     });
   }
 }
@@ -140,10 +190,16 @@ CompareSide load_side(const std::string& path) {
   return side;
 }
 
-CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference) {
+CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference, bool different) {
   CompareResult result;
-  compare_engines(result, candidate.macro, reference.macro,
-                  match_names(engines_of(candidate.macro), engines_of(reference.macro)));
+  const NamePairs engines = match_names(engines_of(candidate.macro), engines_of(reference.macro));
+  const Differences found = all_differences(candidate, reference, engines);
+  if (!found.obstacles.empty() && !different) refuse(candidate, reference, found.obstacles);
+  result.differences = found.obstacles;
+  result.differences.insert(result.differences.end(), found.said.begin(), found.said.end());
+  std::vector<MacroCurve> curves = reference.macro;
+  if (different) rename_test(curves, candidate.macro);
+  compare_engines(result, candidate.macro, curves, engines);
   compare_kinds(result, candidate, reference);
   require_something(result);
   return result;
@@ -153,7 +209,12 @@ CompareResult compare_within(const CompareSide& side) {
   CompareResult result;
   const auto engines = engines_of(side.macro);
   const auto has = [&](const char* name) { return std::find(engines.begin(), engines.end(), name) != engines.end(); };
-  if (has("law") && has("shelled")) compare_engines(result, side.macro, side.macro, {{"law", "shelled"}});
+  if (has("law") && has("shelled")) {
+    const Differences found = macro_differences(curves_of(side.macro, "law"), curves_of(side.macro, "shelled"));
+    for (const auto* list : {&found.obstacles, &found.said})
+      result.differences.insert(result.differences.end(), list->begin(), list->end());
+    compare_engines(result, side.macro, side.macro, {{"law", "shelled"}});
+  }
   for (const PairKind kind : kKinds)
     if (side.measurements) compare_with_published(result, side, kind);
   require_something(result);

@@ -11,6 +11,7 @@
 #include "common/data/measurements.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/compare_measurements.h"
+#include "pipelines/compare/differences.h"
 
 namespace softgrain {
 
@@ -44,13 +45,15 @@ struct CompareResult {
   std::vector<RelaxationComparison> relaxations;
   std::vector<MeasurementComparison> measurements;
   std::vector<LawPartComparison> laws;
+  std::vector<std::string> differences;  ///< what the sides do not have in common, beside what is compared
   std::vector<std::string> remarks;    ///< what could not be compared, and why
   std::vector<std::string> undefined;  ///< what is relative to a stress of zero: such a comparison is not usable
 };
 
 /// Candidate against reference: engines and relaxations of the same name; when the sides share none, the first of each.
-/// Throws BadInput when nothing can be compared.
-CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference);
+/// Sides that differ in what makes a comparison mean something (differences.h) are refused unless `different`; then a
+/// test stands against another test by its sample. Throws BadInput for these, and when nothing can be compared.
+CompareResult compare_sides(const CompareSide& candidate, const CompareSide& reference, bool different = false);
 
 /// Inside one run: engine "law" against "shelled", and every other relaxation against "published".
 /// Throws BadInput when nothing can be compared.

@@ -219,6 +219,7 @@ json to_json(const CompareResult& result) {
           {"relaxations", list_of(result.relaxations)},
           {"measurements", list_of(result.measurements)},
           {"laws", list_of(result.laws)},
+          {"differences", result.differences},
           {"remarks", result.remarks},
           {"undefined", result.undefined}};
 }
@@ -230,6 +231,7 @@ std::string to_text(const CompareResult& result) {
   for (const auto& part : result.measurements) out += text_of(part);
   for (const auto& part : result.laws) out += text_of(part);
   for (const std::string& one : result.undefined) out += "undefined: " + one + "\n";
+  for (const std::string& difference : result.differences) out += "differs: " + difference + "\n";
   for (const std::string& remark : result.remarks) out += "not compared: " + remark + "\n";
   return out;
 }

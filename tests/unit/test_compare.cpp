@@ -289,6 +289,112 @@ TEST(CompareSides, ComparesEqualEnginesOrElseTheFirstOfEach) {
   EXPECT_THROW(compare_within(law), BadInput);
 }
 
+/// Curves that say what they start from and which law they were made with.
+std::vector<MacroCurve> stated(const std::string& engine, const std::string& hash = "law 1") {
+  std::vector<MacroCurve> curves = curves_of(synthetic::macro(), engine);
+  for (MacroCurve& c : curves) {
+    c.start = {0.01, 0.016, 5e5, 0.3, 0.3, 0.0, "start " + std::to_string(c.sample)};
+    if (engine == "law") c.law = {"directional", 0.7, 5e5, 0.3, 0.3, hash};
+  }
+  return curves;
+}
+
+CompareSide side_of(std::vector<MacroCurve> curves) {
+  CompareSide side;
+  side.macro = std::move(curves);
+  return side;
+}
+
+std::string all_of(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+TEST(CompareSides, WhatCannotBeMeantIsRefusedUnlessToldOtherwise) {
+  const CompareSide law = side_of(stated("law"));
+  EXPECT_EQ(all_of(compare_sides(law, side_of(stated("shelled"))).differences), "");
+  struct Change {
+    const char* says;
+    std::function<void(MacroCurve&)> make;
+  };
+  const std::vector<Change> changes{
+      {"bodies: 320 against 321", [](MacroCurve& c) { c.bodies = 321; }},
+      {"soft particles: 200 against 100", [](MacroCurve& c) { c.soft = 100; }},
+      {"radii of bodies: 0.01 to 0.016 m against 0.01 to 0.02 m",
+       [](MacroCurve& c) { c.start.radius_max = 0.02, c.start.bodies = "other"; }},
+      {"bodies start elsewhere", [](MacroCurve& c) { c.start.bodies = "other"; }},
+      {"E of the grains [Pa]: 500000 against 1000000", [](MacroCurve& c) { c.start.youngs_modulus = 1e6; }},
+      {"nu = 0.3, mu = 0.3, the grains of the twin have nu = 0.2", [](MacroCurve& c) { c.start.poisson_ratio = 0.2; }},
+      {"mu of the walls: 0 against 0.2", [](MacroCurve& c) { c.start.wall_friction = 0.2; }},
+      {"test: oedometric against isotropic", [](MacroCurve& c) { c.test = "isotropic"; }},
+      {"preload of the test: 0 against 0.1", [](MacroCurve& c) { c.preload = 0.1; }}};
+  for (const Change& change : changes) {
+    std::vector<MacroCurve> twin = stated("shelled");
+    for (MacroCurve& c : twin) change.make(c);
+    const std::string message = message_of([&] { compare_sides(law, side_of(twin)); });
+    EXPECT_NE(message.find(change.says), std::string::npos) << change.says << " not in " << message;
+    EXPECT_NE(message.find("--different"), std::string::npos) << message;
+    const CompareResult told = compare_sides(law, side_of(twin), true);
+    EXPECT_NE(all_of(told.differences).find(change.says), std::string::npos) << all_of(told.differences);
+    EXPECT_NE(to_text(told).find(change.says), std::string::npos);
+    EXPECT_NE(to_json(told)["differences"].dump().find(change.says), std::string::npos);
+    ASSERT_EQ(told.macro.size(), 1U) << change.says;
+    EXPECT_EQ(told.macro[0].result.samples.size(), 2U) << change.says;
+  }
+}
+
+TEST(CompareSides, TwoLawsOnOtherSamplesAreComparedAndSaidToBe) {
+  std::vector<MacroCurve> other = stated("law", "law 2");
+  for (MacroCurve& c : other) c.start.bodies += ", another seed";
+  other.pop_back();
+  const CompareResult result = compare_sides(side_of(stated("law")), side_of(other));
+  const std::string said = all_of(result.differences);
+  EXPECT_NE(said.find("bodies start elsewhere: another seed"), std::string::npos) << said;
+  EXPECT_NE(said.find("numbers law 1; against directional law at solid fraction 0.7000"), std::string::npos) << said;
+  EXPECT_NE(all_of(result.macro.at(0).result.left_out).find("reference has no such sample"), std::string::npos);
+  const CompareResult reverse = compare_sides(side_of(other), side_of(stated("law")));
+  EXPECT_NE(all_of(reverse.macro.at(0).result.left_out).find("sample 1: the candidate has no such sample"),
+            std::string::npos);
+  const CompareResult before = compare_sides(side_of(stated("law")), side_of(curves_of(synthetic::macro(), "law")));
+  EXPECT_NE(all_of(before.differences).find("the reference is of an earlier version"), std::string::npos);
+}
+
+TEST(CompareSides, MeasurementsOfOtherPackingsAreRefusedAndOtherScalesAreSaid) {
+  CompareSide a;
+  CompareSide b;
+  a.measurements = b.measurements = synthetic::measurements();
+  EXPECT_EQ(all_of(compare_sides(a, b).differences), "");
+  b.measurements->spec.youngs_modulus *= 2.0;
+  b.measurements->spec.shell_radius *= 3.0;
+  const std::string said = all_of(compare_sides(a, b).differences);
+  EXPECT_NE(said.find("E of the grains [Pa]: 500000 against 1000000"), std::string::npos) << said;
+  EXPECT_NE(said.find("Rs [m]: 0.016 against 0.048"), std::string::npos) << said;
+  b = a;
+  b.measurements->packings[0].grains += 1;
+  EXPECT_NE(all_of(compare_sides(a, b).differences).find("packings: not the same ones"), std::string::npos);
+  const std::vector<std::pair<const char*, std::function<void(SoftParticleSpec&)>>> changes{
+      {"exponent of the radii: 3.5 against 3", [](SoftParticleSpec& s) { s.exponent = 3.0; }},
+      {"polydispersity: 10 against 5", [](SoftParticleSpec& s) { s.polydispersity = 5.0; }},
+      {"largest grain over Rs: 0.5 against 0.4", [](SoftParticleSpec& s) { s.rmax_over_shell = 0.4; }},
+      {"packing, beta: 3 against 2", [](SoftParticleSpec& s) { s.beta = 2.0; }},
+      {"packing, trials: 10000 against 100", [](SoftParticleSpec& s) { s.trials = 100; }},
+      {"nu of the grains: 0.3 against 0.2", [](SoftParticleSpec& s) { s.poisson_ratio = 0.2; }},
+      {"mu of the grains: 0.3 against 0.5", [](SoftParticleSpec& s) { s.friction = 0.5; }}};
+  for (const auto& [says, change] : changes) {
+    b = a;
+    change(b.measurements->spec);
+    const std::string message = message_of([&] { compare_sides(a, b); });
+    EXPECT_NE(message.find(says), std::string::npos) << says << " not in " << message;
+    EXPECT_NE(all_of(compare_sides(a, b, true).differences).find(says), std::string::npos);
+    CompareSide card_a;
+    CompareSide card_b;
+    card_a.card = card_b.card = synthetic::card();
+    change(card_b.card->spec);
+    EXPECT_NE(message_of([&] { compare_sides(card_a, card_b); }).find(says), std::string::npos) << says;
+  }
+}
+
 TEST(CompareSides, LawCardsSideBySide) {
   CompareSide a;
   CompareSide b;

@@ -1,0 +1,100 @@
+#include "pipelines/compare/differences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace softgrain {
+
+namespace {
+
+using List = std::vector<std::string>;
+
+template <class T>
+void note(List& out, const char* what, const T& candidate, const T& reference) {
+  if (candidate != reference) out.push_back(fmt::format("{}: {} against {}", what, candidate, reference));
+}
+
+bool is_twin(const MacroCurve& c) { return c.engine == "shelled" || c.engine == "free"; }
+
+std::string radii(const MacroStart& s) { return fmt::format("{:.6g} to {:.6g} m", s.radius_min, s.radius_max); }
+
+void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {
+  const MacroStart& a = candidate.start;
+  const MacroStart& b = reference.start;
+  if (a.bodies.empty() || b.bodies.empty()) {
+    out.said.push_back(
+        fmt::format("the {} is of an earlier version, which did not record materials, radii and where "
+                    "bodies start: whether these agree is not known",
+                    a.bodies.empty() ? "candidate" : "reference"));
+    return;
+  }
+  if (a.bodies != b.bodies) {
+    note(out.obstacles, "radii of bodies", radii(a), radii(b));
+    (is_twin(candidate) == is_twin(reference) ? out.said : out.obstacles)
+        .emplace_back("bodies start elsewhere: another seed, sample or preparation");
+  }
+  note(out.obstacles, "E of the grains [Pa]", a.youngs_modulus, b.youngs_modulus);
+  note(out.obstacles, "nu of the grains", a.poisson_ratio, b.poisson_ratio);
+  note(out.obstacles, "mu of the grains", a.friction, b.friction);
+  note(out.obstacles, "mu of the walls", a.wall_friction, b.wall_friction);
+}
+
+/// The law of one side is compared with the grains that the other side resolves.
+void note_law_and_grains(const LawIdentity& law, const MacroStart& grains, Differences& out) {
+  if (law.form.empty() || grains.bodies.empty()) return;
+  if (law.poisson_ratio != grains.poisson_ratio || law.friction != grains.friction)
+    out.obstacles.push_back(
+        fmt::format("the law was measured with nu = {:g}, mu = {:g}, the grains of the twin have nu = {:g}, mu = {:g}",
+                    law.poisson_ratio, law.friction, grains.poisson_ratio, grains.friction));
+}
+
+void note_laws(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {
+  if (is_twin(candidate) != is_twin(reference)) {
+    note_law_and_grains(is_twin(candidate) ? reference.law : candidate.law,
+                        is_twin(candidate) ? candidate.start : reference.start, out);
+    return;
+  }
+  if (is_twin(candidate) || candidate.law == reference.law) return;
+  out.said.push_back("law: " + identity_text(candidate.law) + "; against " + identity_text(reference.law));
+}
+
+}  // namespace
+
+void Differences::add(const Differences& more) {
+  const auto append = [](List& to, const List& from) {
+    for (const std::string& one : from)
+      if (std::find(to.begin(), to.end(), one) == to.end()) to.push_back(one);
+  };
+  append(said, more.said);
+  append(obstacles, more.obstacles);
+}
+
+Differences differences(const MacroCurve& candidate, const MacroCurve& reference) {
+  Differences out;
+  note(out.obstacles, "test", candidate.test, reference.test);
+  note(out.obstacles, "preload of the test", candidate.preload, reference.preload);
+  note(out.obstacles, "bodies", candidate.bodies, reference.bodies);
+  note(out.obstacles, "soft particles", candidate.soft, reference.soft);
+  note_start(candidate, reference, out);
+  note_laws(candidate, reference, out);
+  return out;
+}
+
+Differences differences(const SoftParticleSpec& candidate, const SoftParticleSpec& reference) {
+  Differences out;
+  note(out.said, "Rs [m]", candidate.shell_radius, reference.shell_radius);
+  note(out.said, "E of the grains [Pa]", candidate.youngs_modulus, reference.youngs_modulus);
+  note(out.obstacles, "nu of the grains", candidate.poisson_ratio, reference.poisson_ratio);
+  note(out.obstacles, "mu of the grains", candidate.friction, reference.friction);
+  note(out.obstacles, "exponent of the radii", candidate.exponent, reference.exponent);
+  note(out.obstacles, "polydispersity", candidate.polydispersity, reference.polydispersity);
+  note(out.obstacles, "largest grain over Rs", candidate.rmax_over_shell, reference.rmax_over_shell);
+  note(out.obstacles, "packing, beta", candidate.beta, reference.beta);
+  note(out.obstacles, "packing, trials", candidate.trials, reference.trials);
+  const auto placement = [](const SoftParticleSpec& s) { return s.placement == Placement::voids ? "voids" : "trials"; };
+  note(out.said, "packing, placement", std::string(placement(candidate)), std::string(placement(reference)));
+  return out;
+}
+
+}  // namespace softgrain
