@@ -210,14 +210,13 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("macrosim: give one scene file");
   const Scene scene = Scene::load(options.inputs[0], options.overrides);
   const MacroScene macro = read_macro_scene(scene, options);
-  const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string());
+  const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string(), macro.law.files);
   const std::uint64_t seed = context.seed(macro.seed);
   const Provenance provenance = context.provenance(scene, seed);
   const TaskStore store(context, scene, seed, macro.law.text);
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, seed);
   const NamedLaws law = law_of(macro, contents);
-  if (macro.lammps) refuse_to_lose_points(context);
   if (macro.lammps && macro.lammps->write_only)
     return write_only(macro, law, contents, seed, store, context, provenance);
   std::vector<MacroCurve> curves;

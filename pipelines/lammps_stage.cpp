@@ -46,19 +46,6 @@ std::int64_t kept_states(const LammpsRuns& runs, std::int64_t sample) {
   return sample == 0 ? runs.setup.kept_states : 0;
 }
 
-/// Directories of samples that an earlier run left.
-std::vector<std::string> old_directories(const RunContext& context) {
-  std::vector<std::string> found;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(context.directory(), error)) {
-    const std::string name = entry.path().filename();
-    const bool ours =
-        name.starts_with("lammps-") && name.size() > 7 && name.find_first_not_of("0123456789", 7) == std::string::npos;
-    if (ours) found.push_back(entry.path());
-  }
-  return found;
-}
-
 void write_sample(const LammpsRuns& runs, const MacroPacking& packing, std::int64_t sample, const std::string& where) {
   const auto missing = [&](const char* file) { return !fs::exists(where + "/" + file); };
   const lammps::BodyTypes types = lammps::body_types(packing);
@@ -215,20 +202,7 @@ std::string lammps_directory(const RunContext& context, std::int64_t sample) {
   return context.path(fmt::format("lammps-{}", sample));
 }
 
-void refuse_to_lose_points(const RunContext& context) {
-  if (context.resume() || fs::exists(context.path("macro.h5"))) return;
-  for (const std::string& old : old_directories(context))
-    if (const auto points = lammps::count_points(old); points > 0)
-      throw BadInput(
-          fmt::format("{} holds {} recorded points that were not read: --resume goes on with them; to begin "
-                      "anew, remove it or choose another --out",
-                      old, points));
-}
-
 void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>& packings, const RunContext& context) {
-  std::error_code ignored;
-  if (!context.resume())
-    for (const std::string& old : old_directories(context)) fs::remove_all(old, ignored);
   for (std::size_t k = 0; k < packings.size(); ++k) {
     const auto sample = static_cast<std::int64_t>(k);
     const std::string where = lammps_directory(context, sample);

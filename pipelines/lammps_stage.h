@@ -27,12 +27,8 @@ struct LammpsRuns {
 /// DIR/lammps-K of sample K.
 std::string lammps_directory(const RunContext& context, std::int64_t sample);
 
-/// Points that were recorded elsewhere, say, may have cost much: without --resume they are not thrown away unless their
-/// results are there. Throws BadInput.
-void refuse_to_lose_points(const RunContext& context);
-
 /// The bodies, laws and script of every sample, to lammps_directory(). What an earlier part of the same run left there
-/// is kept with --resume, and removed otherwise. Throws FileTrouble.
+/// is kept. Throws FileTrouble.
 void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>& packings, const RunContext& context);
 
 /// Runs what write_lammps_files() wrote, one sample after another, from the last recorded point on. With preparation

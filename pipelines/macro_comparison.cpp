@@ -210,7 +210,7 @@ json summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>
 ExitStatus run_macro_comparison(const CommonOptions& options, const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();
   const MacroComparisonSetup setup = read_macro_comparison(scene);
-  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
+  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string(), setup.laws.files);
   const std::uint64_t seed = context.seed(setup.seed);
   const Provenance provenance = context.provenance(scene, seed);
   const TaskStore store(context, scene, seed, setup.laws.text);

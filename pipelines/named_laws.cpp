@@ -139,11 +139,13 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   LawSources out;
   if (law.has("card")) {
     out.card = load_card(scene.resolve(law.text("card")));
-    out.text += read_text(scene.resolve(law.text("card")));
+    out.files.push_back(scene.resolve(law.text("card")));
+    out.text += read_text(out.files.back());
   }
   if (law.has("table")) {
     out.table = load_law_table(scene.resolve(law.text("table")));
-    out.text += read_text(scene.resolve(law.text("table")));
+    out.files.push_back(scene.resolve(law.text("table")));
+    out.text += read_text(out.files.back());
   }
   if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
   if (law.has("forms")) out.forms = law.texts("forms");
@@ -204,3 +206,4 @@ std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec
 }
 
 }  // namespace softgrain
+  out.files = {path};

@@ -32,11 +32,13 @@ struct LawSources {
   std::optional<LawCard> card;    ///< pair law, as published
   std::optional<LawTable> table;  ///< bag and directional law, and the pair law when there is no card
   std::vector<std::string> forms{"pair", "bag", "directional"};  ///< one of them, or "best", for a macro scene
-  RangePolicy range = RangePolicy::reject;                       ///< of solid fractions outside the table
-  std::optional<double> friction;                                ///< mu_soft of the table's laws; empty: as measured
-  bool unloading = false;                                        ///< with the measured unloading branch
-  std::optional<Beyond> beyond{};                                ///< instead of what card or table say
-  std::string text;                                              ///< of the files that they come from
+  std::optional<double> solid_fraction{};   ///< at which the table is taken; empty: see law_fraction()
+  RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
+  std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
+  bool unloading = false;                   ///< with the measured unloading branch
+  std::optional<Beyond> beyond{};           ///< instead of what card or table say
+  std::vector<std::string> files{};         ///< that they come from
+  std::string text;                         ///< of these
 };
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.

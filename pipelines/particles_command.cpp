@@ -6,6 +6,7 @@
 #include "common/io/progress.h"
 #include "common/state/checkpoint.h"
 #include "microsim/particles/particles_run.h"
+#include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/export/xdmf.h"
 #include "pipelines/particles_summary.h"
@@ -34,8 +35,10 @@ template <int D>
 ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
   ParticlesSceneOf<D> setup = read_particles_scene<D>(scene);
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string(),
+                           contact_law_files(scene));
   const Provenance provenance = context.provenance(scene, context.seed(0));
+  context.begin(scene, provenance.seed, "");
   const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), context);
   json summary = particles_summary(setup, result, memory_before);
   std::string text = particles_text(result);

@@ -228,7 +228,7 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, con
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   if (has_powder_variants(scene)) return run_powder_variants(scene, options);
   const PowderSetup setup = read_powder(scene);
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string(), {setup.states});
   return run_powder_ensemble(setup, scene, context);
 }
 

@@ -11,7 +11,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
+#include "pipelines/run_files.h"
 
 namespace softgrain {
 
@@ -34,6 +36,23 @@ std::shared_ptr<spdlog::logger> make_logger(const std::string& file, const Commo
   return logger;
 }
 
+constexpr const char* kRunFile = ".run";  ///< of RunContext::begin()
+
+nlohmann::json read_object(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return nlohmann::json::object();
+  nlohmann::json object = nlohmann::json::parse(read_text(file), nullptr, false);
+  return object.is_object() ? object : nlohmann::json::object();
+}
+
+/// What the run in a directory is of; runs of before say it in the summary of a run that has ended.
+nlohmann::json earlier_run(const std::string& run_file, const std::string& summary_file) {
+  const nlohmann::json run = read_object(run_file);
+  if (!run.empty()) return run;
+  const nlohmann::json summary = read_object(summary_file);
+  return summary.value("provenance", nlohmann::json::object());
+}
+
 }  // namespace
 
 std::string default_directory(const std::string& name) {
@@ -42,15 +61,19 @@ std::string default_directory(const std::string& name) {
   return std::filesystem::exists(directory + "/README.md", ignored) ? directory + "_run" : directory;
 }
 
-RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name)
+RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name,
+                       const std::vector<std::string>& read)
     : options_(options),
       command_(command),
       directory_(options.out.empty() ? default_directory(default_name) : options.out),
       threads_(options.threads > 0 ? options.threads : omp_get_max_threads()) {
   require_writable_directory(directory_);
   lock_ = std::make_shared<DirectoryLock>(directory_);
-  std::error_code ignored;
-  if (!options_.resume) std::filesystem::remove(path("summary.json"), ignored);
+  if (!options_.resume) {
+    std::vector<std::string> inputs = options_.inputs;
+    inputs.insert(inputs.end(), read.begin(), read.end());
+    remove_earlier_run(directory_, command, inputs);
+  }
   try {
     logger_ = make_logger(path("log.txt"), options_);
   } catch (const spdlog::spdlog_ex& e) {
@@ -69,6 +92,20 @@ RunContext RunContext::part(const std::string& name) const {
   RunContext out(options, command_, name);
   out.shows_ = false;
   return out;
+}
+
+void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const {
+  const nlohmann::json now{{"scene", scene.text()}, {"seed", seed}, {"beside", short_hash(beside)}};
+  if (shows_ && resume()) {
+    const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
+    for (const auto& [key, what] : {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}})
+      if (before.contains(key) && before[key] != now[key])
+        throw BadInput(
+            fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "
+                        "choose another --out",
+                        directory_, what));
+  }
+  write_text_atomic(path(kRunFile), now.dump(2) + "\n");
 }
 
 Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {

@@ -54,10 +54,16 @@ std::string default_directory(const std::string& name);
 class RunContext {
  public:
   /// `command` names the sub-command, `default_name` the directory under results/ when --out is absent
-  /// (default_directory). Unless the run
-  /// goes on with an earlier one, the summary of that is removed: the directory must not look like a run that has
-  /// ended. Throws FileTrouble: cannot be written, another run is at work there.
-  RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name);
+  /// (default_directory). Unless the run goes on with an earlier one, the results of that are removed
+  /// (remove_earlier_run); `read` are files that the run reads beside the inputs of the command line. Throws
+  /// FileTrouble: cannot be written, another run is at work there; BadInput: what is there is not to be removed.
+  RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name,
+             const std::vector<std::string>& read = {});
+
+  /// Says what the run is of, once, before anything is written: scene, seed and what else determines it (`beside`, the
+  /// text of a law file, say). A run that goes on must be the same one, whether it was interrupted or had ended. Throws
+  /// BadInput.
+  void begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const;
 
   /// A part of this run in a directory of its own below, with its own log and summary, which goes to the file alone.
   [[nodiscard]] RunContext part(const std::string& name) const;
@@ -95,7 +101,7 @@ class RunContext {
   std::string directory_;
   std::shared_ptr<DirectoryLock> lock_;
   int threads_ = 1;
-  bool shows_ = true;  ///< the summary on standard output
+  bool shows_ = true;  ///< the summary on standard output; not of a part
   std::shared_ptr<spdlog::logger> logger_;
 };
 

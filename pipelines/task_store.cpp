@@ -15,6 +15,7 @@ TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_
     : context_(context),
       directory_(context.path("work")),
       fingerprint_(scene.text() + "\n# seed " + std::to_string(seed) + "\n" + beside) {
+  context.begin(scene, seed, beside);
   std::error_code error;
   if (!context.resume()) std::filesystem::remove_all(directory_, error);
   std::filesystem::create_directories(directory_, error);

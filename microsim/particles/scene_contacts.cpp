@@ -124,4 +124,11 @@ SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materia
   return out;
 }
 
+std::vector<std::string> contact_law_files(const Scene& scene) {
+  std::vector<std::string> files;
+  for (const SceneTable& t : scene.root().tables("contact"))
+    if (t.has("file")) files.push_back(scene.resolve(t.text("file")));
+  return files;
+}
+
 }  // namespace softgrain

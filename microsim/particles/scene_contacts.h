@@ -26,4 +26,7 @@ struct SceneLaws {
 /// cohesive. Throws BadInput; FileTrouble for law cards and tables that cannot be read.
 SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materials, int dimension);
 
+/// The law cards and tables that they name.
+std::vector<std::string> contact_law_files(const Scene& scene);
+
 }  // namespace softgrain

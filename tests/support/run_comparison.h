@@ -17,8 +17,8 @@
 namespace softgrain::test {
 
 /// Files that are not compared: the log has times, the report draws what the other files hold and says when and how
-/// long, the lock stays behind.
-inline const std::set<std::string> kFilesOfCircumstance{"log.txt", "report.html", ".lock"};
+/// long, the lock stays behind, what the run is of holds its scene.
+inline const std::set<std::string> kFilesOfCircumstance{"log.txt", "report.html", ".lock", ".run"};
 
 /// Names of data sets, attributes, keys and columns that say how a run went and not what came out: anything with one of
 /// these words. "provenance" and "files" are whole tables or groups. Numbers of loop passes and contact evaluations are
