@@ -22,7 +22,7 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 Estimate guessed(double value) { return {value, kUnknown, -kUnknown, kUnknown}; }
 
 /// Taken over from another kind of neighbour: nothing is known of how far it is off.
-SlideLaw borrowed(const SlideLaw& from) { return {guessed(from.kt_ratio.value), guessed(from.friction.value)}; }
+SlideLaw borrowed(const SlideLaw& from) { return {guessed(from.kt_ratio.value), guessed(from.friction.value), false}; }
 
 double mean_of(const std::vector<double>& values) {
   double sum = 0.0;
@@ -187,9 +187,10 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
     };
     return {part(&SideValues::Slides::kt_ratio), part(&SideValues::Slides::friction)};
   };
-  entry.slide_plane = slide(&SideValues::plane, {guessed(0.3), guessed(entry.spec.friction)});
+  entry.slide_plane = slide(&SideValues::plane, {guessed(0.3), guessed(entry.spec.friction), false});
   entry.slide_solid = slide(&SideValues::solid, borrowed(entry.slide_plane));
   entry.slide_soft = slide(&SideValues::soft, borrowed(entry.slide_solid));
+  entry.retreat_measured = !measured.retreat.empty();
   entry.retreat = measured.retreat.empty()
                       ? guessed(1.0)
                       : estimate_of(

@@ -85,7 +85,10 @@ ExitStatus calibrate_crowd(const CommonOptions& options) {
   const Provenance provenance = context.provenance(scene, settings.fit.seed);
   CrowdLawFit fit;
   context.guard([&] {
-    for (const CrowdMeasurements& d : data) add_entry(fit, d, settings.fit, settings.target);
+    for (const CrowdMeasurements& d : data) {
+      add_entry(fit, d, settings.fit, settings.target);
+      if (fit.table.entries.size() == 1) fit.table.entries.front().main = true;
+    }
   });
   save_law_table(fit.table, context.path("law_table.toml"), provenance);
   keep_for_report(data.front(), options.inputs.front(), context, provenance);

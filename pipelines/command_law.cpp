@@ -107,7 +107,7 @@ std::vector<PairKind> kinds_of(const LawOptions& o) {
 }
 
 const SoftParticleSpec& spec_of(const LawFile& file) {
-  return file.card ? file.card->spec : file.table->entries.front().spec;
+  return file.card ? file.card->spec : main_entry(*file.table).spec;
 }
 
 double quantity(const LawOptions& o, const char* name, const std::string& text, Unit unit) {
@@ -176,16 +176,22 @@ std::string table_remark(const law::CrowdAnswer& a) {
   return a.remark.empty() ? text : text + "; " + a.remark;
 }
 
-ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+/// Which law of a table is meant.
+law::CrowdQuestion fraction_question(const LawOptions& o) {
   law::CrowdQuestion q;
   q.form = o.form;
+  q.solid_fraction = fraction_of(o);
+  q.range = range_of(o);
+  q.beyond = beyond_of(o);
+  return q;
+}
+
+ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+  law::CrowdQuestion q = fraction_question(o);
   q.arrangement = o.arrangement;
   q.partner = partner_of(o);
   q.ratio = positive(o, "--ratio", o.ratio, 1e6);
   q.shallow = positive(o, "--shallow", o.shallow, 1.0);
-  q.solid_fraction = fraction_of(o);
-  q.range = range_of(o);
-  q.beyond = beyond_of(o);
   const double end = law::crowd_values(*file.table, q, {}).overlap_max;
   const law::CrowdAnswer answer = law::crowd_values(*file.table, q, overlaps(o, end, steps));
   ValueTable t;
@@ -284,6 +290,11 @@ std::string lammps_file(const LawOptions& o, const LawFile& file, const ValueUni
                                             "alone:",
                                             units.modulus),
                                 "a soft particle with several neighbours is stiffer than a pair potential can say"};
+  if (file.table) {
+    const law::CrowdAnswer a = law::crowd_values(*file.table, fraction_question(o), {});
+    head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", a.form, a.entry.solid_fraction,
+                               a.remark.empty() ? "" : " (" + a.remark + ")"));
+  }
   const std::string origin = law::origin_text(file.origin);
   if (!origin.empty()) head.insert(head.begin() + 1, origin);
   head.push_back(

@@ -34,8 +34,8 @@ std::string lateral_ratio(const MacroCurve& c) {
   return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
 }
 
-std::string people_text(const std::vector<MacroCurve>& curves, const RunContext& context) {
-  std::string text;
+std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& curves, const RunContext& context) {
+  std::string text = "law: " + identity_text(law.identity) + "\n";
   for (const MacroCurve& c : curves)
     text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
                         c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
@@ -76,11 +76,6 @@ struct MacroScene {
   std::optional<LammpsEngine> lammps{};
 };
 
-/// What the laws were measured on; of a table its first entry.
-const SoftParticleSpec& measured_spec(const LawSources& law) {
-  return law.card ? law.card->spec : law.table->entries.front().spec;
-}
-
 MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   const SceneTable root = scene.root();
   refuse_other_commands(root, "macrosim");
@@ -103,11 +98,8 @@ MacroScene read_macro_scene(const Scene& scene, const CommonOptions& options) {
   return out;
 }
 
-/// At the solid fraction of the contents, when there are any.
 NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& contents) {
-  double fraction = mean_solid_fraction(contents);
-  if (contents.empty() && scene.law.table) fraction = scene.law.table->entries.front().solid_fraction;
-  return scene_law(scene.law, scene.setup.spec, fraction, "law");
+  return scene_law(scene.law, scene.setup.spec, contents.empty() ? 0.0 : mean_solid_fraction(contents), "law");
 }
 
 /// What the law does beside the shelled twin; nothing to compare is a remark, as all that was computed is kept.
@@ -135,7 +127,8 @@ nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const st
   const bool resolved = has_twin(scene.setup, "shelled");
   summary["status"] = usable ? "good" : "not usable";
   summary["title"] = scene.title;
-  summary["law"] = {{"file", scene.law_file}, {"form", law.form}};
+  summary["law"] = identity_json(law.identity);
+  summary["law"]["file"] = scene.law_file;
   summary["macro"] = macro_json(curves, "law");
   if (resolved) summary["resolved"] = macro_json(curves, "shelled");
   if (has_twin(scene.setup, "free")) summary["free"] = macro_json(curves, "free");
@@ -169,6 +162,8 @@ ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::
     write_lammps_files(lammps_runs(scene, law, contents, provenance), packings, context);
   });
   nlohmann::json summary = {{"status", "written"}, {"title", scene.title}, {"remarks", {"nothing was run"}}};
+  summary["law"] = identity_json(law.identity);
+  summary["law"]["file"] = scene.law_file;
   for (std::int64_t k = 0; k < scene.setup.samples; ++k)
     summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
   summary["provenance"] = provenance_json(provenance);
@@ -231,7 +226,7 @@ ExitStatus command_macrosim(const CommonOptions& options) {
   if (macro.lammps) add_engine(*macro.lammps, macro.setup.samples, context, summary);
   summary["provenance"] = provenance_json(provenance);
   const bool good = summary["status"] == "good";
-  context.finish(summary, people_text(curves, context));
+  context.finish(summary, people_text(law, curves, context));
   write_report(context.directory());
   store.clear();
   return good ? ExitStatus::good : ExitStatus::not_usable;

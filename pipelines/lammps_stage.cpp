@@ -51,7 +51,8 @@ void write_sample(const LammpsRuns& runs, const MacroPacking& packing, std::int6
   const lammps::BodyTypes types = lammps::body_types(packing);
   const MacroSpec& spec = runs.setup.spec;
   if (missing(lammps::kLawsFile))
-    write_text_atomic(where + "/" + lammps::kLawsFile, laws_text(laws_of(spec, runs.law.laws)));
+    write_text_atomic(where + "/" + lammps::kLawsFile,
+                      "# " + identity_text(runs.law.identity) + "\n" + laws_text(laws_of(spec, runs.law.laws)));
   if (missing(lammps::kDataFile))
     lammps::write_data_file(where + "/" + lammps::kDataFile,
                             fmt::format("softgrain: {} bodies, sample {}", packing.bodies.size(), sample), packing,
@@ -93,6 +94,7 @@ class Sample {
     const auto rows = lammps::read_points(where_, key_);
     MacroSystem macro = make_law_system(spec(), packing_, runs_.law.laws, runs_.inner_solid_fraction);
     RunOutcome out{begin_curve(spec(), packing_, macro, runs_.law.name, number_), {}};
+    out.curve.law = runs_.law.identity;
     lammps::add_points(rows, spec(), out.curve);
     if (note_diverged(rows, out.curve)) return out;
     if (rows.empty() ||

@@ -7,6 +7,7 @@
 
 #include "common/data/crowd_replicates.h"
 #include "common/data/law_band.h"
+#include "common/data/law_remarks.h"
 #include "pipelines/crowd_law_fit.h"
 #include "pipelines/named_laws.h"
 
@@ -63,10 +64,6 @@ std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
   return fmt::format("{} neighbours of ratio {:.3g} to {:.3g}", to_string(kind), rows.front().ratio, rows.back().ratio);
 }
 
-std::string slide_text(const SlideLaw& slide, PartnerKind kind) {
-  return fmt::format("{:.3g} and {:.3g} ({})", slide.friction.value, slide.kt_ratio.value, to_string(kind));
-}
-
 void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
   facts["laws"].push_back({{"form", law.form},
                            {"status", law.status},
@@ -88,10 +85,9 @@ void check_entry(const LawTableEntry& e, Findings& out) {
       "    valid up to a lost volume of {:.3f} and an overlap of {:.3f} Rs with a plane, where grains overlap by "
       "{:.2f} of "
       "the smaller radius\n"
-      "    unloading {:.3g} times as steep; friction limit and kt/kn: {}, {}, {}\n",
+      "    {}; {}\n",
       e.solid_fraction, e.solid_fraction_error, e.packings, e.relaxation, e.spec.poisson_ratio, e.spec.friction,
-      e.volume_max, e.overlap_max, e.grain_overlap_max, e.retreat.value, slide_text(e.slide_plane, PartnerKind::plane),
-      slide_text(e.slide_solid, PartnerKind::solid), slide_text(e.slide_soft, PartnerKind::soft));
+      e.volume_max, e.overlap_max, e.grain_overlap_max, unloading_text(e), slides_text(e));
   for (const CrowdLaw& law : e.laws) check_law(e, law, facts, out.lines);
   out.facts["entries"].push_back(facts);
 }

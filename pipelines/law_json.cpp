@@ -70,9 +70,10 @@ json pair_json(const PairLaw& law, const SoftParticleSpec& spec) {
   return out;
 }
 
-void put_range(json& out, const LawTableEntry& e) {
+void put_range(json& out, const LawTableEntry& e, const LawTableEntry& main) {
   out["solid_fraction"] = e.solid_fraction;
   out["solid_fraction_error"] = e.solid_fraction_error;
+  out["main"] = &e == &main;
   out["packings"] = e.packings;
   out["relaxation"] = e.relaxation;
   out["best"] = e.best;
@@ -111,7 +112,7 @@ json law_table_json(const LawTable& table) {
   json out{{"entries", json::array()}};
   for (const LawTableEntry& e : table.entries) {
     json one;
-    put_range(one, e);
+    put_range(one, e, main_entry(table));
     put(one, "retreat", e.retreat, 1.0);
     one["slides"] = {
         {"plane", slide_json(e.slide_plane)}, {"solid", slide_json(e.slide_solid)}, {"soft", slide_json(e.slide_soft)}};

@@ -34,7 +34,7 @@ void add_law_choices(CLI::App& app, LawOptions& o) {
   app.add_option("--form", o.form, "Tables: form of the law; default the best")
       ->option_text("pair|bag|directional")
       ->check(CLI::IsMember({"pair", "bag", "directional"}).description(""));
-  app.add_option("--solid-fraction", o.solid_fraction, "Tables: of the soft particle; default the first entry")
+  app.add_option("--solid-fraction", o.solid_fraction, "Tables: of the soft particle; default that of the main entry")
       ->option_text("PHI");
   app.add_option("--range", o.range, "Tables: what to do with solid fractions that were not measured")
       ->option_text("reject|clamp")

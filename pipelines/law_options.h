@@ -32,7 +32,7 @@ struct LawOptions {
   std::string partner = "plane";
   double ratio = 1.0;
   double shallow = 0.5;
-  double solid_fraction = -1.0;  ///< negative: the first entry
+  double solid_fraction = -1.0;  ///< negative: the main entry
   std::string range = "reject";
 
   std::string format;  ///< --to of export

@@ -44,6 +44,7 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const TaskStore& store, 
   fit.seed = context.seed(setup.crowd.seed);
   run.data = run_crowd_stage(setup.crowd, store, context, provenance, nullptr);
   add_entry(run.fit, run.data, fit, setup.crowd.target);
+  run.fit.table.entries.front().main = true;
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
     const LawTableVariant& v = setup.variants[k];
     context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));

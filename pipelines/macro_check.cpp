@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/data/law_remarks.h"
 #include "common/dynamics/force_pass.h"
 #include "macrosim/constructed_packing.h"
 #include "microsim/shell_packing.h"
@@ -17,6 +18,7 @@
 #include "pipelines/macro_comparison.h"
 #include "pipelines/macro_memory.h"
 #include "pipelines/measure_check.h"
+#include "pipelines/run_summary.h"
 
 namespace softgrain {
 
@@ -77,9 +79,9 @@ void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec
   (void)pair_law_of(card, spec, "law", laws.beyond);  // says what is not usable
   if (spec.soft_share > kCrowdedShare)
     out.warn(fmt::format(
-        "soft particles hold {:.0f} % of the bodies' volume and will have several neighbours each: the pair "
-        "law, measured with one, is too soft then by a factor 2 to 14; take a law table",
-        100.0 * spec.soft_share));
+        "soft particles hold {:.0f} % of the bodies' volume and will have several neighbours each: {}; take a "
+        "law table",
+        100.0 * spec.soft_share, pair_law_remark()));
 }
 
 /// Ratios of radii between neighbours of a soft particle and itself that a scene can have.
@@ -136,18 +138,24 @@ void check_table_law(const LawTable& table, const LawSources& given, const std::
                      double contents_fraction, Findings& out) {
   LawSources laws = given;
   laws.range = RangePolicy::clamp;
-  const double fraction = contents_fraction > 0.0 ? contents_fraction : table.entries.front().solid_fraction;
-  const NamedLaws named = table_law_of(laws, form, spec, fraction);  // says what is not usable
+  const NamedLaws named = table_law_of(laws, form, spec, contents_fraction);  // says what is not usable
   std::string remark;
-  const LawTableEntry entry = entry_at(table, fraction, laws.range, remark);
+  const LawTableEntry entry = law_entry(laws, contents_fraction, remark);
   const CrowdLaw& law = *entry.find(named.form);
-  out.add_once("law", {{"form", named.form}, {"solid_fraction", fraction}, {"error_cross", law.error_cross}},
-               fmt::format("law: {}, at solid fraction {:.3f}; off by {}", named.form, fraction, cross_text(law)));
+  json facts = identity_json(named.identity);
+  facts["error_cross"] = law.error_cross;
+  out.add_once("law", facts,
+               fmt::format("law: {}{}; off by {}", identity_text(named.identity),
+                           entry.main ? ", the main entry of the table" : "", cross_text(law)));
+  const bool of_content = !laws.solid_fraction && contents_fraction > 0.0;
   if (!remark.empty())
-    out.warn("one content was made: " + remark +
-             (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
+    out.warn(
+        !of_content
+            ? remark
+            : "one content was made: " + remark +
+                  (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
   check_ratios(spec, law, out);
-  check_volume(table, laws, named.form, fraction, spec, out);
+  check_volume(table, laws, named.form, entry.solid_fraction, spec, out);
 }
 
 void check_laws_of(const LawSources& laws, const MacroSpec& spec, double contents_fraction, Findings& out) {
@@ -168,14 +176,13 @@ void add_law_time(const MacroSetup& setup, const BodyCounts& count, const LawSou
   MacroSpec spec = setup.spec;
   spec.bodies = std::min(spec.bodies, kTrialBodies);
   spec.preparation = "softgrain";
-  const double known = fraction > 0.0 || !laws.table ? fraction : laws.table->entries.front().solid_fraction;
   LawSources one = laws;
   one.range = RangePolicy::clamp;
   one.forms = {laws.forms.front()};
   try {
     const MacroPacking packing = make_packing(spec, 1, 0);
-    const NamedLaws law = scene_law(one, spec, known, "law");
-    MacroSystem macro = make_law_system(spec, packing, law.laws, known > 0.0 ? known : 1.0);
+    const NamedLaws law = scene_law(one, spec, fraction, "law");
+    MacroSystem macro = make_law_system(spec, packing, law.laws, fraction > 0.0 ? fraction : 1.0);
     force_pass(macro.system, 0.0);
     const double pass = seconds_per_call([&] { force_pass(macro.system, 0.0); }, kBudget, 2000);
     const auto increments = static_cast<double>(spec.steps * spec.increments_per_step + spec.preload_steps);
@@ -280,8 +287,7 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
     read_law_choices(root, laws);
   else
     laws = read_scene_law(root, path);
-  const SoftParticleSpec spec =
-      laws.card ? laws.card->spec : (laws.table ? laws.table->entries.front().spec : SoftParticleSpec{});
+  const SoftParticleSpec spec = path.empty() ? SoftParticleSpec{} : measured_spec(laws);
   const auto seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
   (void)root.count("contents", 1, 100000, 7);
   (void)read_kept_states(root);

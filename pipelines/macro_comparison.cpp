@@ -75,6 +75,7 @@ struct SceneResult {
   std::string file;  ///< name of its curves in the run directory
   std::vector<SceneFacts> facts;
   std::vector<EngineScore> scores;
+  std::vector<NamedLaws> laws;
   std::vector<std::string> remarks;
   bool usable = true;
 };
@@ -93,13 +94,13 @@ void remark_spread(SceneResult& r) {
 SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,
                       const std::vector<ShellPacking>& contents, std::uint64_t seed, const TaskStore& store,
                       const RunContext& context, const Provenance& provenance) {
-  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, true};
+  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, true};
   const auto packings =
       make_macro_packings(scene.setup, seed, store, context, provenance, "macro_initial_" + scene.name + ".h5");
   for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
-  const auto laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
-  const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, laws, store, context, provenance,
-                                  "states_macro_" + scene.name + ".h5");
+  r.laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
+  const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, r.laws, store, context,
+                                  provenance, "states_macro_" + scene.name + ".h5");
   save_macro(curves, context.path(r.file), provenance);
   r.scores = score_engines(curves);
   if (!all_carry_stress(curves)) {
@@ -124,7 +125,10 @@ json scene_json(const SceneResult& r) {
   for (const SceneFacts& f : r.facts) facts.push_back(to_json(f));
   json engines = json::array();
   for (const EngineScore& s : r.scores) engines.push_back(to_json(s));
+  json laws = json::array();
+  for (const NamedLaws& l : r.laws) laws.push_back(identity_json(l.identity));
   return {{"name", r.name},
+          {"laws", laws},
           {"test", r.spec.test},
           {"construction", r.spec.construction},
           {"soft_share", r.spec.soft_share},

@@ -70,6 +70,7 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& e
   const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
   const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
+  if (laws != nullptr) state.curve.law = laws->identity;
   KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
   double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
   progress.advance(done);

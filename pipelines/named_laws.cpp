@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/contact/crowd_from_table.h"
+#include "common/contact/law_file.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
 #include "common/data/card_text.h"
+#include "common/data/law_remarks.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/short_hash.h"
 #include "common/io/text_file.h"
@@ -89,23 +93,100 @@ void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
                     measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
 }
 
+/// Of everything that forces depend on, however it came about.
+std::string hash_of(const SoftLaws& l) {
+  return short_hash(laws_text({{"soft-solid", l.soft_solid},
+                               {"solid-soft", l.solid_soft},
+                               {"soft-wall", l.soft_wall},
+                               {"soft-soft", l.soft_soft}}));
+}
+
+LawIdentity identity_of(const std::string& form, double solid_fraction, const MacroSpec& spec,
+                        const SoftParticleSpec& measured, const SoftLaws& laws) {
+  return {form, solid_fraction, spec.youngs_modulus, measured.poisson_ratio, measured.friction, hash_of(laws)};
+}
+
+/// A branch that was not measured is none; what stands in for other numbers that were not is said.
+std::string stand_ins(const LawTableEntry& entry, const LawSources& sources) {
+  if (sources.unloading && !entry.retreat_measured)
+    throw BadInput(
+        fmt::format("unloading = true: unloading was not measured at solid fraction {:.4f} of the law table: "
+                    "measure it (path = \"unload\"), or leave it out",
+                    entry.solid_fraction));
+  if (entry.slide_plane.measured && entry.slide_solid.measured && entry.slide_soft.measured) return "";
+  return slides_text(entry);
+}
+
+/// A card serves grains of another nu or mu at the scene's own risk; what is inside a soft particle of an experiment is
+/// not known.
+std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {
+  const SoftParticleSpec& measured = card.spec;
+  if (card.relaxation == "experiment" ||
+      (measured.poisson_ratio == spec.poisson_ratio && measured.friction == spec.friction))
+    return nullptr;
+  const std::string text = fmt::format(
+      "the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, mu = {:g}",
+      measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction);
+  return [text](const System3&) { return text; };
+}
+
 /// Keys that choose among what a table offers.
-constexpr std::array kTableKeys{"form", "range", "mu", "unloading"};
+constexpr std::array kTableKeys{"form", "solid_fraction", "range", "mu", "unloading"};
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
+  if (t.has("solid_fraction"))
+    out.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
   out.beyond = read_beyond(t);
   out.range = t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
   if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
   out.unloading = t.flag("unloading", false);
 }
 
+/// A solid fraction that the scene names is refused where it stands.
+void require_fraction(const SceneTable& t, const LawSources& sources) {
+  if (!sources.solid_fraction || !sources.table) return;
+  std::string ignored;
+  try {
+    (void)law_entry(sources, 0.0, ignored);
+  } catch (const BadInput& e) {
+    t.reject("solid_fraction", e.what());
+  }
+}
+
 }  // namespace
 
+double law_fraction(const LawSources& sources, double contents_fraction) {
+  if (sources.solid_fraction) return *sources.solid_fraction;
+  return contents_fraction > 0.0 ? contents_fraction : main_entry(*sources.table).solid_fraction;
+}
+
+LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std::string& remark) {
+  return entry_at(*sources.table, law_fraction(sources, contents_fraction), sources.range, remark,
+                  sources.solid_fraction ? kReachOfNumbers : kReachOfPackings);
+}
+
+const SoftParticleSpec& measured_spec(const LawSources& sources) {
+  if (sources.card) return sources.card->spec;
+  const double wanted = law_fraction(sources, 0.0);
+  const std::vector<LawTableEntry>& entries = sources.table->entries;
+  return std::min_element(entries.begin(), entries.end(),
+                          [wanted](const auto& a, const auto& b) {
+                            return std::abs(a.solid_fraction - wanted) < std::abs(b.solid_fraction - wanted);
+                          })
+      ->spec;
+}
+
 NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, const MacroSpec& spec,
-                       double solid_fraction) {
+                       double contents_fraction) {
   std::string remark;
-  const LawTableEntry entry = entry_at(*sources.table, solid_fraction, sources.range, remark);
+  const LawTableEntry entry = law_entry(sources, contents_fraction, remark);
+  constexpr double kApart = 0.005;
+  if (sources.solid_fraction && contents_fraction > 0.0 && std::abs(contents_fraction - entry.solid_fraction) > kApart)
+    remark += fmt::format("{}the law was taken at solid fraction {:.4f}, the contents of the twins have {:.4f}",
+                          remark.empty() ? "" : "; ", entry.solid_fraction, contents_fraction);
   require_same_material(entry, spec);
+  const std::string stands_in = stand_ins(entry, sources);
+  remark += (remark.empty() || stands_in.empty() ? "" : "; ") + stands_in;
   const std::string form = wanted == "best" ? entry.best : wanted;
   CrowdChoices choices;
   choices.form = form;
@@ -116,9 +197,11 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, con
   const CrowdLaws laws = make_crowd_laws(entry, choices);
   choices.friction = spec.wall_friction;
   const RangeCheck check(entry, form);
+  const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft};
   return {form,
           form,
-          {laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft},
+          soft,
+          identity_of(form, entry.solid_fraction, spec, entry.spec, soft),
           tag_of(entry, sources, form),
           [=](const System3& s) {
             const std::string note = check.note(s);
@@ -131,8 +214,13 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
   const auto contact = [&](PairKind kind) {
     return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant, beyond);
   };
-  return {name, "pair", pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction),
-          beyond ? to_string(*beyond) : "", nullptr};
+  const SoftLaws laws = pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction);
+  return {name,
+          "pair",
+          laws,
+          identity_of("pair", 0.0, spec, card.spec, laws),
+          beyond ? to_string(*beyond) : "",
+          card_note(card, spec)};
 }
 
 LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
@@ -157,6 +245,9 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   }
   if (!out.table) out.forms = {"pair"};
   read_table_choices(law, out);
+  for (const char* key : kTableKeys)
+    if (!out.table && law.has(key) && std::string(key) != "form") law.reject(key, "goes with a law table (key table)");
+  require_fraction(law, out);
   return out;
 }
 
@@ -175,9 +266,11 @@ void read_law_choices(const SceneTable& root, LawSources& out) {
 LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   LawSources out;
   read_law_choices(root, out);
+  out.files = {path};
   out.text = read_text(path);
   if (law_file_kind(path) == LawFileKind::table) {
     out.table = load_law_table(path);
+    require_fraction(root, out);
     return out;
   }
   out.card = load_card(path);
@@ -187,23 +280,23 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   return out;
 }
 
-NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double solid_fraction, const std::string& name) {
+NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
+                    const std::string& name) {
   if (sources.card) return pair_law_of(*sources.card, spec, name, sources.beyond);
-  NamedLaws law = table_law_of(sources, sources.forms.front(), spec, solid_fraction);
+  NamedLaws law = table_law_of(sources, sources.forms.front(), spec, contents_fraction);
   law.name = name;
   return law;
 }
 
-std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double solid_fraction) {
+std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction) {
   std::vector<NamedLaws> laws;
   for (const std::string& form : sources.forms) {
     if (form == "pair" && sources.card)
       laws.push_back(pair_law_of(*sources.card, spec, "pair", sources.beyond));
     else
-      laws.push_back(table_law_of(sources, form, spec, solid_fraction));
+      laws.push_back(table_law_of(sources, form, spec, contents_fraction));
   }
   return laws;
 }
 
 }  // namespace softgrain
-  out.files = {path};

@@ -8,6 +8,7 @@
 
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
+#include "common/data/macro_result.h"
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 #include "macrosim/macro_system.h"
@@ -18,6 +19,7 @@ struct NamedLaws {
   std::string name;  ///< engine of the curves: "law" or "pair", "bag", "directional"
   std::string form;  ///< "pair", "bag" or "directional"
   SoftLaws laws;
+  LawIdentity identity{};
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
   /// What to say about the end of a run (contacts that no measurement covers); empty text when nothing; may be empty.
   std::function<std::string(const System3&)> note;
@@ -41,6 +43,17 @@ struct LawSources {
   std::string text;                         ///< of these
 };
 
+/// At which a table is taken: what the scene says, else the mean of the contents of its soft particles, else (0: there
+/// are none) that of the main entry.
+double law_fraction(const LawSources& sources, double contents_fraction);
+
+/// The table there, with a remark (or none) on what that means. Throws BadInput (policy reject).
+LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std::string& remark);
+
+/// The soft particles that the law of a scene was measured on, and the contents of its twins; of a table those of the
+/// entry nearest to the solid fraction that the scene says, else of the main one.
+const SoftParticleSpec& measured_spec(const LawSources& sources);
+
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
@@ -51,24 +64,25 @@ enum class LawFileKind { card, table };
 LawFileKind law_file_kind(const std::string& path);
 
 /// The one law of a macro scene: key `beyond`, and keys `form` (default the best of the table; a card has the pair law
-/// only), `range`, `mu` and `unloading` of `root`, which go with tables, and the card or table at `path`. Throws
-/// BadInput, FileTrouble.
+/// only), `solid_fraction`, `range`, `mu` and `unloading` of `root`, which go with tables, and the card or table at
+/// `path`. Throws BadInput, FileTrouble.
 LawSources read_scene_law(const SceneTable& root, const std::string& path);
 
 /// The keys of read_scene_law() alone, for scenes that are read without their law. Throws BadInput.
 void read_law_choices(const SceneTable& root, LawSources& out);
 
-/// The law that read_scene_law() chose, under the name `name`. `solid_fraction` is that of the contents. Throws
+/// The law that read_scene_law() chose, under the name `name`. `contents_fraction` as in law_fraction(). Throws
 /// BadInput.
-NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double solid_fraction, const std::string& name);
+NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
+                    const std::string& name);
 
-/// A law of a table at the solid fraction of the contents; `form` "best" is the one that the entry prefers. Throws
-/// BadInput when the table has no such law, was measured
-/// with grains of another nu or mu, or does not reach this solid fraction (policy reject).
+/// A law of a table at law_fraction(); `form` "best" is the one that the entry prefers. Throws BadInput when the table
+/// has no such law, was measured with grains of another nu or mu, or does not reach this solid fraction (policy
+/// reject).
 NamedLaws table_law_of(const LawSources& sources, const std::string& form, const MacroSpec& spec,
-                       double solid_fraction);
+                       double contents_fraction);
 
 /// Every law that a comparison runs with, in the order of its tables and figures. The one place to add laws.
-std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double solid_fraction);
+std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction);
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/core/error.h"
+#include "common/data/law_remarks.h"
 #include "pipelines/compare/compare_measurements.h"
 
 namespace softgrain {
@@ -138,6 +139,15 @@ json relaxations_json(const Measurements& data, const std::string& reference, co
   return out;
 }
 
+json identity_json(const LawIdentity& law) {
+  return {{"form", law.form},
+          {"solid_fraction", law.solid_fraction > 0.0 ? json(law.solid_fraction) : json(nullptr)},
+          {"E", law.youngs_modulus},
+          {"nu", law.poisson_ratio},
+          {"mu", law.friction},
+          {"hash", law.hash}};
+}
+
 json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine) {
   Cost cost;
   std::int64_t bodies = 0;
@@ -145,6 +155,7 @@ json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine
   std::int64_t grains = 0;
   double share = 0.0;
   bool usable = true;
+  LawIdentity law;  ///< the same for all samples
   for (const MacroCurve& c : curves) {
     if (c.engine != engine) continue;
     cost += c.cost;
@@ -152,16 +163,19 @@ json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine
     grains = std::max(grains, c.grains);
     share += c.soft_volume_share;
     usable = usable && c.usable;
+    law = c.law;
     ++samples;
   }
-  return {{"samples", samples},
-          {"bodies", bodies},
-          {"grains_inside", grains},
-          {"soft_volume_share", samples > 0 ? share / static_cast<double>(samples) : 0.0},
-          {"loop_passes", cost.loop_passes},
-          {"contact_evaluations", cost.contact_evaluations},
-          {"seconds", cost.seconds},
-          {"usable", usable && samples > 0}};
+  json out{{"samples", samples},
+           {"bodies", bodies},
+           {"grains_inside", grains},
+           {"soft_volume_share", samples > 0 ? share / static_cast<double>(samples) : 0.0},
+           {"loop_passes", cost.loop_passes},
+           {"contact_evaluations", cost.contact_evaluations},
+           {"seconds", cost.seconds},
+           {"usable", usable && samples > 0}};
+  if (!law.form.empty()) out["law"] = identity_json(law);
+  return out;
 }
 
 std::vector<std::string> measurement_remarks(const Measurements& data) {
@@ -209,13 +223,11 @@ std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
       out.push_back(fmt::format("macro run '{}' of sample {} is not usable: {}", c.engine, c.sample, c.note));
     else if (!c.note.empty())
       out.push_back(fmt::format("macro run '{}' of sample {}: {}", c.engine, c.sample, c.note));
-  if (curves.empty()) return out;
+  if (!use_pair_law(curves)) return out;
   out.emplace_back(
       "a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains "
       "stands in for the friction limit of soft contacts");
-  out.emplace_back(
-      "the pair law was measured with one contact; in a packing with contacts all around it is known to be too low, by "
-      "a factor 2 to 14");
+  out.push_back(pair_law_remark());
   return out;
 }
 

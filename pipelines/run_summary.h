@@ -26,6 +26,9 @@ nlohmann::json relaxations_json(const Measurements& data, const std::string& ref
 /// {bodies, loop_passes, contact_evaluations, seconds, ...} summed over the samples of one engine.
 nlohmann::json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine);
 
+/// {form, solid_fraction (null of a card), E, nu, mu, hash} of the law of a run.
+nlohmann::json identity_json(const LawIdentity& law);
+
 /// Sentences about what must not be overlooked: points that did not converge, curves that are not usable.
 std::vector<std::string> measurement_remarks(const Measurements& data);
 /// Whether every run with a law, and every shelled twin, ends under stress: else nothing can be said relative to it.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/core/monotone_curve.h"
@@ -11,10 +12,6 @@
 namespace softgrain {
 
 namespace {
-
-/// The ends of a table serve soft particles whose solid fraction lies beyond by less than this: the mean over some
-/// packings never is that of those that were measured.
-constexpr double kSameFraction = 0.02;
 
 /// A parameter of one law along the entries, as a curve over solid fraction.
 class AlongEntries {
@@ -110,6 +107,7 @@ LawTableEntry interpolate(const LawTable& table, double x) {
   });
   LawTableEntry out = *nearest;
   out.solid_fraction = x;
+  out.main = false;
   for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
     (out.*slide).kt_ratio =
         along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).kt_ratio; });
@@ -117,8 +115,14 @@ LawTableEntry interpolate(const LawTable& table, double x) {
         along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).friction; });
   }
   out.retreat = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.retreat; });
+  for (const LawTableEntry& e : table.entries) {  // what one entry does not know is not known between them
+    out.retreat_measured = out.retreat_measured && e.retreat_measured;
+    for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
+      (out.*slide).measured = (out.*slide).measured && (e.*slide).measured;
+  }
   out.volume_max = along.value([](const LawTableEntry& e) { return e.volume_max; });
   out.overlap_max = along.value([](const LawTableEntry& e) { return e.overlap_max; });
+  out.grain_overlap_max = along.value([](const LawTableEntry& e) { return e.grain_overlap_max; });
   for (std::size_t k = 0; k < out.laws.size(); ++k) {
     interpolate_law(along, k, out.laws[k]);
     take_worst_status(table, k, out.laws[k]);
@@ -126,7 +130,63 @@ LawTableEntry interpolate(const LawTable& table, double x) {
   return out;
 }
 
+std::size_t configurations(const LawTableEntry& e) {
+  std::size_t most = 0;
+  for (const CrowdLaw& law : e.laws) most = std::max(most, law.errors.size());
+  return most;
+}
+
+/// F/(E Rs^2) of one plane at the overlap D.
+double force_on_plane(const CrowdLaw& law, double d) {
+  if (!(d > law.delta.value)) return 0.0;
+  return law.a.value * (std::pow(d, law.b.value) - std::pow(law.delta.value, law.b.value));
+}
+
+/// a, b and delta are nearly degenerate: two fits with much the same forces may have numbers far apart, and numbers
+/// between them other forces.
+std::string off_the_entries(const LawTableEntry& at, const LawTableEntry& below, const LawTableEntry& above) {
+  constexpr double kSlack = 0.05;  ///< of the larger force
+  constexpr int kPoints = 40;
+  for (std::size_t k = 0; k < at.laws.size(); ++k)
+    for (int n = 1; n <= kPoints; ++n) {
+      const double d = at.overlap_max * n / kPoints;
+      const double force = force_on_plane(at.laws[k], d);
+      const auto [low, high] = std::minmax({force_on_plane(below.laws[k], d), force_on_plane(above.laws[k], d)});
+      if (force >= low - kSlack * high && force <= (1.0 + kSlack) * high) continue;
+      return fmt::format(
+          "the {} law at solid fraction {:.4f} is not between those of the entries at {:.4f} and {:.4f} (force on a "
+          "plane "
+          "at h/Rs = {:.3g}: {:.3g} E Rs^2, theirs {:.3g} and {:.3g}): take one of them",
+          at.laws[k].form, at.solid_fraction, below.solid_fraction, above.solid_fraction, d, force,
+          force_on_plane(below.laws[k], d), force_on_plane(above.laws[k], d));
+    }
+  return "";
+}
+
+/// What to say about an interpolated entry.
+std::string interpolation_remark(const LawTable& table, const LawTableEntry& at) {
+  const auto above = std::find_if(table.entries.begin(), table.entries.end(),
+                                  [&](const LawTableEntry& e) { return e.solid_fraction > at.solid_fraction; });
+  const auto below = above - 1;
+  std::string text = off_the_entries(at, *below, *above);
+  if (below->best != above->best)
+    text += fmt::format(
+        "{}the entries at solid fraction {:.4f} and {:.4f} prefer different forms ({} and {}); best is that "
+        "of the nearest",
+        text.empty() ? "" : "; ", below->solid_fraction, above->solid_fraction, below->best, above->best);
+  return text;
+}
+
 }  // namespace
+
+const LawTableEntry& main_entry(const LawTable& table) {
+  if (table.entries.empty()) throw BadInput("law table: it has no entries");
+  const auto marked = std::find_if(table.entries.begin(), table.entries.end(), [](const auto& e) { return e.main; });
+  if (marked != table.entries.end()) return *marked;
+  return *std::max_element(table.entries.begin(), table.entries.end(), [](const auto& a, const auto& b) {
+    return std::pair{configurations(a), a.packings} < std::pair{configurations(b), b.packings};
+  });
+}
 
 std::vector<PartnerRow> CrowdLaw::rows(PartnerKind kind) const {
   std::vector<PartnerRow> out;
@@ -152,22 +212,28 @@ std::string numbers_of(const LawTableEntry& entry, const std::string& form) {
   return text;
 }
 
-LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark) {
+LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark,
+                       double reach) {
   if (table.entries.empty()) throw BadInput("law table: it has no entries");
   const double first = table.entries.front().solid_fraction;
   const double last = table.entries.back().solid_fraction;
-  const double low = first - kSameFraction;
-  const double high = last + kSameFraction;
-  if (solid_fraction < low || solid_fraction > high) {
+  const double low = first - reach;
+  const double high = last + reach;
+  if (!(solid_fraction >= low && solid_fraction <= high)) {
     const std::string problem =
         fmt::format("solid fraction {:.3f} of the soft particles is outside the law table ({:.3f} to {:.3f})",
-                    solid_fraction, low, high);
+                    solid_fraction, reach > kReachOfNumbers ? low : first, reach > kReachOfNumbers ? high : last);
     if (policy == RangePolicy::reject)
       throw BadInput("law table: " + problem + ": measure it, or allow the nearest entry with range = \"clamp\"");
     remark = problem + "; the nearest entry was used";
   }
-  if (table.entries.size() == 1) return table.entries.front();
-  return interpolate(table, std::clamp(solid_fraction, first, last));
+  const double x = std::clamp(solid_fraction, first, last);
+  for (const LawTableEntry& e : table.entries)
+    if (e.solid_fraction == x) return e;
+  LawTableEntry out = interpolate(table, x);
+  const std::string more = interpolation_remark(table, out);
+  if (!more.empty()) remark += (remark.empty() ? "" : "; ") + more;
+  return out;
 }
 
 }  // namespace softgrain

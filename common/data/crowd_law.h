@@ -72,8 +72,9 @@ inline constexpr std::array<CrowdParameterName, 6> kCrowdParameters{{{"a", &Crow
 
 /// How one kind of neighbour slides on a soft particle: a spring up to the Coulomb limit.
 struct SlideLaw {
-  Estimate kt_ratio;  ///< kt/kn, kt the secant at a slide of pi Rs/180 (1 degree)
-  Estimate friction;  ///< mu_soft: largest tangential over normal force of the measured slides
+  Estimate kt_ratio;     ///< kt/kn, kt the secant at a slide of pi Rs/180 (1 degree)
+  Estimate friction;     ///< mu_soft: largest tangential over normal force of the measured slides
+  bool measured = true;  ///< false: numbers that stand in, of another kind of neighbour or of the grains
 };
 
 /// All laws of one kind of packing.
@@ -81,6 +82,7 @@ struct LawTableEntry {
   SoftParticleSpec spec;
   double solid_fraction = 0.0;
   double solid_fraction_error = 0.0;  ///< standard error over packings
+  bool main = false;                  ///< of the packing that the table was made for; at most one is
   int packings = 0;
   std::string relaxation;
   double volume_max = 0.0;              ///< validity: largest equivalent volume S among the fitted states
@@ -91,6 +93,7 @@ struct LawTableEntry {
   SlideLaw slide_solid;
   SlideLaw slide_soft;
   Estimate retreat;  ///< s of the unloading branch
+  bool retreat_measured = true;
   std::vector<CrowdLaw> laws;
   std::string best;  ///< the form that cross-validation prefers among good ones; what is held out has no say
 
@@ -117,9 +120,21 @@ std::string law_table_text(const LawTable& table, const Provenance& provenance, 
 /// Reads the card. Throws BadInput with file:line for wrong content, FileTrouble for files.
 LawTable load_law_table(const std::string& toml_path);
 
-/// The entry at a solid fraction: each parameter along a monotone curve through the entries. Entries must agree in
-/// material (nu, mu), in the law of sizes and in the neighbours. The ends serve 0.02 beyond their own solid fractions;
-/// outside that: BadInput, or the nearest end with a remark.
-LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark);
+/// The entry of the packing that the table was made for. Tables of before do not say it: then the one that was measured
+/// with most configurations, of those the one of most packings.
+const LawTableEntry& main_entry(const LawTable& table);
+
+/// How far beyond its ends a table serves: means over some packings never are that of those that were measured, and a
+/// number that somebody gives is rounded.
+inline constexpr double kReachOfPackings = 0.02;
+inline constexpr double kReachOfNumbers = 0.0005;
+
+/// The entry at a solid fraction: the entries themselves as they are, between them each parameter along a monotone
+/// curve through them, so that it is a law of the same form, whose forces have an energy. Entries must agree in
+/// material (nu, mu), in the law of sizes and in the neighbours. The ends serve `reach` beyond their own solid
+/// fractions; outside that: BadInput, or the nearest end with a remark. Remarks too: entries that prefer different
+/// forms, or differ so much that the force on a plane leaves the room between theirs.
+LawTableEntry entry_at(const LawTable& table, double solid_fraction, RangePolicy policy, std::string& remark,
+                       double reach = kReachOfPackings);
 
 }  // namespace softgrain

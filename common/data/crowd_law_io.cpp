@@ -78,6 +78,7 @@ void write_law(Out out, const CrowdLaw& law) {
 void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "\n[[entry]]\nsolid_fraction = {}\nsolid_fraction_error = {}\npackings = {}\n",
                  real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
+  if (e.main) fmt::format_to(out, "main = true  # the packing that the table was made for\n");
   fmt::format_to(out, "relaxation = {}\nbest = {}  # by cross-validation\n", quoted(e.relaxation), quoted(e.best));
   fmt::format_to(out, "volume_max = {}  # validity: equivalent volume S\n", real(e.volume_max));
   fmt::format_to(out,
@@ -87,10 +88,13 @@ void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "grain_overlap_max = {}  # of grains over the smaller radius in that range\n",
                  real(e.grain_overlap_max));
   fmt::format_to(out, "retreat = {}  # s of the unloading branch\n", estimate_text(e.retreat));
+  fmt::format_to(out, "retreat_measured = {}\n", e.retreat_measured);
   for (const SlideName& slide : kSlides)
     fmt::format_to(out,
-                   "\n[entry.{}]  # kt/kn and mu_soft against this kind of neighbour\nkt_ratio = {}\nfriction = {}\n",
-                   slide.key, estimate_text((e.*slide.law).kt_ratio), estimate_text((e.*slide.law).friction));
+                   "\n[entry.{}]  # kt/kn and mu_soft against this kind of neighbour\nkt_ratio = {}\nfriction = "
+                   "{}\nmeasured = {}\n",
+                   slide.key, estimate_text((e.*slide.law).kt_ratio), estimate_text((e.*slide.law).friction),
+                   (e.*slide.law).measured);
   fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
   for (const CrowdLaw& law : e.laws) write_law(out, law);
 }
@@ -152,6 +156,7 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
   e.solid_fraction_error = t.number("solid_fraction_error", Unit::none, Range::not_negative());
   e.packings = static_cast<int>(t.count("packings", 1, 1000000000));
+  e.main = t.flag("main", false);
   e.relaxation = t.text("relaxation");
   e.best = t.choice("best", {"pair", "bag", "directional"});
   e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
@@ -162,8 +167,11 @@ LawTableEntry read_entry(const SceneTable& t) {
     const SceneTable of_kind = t.table(slide.key);
     (e.*slide.law).kt_ratio = read_estimate_text(of_kind.table("kt_ratio"), Range::closed(0.0, kLargestShare));
     (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::closed(0.0, kLargestShare));
+    // Files of before do not say it: what stands in has no error there.
+    (e.*slide.law).measured = of_kind.flag("measured", std::isfinite((e.*slide.law).friction.standard_error));
   }
   e.retreat = read_estimate_text(t.table("retreat"), Range::closed(1.0, kLargestShare));
+  e.retreat_measured = t.flag("retreat_measured", std::isfinite(e.retreat.standard_error));
   e.spec = read_spec_text(t.table("measurement"), false);
   for (const SceneTable& law : t.tables("law")) e.laws.push_back(read_law(law));
   if (e.find(e.best) == nullptr) t.reject("best", "is no form that the entry has");
@@ -200,6 +208,8 @@ LawTable load_law_table(const std::string& toml_path) {
     const LawTableEntry entry = read_entry(e);
     if (!table.entries.empty() && !(table.entries.back().solid_fraction < entry.solid_fraction))
       e.reject("solid_fraction", "entries must ascend");
+    if (entry.main && std::any_of(table.entries.begin(), table.entries.end(), [](const auto& x) { return x.main; }))
+      e.reject("main", "another entry is the main one already");
     table.entries.push_back(entry);
   }
   if (table.entries.empty()) root.reject("entry", "a law table needs at least one [[entry]]");

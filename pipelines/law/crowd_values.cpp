@@ -128,8 +128,9 @@ const SlideLaw& slide_for(const LawTableEntry& entry, PartnerKind kind) {
   return kind == PartnerKind::solid ? entry.slide_solid : entry.slide_soft;
 }
 
-double fraction_of(const LawTable& table, const CrowdQuestion& q) {
-  return q.solid_fraction.value_or(table.entries.front().solid_fraction);
+/// The entry that is asked: of the main packing unless somebody names a number.
+LawTableEntry entry_of(const LawTable& table, const CrowdQuestion& q, std::string& remark) {
+  return entry_at(table, q.solid_fraction.value_or(main_entry(table).solid_fraction), q.range, remark, kReachOfNumbers);
 }
 
 /// Largest overlap over Rs that was measured with this neighbour, from the row of the nearest ratio.
@@ -176,7 +177,7 @@ std::vector<AnyLaw> replicate_laws(const LawTable& table, const CrowdQuestion& q
   std::string ignored;
   const std::size_t n = replicate_count(table, form);
   for (std::size_t r = 0; r < n; ++r)
-    out.push_back(contact_of(entry_at(replicate_of(table, form, r), fraction_of(table, q), q.range, ignored), q, form));
+    out.push_back(contact_of(entry_of(replicate_of(table, form, r), q, ignored), q, form));
   return out;
 }
 
@@ -202,7 +203,7 @@ LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, c
 
 CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const std::vector<double>& deltas) {
   CrowdAnswer out;
-  out.entry = entry_at(table, fraction_of(table, q), q.range, out.remark);
+  out.entry = entry_of(table, q, out.remark);
   out.form = q.form.empty() ? out.entry.best : q.form;
   const AnyLaw contact = contact_of(out.entry, q, out.form);
   out.overlap_max = overlap_max(out, q, out.remark);

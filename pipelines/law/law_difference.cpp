@@ -118,8 +118,8 @@ double compared_fraction(const LawFile& file, const LawFile& other) {
   };
   const auto alike = std::find_if(entries.begin(), entries.end(), drawn_alike);
   if (alike != entries.end()) return alike->solid_fraction;
-  if (other.card) return entries.front().solid_fraction;
-  const double wanted = other.table->entries.front().solid_fraction;
+  if (other.card) return main_entry(*file.table).solid_fraction;
+  const double wanted = main_entry(*other.table).solid_fraction;
   return std::min_element(entries.begin(), entries.end(),
                           [wanted](const auto& x, const auto& y) {
                             return std::abs(x.solid_fraction - wanted) < std::abs(y.solid_fraction - wanted);

@@ -51,7 +51,7 @@ struct CrowdQuestion {
   PartnerKind partner = PartnerKind::plane;
   double ratio = 1.0;                      ///< radius of the neighbours over Rs; not of planes
   double shallow = 0.5;                    ///< beside-five: share of the overlap that the first neighbour gets
-  std::optional<double> solid_fraction{};  ///< empty: the first entry
+  std::optional<double> solid_fraction{};  ///< empty: that of the main entry
   RangePolicy range = RangePolicy::reject;
   std::optional<Beyond> beyond{};
 };

@@ -46,10 +46,11 @@ std::string partners_text(const CrowdLaw& law) {
   return fmt::format("  neighbours of the {} law, nu = w v^m (a plane has w = m = 1)\n", law.form) + aligned(rows, 2);
 }
 
-std::string slides_text(const LawTableEntry& e) {
+std::string slides_table(const LawTableEntry& e) {
   Rows rows{{"friction", "mu_soft", "kt/kn"}};
   const auto add = [&](const char* name, const SlideLaw& slide) {
-    rows.push_back({name, with_error(slide.friction), with_error(slide.kt_ratio)});
+    const std::string from = slide.measured ? "" : " (not measured)";
+    rows.push_back({name, with_error(slide.friction) + from, with_error(slide.kt_ratio) + from});
   };
   add("on planes", e.slide_plane);
   add("on solid spheres", e.slide_solid);
@@ -92,20 +93,21 @@ std::string plot_of(const LawTableEntry& e, bool utf8) {
   return draw(plot) + "  line: six planes (cube), as far as was measured; dots: one plane\n";
 }
 
-std::string entry_text(const LawTableEntry& e, bool utf8) {
-  std::string text = wrapped(fmt::format("solid fraction {:.4f} +- {:.4f}: {} packings, {}", e.solid_fraction,
-                                         e.solid_fraction_error, e.packings, e.relaxation),
-                             4);
+std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
+  std::string text = wrapped(
+      fmt::format("solid fraction {:.4f} +- {:.4f}{}: {} packings, {}", e.solid_fraction, e.solid_fraction_error,
+                  main ? " (main: taken unless another is named)" : "", e.packings, e.relaxation),
+      4);
   text += wrapped("  " + spec_text_for_people(e.spec), 4);
-  text +=
-      wrapped(fmt::format("  valid up to an equivalent volume of {} and h/Rs = {} with a plane, where grains overlap "
-                          "by up to {} of the smaller radius; beyond: {}; unloading {} times as steep",
-                          number(e.volume_max, 3), number(e.overlap_max, 3), number(e.grain_overlap_max, 2),
-                          to_string(e.beyond), with_error(e.retreat)),
-              4);
+  text += wrapped(
+      fmt::format("  valid up to an equivalent volume of {} and h/Rs = {} with a plane, where grains overlap "
+                  "by up to {} of the smaller radius; beyond: {}; unloading {}",
+                  number(e.volume_max, 3), number(e.overlap_max, 3), number(e.grain_overlap_max, 2),
+                  to_string(e.beyond), e.retreat_measured ? with_error(e.retreat) + " times as steep" : "not measured"),
+      4);
   text += statuses_text(e) + parameters_text(e);
   if (const CrowdLaw* best = e.find(e.best)) text += partners_text(*best);
-  return text + slides_text(e) + plot_of(e, utf8);
+  return text + slides_table(e) + plot_of(e, utf8);
 }
 
 }  // namespace
@@ -117,7 +119,7 @@ std::string table_text_for_people(const LawFile& file, bool utf8) {
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
   for (const std::string& note : file.table->notes) text += wrapped("  note: " + note, 4);
-  for (const LawTableEntry& e : file.table->entries) text += "\n" + entry_text(e, utf8);
+  for (const LawTableEntry& e : file.table->entries) text += "\n" + entry_text(e, &e == &main_entry(*file.table), utf8);
   return text;
 }
 

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "pipelines/report/html.h"
+
 namespace softgrain::report {
 namespace {
 
@@ -41,6 +43,15 @@ SeriesStyle engine_style(const std::string& engine) {
   const Known* known = find(engine);
   if (known == nullptr) return {.color = palette::green, .width = 1.5, .marker = Marker::triangle, .marker_size = 2.6};
   return {.color = known->color, .width = 1.5, .dash = known->dash, .marker = known->marker, .marker_size = 2.6};
+}
+
+std::string law_paragraph(const std::vector<MacroCurve>& curves) {
+  std::set<std::string> lines;
+  for (const MacroCurve& c : curves)
+    if (c.engine != "shelled" && c.engine != "free") lines.insert(engine_name(c.engine) + ": " + identity_text(c.law));
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "Laws: " : "; ") + line;
+  return text.empty() ? "" : paragraph(text + ".");
 }
 
 void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit) {

@@ -14,6 +14,9 @@ std::string engine_name(const std::string& engine);
 
 SeriesStyle engine_style(const std::string& engine);
 
+/// One paragraph on the laws that the curves were made with; empty when they do not say.
+std::string law_paragraph(const std::vector<MacroCurve>& curves);
+
 /// A column of macro curves.
 using Stress = std::vector<double> MacroCurve::*;
 

@@ -13,6 +13,10 @@ inline constexpr double c = -0.035;
 inline constexpr double delta = 0.065;
 inline constexpr double youngs_modulus = 5.0e5;
 inline constexpr double shell_radius = 0.016;
+inline constexpr double poisson_ratio = 0.3;
+inline constexpr double friction = 0.3;
+inline constexpr double exponent = 3.5;
+inline constexpr double polydispersity = 10.0;
 }  // namespace published_soft_solid
 
 /// The published law [N], scaled by E Rs^2 to another grain stiffness and shell radius (exact by dimensions for equal

@@ -7,6 +7,7 @@
 #include "calibrate/crowd_problem.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
+#include "common/data/law_remarks.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"
@@ -133,14 +134,10 @@ std::string parameter_table(const LawTableEntry& entry) {
 std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeasurements>& crowd) {
   std::string body = paragraph(fmt::format(
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Best by cross-validation: the {} law. Measured up to h/Rs = {:.2f} "
-      "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Friction "
-      "limit and kt/kn: {}, {} against planes, {}, {} against solid spheres, {}, {} among soft particles. Unloading is "
-      "{} "
-      "times as stiff as loading.",
+      "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Sliding, "
+      "{}; {}.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, entry.best, entry.overlap_max, entry.volume_max,
-      entry.grain_overlap_max, with_error(entry.slide_plane.friction), with_error(entry.slide_plane.kt_ratio),
-      with_error(entry.slide_solid.friction), with_error(entry.slide_solid.kt_ratio),
-      with_error(entry.slide_soft.friction), with_error(entry.slide_soft.kt_ratio), with_error(entry.retreat)));
+      entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
   for (const CrowdLaw& law : entry.laws)
     if (law.status != "good")
       body +=

@@ -193,7 +193,7 @@ std::string macro_section(const RunData& run) {
     const auto twins = curves_of(curves, "shelled");
     if (tests.size() > 1) body += "<h3>" + escape(test) + "</h3>\n";
     body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
-    body += comparison_part(laws, twins) + bodies_table(curves);
+    body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
   return section("macro", "Macro scene", body);
 }

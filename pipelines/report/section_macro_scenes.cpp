@@ -112,7 +112,7 @@ std::string scene_part(const RunData& run, const MacroScene& scene) {
                       shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")
                             : stress_figure(scene, &MacroCurve::stress_lateral, "lateral"),
                       force_figure(scene)});
-  return body + table_of(score_engines(scene.curves)) + facts_of(run, scene.name);
+  return body + table_of(score_engines(scene.curves)) + facts_of(run, scene.name) + law_paragraph(scene.curves);
 }
 
 }  // namespace

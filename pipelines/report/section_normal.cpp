@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "pipelines/compare/differences.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
@@ -15,6 +16,20 @@ namespace {
 
 double force_scale(const SoftParticleSpec& spec) { return spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
 
+/// In what the soft particle is not the published one, beside E and Rs, which scale, and how it was packed, which was
+/// not published; empty: in nothing.
+std::string unlike_published(const SoftParticleSpec& spec) {
+  namespace law = published_soft_solid;
+  SoftParticleSpec published = spec;
+  published.poisson_ratio = law::poisson_ratio;
+  published.friction = law::friction;
+  published.exponent = law::exponent;
+  published.polydispersity = law::polydispersity;
+  std::string text;
+  for (const std::string& one : differences(spec, published).obstacles) text += (text.empty() ? "" : "; ") + one;
+  return text;
+}
+
 void add_reference_curves(Plot& plot, const SoftParticleSpec& spec, PairKind kind, double last) {
   const auto overlaps = spread(0.0, last, 161);
   Series hertz{.label = "solid grain of radius Rs (Hertz)", .hover = "", .x = overlaps, .y = {}};
@@ -23,7 +38,10 @@ void add_reference_curves(Plot& plot, const SoftParticleSpec& spec, PairKind kin
   hertz.sets_range = false;
   plot.add(std::move(hertz));
   if (kind != PairKind::soft_solid) return;
-  Series published{.label = "published law", .hover = "published law, scaled by E Rs²", .x = overlaps, .y = {}};
+  Series published{.label = unlike_published(spec).empty() ? "published law" : "published law (another soft particle)",
+                   .hover = "published law, scaled by E Rs²",
+                   .x = overlaps,
+                   .y = {}};
   for (const double d : overlaps) published.y.push_back(published_normal_force(d, spec));
   published.style = {.color = palette::vermillion, .width = 1.8, .dash = "7 4"};
   published.sets_range = false;
@@ -94,9 +112,14 @@ std::string kind_body(const RunData& run, PairKind kind) {
 
 std::string published_note(const SoftParticleSpec& spec) {
   namespace law = published_soft_solid;
-  const std::string scaled = spec.youngs_modulus == law::youngs_modulus && spec.shell_radius == law::shell_radius
-                                 ? "which are those of this run."
-                                 : "drawn here scaled by E Rs² to this run's E and Rs.";
+  std::string scaled = spec.youngs_modulus == law::youngs_modulus && spec.shell_radius == law::shell_radius
+                           ? "which are those of this run."
+                           : "drawn here scaled by E Rs² to this run's E and Rs.";
+  const std::string others = unlike_published(spec);
+  if (!others.empty())
+    scaled +=
+        " It is of another soft particle than this run's, and the two need not agree (here against there: " + others +
+        ").";
   return paragraph(
       fmt::format("Published law (soft-solid): Fn = a Δ^b + c above Δ = δ, with a = {} N, b = {}, c = {} N, δ = {}, "
                   "for E = 5×10⁵ Pa and Rs = 0.016 m, {} "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/data/law_remarks.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/sections.h"
@@ -71,12 +72,7 @@ void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
     remarks.push_back(fmt::format("Macro run \"{}\", {}, sample {}{}: {}", c.engine, c.test, c.sample,
                                   c.usable ? "" : " is not usable", c.note.empty() ? "no reason given." : c.note));
   }
-  if (std::any_of(macro.begin(), macro.end(), [](const MacroCurve& c) { return c.engine == "law"; })) {
-    remarks.push_back(
-        "The pair law was measured with one contact at a time. A soft particle with several neighbours is stiffer than "
-        "the sum of its pair "
-        "laws, by a factor of about 2 to 14, so a macro run with the pair law alone is expected to be too soft.");
-  }
+  if (use_pair_law(macro)) remarks.push_back(pair_law_remark() + ".");
 }
 
 const nlohmann::json* summary_remarks(const RunData& run) {

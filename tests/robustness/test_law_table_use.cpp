@@ -82,12 +82,137 @@ TEST_F(LawTableUse, MacroScenesTakeTablesAndCards) {
   EXPECT_EQ(end_stress("card"), end_stress("card2"));
 }
 
-TEST_F(LawTableUse, TheFrictionAndTheUnloadingBranchOfAScene) {
+TEST_F(LawTableUse, TheFrictionOfAScene) {
   expect(macro("measured", ""), 0, {});
   expect(macro("smooth", "mu = 0.0\n"), 0, {});
   EXPECT_NE(end_stress("measured"), end_stress("smooth"));
-  expect(macro("unloading", "unloading = true\n"), 0, {});
-  EXPECT_GT(end_stress("unloading"), 0.0);
+}
+
+/// Shear after a preload: contacts along x retreat, those along z go on.
+TEST_F(LawTableUse, TheUnloadingBranchActsOnContactsThatRetreat) {
+  const auto shear = [&](const std::string& name, const std::string& lines) {
+    expect(macro(name, lines,
+                 "--set macro.test=shear --set macro.preload=0.1 --set macro.preload_steps=2 --set macro.steps=4 "
+                 "--set macro.strain=0.1 --set macro.bodies=30"),
+           0, {});
+    return load_macro(file(name) + "/macro.h5").at(0);
+  };
+  LawTableEntry entry = law_entry(0.70);
+  const auto with_retreat = [&](const std::string& name, double retreat) {
+    entry.retreat.value = retreat;
+    save_law_table({1, {entry}}, file("law_table.toml"));
+    return shear(name, "unloading = true\n");
+  };
+  const MacroCurve loading = shear("loading", "");
+  const MacroCurve same = with_retreat("same", 1.0);
+  const MacroCurve steep = with_retreat("steep", 1.5);
+  const MacroCurve steeper = with_retreat("steeper", 3.0);
+  for (const MacroCurve* c : {&same, &steep, &steeper}) {
+    ASSERT_EQ(c->stress_x.size(), loading.stress_x.size());
+    EXPECT_NEAR(c->stress_x.at(2), loading.stress_x.at(2), 0.15 * loading.stress_x.at(2)) << "the preload only loads";
+  }
+  EXPECT_NEAR(same.stress_x.back(), loading.stress_x.back(), 0.02 * loading.stress_x.at(2));
+  EXPECT_LT(steep.stress_x.back(), 0.9 * loading.stress_x.back());
+  EXPECT_LT(steeper.stress_x.back(), 0.9 * steep.stress_x.back());
+  EXPECT_GT(steeper.stress_x.back(), 0.0);
+}
+
+TEST_F(LawTableUse, WhatTheTableDidNotMeasureIsRefusedOrSaid) {
+  LawTableEntry entry = law_entry(0.70);
+  entry.retreat = synthetic::unknown(1.0);
+  entry.retreat_measured = false;
+  save_law_table({1, {entry}}, file("law_table.toml"));
+  expect(macro("out", "unloading = true\n"), 2, {"unloading", "was not measured at solid fraction 0.7000"});
+  expect(macro("loading", ""), 0, {});
+  EXPECT_EQ(summary("loading")["remarks"].dump().find("not measured"), std::string::npos);
+  entry.slide_soft = {synthetic::unknown(0.3), synthetic::unknown(0.3), false};
+  save_law_table({1, {entry}}, file("law_table.toml"));
+  expect(macro("sliding", ""), 0, {});
+  EXPECT_NE(summary("sliding")["remarks"].dump().find("not measured among soft particles (0.30, 0.30 stand in)"),
+            std::string::npos);
+  expect(run_the_program("check '" + file("law_table.toml") + "'"), 0,
+         {"unloading was not measured", "not measured among soft particles"});
+}
+
+TEST_F(LawTableUse, TheMainEntryIsTakenAndTheLawIsNamedEverywhere) {
+  LawTableEntry dense = law_entry(0.70);
+  dense.packings = 32;
+  const LawTableEntry loose = law_entry(0.65, -0.05);
+  save_law_table({1, {dense}}, file("dense.toml"));
+  save_law_table({1, {loose}}, file("loose.toml"));
+  save_law_table({1, {loose, dense}}, file("law_table.toml"));
+  expect(macro("dense", "", "--law '" + file("dense.toml") + "'"), 0,
+         {"law: directional law at solid fraction 0.7000"});
+  expect(macro("loose", "", "--law '" + file("loose.toml") + "'"), 0, {});
+  ASSERT_NE(end_stress("dense"), end_stress("loose"));
+  expect(macro("main", ""), 0, {});
+  EXPECT_EQ(end_stress("main"), end_stress("dense"));
+  expect(macro("named", "solid_fraction = 0.65\n"), 0, {});
+  EXPECT_EQ(end_stress("named"), end_stress("loose"));
+  expect(macro("between", "solid_fraction = 0.68\n"), 0, {});
+  EXPECT_GT(end_stress("between"), std::min(end_stress("dense"), end_stress("loose")));
+  EXPECT_LT(end_stress("between"), std::max(end_stress("dense"), end_stress("loose")));
+
+  const json law = summary("main")["law"];
+  EXPECT_EQ(law["form"], "directional");
+  EXPECT_EQ(law["solid_fraction"], 0.7);
+  EXPECT_EQ(law["E"], dense.spec.youngs_modulus);
+  EXPECT_EQ(law["nu"], dense.spec.poisson_ratio);
+  EXPECT_EQ(law["mu"], dense.spec.friction);
+  EXPECT_EQ(law["hash"], summary("dense")["law"]["hash"]) << "the same numbers, from another file";
+  EXPECT_NE(law["hash"], summary("named")["law"]["hash"]);
+  EXPECT_EQ(summary("between")["law"]["solid_fraction"], 0.68);
+  const LawIdentity kept = load_macro(file("named") + "/macro.h5").at(0).law;
+  EXPECT_EQ(kept.solid_fraction, 0.65);
+  EXPECT_EQ(kept.hash, summary("named")["law"]["hash"]);
+  const std::string report = read_text(file("named") + "/report.html");
+  EXPECT_NE(report.find("directional law at solid fraction 0.6500"), std::string::npos);
+  EXPECT_NE(report.find(kept.hash), std::string::npos);
+  expect(macro("card", "", "--law '" + file("law.toml") + "'"), 0, {"law: pair law, measured with nu = 0.3"});
+  EXPECT_TRUE(summary("card")["law"]["solid_fraction"].is_null());
+}
+
+TEST_F(LawTableUse, ACardOfOtherGrainsIsSaid) {
+  const std::string card = "--law '" + file("law.toml") + "' ";
+  expect(macro("same", "", card), 0, {});
+  EXPECT_EQ(summary("same")["remarks"].dump().find("the law card was measured with"), std::string::npos);
+  expect(macro("other", "", card + "--set macro.mu=0.5"), 0, {});
+  EXPECT_NE(
+      summary("other")["remarks"].dump().find("measured with nu = 0.3, mu = 0.3, the grains of this scene have nu "
+                                              "= 0.3, mu = 0.5"),
+      std::string::npos);
+}
+
+TEST_F(LawTableUse, ASolidFractionThatTheTableDoesNotReachIsRefusedWithItsRange) {
+  save_law_table({1, {law_entry(0.65, -0.05), law_entry(0.70)}}, file("law_table.toml"));
+  const std::vector<std::string> words{"scene.toml:", "solid_fraction", "0.650 to 0.700", "clamp"};
+  expect(macro("out", "solid_fraction = 0.71\n"), 2, words);
+  expect(macro("out", "solid_fraction = 0.6\n"), 2, words);
+  EXPECT_FALSE(fs::exists(file("out") + "/macro.h5"));
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 2, words);
+  expect(macro("clamped", "solid_fraction = 0.6\nrange = \"clamp\"\n"), 0, {});
+  EXPECT_EQ(summary("clamped")["law"]["solid_fraction"], 0.65);
+  EXPECT_NE(summary("clamped")["remarks"].dump().find("nearest entry was used"), std::string::npos);
+  expect(macro("out", "solid_fraction = 0.7\n", "--law '" + file("law.toml") + "'"), 2,
+         {"solid_fraction", "goes with a law table"});
+  expect(run_the_program("law eval '" + file("law_table.toml") + "' --solid-fraction 0.71"), 2, {"0.650 to 0.700"});
+}
+
+TEST_F(LawTableUse, CheckAndLawTakeTheSameEntryAsTheRun) {
+  LawTableEntry dense = law_entry(0.70);
+  dense.packings = 32;
+  save_law_table({1, {law_entry(0.65, -0.05), dense}}, file("law_table.toml"));
+  expect(macro("run", ""), 0, {});
+  const std::string hash = summary("run")["law"]["hash"];
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"directional law at solid fraction 0.7000", hash});
+  expect(run_the_program("law eval '" + file("law_table.toml") + "'"), 0, {"at solid fraction 0.7000"});
+  expect(run_the_program("law show '" + file("law_table.toml") + "'"), 0, {"0.7000 +- 0.0003 (main"});
+  expect(run_the_program("law export '" + file("law_table.toml") + "' --to csv"), 0, {"0.7000"});
+  expect(run_the_program("law export '" + file("law_table.toml") + "' --to lammps-table"), 0,
+         {"the directional law at solid fraction 0.7000 of the table"});
+  const json shown = json::parse(run_the_program("law show --json '" + file("law_table.toml") + "'").output);
+  EXPECT_EQ(shown["parameters"]["entries"][1]["main"], true);
+  EXPECT_EQ(shown["parameters"]["entries"][0]["main"], false);
 }
 
 TEST_F(LawTableUse, TwinsSayWhichSolidFractionIsMeant) {

@@ -327,6 +327,115 @@ TEST(LawTableEntryAt, ALawIsAsGoodAsTheWorstEntry) {
   EXPECT_EQ(e.laws[1].status, "good");
 }
 
+TEST(LawTableEntryAt, AnEntryKnowsNothingOfItsNeighbours) {
+  LawTable table{1, {law_entry(0.7), law_entry(0.75, 0.02)}};
+  table.entries[0].laws[0].status = "no threshold crossing";
+  std::string remark;
+  const LawTableEntry at = entry_at(table, 0.75, RangePolicy::reject, remark, kReachOfNumbers);
+  EXPECT_EQ(at.laws[0].status, "good");
+  for (const CrowdLaw& law : at.laws) EXPECT_EQ(numbers_of(at, law.form), numbers_of(table.entries[1], law.form));
+}
+
+TEST(LawTableEntryAt, ANumberThatSomebodyGivesIsRoundedAtMost) {
+  const LawTable table{1, {law_entry(0.70004), law_entry(0.75, 0.02)}};
+  std::string remark;
+  EXPECT_EQ(entry_at(table, 0.7, RangePolicy::reject, remark, kReachOfNumbers).solid_fraction, 0.70004);
+  EXPECT_EQ(remark, "");
+  EXPECT_THROW((void)entry_at(table, 0.755, RangePolicy::reject, remark, kReachOfNumbers), BadInput);
+  EXPECT_THROW((void)entry_at(table, std::nan(""), RangePolicy::reject, remark), BadInput);
+}
+
+/// Forces on a plane alone, on six, on one solid sphere and one soft one, at some overlaps.
+std::vector<double> forces_of(const LawTableEntry& e, const std::string& form) {
+  const CrowdModel model = crowd_model(*e.find(form));
+  std::vector<double> out;
+  for (const auto& [around, kind, ratio] :
+       {std::tuple{"one", PartnerKind::plane, 0.0}, std::tuple{"cube", PartnerKind::plane, 0.0},
+        std::tuple{"one", PartnerKind::solid, 1.0}, std::tuple{"cube", PartnerKind::solid, 1.0}}) {
+    std::vector<CrowdPartner> partners;
+    for (const Vec3& d : arrangement(around)) partners.push_back({kind, ratio, d});
+    for (const double h : {0.14, 0.18, 0.22, 0.26})
+      out.push_back(crowd_forces(model, partners, std::vector<double>(partners.size(), h)).front());
+  }
+  return out;
+}
+
+TEST(LawTableEntryAt, TheCommittedTableIsAContinuousLawBetweenItsEntries) {
+  const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
+  ASSERT_EQ(table.entries.size(), 2U);
+  const double low = table.entries[0].solid_fraction;
+  const double high = table.entries[1].solid_fraction;
+  constexpr int kSteps = 64;
+  for (const char* form : {"pair", "bag", "directional"}) {
+    const std::vector<double> loose = forces_of(table.entries[0], form);
+    const std::vector<double> dense = forces_of(table.entries[1], form);
+    std::vector<double> before = loose;
+    for (int k = 0; k <= kSteps; ++k) {
+      std::string remark;
+      const double x = k == kSteps ? high : low + (high - low) * k / kSteps;
+      const std::vector<double> at = forces_of(entry_at(table, x, RangePolicy::reject, remark), form);
+      EXPECT_EQ(remark, "") << x;
+      for (std::size_t n = 0; n < at.size(); ++n) {
+        const auto [least, most] = std::minmax({loose[n], dense[n]});
+        EXPECT_GE(at[n], least * (1.0 - 1e-3)) << form << ", force " << n << " at " << x;
+        EXPECT_LE(at[n], most * (1.0 + 1e-3)) << form << ", force " << n << " at " << x;
+        EXPECT_LE(std::abs(at[n] - before[n]), 3.0 * (most - least) / kSteps + 1e-12) << form << ", force " << n;
+      }
+      if (k == 0) {
+        EXPECT_EQ(at, loose);
+      }
+      if (k == kSteps) {
+        EXPECT_EQ(at, dense);
+      }
+      before = at;
+    }
+  }
+}
+
+TEST(LawTableEntryAt, NumbersBetweenDegenerateFitsAreNoLawBetweenThem) {
+  // Much the same force at h/Rs = 0.28 from a and b far apart: half way between them it is another one.
+  LawTableEntry steep = law_entry(0.75);
+  for (CrowdLaw& law : steep.laws) {
+    law.b.value = 5.0;
+    law.a.value = 0.7 * std::pow(0.28, 2.8 - 5.0);
+  }
+  const LawTable table{1, {law_entry(0.7), steep}};
+  std::string remark;
+  (void)entry_at(table, 0.725, RangePolicy::reject, remark);
+  EXPECT_NE(remark.find("is not between those of the entries at 0.7000 and 0.7500"), std::string::npos) << remark;
+  remark.clear();
+  (void)entry_at(table, 0.75, RangePolicy::reject, remark);
+  EXPECT_EQ(remark, "");
+  LawTable forms{1, {law_entry(0.7), law_entry(0.75, 0.01)}};
+  forms.entries[1].best = "bag";
+  (void)entry_at(forms, 0.72, RangePolicy::reject, remark);
+  EXPECT_NE(remark.find("prefer different forms (directional and bag)"), std::string::npos) << remark;
+}
+
+TEST(LawTableMainEntry, IsTheMarkedOneElseTheOneOfMostConfigurations) {
+  LawTable table{1, {law_entry(0.65), law_entry(0.7), law_entry(0.75)}};
+  table.entries[1].packings = 13;
+  EXPECT_EQ(main_entry(table).solid_fraction, 0.7) << "of as many configurations the one of most packings";
+  for (CrowdLaw& law : table.entries[2].laws) law.errors.push_back({"two", "fitted", 0.1, 1.0, 0.1});
+  EXPECT_EQ(main_entry(table).solid_fraction, 0.75);
+  table.entries[0].main = true;
+  EXPECT_EQ(main_entry(table).solid_fraction, 0.65);
+  EXPECT_THROW((void)main_entry({1, {}}), BadInput);
+  const LawTable committed = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
+  EXPECT_NEAR(main_entry(committed).solid_fraction, 0.7048, 1e-4);
+}
+
+TEST_F(CrowdLawIo, TheMainEntryIsKept) {
+  LawTable table{1, {law_entry(0.7), law_entry(0.75)}};
+  EXPECT_EQ(law_table_text(table, build_provenance()).find("main"), std::string::npos);
+  table.entries[0].main = true;
+  save_law_table(table, path());
+  EXPECT_TRUE(load_law_table(path()).entries[0].main);
+  EXPECT_FALSE(load_law_table(path()).entries[1].main);
+  table.entries[1].main = true;
+  refused(law_table_text(table, build_provenance()), {"main", "another entry"});
+}
+
 TEST(MonotoneCurve, GoesThroughItsPointsAndNeverBeyond) {
   const std::vector<double> x{0.0, 1.0, 1.5, 4.0, 5.0};
   const std::vector<double> y{0.0, 0.1, 2.0, 2.0, 7.0};

@@ -1,0 +1,38 @@
+#include "common/data/law_remarks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace softgrain {
+
+std::string slides_text(const LawTableEntry& entry) {
+  std::string text;
+  for (const auto& [name, slide] : {std::pair{"against planes", &entry.slide_plane},
+                                    {"against solid spheres", &entry.slide_solid},
+                                    {"among soft particles", &entry.slide_soft}}) {
+    const std::string numbers = fmt::format("{:.2f}, {:.2f}", slide->friction.value, slide->kt_ratio.value);
+    text += (text.empty() ? "" : "; ") +
+            (slide->measured ? numbers + " " + name : fmt::format("not measured {} ({} stand in)", name, numbers));
+  }
+  return "friction limit and kt/kn: " + text;
+}
+
+std::string unloading_text(const LawTableEntry& entry) {
+  if (!entry.retreat_measured) return "unloading was not measured";
+  return fmt::format("unloading is {:.2f} times as steep as loading", entry.retreat.value);
+}
+
+std::string pair_law_remark() {
+  return fmt::format(
+      "the pair law was measured with one contact; with two to twelve neighbours around a soft particle forces were "
+      "measured to be {:g} to {:g} times as large",
+      kPairLawMissesLeast, kPairLawMissesMost);
+}
+
+bool use_pair_law(const std::vector<MacroCurve>& curves) {
+  return std::any_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.law.form == "pair"; });
+}
+
+}  // namespace softgrain

@@ -1,0 +1,28 @@
+// What a reader of fitted laws should know, in words that program, report and checks share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/crowd_law.h"
+#include "common/data/macro_result.h"
+
+namespace softgrain {
+
+/// "friction limit and kt/kn: 0.22, 0.21 against planes; not measured against solid spheres (0.22, 0.21 stand in);
+/// ...".
+std::string slides_text(const LawTableEntry& entry);
+
+/// "unloading is 1.16 times as steep as loading", or that it was not measured.
+std::string unloading_text(const LawTableEntry& entry);
+
+/// What a pair law misses: force of a soft particle with several neighbours over that of its pair law, from two planes
+/// at 60 degrees to twelve planes, as measured for results/law_table.
+inline constexpr double kPairLawMissesLeast = 1.2;
+inline constexpr double kPairLawMissesMost = 9.0;
+std::string pair_law_remark();
+
+/// Whether curves were made with a law of single contacts.
+bool use_pair_law(const std::vector<MacroCurve>& curves);
+
+}  // namespace softgrain

@@ -1,0 +1,113 @@
+// What the report says to be careful with holds for the law, the soft particle and the measurement of the run itself.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "common/data/law_remarks.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/sections.h"
+#include "pipelines/run_summary.h"
+#include "tests/support/synthetic_crowd.h"
+#include "tests/support/synthetic_run.h"
+
+namespace softgrain {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::string all_of(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+std::vector<MacroCurve> curves_with(const std::string& form) {
+  std::vector<MacroCurve> curves = synthetic::macro();
+  for (MacroCurve& c : curves)
+    if (c.engine == "law") c.law = {form, 0.7, 5e5, 0.3, 0.3, "numbers"};
+  return curves;
+}
+
+TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
+  const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
+  double least = 1e9;
+  double most = 0.0;
+  for (const ConfigurationError& e : main_entry(table).find("pair")->errors) {
+    if (e.name.starts_with("one-")) continue;
+    least = std::min(least, 1.0 / e.end_ratio);
+    most = std::max(most, 1.0 / e.end_ratio);
+  }
+  EXPECT_NEAR(least, kPairLawMissesLeast, 0.05);
+  EXPECT_NEAR(most, kPairLawMissesMost, 0.5);
+  EXPECT_TRUE(contains(pair_law_remark(), "1.2 to 9 times")) << pair_law_remark();
+}
+
+TEST(MacroRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
+  EXPECT_TRUE(contains(all_of(macro_remarks(curves_with("pair"))), pair_law_remark()));
+  EXPECT_TRUE(contains(all_of(macro_remarks(curves_with("pair"))), "stands in for the friction limit"));
+  for (const char* form : {"bag", "directional"}) {
+    const std::string said = all_of(macro_remarks(curves_with(form)));
+    EXPECT_FALSE(contains(said, "one contact")) << form << ": " << said;
+    EXPECT_FALSE(contains(said, "against a plane")) << form << ": " << said;
+  }
+}
+
+TEST(ReportRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
+  report::RunData run;
+  run.summary = nlohmann::json::object();
+  run.macro = curves_with("pair");
+  EXPECT_TRUE(contains(report::remarks_section(run), "1.2 to 9 times"));
+  run.macro = curves_with("directional");
+  EXPECT_EQ(report::remarks_section(run), "");
+}
+
+TEST(ReportMacro, NamesTheLawOfItsCurves) {
+  report::RunData run;
+  run.macro = curves_with("directional");
+  EXPECT_TRUE(contains(report::macro_section(run), "directional law at solid fraction 0.7000"));
+  EXPECT_TRUE(contains(report::macro_section(run), "mu = 0.3, taken with E = 500000 Pa; numbers numbers"));
+  run.macro = synthetic::macro();
+  EXPECT_TRUE(contains(report::macro_section(run), "not recorded"));
+}
+
+TEST(ReportNormal, ThePublishedLawIsOfThePublishedSoftParticle) {
+  report::RunData run;
+  run.measurements = synthetic::measurements();
+  const std::string same = report::normal_section(run);
+  EXPECT_TRUE(contains(same, "which are those of this run."));
+  EXPECT_FALSE(contains(same, "another soft particle"));
+  run.measurements->spec.beta = 2.0;  // not published
+  EXPECT_EQ(report::normal_section(run), same);
+  const std::vector<std::pair<const char*, std::function<void(SoftParticleSpec&)>>> changes{
+      {"exponent of the radii: 3 against 3.5", [](SoftParticleSpec& s) { s.exponent = 3.0; }},
+      {"polydispersity: 5 against 10", [](SoftParticleSpec& s) { s.polydispersity = 5.0; }},
+      {"nu of the grains: 0.2 against 0.3", [](SoftParticleSpec& s) { s.poisson_ratio = 0.2; }},
+      {"mu of the grains: 0.5 against 0.3", [](SoftParticleSpec& s) { s.friction = 0.5; }}};
+  for (const auto& [says, change] : changes) {
+    run.measurements = synthetic::measurements();
+    change(run.measurements->spec);
+    const std::string other = report::normal_section(run);
+    EXPECT_TRUE(contains(other, "published law (another soft particle)")) << says;
+    EXPECT_TRUE(contains(other, says)) << says;
+  }
+}
+
+TEST(ReportLawTable, SaysWhatWasNotMeasured) {
+  report::RunData run;
+  run.law_table = LawTable{1, {synthetic::law_entry(0.7)}};
+  const std::string measured = report::law_table_section(run);
+  EXPECT_TRUE(contains(measured, "unloading is 1.50 times as steep as loading"));
+  EXPECT_FALSE(contains(measured, "not measured"));
+  LawTableEntry& entry = run.law_table->entries[0];
+  entry.retreat_measured = false;
+  entry.slide_solid = {synthetic::unknown(0.25), synthetic::unknown(0.35), false};
+  const std::string missing = report::law_table_section(run);
+  EXPECT_TRUE(contains(missing, "unloading was not measured"));
+  EXPECT_FALSE(contains(missing, "as steep as loading"));
+  EXPECT_TRUE(contains(missing, "not measured against solid spheres (0.35, 0.25 stand in)"));
+}
+
+}  // namespace
+}  // namespace softgrain
