@@ -171,9 +171,12 @@ void Guards<D>::look_at_energy(const System<D>& s, const ContactWatch<D>& watch)
   if (scale_ == 0.0) return;
   const double growth = (energy - least_) / scale_;
   std::ostringstream what;
-  what << "energy grows although nothing drives the scene: by " << 100.0 * growth
-       << " % of the most that moved or was stored (guards.energy.limit " << 100.0 * spec_.energy.limit
-       << " %); take a shorter step, or tangential = \"rescaled\"";
+  if (std::isnan(growth))
+    what << "the energy of the scene is not a number";
+  else
+    what << "energy grows although nothing drives the scene: by " << 100.0 * growth
+         << " % of the most that moved or was stored (guards.energy.limit " << 100.0 * spec_.energy.limit
+         << " %); take a shorter step, or tangential = \"rescaled\"";
   note(spec_.energy, growth, s.time, report_.energy, what.str());
 }
 

@@ -136,6 +136,7 @@ void ParticlesRun<D>::begin() {
   if (restore()) return;
   order_grains();
   integrator_.initialise(system_);
+  require_sound();
   guards_.look(system_);
   if (watched()) monitor_.observe(system_);
   record();
