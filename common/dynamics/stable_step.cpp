@@ -27,8 +27,8 @@ struct Joint {
 
 /// What a law answers to a contact that does not move but for a normal speed of 1, which shows its dashpot.
 template <int D, class Law>
-Joint<D> joint_of(const System<D>& s, std::size_t c, const Law& law, ContactState<D> state,
-                  const ContactGeometry<D>& g) {
+Joint<D> joint_of(const System<D>& s, std::size_t c, const Law& law, ContactState<D> state, const ContactGeometry<D>& g,
+                  Dashpots dashpots) {
   Joint<D> out{static_cast<std::size_t>(s.contacts.i[c]), static_cast<std::size_t>(s.contacts.j[c]), g.normal, g.arm_i,
                g.arm_j};
   state.normal_speed = 1.0;
@@ -40,14 +40,14 @@ Joint<D> joint_of(const System<D>& s, std::size_t c, const Law& law, ContactStat
   const ContactResponse<D> r = law.evaluate(state);
   out.kn = std::max(r.normal_stiffness, 0.0);
   out.kt = 2.0 * r.tangential_stiffness;
-  out.eta = std::max(r.elastic_force - r.normal_force, 0.0);
+  out.eta = dashpots == Dashpots::count ? std::max(r.elastic_force - r.normal_force, 0.0) : 0.0;
   if constexpr (resists_rolling<Law>()) out.roll = 2.0 * law.rolling;
   return out;
 }
 
 /// work(joint) for every contact.
 template <int D, class Work>
-void for_joints(const System<D>& s, Work&& work) {
+void for_joints(const System<D>& s, Dashpots dashpots, Work&& work) {
   for (const ContactSection& section : s.contacts.sections)
     detail::with_types(s, section, [&]<class Law>(const Law& law, auto geometry, auto) {
       constexpr Geometry kGeometry = decltype(geometry)::value;
@@ -58,7 +58,7 @@ void for_joints(const System<D>& s, Work&& work) {
         const auto i = static_cast<std::size_t>(s.contacts.i[c]);
         const auto j = static_cast<std::size_t>(s.contacts.j[c]);
         if (!detail::meet<D, kGeometry>(s.particles, i, j, shift, g)) continue;
-        work(joint_of(s, c, law, detail::contact_state<D, kGeometry>(s, c, g), g));
+        work(joint_of(s, c, law, detail::contact_state<D, kGeometry>(s, c, g), g, dashpots));
       }
     });
 }
@@ -81,10 +81,10 @@ struct Sums {
 
 /// The least step over all bodies that their sums allow.
 template <int D>
-StableStep bound(const System<D>& s) {
+StableStep bound(const System<D>& s, Dashpots dashpots) {
   const auto& p = s.particles;
   std::vector<Sums> sums(p.sphere.size());
-  for_joints(s, [&](const Joint<D>& joint) {
+  for_joints(s, dashpots, [&](const Joint<D>& joint) {
     const double across = joint.kt > 0.0 ? 4.0 : 0.0;
     for (const auto& [u, arm] : {std::pair{joint.i, joint.arm_i}, std::pair{joint.j, joint.arm_j}}) {
       sums[u].push_k += std::max(2.0 * joint.kn, across * joint.kt);
@@ -109,9 +109,9 @@ StableStep bound(const System<D>& s) {
 template <int D>
 class Network {
  public:
-  explicit Network(const System<D>& s) {
+  Network(const System<D>& s, Dashpots dashpots) {
     const auto& p = s.particles;
-    for_joints(s, [&](const Joint<D>& joint) { joints_.push_back(joint); });
+    for_joints(s, dashpots, [&](const Joint<D>& joint) { joints_.push_back(joint); });
     for (std::size_t u = 0; u < p.sphere.size(); ++u) {
       root_.push_back(std::sqrt(p.inverse_mass[u]));
       turn_root_.push_back(std::sqrt(p.inverse_inertia[u]));
@@ -231,15 +231,15 @@ class Network {
 }  // namespace
 
 template <int D>
-StableStep stable_step(const System<D>& system, double enough) {
+StableStep stable_step(const System<D>& system, double enough, Dashpots dashpots) {
   System<D> s = system;
   update_neighbours(s);
   particle_pass(s);
-  const StableStep safe = bound(s);
-  return safe.step >= enough ? safe : Network<D>(s).run();
+  const StableStep safe = bound(s, dashpots);
+  return safe.step >= enough ? safe : Network<D>(s, dashpots).run();
 }
 
-template StableStep stable_step<2>(const System<2>&, double);
-template StableStep stable_step<3>(const System<3>&, double);
+template StableStep stable_step<2>(const System<2>&, double, Dashpots);
+template StableStep stable_step<3>(const System<3>&, double, Dashpots);
 
 }  // namespace softgrain

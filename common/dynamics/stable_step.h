@@ -8,6 +8,10 @@
 
 namespace softgrain {
 
+/// Whether dashpots count. Without them longer steps pass: what dashpots across the contact do then is chatter, which
+/// the Coulomb limit holds.
+enum class Dashpots { count, leave_out };
+
 struct StableStep {
   double step = std::numeric_limits<double>::infinity();  ///< [s]; infinite without contacts
   Slot body = -1;                                         ///< the one that moves most in the mode that breaks first
@@ -23,7 +27,7 @@ struct StableStep {
 /// the sums over its contacts, says that this step is stable, that bound is what comes back; otherwise the mode is
 /// found by iteration. Throws NotUsable as update_neighbours does. The state is left alone.
 template <int D>
-StableStep stable_step(const System<D>& system, double enough);
+StableStep stable_step(const System<D>& system, double enough, Dashpots dashpots = Dashpots::count);
 
 /// Share of StableStep::step that is accepted for a step: contacts deepen, and stiffness with them.
 inline constexpr double kLargestStableShare = 0.8;

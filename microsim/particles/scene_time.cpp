@@ -94,11 +94,11 @@ std::string limit_sentence(const StepLimit& limit, const System<D>& s,
 
 /// Contacts of the start, all that a body has together. `wanted`: the step that is to be judged.
 template <int D>
-void judge_contacts(const System<D>& s, double wanted, SceneTime& out) {
+void judge_contacts(const System<D>& s, double wanted, Dashpots dashpots, SceneTime& out) {
   if (!std::isfinite(wanted)) return;
   StableStep stable;
   try {
-    stable = stable_step(s, wanted / kLargestStableShare);
+    stable = stable_step(s, wanted / kLargestStableShare, dashpots);
   } catch (const NotUsable&) {
     return;  // no state to start from, as the run will say
   }
@@ -122,7 +122,7 @@ void choose_step(const SceneTable& t, const System<D>& s, double fraction, Scene
   double wanted = std::min(
       {fraction * out.natural_time, out.contact_time / kStepsPerImpact, out.reach_time / kStepsPerReach, out.end});
   if (!std::isfinite(wanted)) t.reject("step", "\"auto\" needs a contact law that the particles take part in");
-  judge_contacts(s, wanted, out);
+  judge_contacts(s, wanted, Dashpots::count, out);
   wanted = std::min(wanted, kLargestStableShare * out.stable_step);
   if (out.steps > 0) {
     out.step = wanted;
@@ -139,7 +139,7 @@ void take_step(const SceneTable& t, const System<D>& s, double largest, SceneTim
   if (out.step > limit)
     t.reject("step",
              "above the stable limit " + shown(limit) + " s = " + shown(largest) + " sqrt(m/k), " + out.limited_by);
-  judge_contacts(s, out.step, out);
+  judge_contacts(s, out.step, Dashpots::leave_out, out);
   const double crowded = kLargestStableShare * out.stable_step;
   if (out.step > crowded)
     t.reject("step", "above the stable limit " + shown(crowded) + " s = " + shown(kLargestStableShare) +

@@ -25,8 +25,9 @@ struct SceneTime {
 
 /// Table [time]: `step` "auto" or seconds, `end` or the number of `steps`, `step_fraction` of the natural time (0.05),
 /// `warm_up_steps` (0). Automatic steps are also at most 1/200 of the shortest impact, 1/10 of the reach time and
-/// kLargestStableShare of the stable step of the contacts that there are at the start, and divide `end`. Throws BadInput
-/// for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of the stable step.
+/// kLargestStableShare of the stable step of the contacts that there are at the start, and divide `end`. Throws
+/// BadInput for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of the stable step of
+/// the springs alone.
 /// `law_description`: per law, for messages.
 template <int D>
 SceneTime read_time(const SceneTable& time, const System<D>& system, const std::vector<std::string>& law_description);

@@ -105,6 +105,13 @@ TEST(StableStep, StepsBelowItHoldAndStepsAboveItDoNot) {
       }
 }
 
+TEST(StableStep, SpringsAloneAllowMore) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const double springs = stable_step(lattice(0.05, 0.3, 0.5), infinite, Dashpots::leave_out).step;
+  EXPECT_GT(springs, 1.5 * network_step(lattice(0.05, 0.3, 0.5)));
+  EXPECT_NEAR(springs, network_step(lattice(0.05, 0.3, 1.0)), 1e-3 * springs) << "nothing else sets them apart";
+}
+
 TEST(StableStep, LooksAndTouchesNothing) {
   const System3 s = lattice(0.05, 0.3, 0.5);
   const System3 before = s;
