@@ -17,10 +17,14 @@ std::string interval(const Quantity& q) {
   return q.interval ? fmt::format("{:.3g} .. {:.3g}", q.interval->low, q.interval->high) : "-";
 }
 
+std::string source_text(const LawFile& file, double solid_fraction) {
+  if (!file.card) return fmt::format("law table, at solid fraction {:.4f}", solid_fraction);
+  if (file.card->relaxation == "experiment") return "law card, from an experiment";
+  return fmt::format("law card, {} relaxation", file.card->relaxation);
+}
+
 std::string kind_line(const LawFile& file, char letter, double solid_fraction) {
-  const std::string what = file.card ? "law card, " + measured_text(*file.card)
-                                     : fmt::format("law table, at solid fraction {:.4f}", solid_fraction);
-  return wrapped(fmt::format("{}: {}: {}", letter, file.path, what), 3);
+  return wrapped(fmt::format("{}: {}: {}", letter, file.path, source_text(file, solid_fraction)), 3);
 }
 
 std::string verdict(const DifferenceRow& r) { return !r.known ? "?" : (r.within ? "yes" : "NO"); }
