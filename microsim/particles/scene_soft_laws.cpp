@@ -48,7 +48,7 @@ LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string
   }
   const double fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
   try {
-    return entry_at(table, fraction, range, remark);
+    return entry_at(table, fraction, range, remark, kReachOfNumbers);
   } catch (const Error& e) {
     t.reject("solid_fraction", e.what());
   }
