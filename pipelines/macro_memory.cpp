@@ -11,9 +11,9 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kBytesPerGrain = 300.0;
-constexpr double kBytesPerContact = 160.0;
-constexpr double kContactsPerGrain = 3.0;
+constexpr double kBytesPerBody = 300.0;
+constexpr double kBytesPerBodyContact = 160.0;
+constexpr double kContactsPerBody = 3.0;
 /// More than any soft particle of the published kind holds: what fits even so needs no closer look.
 constexpr double kManyGrains = 1e5;
 
@@ -25,7 +25,7 @@ double resolved(const MacroSetup& setup, double grains) {
 
 }  // namespace
 
-double macro_memory(double bodies) { return bodies * (kBytesPerGrain + kContactsPerGrain * kBytesPerContact); }
+double macro_memory(double bodies) { return bodies * (kBytesPerBody + kContactsPerBody * kBytesPerBodyContact); }
 
 std::string macro_memory_problem(const MacroSetup& setup, double grains, double available) {
   const double all = resolved(setup, grains);
