@@ -10,6 +10,7 @@
 #include "common/neighbours/verlet_list.h"
 #include "common/statics/least_work_step.h"
 #include "microsim/protocol.h"
+#include "microsim/shorter_steps.h"
 
 namespace softgrain {
 
@@ -24,9 +25,7 @@ constexpr int kLongestDetour = 8;
 /// A stretch of slow dynamics with real contact damping; the grains' own inertia, but for the quickest. Motion goes on
 /// from what it was and is left as it is: a pack that rearranges carries its momentum on, and stopping it every now and
 /// then raises the force near the threshold by a third.
-void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
-  const double nominal = step_factor * kPublished.step_fraction * step_limit(e.system).natural_time;
-  const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
+void run_steps(SoftExperiment& e, double speed, double duration, std::int64_t steps) {
   const double dt = duration / static_cast<double>(steps);
   {
     const ScaledMasses<3> raised(e.system, dt, kPublished.crowded_fraction);
@@ -42,6 +41,12 @@ void run_dynamics(SoftExperiment& e, double speed, double duration, double step_
   }
   e.set_damping(false);
   update_neighbours(e.system);  // a checkpoint wants a list that is whole
+}
+
+void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
+  const double nominal = step_factor * kPublished.step_fraction * step_limit(e.system).natural_time;
+  const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
+  with_steps_short_enough(e, [&](int halves) { run_steps(e, speed, duration, steps * halves); });
 }
 
 class LeastWorkProtocol : public Protocol {

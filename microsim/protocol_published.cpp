@@ -7,6 +7,7 @@
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "microsim/protocol.h"
+#include "microsim/shorter_steps.h"
 
 namespace softgrain {
 
@@ -76,12 +77,14 @@ class PublishedProtocol : public Protocol {
     return kPublishedInterval * (natural_time(spec) / natural_time(kPublished));
   }
   static void run(SoftExperiment& e, std::int64_t steps, double dt) {
-    VelocityVerlet<3> integrator(dt);
-    integrator.initialise(e.system);
-    for (std::int64_t k = 0; k < steps; ++k) {
-      stop_if_interrupted("relaxing");
-      integrator.step(e.system);
-    }
+    with_steps_short_enough(e, [&](int halves) {
+      VelocityVerlet<3> integrator(dt / halves);
+      integrator.initialise(e.system);
+      for (std::int64_t k = 0; k < steps * halves; ++k) {
+        stop_if_interrupted("relaxing");
+        integrator.step(e.system);
+      }
+    });
   }
 
   PublishedOptions options_;

@@ -126,6 +126,7 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Proven
   s["seconds"] = seconds;
   s["laws"] = laws_json(r.card);
   s["packings"] = packings_json(data);
+  s["packings"]["broke_off"] = r.measured.left_out.size();
   s["packings"]["seconds"] = r.measured.packing_seconds;
   s["measurement"] = measurement_json(data, setup.measure.series[0].relaxation);
   s["measurement"]["wall_seconds"] = r.measured.wall_seconds;
@@ -181,6 +182,8 @@ ExitStatus command_run(const CommonOptions& options) {
   PipelineResult result;
   context.guard([&] { result.measured = run_measure_stage(setup.measure, store, context, provenance); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
+  for (const std::string& r : result.measured.left_out) result.remarks.push_back(r);
+  result.usable = result.measured.enough_left;
   fit(setup, context, provenance, result);
   run_macro(setup, store, context, provenance, result);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

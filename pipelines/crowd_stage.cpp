@@ -57,8 +57,10 @@ class CrowdRunner {
         seed_(context.seed(setup.seed)) {}
 
   /// Runs tasks in parallel, long ones first; results are in the order of the tasks.
+  /// Those that came to their end, in the order of tasks. What broke off (a grain squeezed out of its shell...) is left
+  /// out as a whole, and said.
   std::vector<CrowdRun> measure(const std::vector<CrowdTask>& tasks, const CrowdOptions& options,
-                                const std::string& what) const {
+                                const std::string& what) {
     std::vector<double> weights;
     double total = 0.0;
     for (const CrowdTask& t : tasks) {
@@ -71,15 +73,37 @@ class CrowdRunner {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
     Progress progress(what, total, context_.quiet());
     std::vector<CrowdRun> runs(tasks.size());
+    std::vector<std::string> broke_off(tasks.size());
     parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
       const std::size_t t = order[static_cast<std::size_t>(k)];
-      runs[t] = known_or_measured(tasks[t], options, weights[t], progress);
+      try {
+        runs[t] = known_or_measured(tasks[t], options, weights[t], progress);
+      } catch (const NotUsable& e) {
+        broke_off[t] = fmt::format(
+            "{}, packing {} is left out: it broke off: {}; smaller overlaps or increments may keep it whole",
+            tasks[t].configuration->name, tasks[t].packing, e.what());
+      }
     });
     progress.finish();
-    return runs;
+    return whole_ones(std::move(runs), broke_off);
   }
 
+  [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+
  private:
+  std::vector<CrowdRun> whole_ones(std::vector<CrowdRun> runs, const std::vector<std::string>& broke_off) {
+    std::vector<CrowdRun> out;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      if (broke_off[k].empty()) {
+        out.push_back(std::move(runs[k]));
+        continue;
+      }
+      context_.say(broke_off[k]);
+      left_out_.push_back(broke_off[k]);
+    }
+    return out;
+  }
+
   [[nodiscard]] std::string key_of(const CrowdTask& task, const CrowdOptions& options) const {
     std::string text = fmt::format("seed {} packings", seed_);
     for (const std::int64_t p : packings_of(task, static_cast<std::int64_t>(contents_.size())))
@@ -114,14 +138,10 @@ class CrowdRunner {
       others.push_back(&contents_[static_cast<std::size_t>(packings[k])]);
     std::size_t points = 0;
     for (const auto& shares : *task.plan) points += shares.size();
-    try {
-      CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
-                                     others, level_ != nullptr ? &level_->laws : nullptr);
-      const auto advance = [&](const CrowdPoint&) { progress.advance(weight / static_cast<double>(points)); };
-      return run_kept_crowd(store_, name, e, *task.plan, options, advance);
-    } catch (const NotUsable& e) {
-      throw NotUsable(fmt::format("{}, packing {}: {}", task.configuration->name, task.packing, e.what()));
-    }
+    CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
+                                   others, level_ != nullptr ? &level_->laws : nullptr);
+    const auto advance = [&](const CrowdPoint&) { progress.advance(weight / static_cast<double>(points)); };
+    return run_kept_crowd(store_, name, e, *task.plan, options, advance);
   }
 
   const CrowdSetup& setup_;
@@ -131,7 +151,15 @@ class CrowdRunner {
   const std::vector<SoftContent>& contents_;
   const CrowdLevel* level_;
   std::uint64_t seed_;
+  std::vector<std::string> left_out_;
 };
+
+/// Throws NotUsable when fewer than half of the packings of a configuration are left: what is left are the soft ones.
+void require_enough(const CrowdConfiguration& c, std::size_t left, std::size_t tried, const CrowdRunner& runner) {
+  if (2 * left >= tried && left > 0) return;
+  throw NotUsable(fmt::format("{}: {} of {} packings broke off; {}", c.name, tried - left, tried,
+                              runner.left_out().empty() ? "" : runner.left_out().back()));
+}
 
 std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const RunContext& context) {
   std::vector<ShellPacking> pool(static_cast<std::size_t>(setup.packings_max));
@@ -149,7 +177,7 @@ std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const RunContex
 /// A coarse look at every way of loading; configurations that load alike share it.
 class Pilot {
  public:
-  Pilot(const CrowdSetup& setup, const CrowdRunner& runner) : setup_(setup) {
+  Pilot(const CrowdSetup& setup, CrowdRunner& runner) : setup_(setup) {
     for (const CrowdConfiguration& c : setup.configurations) add(loading_part(c));
     CrowdOptions options = setup.options;
     options.increment *= kPilotIncrement;
@@ -158,10 +186,12 @@ class Pilot {
     for (std::size_t k = 0; k < parts_.size(); ++k)
       for (std::int64_t p = 0; p < packings; ++p)
         tasks.push_back({&parts_[k], &plans_[k], static_cast<std::int64_t>(k), p});
-    const std::vector<CrowdRun> runs = runner.measure(tasks, options, "looking for onsets");
+    std::vector<std::vector<CrowdRun>> runs(parts_.size());
+    for (CrowdRun& run : runner.measure(tasks, options, "looking for onsets"))
+      runs[static_cast<std::size_t>(run.configuration)].push_back(std::move(run));
     for (std::size_t k = 0; k < parts_.size(); ++k) {
-      const auto first = runs.begin() + static_cast<std::ptrdiff_t>(k) * packings;
-      onsets_.push_back(onset_shares(parts_[k], {first, first + packings}));
+      require_enough(parts_[k], runs[k].size(), static_cast<std::size_t>(packings), runner);
+      onsets_.push_back(onset_shares(parts_[k], runs[k]));
     }
   }
 
@@ -197,20 +227,26 @@ class Batches {
       : setup_(setup),
         plans_(plans),
         runs_(setup.configurations.size()),
+        tried_(setup.configurations.size(), 0),
         wanted_(setup.configurations.size(), setup.packings_min) {}
 
   [[nodiscard]] std::vector<CrowdTask> next() const {
     std::vector<CrowdTask> tasks;
     for (std::size_t c = 0; c < runs_.size(); ++c)
-      for (auto p = static_cast<std::int64_t>(runs_[c].size()); p < wanted_[c]; ++p)
+      for (auto p = tried_[c]; p < wanted_[c]; ++p)
         tasks.push_back({&setup_.configurations[c], &plans_[c], static_cast<std::int64_t>(c), p});
     return tasks;
   }
   void take(std::vector<CrowdRun> runs) {
     for (CrowdRun& run : runs) runs_[static_cast<std::size_t>(run.configuration)].push_back(std::move(run));
+    tried_ = wanted_;
     for (std::size_t c = 0; c < runs_.size(); ++c)
       if (!met(end_force(setup_.configurations[c], runs_[c]), setup_.target))
-        wanted_[c] = std::min(setup_.packings_max, static_cast<std::int64_t>(runs_[c].size()) + kBatch);
+        wanted_[c] = std::min(setup_.packings_max, tried_[c] + kBatch);
+  }
+  void require_enough_left(const CrowdRunner& runner) const {
+    for (std::size_t c = 0; c < runs_.size(); ++c)
+      require_enough(setup_.configurations[c], runs_[c].size(), static_cast<std::size_t>(tried_[c]), runner);
   }
   [[nodiscard]] std::vector<CrowdRun> all() const {
     std::vector<CrowdRun> out;
@@ -222,10 +258,11 @@ class Batches {
   const CrowdSetup& setup_;
   const std::vector<CrowdPlan>& plans_;
   std::vector<std::vector<CrowdRun>> runs_;
+  std::vector<std::int64_t> tried_;  ///< packings, those that broke off included
   std::vector<std::int64_t> wanted_;
 };
 
-std::vector<CrowdRun> measure_all(const CrowdSetup& setup, const CrowdRunner& runner, const RunContext& context) {
+std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, const RunContext& context) {
   std::vector<CrowdPlan> plans;
   const Pilot pilot(setup, runner);
   for (std::size_t c = 0; c < setup.configurations.size(); ++c) plans.push_back(pilot.plan(c));
@@ -236,14 +273,15 @@ std::vector<CrowdRun> measure_all(const CrowdSetup& setup, const CrowdRunner& ru
     batches.take(runner.measure(tasks, setup.options, what));
     what = "measuring more packings";
   }
+  batches.require_enough_left(runner);
   return batches.all();
 }
 
 }  // namespace
 
 CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
-                                  const Provenance& provenance, std::vector<ShellPacking>* contents,
-                                  const CrowdLevel* level) {
+                                  const Provenance& provenance, std::vector<std::string>& left_out,
+                                  std::vector<ShellPacking>* contents, const CrowdLevel* level) {
   const std::vector<ShellPacking> pool = generate_pool(setup, context);
   std::vector<SoftContent> filled(pool.size());
   parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
@@ -257,8 +295,9 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& stor
                                 setup.options.tolerance, setup.options.tolerance_between);
   data.configurations = setup.configurations;
   for (const ShellPacking& p : pool) data.packings.push_back(describe(p, setup.spec));
-  const CrowdRunner runner(setup, store, context, filled, level);
+  CrowdRunner runner(setup, store, context, filled, level);
   data.runs = measure_all(setup, runner, context);
+  left_out.insert(left_out.end(), runner.left_out().begin(), runner.left_out().end());
   save_crowd(data, context.path(level != nullptr ? level->file : "crowd.h5"), provenance);
   if (contents != nullptr) *contents = pool;
   return data;

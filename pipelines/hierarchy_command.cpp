@@ -46,6 +46,7 @@ void run_levels(const HierarchySetup& setup, const TaskStore& store, const RunCo
     HierarchyLevel level = run_level(setup, contents, k, last, &below, data, store, context, provenance);
     for (const std::string& r : crowd_remarks(data, setup.crowd.target))
       run.remarks.push_back(fmt::format("level {}: {}", k, r));
+    for (const std::string& text : level.left_out) run.remarks.push_back(fmt::format("level {}: {}", k, text));
     const CrowdLaw& law = *level.entry.find(setup.form);
     save_law_table({1, {level.entry}}, context.path(fmt::format("law_table_level_{}.toml", k)), provenance);
     if (law.status == "no threshold crossing")
@@ -217,7 +218,13 @@ std::string people_text(const HierarchySetup& setup, const HierarchyRun& run, co
 
 void check_levels(const HierarchySetup& setup, const TaskStore& store, const RunContext& context, HierarchyRun& run) {
   if (setup.check_packings == 0) return;
-  run.check = check_two_decades(setup, run.levels.front().entry, store, context);
+  try {
+    run.check = check_two_decades(setup, run.levels.front().entry, store, context);
+  } catch (const NotUsable& e) {  // the levels are kept and said
+    run.usable = false;
+    run.remarks.push_back("no resolved check: " + std::string(e.what()));
+    return;
+  }
   if (run.check->converged) return;
   run.usable = false;
   run.remarks.emplace_back("the resolved check holds states that did not converge");

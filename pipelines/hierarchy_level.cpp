@@ -165,7 +165,7 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   level.number = number;
   std::vector<ShellPacking> pool;
   const CrowdLevel crowd = crowd_level(setup, contents, number, below);
-  data = run_crowd_stage(setup.crowd, store, context, provenance, &pool, &crowd);
+  data = run_crowd_stage(setup.crowd, store, context, provenance, level.left_out, &pool, &crowd);
   if (below != nullptr) describe_inner(contents, pool, level);
   CrowdFitOptions fit;
   fit.seed = context.seed(setup.crowd.seed);

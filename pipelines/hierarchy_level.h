@@ -26,9 +26,10 @@ struct HierarchyLevel {
   double inner_volume = 0.0;  ///< their volume over that of the shell
   double inner_low = 0.0;     ///< radii over Rs
   double inner_high = 0.0;
-  std::vector<LevelChange> changes;  ///< against the level below; empty for the finest
-  double distance = 0.0;             ///< of the two laws, see law_distance() (form of the hierarchy)
-  double distance_noise = 0.0;       ///< what packings alone would make of it, from the standard errors of the changes
+  std::vector<LevelChange> changes;   ///< against the level below; empty for the finest
+  double distance = 0.0;              ///< of the two laws, see law_distance() (form of the hierarchy)
+  double distance_noise = 0.0;        ///< what packings alone would make of it, from the standard errors of the changes
+  std::vector<std::string> left_out;  ///< a sentence for each measurement that broke off
   Cost cost;
   double seconds = 0.0;
   double grains = 0.0;  ///< that a resolved soft particle of this level would hold

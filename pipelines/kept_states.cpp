@@ -19,9 +19,11 @@ std::int64_t read_kept_states(const SceneTable& root) {
   return root.table_or_empty("output").count("snapshots", 0, kMostStates, kKeptStates);
 }
 
-KeptStates::KeptStates(const TaskStore& store, std::string task, std::int64_t points, std::int64_t wanted)
-    : store_(store), task_(std::move(task) + "-states"), points_(points), wanted_(wanted) {
-  if (wanted_ > 0) store_.load(task_, [&](const h5::Group& g) { states_ = read_snapshot_list(g); });
+KeptStates::KeptStates(const TaskStore& store, const std::string& task, std::int64_t points, std::int64_t wanted)
+    : store_(store), task_(task + "-states"), points_(points), wanted_(wanted) {
+  if (wanted_ <= 0) return;
+  const bool whole = store_.load(task_, [&](const h5::Group& g) { states_ = read_snapshot_list(g); });
+  if (!whole) store_.remove(task);
 }
 
 bool KeptStates::has(std::int64_t point) const {

@@ -19,8 +19,9 @@ std::int64_t read_kept_states(const SceneTable& root);
 /// those it needs, and makes later ones again.
 class KeptStates {
  public:
-  /// Nothing is kept when `wanted` is 0. `points`: recorded points of the series.
-  KeptStates(const TaskStore& store, std::string task, std::int64_t points, std::int64_t wanted);
+  /// Nothing is kept when `wanted` is 0. `points`: recorded points of the series. Made before the task itself is
+  /// loaded: where the states are damaged, the task starts afresh, for it makes each of them once.
+  KeptStates(const TaskStore& store, const std::string& task, std::int64_t points, std::int64_t wanted);
 
   [[nodiscard]] bool wants(std::int64_t point) const { return is_snapshot(point, points_, wanted_); }
   /// Replaces one of the same point.

@@ -42,7 +42,7 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const TaskStore& store, 
   LawTableRun run;
   CrowdFitOptions fit = setup.fit;
   fit.seed = context.seed(setup.crowd.seed);
-  run.data = run_crowd_stage(setup.crowd, store, context, provenance, nullptr);
+  run.data = run_crowd_stage(setup.crowd, store, context, provenance, run.fit.remarks, nullptr);
   add_entry(run.fit, run.data, fit, setup.crowd.target);
   run.fit.table.entries.front().main = true;
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
@@ -50,8 +50,9 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const TaskStore& store, 
     context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
     CrowdLevel named;  // nothing inside the soft particles, but a file of its own
     named.file = fmt::format("crowd_variant_{}.h5", k + 1);
-    add_entry(run.fit, run_crowd_stage(setup_of(v, setup.crowd), store, context, provenance, nullptr, &named), fit,
-              setup.crowd.target);
+    add_entry(run.fit,
+              run_crowd_stage(setup_of(v, setup.crowd), store, context, provenance, run.fit.remarks, nullptr, &named),
+              fit, setup.crowd.target);
   }
   save_law_table(run.fit.table, context.path("law_table.toml"), provenance);
   return run;

@@ -69,22 +69,33 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& e
   state.curve = begin_curve(spec, packing, state.macro, engine, sample);
   const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
   const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
+  KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
   if (laws != nullptr) state.curve.law = laws->identity;
-  KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
   double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
   progress.advance(done);
-  compress(
-      state, spec,
-      [&](const CompressionState& s, double share) {
-        const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
-        if (s.increments == 0 && states.wants(point))
-          states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
-        stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
-        progress.advance(share - done);
-        done = share;
-      },
-      stage.store.seconds());
+  MacroCurve recorded = state.curve;
+  try {
+    compress(
+        state, spec,
+        [&](const CompressionState& s, double share) {
+          const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
+          if (s.increments == 0 && states.wants(point))
+            states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
+          stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
+          progress.advance(share - done);
+          done = share;
+          recorded = s.curve;
+        },
+        stage.store.seconds());
+  } catch (const NotUsable& e) {  // this run alone ends here; without a point there is nothing to go on with
+    if (recorded.strain.empty()) throw;
+    state.curve = std::move(recorded);
+    state.curve.usable = false;
+    state.curve.note += (state.curve.note.empty() ? "" : "; ") +
+                        fmt::format("broke off beyond strain {:.4g}: {}", state.curve.strain.back(), e.what());
+    progress.advance(1.0 - done);
+  }
   if (laws != nullptr && laws->note && state.curve.usable) {
     const std::string note = laws->note(state.macro.system);
     state.curve.note += (state.curve.note.empty() || note.empty() ? "" : "; ") + note;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <iterator>
+#include <map>
 
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
@@ -151,11 +152,25 @@ Snapshot named_state(const SoftExperiment& experiment, const Task& task) {
   return s;
 }
 
-/// A run and the states of it that are kept.
+/// A run and the states of it that are kept; or why it broke off.
 struct TaskOutcome {
   PackingRun run;
   std::vector<Snapshot> states;
+  std::string broke_off;
 };
+
+std::string break_off_text(const Task& task, const MeasurementState& state, const std::string& why) {
+  const std::vector<double>& deltas = task.series->plan(task.kind).deltas;
+  const std::size_t next = std::min(state.run.normal.size(), deltas.size() - 1);
+  const std::string last =
+      state.run.normal.empty() ? "from rest" : fmt::format("beyond Delta = {:.4g}", state.run.normal.back().delta);
+  return fmt::format(
+      "packing {} of {} by {} is left out: it broke off {} on the way to Delta = {:.4g}: {}; smaller overlaps{} may "
+      "keep it "
+      "whole",
+      task.packing, to_string(task.kind), task.series->relaxation, last, deltas[next], why,
+      task.series->relaxation == "damped" ? "" : " or relaxation = \"damped\"");
+}
 
 TaskOutcome run_task(const Stage& stage, const Task& task) {
   const auto protocol = make_protocol(stage.setup, task.series->relaxation);
@@ -168,27 +183,46 @@ TaskOutcome run_task(const Stage& stage, const Task& task) {
   state.run.packing = task.packing;
   state.run.kind = task.kind;
   state.run.relaxation = task.series->relaxation;
-  stage.store.load(task.name(), [&](const h5::Group& g) { read_run(g, state); });
   const MeasurementPlan& plan = task.series->plan(task.kind);
   KeptStates states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
                     task.packing == 0 ? stage.setup.kept_states : 0);
+  stage.store.load(task.name(), [&](const h5::Group& g) { read_run(g, state); });
   double done = static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size());
   stage.progress.advance(done * task.weight());
-  measure(
-      state, plan, *protocol,
-      [&](const MeasurementState& s, double share) {
-        stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
-        stage.progress.advance((share - done) * task.weight());
-        done = share;
-        if (interrupt_requested())
-          throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
-      },
-      stage.store.seconds(),
-      [&](const SoftExperiment& recorded, std::size_t number) {
-        const auto point = static_cast<std::int64_t>(number);
-        if (states.wants(point)) states.add(named_state(recorded, task), point);
-      });
-  return {state.run, states.take()};
+  try {
+    measure(
+        state, plan, *protocol,
+        [&](const MeasurementState& s, double share) {
+          stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
+          stage.progress.advance((share - done) * task.weight());
+          done = share;
+          if (interrupt_requested())
+            throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
+        },
+        stage.store.seconds(),
+        [&](const SoftExperiment& recorded, std::size_t number) {
+          const auto point = static_cast<std::int64_t>(number);
+          if (states.wants(point)) states.add(named_state(recorded, task), point);
+        });
+  } catch (const NotUsable& e) {  // this packing alone; after --resume it breaks off at the same place again
+    stage.progress.advance((1.0 - done) * task.weight());
+    return {{}, states.take(), break_off_text(task, state, e.what())};
+  }
+  return {state.run, states.take(), ""};
+}
+
+/// Puts together what is whole, in the order of tasks, and says what is not.
+void collect(const std::vector<Task>& tasks, std::vector<TaskOutcome>& outcomes, MeasureResult& result) {
+  std::map<std::pair<const MeasureSeries*, PairKind>, std::int64_t> lost;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    if (outcomes[k].broke_off.empty()) {
+      result.data.runs.push_back(std::move(outcomes[k].run));
+      continue;
+    }
+    result.left_out.push_back(std::move(outcomes[k].broke_off));
+    const std::int64_t n = ++lost[{tasks[k].series, tasks[k].kind}];
+    result.enough_left = result.enough_left && 2 * n <= tasks[k].series->packings;
+  }
 }
 
 }  // namespace
@@ -219,16 +253,19 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& stor
   data.shell_turns = setup.series[0].plan(setup.series[0].kinds[0]).shell_turns;
   data.approach_speed = setup.published.approach_speed;
   for (const ShellPacking& p : result.packings) data.packings.push_back(describe(p, setup.spec));
-  data.runs.resize(tasks.size());
   const Stage stage{setup, store, result.packings, second, progress};
-  std::vector<std::vector<Snapshot>> states(tasks.size());
+  std::vector<TaskOutcome> outcomes(tasks.size());
   parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
     const std::size_t t = order[static_cast<std::size_t>(k)];
-    TaskOutcome outcome = run_task(stage, tasks[t]);
-    data.runs[t] = std::move(outcome.run);
-    states[t] = std::move(outcome.states);
+    outcomes[t] = run_task(stage, tasks[t]);
   });
   progress.finish();
+  std::vector<std::vector<Snapshot>> states;
+  for (TaskOutcome& o : outcomes) states.push_back(std::move(o.states));
+  collect(tasks, outcomes, result);
+  for (const std::string& text : result.left_out) context.say(text);
+  if (data.runs.empty())
+    throw NotUsable(fmt::format("not one of {} measurements came to its end; {}", tasks.size(), result.left_out[0]));
   save(data, context.path("measurements.h5"), provenance);
   save_kept_states(joined(states), context.path("states_measurements.h5"), provenance);
   result.wall_seconds = seconds_since(start);

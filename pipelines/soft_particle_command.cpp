@@ -23,10 +23,13 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   context.guard([&] { result = run_measure_stage(setup, store, context, context.provenance(scene, seed)); });
 
   nlohmann::json summary;
-  const auto remarks = measurement_remarks(result.data);
-  summary["status"] = remarks.empty() ? "good" : "not usable";
+  auto remarks = measurement_remarks(result.data);
+  const bool usable = remarks.empty() && result.enough_left;
+  for (const std::string& text : result.left_out) remarks.push_back(text);
+  summary["status"] = usable ? "good" : "not usable";
   summary["title"] = title;
   summary["packings"] = packings_json(result.data);
+  summary["packings"]["broke_off"] = result.left_out.size();
   summary["measurement"] = measurement_json(result.data, setup.series[0].relaxation);
   summary["forces"] = forces_json(result.data, setup.series[0].relaxation);
   if (setup.series.size() > 1) {
@@ -36,13 +39,14 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   summary["remarks"] = remarks;
   summary["files"] = {{"measurements", context.path("measurements.h5")}, {"report", context.path("report.html")}};
   summary["provenance"] = provenance_json(context.provenance(scene, seed));
-  context.finish(summary, fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\nreport: {}",
-                                      result.data.packings.size(), summary["packings"]["solid_fraction"].get<double>(),
-                                      summary["measurement"]["points"].get<std::int64_t>(), result.wall_seconds,
-                                      context.path("report.html")));
+  std::string people = fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\n",
+                                   result.data.packings.size(), summary["packings"]["solid_fraction"].get<double>(),
+                                   summary["measurement"]["points"].get<std::int64_t>(), result.wall_seconds);
+  for (const std::string& text : result.left_out) people += "note: " + text + "\n";
+  context.finish(summary, people + "report: " + context.path("report.html"));
   write_report(context.directory());
   store.clear();
-  return remarks.empty() ? ExitStatus::good : ExitStatus::not_usable;
+  return usable ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 }  // namespace softgrain

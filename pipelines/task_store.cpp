@@ -27,12 +27,20 @@ void TaskStore::save(const std::string& task, const std::function<void(const h5:
   write_checkpoint(file(task), fingerprint_, content);
 }
 
-void TaskStore::load(const std::string& task, const std::function<void(const h5::Group&)>& read) const {
+bool TaskStore::load(const std::string& task, const std::function<void(const h5::Group&)>& read) const {
   const std::lock_guard lock(hdf5_mutex());
   std::string note;
-  const auto group = open_checkpoint(file(task), fingerprint_, note);
+  std::optional<h5::Group> group;
+  try {
+    group = open_checkpoint(file(task), fingerprint_, note);
+  } catch (const DamagedCheckpoint& e) {
+    context_.say(std::string(e.what()) + ": " + task + " starts afresh");
+    remove(task);
+    return false;
+  }
   if (!note.empty()) context_.say(note);
   if (group) read(*group);
+  return true;
 }
 
 void TaskStore::remove(const std::string& task) const { remove_checkpoint(file(task)); }

@@ -22,8 +22,9 @@ class TaskStore {
   TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed, const std::string& beside = "");
 
   void save(const std::string& task, const std::function<void(const h5::Group&)>& content) const;
-  /// Calls `read` with the saved content when there is one for this scene.
-  void load(const std::string& task, const std::function<void(const h5::Group&)>& read) const;
+  /// Calls `read` with the saved content when there is one for this scene. One of which all copies are damaged goes,
+  /// with a remark: its task starts afresh; returns false then.
+  bool load(const std::string& task, const std::function<void(const h5::Group&)>& read) const;
   /// Wall time between two saves of a task that is under way [s].
   [[nodiscard]] double seconds() const { return context_.checkpoint_seconds(); }
   /// Removes what is saved of one task.

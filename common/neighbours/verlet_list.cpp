@@ -227,9 +227,11 @@ void require_sound(const Particles<D>& p) {
     if (i >= p.grains) continue;
     for (Slot k = p.shell[u]; k >= 0; k = p.shell[static_cast<std::size_t>(k)]) {
       const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(k)];
-      if (norm(p.sphere[u].x - shell.x) - p.sphere[u].r <= shell.r) continue;
+      const double outside = norm(p.sphere[u].x - shell.x) - p.sphere[u].r - shell.r;
+      if (outside <= 0.0) continue;
       throw NotUsable("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
-                      " m) has been squeezed out of its shell");
+                      " m) has been squeezed out of its shell (radius " + std::to_string(shell.r) +
+                      " m): " + std::to_string(outside) + " m lie between them");
     }
   }
 }

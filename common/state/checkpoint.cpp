@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "common/core/error.h"
 #include "common/io/file_seal.h"
 
 namespace softgrain {
@@ -31,14 +30,25 @@ void require_schema(const h5::Group& root, const std::string& path) {
                    std::to_string(kCheckpointSchema) + "; run without --resume");
 }
 
-/// Opens a checkpoint of which every byte is as it was written. Throws FileTrouble.
+/// Opens a file that was read to its end already. Throws DamagedCheckpoint.
+h5::Group open_whole(const std::string& path) {
+  try {
+    h5::Group root = h5::open_file(path);
+    if (root.has_attribute("kind") && root.text("kind") == kKind) return root;
+  } catch (const FileTrouble& e) {
+    throw DamagedCheckpoint(e.what());
+  }
+  throw DamagedCheckpoint(path + ": is not a checkpoint");
+}
+
+/// Opens a checkpoint of which every byte is as it was written. Throws FileTrouble when the disk does not give them,
+/// and DamagedCheckpoint when they are others.
 h5::Group open_sound(const std::string& path) {
   const Seal seal = check_seal(path);
-  if (seal == Seal::broken) throw FileTrouble(path + ": damaged, its checksum does not fit its content");
-  h5::Group root = h5::open_file(path);
-  if (!root.has_attribute("kind") || root.text("kind") != kKind) throw FileTrouble(path + ": is not a checkpoint");
+  if (seal == Seal::broken) throw DamagedCheckpoint(path + ": damaged, its checksum does not fit its content");
+  h5::Group root = open_whole(path);
   require_schema(root, path);
-  if (seal == Seal::none) throw FileTrouble(path + ": damaged or cut short, it ends without its checksum");
+  if (seal == Seal::none) throw DamagedCheckpoint(path + ": damaged or cut short, it ends without its checksum");
   return root;
 }
 
@@ -67,6 +77,7 @@ void write_checkpoint(const std::string& path, const std::string& scene_text,
 
 std::optional<h5::Group> open_checkpoint(const std::string& path, const std::string& scene_text, std::string& note) {
   std::string trouble;
+  bool damaged = true;
   for (const std::string& candidate : std::array{path, path + ".previous"}) {
     std::error_code ignored;
     if (!fs::exists(candidate, ignored)) continue;
@@ -76,13 +87,13 @@ std::optional<h5::Group> open_checkpoint(const std::string& path, const std::str
       if (!trouble.empty()) note = trouble + "; continuing from the checkpoint before it, " + candidate;
       return root;
     } catch (const FileTrouble& e) {
+      damaged = damaged && dynamic_cast<const DamagedCheckpoint*>(&e) != nullptr;
       trouble += (trouble.empty() ? "" : "; ") + std::string(e.what());
     }
   }
-  if (!trouble.empty())
-    throw FileTrouble(trouble +
-                      "; no sound checkpoint is left: remove it to do that part again, or run without --resume");
-  return std::nullopt;
+  if (trouble.empty()) return std::nullopt;
+  if (damaged) throw DamagedCheckpoint(trouble + "; no sound checkpoint is left");
+  throw FileTrouble(trouble + "; no checkpoint can be read");
 }
 
 void remove_checkpoint(const std::string& path) {

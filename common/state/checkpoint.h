@@ -6,9 +6,16 @@
 #include <optional>
 #include <string>
 
+#include "common/core/error.h"
 #include "common/io/hdf5_file.h"
 
 namespace softgrain {
+
+/// The disk gives every byte of a checkpoint, but not those that were written.
+class DamagedCheckpoint : public FileTrouble {
+ public:
+  using FileTrouble::FileTrouble;
+};
 
 /// Writes `path` (temporary file, flush, rename; the old one stays as path.previous), with schema and a fingerprint of
 /// the scene.
@@ -16,7 +23,8 @@ void write_checkpoint(const std::string& path, const std::string& scene_text,
                       const std::function<void(const h5::Group&)>& content);
 
 /// Opens the newest sound checkpoint for this scene: `path`, else path.previous (then `note` says so). Nothing when
-/// neither exists. Throws BadInput when it belongs to another scene or schema, FileTrouble when all copies are damaged.
+/// neither exists. Throws BadInput when it belongs to another scene or schema, DamagedCheckpoint when all
+/// copies are damaged, FileTrouble when one cannot be read.
 std::optional<h5::Group> open_checkpoint(const std::string& path, const std::string& scene_text, std::string& note);
 
 /// Removes the checkpoint and its previous copy after a run has ended well.

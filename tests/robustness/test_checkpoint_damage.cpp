@@ -136,6 +136,31 @@ TEST(DamagedRun, GoesOnFromTheCheckpointBefore) {
   }
 }
 
+/// Of a run of many tasks, one whose every copy is damaged is done again with a word; the others go on. The kept states
+/// of a task and its own checkpoint belong together.
+TEST(DamagedRun, StartsATaskAfreshOfWhichNothingIsLeft) {
+  const KindRuns runs({"pipeline", "run", kTinyPipeline, 3});
+  const std::vector<std::string> one{"--threads", "1"};
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("whole", one))), 3));
+  const std::string work = runs.out("out") + "/work/";
+  const auto begun = [&] { return fs::exists(work + "macro-shelled-0.h5"); };
+  ASSERT_TRUE(
+      interrupted_in_the_middle([&] { return start_program(runs.arguments("out", one)); }, begun, runs.out("out")));
+  for (const std::string task : {"damped-soft-solid-0", "damped-soft-solid-0-states", "damped-soft-soft-1",
+                                 "macro-shelled-0", "macro-law-0-states"}) {
+    const std::string out = "out-" + task;
+    fs::copy(runs.out("out"), runs.out(out), fs::copy_options::recursive);
+    const std::string file = runs.out(out) + "/work/" + task + ".h5";
+    ASSERT_TRUE(fs::exists(file)) << task;
+    flip(file, fs::file_size(file) / 2, 4);
+    if (fs::exists(file + ".previous")) fs::resize_file(file + ".previous", 100);
+    const int status = wait_for(start_program(runs.arguments(out, {"--threads", "1", "--resume"})));
+    EXPECT_TRUE(ended_with(status, 3)) << task << status;
+    EXPECT_NE(read_text(runs.out(out) + "/log.txt").find(task + " starts afresh"), std::string::npos) << task;
+    expect_same_runs(runs.out("whole"), runs.out(out));
+  }
+}
+
 /// A law that was changed between two parts of a run is another run.
 TEST(DamagedRun, DoesNotGoOnWithAnotherLaw) {
   const KindRuns runs({"macro-comparison", "run", kTinyComparison, 0});

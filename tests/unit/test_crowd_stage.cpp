@@ -59,7 +59,7 @@ class CrowdStage : public ::testing::Test {
   CrowdMeasurements measure(const CrowdLevel* level) {
     const RunContext context(options_, "run", "tiny");
     const TaskStore store(context, scene_, setup_.seed);
-    CrowdMeasurements data = run_crowd_stage(setup_, store, context, {}, &contents_, level);
+    CrowdMeasurements data = run_crowd_stage(setup_, store, context, {}, left_out_, &contents_, level);
     store.clear();
     return data;
   }
@@ -73,6 +73,7 @@ class CrowdStage : public ::testing::Test {
   CrowdSetup setup_;
   CommonOptions options_;
   std::vector<ShellPacking> contents_;
+  std::vector<std::string> left_out_;
 };
 
 TEST_F(CrowdStage, AnInnerLevelIsAnotherMeasurement) {
@@ -105,6 +106,33 @@ TEST_F(CrowdStage, PackingsAreAddedUntilTheTargetIsMet) {
   EXPECT_EQ(data.runs.size(), 3U);
   EXPECT_EQ(crowd_remarks(data, setup_.target).size(), 1U);
   EXPECT_TRUE(crowd_remarks(data, 0.9).empty());
+}
+
+/// One packing whose grains are thrown out of their shell ends nothing but its own runs.
+TEST_F(CrowdStage, APackingThatBreaksOffIsLeftOut) {
+  setup_.configurations.resize(1);
+  setup_.target = 1e-6;
+  const CrowdMeasurements whole = measure(nullptr);
+  ASSERT_EQ(whole.runs.size(), 3U);
+  EXPECT_TRUE(left_out_.empty());
+  CrowdLevel level;
+  level.file = "broken.h5";
+  std::int64_t broken = 1;
+  level.fill = [&](const ShellPacking& packing, std::int64_t number) {
+    SoftContent content{packing, {}, {}};
+    if (number == broken || broken < 0) content.grains.position[0] = {{3.0 * setup_.spec.shell_radius, 0.0, 0.0}};
+    return content;
+  };
+  level.tag = "one broken";
+  const CrowdMeasurements rest = measure(&level);
+  ASSERT_EQ(rest.runs.size(), 2U);
+  EXPECT_EQ(rest.runs[0].packing, 0);
+  EXPECT_EQ(rest.runs[1].packing, 2);
+  ASSERT_EQ(left_out_.size(), 2U);  // in the pilot and in the measurement
+  EXPECT_NE(left_out_[1].find("packing 1 is left out: it broke off: grain 0 "), std::string::npos) << left_out_[1];
+  broken = -1;
+  level.tag = "all broken";
+  EXPECT_THROW((void)measure(&level), NotUsable);
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+// A packing whose grains are thrown out of their shell ends no run: steps that are too long are shortened, and what
+// breaks off all the same is left out, counted and said.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "common/data/measurements.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+using nlohmann::json;
+
+constexpr const char* kScene = R"(kind = "soft-particle"
+seed = 1
+[material]
+E = "0.5 MPa"
+[packing]
+shell_radius = "16 mm"
+trials = 100
+polydispersity = 5.0
+rmax_over_shell = 0.5
+beta = 8.0
+count = 6
+[measure]
+relaxation = "least-work"
+[measure.least_work]
+increment_passes = 0
+approach_speed = 0.1
+settle_time = 10.0
+path_settle_time = 10.0
+step_factor = 20.0
+[measure.soft_solid]
+deltas = [0.3, 0.6, 0.9]
+)";
+
+class PackingsThatBreak : public ::testing::Test {
+ protected:
+  void SetUp() override { write_text_atomic(directory_.file("scene.toml"), kScene); }
+  [[nodiscard]] ProgramOutcome run(const std::string& more) const {
+    return run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") +
+                           "' " + more);
+  }
+  [[nodiscard]] json summary() const { return json::parse(read_text(directory_.file("out") + "/summary.json")); }
+
+  TemporaryDirectory directory_;
+};
+
+/// Steps twenty times the published ones throw a grain out of one of these packings; shorter ones do not.
+TEST_F(PackingsThatBreak, StepsThatAreTooLongAreShortened) {
+  const ProgramOutcome outcome = run("");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(summary()["packings"]["broke_off"], 0);
+  const Measurements data = load_measurements(directory_.file("out") + "/measurements.h5");
+  ASSERT_EQ(data.runs.size(), 6U);
+  for (const PackingRun& run : data.runs) EXPECT_EQ(run.normal.size(), 3U);
+}
+}  // namespace
