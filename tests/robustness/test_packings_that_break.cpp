@@ -58,4 +58,37 @@ TEST_F(PackingsThatBreak, StepsThatAreTooLongAreShortened) {
   ASSERT_EQ(data.runs.size(), 6U);
   for (const PackingRun& run : data.runs) EXPECT_EQ(run.normal.size(), 3U);
 }
+
+/// Pressed by waves of fifty metres a second, some packings burst with any step.
+const std::string kBurst = "--set measure.least_work.approach_speed=50 --set measure.soft_solid.deltas=[0.5,0.9] ";
+
+TEST_F(PackingsThatBreak, WhatBurstsIsLeftOutCountedAndSaid) {
+  const ProgramOutcome outcome = run(kBurst);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("is left out: it broke off beyond Delta = 0.5 on the way to Delta = 0.9: grain "),
+            std::string::npos)
+      << outcome.output;
+  const json told = summary();
+  const auto lost = told["packings"]["broke_off"].get<std::size_t>();
+  EXPECT_GE(lost, 1U);
+  EXPECT_LE(lost, 3U);
+  ASSERT_EQ(told["remarks"].size(), lost);
+  for (const json& remark : told["remarks"])
+    for (const char* word : {"packing ", "squeezed out of its shell", "may keep it whole"})
+      EXPECT_NE(remark.get<std::string>().find(word), std::string::npos) << remark;
+  EXPECT_NE(read_text(directory_.file("out") + "/report.html").find("is left out: it broke off"), std::string::npos);
+  const Measurements data = load_measurements(directory_.file("out") + "/measurements.h5");
+  EXPECT_EQ(data.runs.size(), 6U - lost);
+  EXPECT_EQ(told["measurement"]["points"], 2 * (6 - lost));
+}
+
+TEST_F(PackingsThatBreak, WithTooFewLeftTheResultIsNotUsable) {
+  const ProgramOutcome outcome = run(kBurst + "--set packing.count=1");
+  EXPECT_EQ(outcome.status, 3) << outcome.output;
+  EXPECT_EQ(summary()["status"], "not usable");
+  EXPECT_NE(outcome.output.find("not one of 1 measurements came to its end; packing 0 of soft-solid"),
+            std::string::npos)
+      << outcome.output;
+}
+
 }  // namespace
