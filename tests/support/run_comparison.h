@@ -22,9 +22,9 @@ inline const std::set<std::string> kFilesOfCircumstance{"log.txt", "report.html"
 
 /// Names of data sets, attributes, keys and columns that say how a run went and not what came out: anything with one of
 /// these words. "provenance" and "files" are whole tables or groups. Numbers of loop passes and contact evaluations are
-/// results: they must agree.
-inline const std::vector<std::string> kCircumstances{"provenance", "seconds", "memory", "files",
-                                                     "command",    "cpu",     "faster", "commit"};
+/// results: they must agree. "belongs_to" is a hash over a law file with its provenance.
+inline const std::vector<std::string> kCircumstances{"provenance", "seconds", "memory", "files",     "command",
+                                                     "cpu",        "faster",  "commit", "belongs_to"};
 
 /// Parts of the stepping loop that only the last of several processes has gone through.
 inline const std::set<std::string> kPartsOfLoop{"warm_up", "measured"};
