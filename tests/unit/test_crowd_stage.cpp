@@ -120,7 +120,7 @@ TEST_F(CrowdStage, APackingThatBreaksOffIsLeftOut) {
   std::int64_t broken = 1;
   level.fill = [&](const ShellPacking& packing, std::int64_t number) {
     SoftContent content{packing, {}, {}};
-    if (number == broken || broken < 0) content.grains.position[0] = {{3.0 * setup_.spec.shell_radius, 0.0, 0.0}};
+    if (number == broken || broken < 0) content.grains.position[0] = {{3.0, 0.0, 0.0}};
     return content;
   };
   level.tag = "one broken";
