@@ -427,13 +427,13 @@ TEST(LawTableMainEntry, IsTheMarkedOneElseTheOneOfMostConfigurations) {
 
 TEST_F(CrowdLawIo, TheMainEntryIsKept) {
   LawTable table{1, {law_entry(0.7), law_entry(0.75)}};
-  EXPECT_EQ(law_table_text(table, build_provenance()).find("main"), std::string::npos);
+  EXPECT_EQ(law_table_text(table, build_provenance(), "").find("main"), std::string::npos);
   table.entries[0].main = true;
   save_law_table(table, path());
   EXPECT_TRUE(load_law_table(path()).entries[0].main);
   EXPECT_FALSE(load_law_table(path()).entries[1].main);
   table.entries[1].main = true;
-  refused(law_table_text(table, build_provenance()), {"main", "another entry"});
+  refused(law_table_text(table, build_provenance(), ""), {"main", "another entry"});
 }
 
 TEST(MonotoneCurve, GoesThroughItsPointsAndNeverBeyond) {
