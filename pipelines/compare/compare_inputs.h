@@ -46,8 +46,8 @@ struct CompareResult {
   std::vector<MeasurementComparison> measurements;
   std::vector<LawPartComparison> laws;
   std::vector<std::string> differences;  ///< what the sides do not have in common, beside what is compared
-  std::vector<std::string> remarks;    ///< what could not be compared, and why
-  std::vector<std::string> undefined;  ///< what is relative to a stress of zero: such a comparison is not usable
+  std::vector<std::string> remarks;      ///< what could not be compared, and why
+  std::vector<std::string> undefined;    ///< what is relative to a stress of zero: such a comparison is not usable
 };
 
 /// Candidate against reference: engines and relaxations of the same name; when the sides share none, the first of each.

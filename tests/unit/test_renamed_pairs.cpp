@@ -169,8 +169,9 @@ void expect_in_order(const System<D>& s, const std::string& when) {
                              s.particles.material[static_cast<std::size_t>(list.j[c])]),
                 now.law)
           << when;
-      if (c > static_cast<std::size_t>(now.begin))
+      if (c > static_cast<std::size_t>(now.begin)) {
         ASSERT_LT(std::pair(list.i[c - 1], list.j[c - 1]), std::pair(list.i[c], list.j[c])) << when;
+      }
     }
   }
 }
