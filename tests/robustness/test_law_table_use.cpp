@@ -105,8 +105,8 @@ TEST_F(LawTableUse, TheUnloadingBranchActsOnContactsThatRetreat) {
   };
   const MacroCurve loading = shear("loading", "");
   const MacroCurve same = with_retreat("same", 1.0);
-  const MacroCurve steep = with_retreat("steep", 1.5);
-  const MacroCurve steeper = with_retreat("steeper", 2.0);
+  const MacroCurve steep = with_retreat("steep", 1.25);
+  const MacroCurve steeper = with_retreat("steeper", 1.5);
   for (const MacroCurve* c : {&same, &steep, &steeper}) {
     ASSERT_EQ(c->stress_x.size(), loading.stress_x.size());
     EXPECT_NEAR(c->stress_x.at(2), loading.stress_x.at(2), 0.15 * loading.stress_x.at(2)) << "the preload only loads";
