@@ -103,7 +103,9 @@ std::string hash_of(const SoftLaws& l) {
 
 LawIdentity identity_of(const std::string& form, double solid_fraction, const MacroSpec& spec,
                         const SoftParticleSpec& measured, const SoftLaws& laws) {
-  return {form, solid_fraction, spec.youngs_modulus, measured.poisson_ratio, measured.friction, hash_of(laws)};
+  const auto known = [](double x) { return is_known(x) ? std::optional(x) : std::nullopt; };
+  return {form,         solid_fraction, spec.youngs_modulus, known(measured.poisson_ratio), known(measured.friction),
+          hash_of(laws)};
 }
 
 /// A branch that was not measured is none; what stands in for other numbers that were not is said.

@@ -140,11 +140,12 @@ json relaxations_json(const Measurements& data, const std::string& reference, co
 }
 
 json identity_json(const LawIdentity& law) {
+  const auto known = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
   return {{"form", law.form},
           {"solid_fraction", law.solid_fraction > 0.0 ? json(law.solid_fraction) : json(nullptr)},
           {"E", law.youngs_modulus},
-          {"nu", law.poisson_ratio},
-          {"mu", law.friction},
+          {"nu", known(law.poisson_ratio)},
+          {"mu", known(law.friction)},
           {"hash", law.hash}};
 }
 

@@ -71,9 +71,16 @@ struct Number {
 };
 
 constexpr Number<LawIdentity> kLawNumbers[] = {{"law_solid_fraction", &LawIdentity::solid_fraction},
-                                               {"law_youngs_modulus", &LawIdentity::youngs_modulus},
-                                               {"law_poisson_ratio", &LawIdentity::poisson_ratio},
-                                               {"law_friction", &LawIdentity::friction}};
+                                               {"law_youngs_modulus", &LawIdentity::youngs_modulus}};
+
+/// The same of what may not be known; there is no attribute then.
+struct KnownNumber {
+  const char* name;
+  std::optional<double> LawIdentity::*value;
+};
+
+constexpr KnownNumber kLawKnown[] = {{"law_poisson_ratio", &LawIdentity::poisson_ratio},
+                                     {"law_friction", &LawIdentity::friction}};
 constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radius_min},
                                                 {"radius_max", &MacroStart::radius_max},
                                                 {"youngs_modulus", &MacroStart::youngs_modulus},
@@ -90,6 +97,8 @@ void write_origin(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("law_form", curve.law.form);
   group.attribute("law_hash", curve.law.hash);
   for (const auto& n : kLawNumbers) group.attribute(n.name, curve.law.*n.value);
+  for (const KnownNumber& n : kLawKnown)
+    if (curve.law.*n.value) group.attribute(n.name, *(curve.law.*n.value));
 }
 
 /// Files of before say neither.
@@ -102,6 +111,8 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
   curve.law.form = group.text("law_form");
   curve.law.hash = group.text("law_hash");
   for (const auto& n : kLawNumbers) curve.law.*n.value = read_attribute(group, n.name, kNotNegative);
+  for (const KnownNumber& n : kLawKnown)
+    if (group.has_attribute(n.name)) curve.law.*n.value = read_attribute(group, n.name);
 }
 
 struct Count {
@@ -118,9 +129,10 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
 
 std::string identity_text(const LawIdentity& law) {
   if (law.form.empty()) return "not recorded";
-  return fmt::format("{} law{}, measured with nu = {:g}, mu = {:g}, taken with E = {:g} Pa; numbers {}", law.form,
+  const auto told = [](const std::optional<double>& x) { return x ? fmt::format("{:g}", *x) : "(not known)"; };
+  return fmt::format("{} law{}, measured with nu = {}, mu = {}, taken with E = {:g} Pa; numbers {}", law.form,
                      law.solid_fraction > 0.0 ? fmt::format(" at solid fraction {:.4f}", law.solid_fraction) : "",
-                     law.poisson_ratio, law.friction, law.youngs_modulus, law.hash);
+                     told(law.poisson_ratio), told(law.friction), law.youngs_modulus, law.hash);
 }
 
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,12 @@ namespace softgrain {
 
 /// The law that a curve was made with: two runs with the same hash had the same forces.
 struct LawIdentity {
-  std::string form;             ///< "pair", "bag" or "directional"; empty: a twin, or a file of before
-  double solid_fraction = 0.0;  ///< at which a table was taken; 0: a law card
-  double youngs_modulus = 0.0;  ///< that scales its forces [Pa]
-  double poisson_ratio = 0.0;   ///< of the grains that it was measured with
-  double friction = 0.0;        ///< mu of them
-  std::string hash;             ///< of every number that forces depend on
+  std::string form;                       ///< "pair", "bag" or "directional"; empty: a twin, or a file of before
+  double solid_fraction = 0.0;            ///< at which a table was taken; 0: a law card
+  double youngs_modulus = 0.0;            ///< that scales its forces [Pa]
+  std::optional<double> poisson_ratio{};  ///< of the grains that it was measured with; empty: not known (experiments)
+  std::optional<double> friction{};       ///< mu of them
+  std::string hash;                       ///< of every number that forces depend on
 
   friend bool operator==(const LawIdentity&, const LawIdentity&) = default;
 };

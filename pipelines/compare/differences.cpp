@@ -43,10 +43,15 @@ void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differ
 /// The law of one side is compared with the grains that the other side resolves.
 void note_law_and_grains(const LawIdentity& law, const MacroStart& grains, Differences& out) {
   if (law.form.empty() || grains.bodies.empty()) return;
-  if (law.poisson_ratio != grains.poisson_ratio || law.friction != grains.friction)
-    out.obstacles.push_back(
-        fmt::format("the law was measured with nu = {:g}, mu = {:g}, the grains of the twin have nu = {:g}, mu = {:g}",
-                    law.poisson_ratio, law.friction, grains.poisson_ratio, grains.friction));
+  const auto compare = [&](const char* what, const std::optional<double>& measured, double twin) {
+    if (!measured)
+      out.said.push_back(fmt::format("{} of the grains that the law was measured with is not known", what));
+    else if (*measured != twin)
+      out.obstacles.push_back(fmt::format(
+          "the law was measured with {0} = {1:g}, the grains of the twin have {0} = {2:g}", what, *measured, twin));
+  };
+  compare("nu", law.poisson_ratio, grains.poisson_ratio);
+  compare("mu", law.friction, grains.friction);
 }
 
 void note_laws(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {

@@ -308,6 +308,7 @@ TEST_F(BadResults, MacroCurvesWithNumbersThatAreNotFinite) {
   bad(
       [&](Hdf5Edit& f) {
         f.replace(curve + "fabric", std::vector<double>{1.0, 0.0, kNan, 0.0});
+        f.set_attribute(curve + "fabric", "unit", std::string("1"));
       },
       "'fabric' holds a number that is not finite");
   bad([&](Hdf5Edit& f) { f.set_attribute("curves/curve_000001", "solid_fraction", kNan); }, "solid_fraction");

@@ -28,7 +28,9 @@ inline std::string shape_of(hid_t space) {
 template <class Read>
 std::string value_of(hid_t type, hid_t space, const Read& read) {
   const std::string head = std::to_string(H5Tget_class(type)) + " " + shape_of(space);
-  const auto elements = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (count < 0) return head + "unreadable";
+  const auto elements = static_cast<std::size_t>(count);
   if (elements == 0) return head;
   if (H5Tis_variable_str(type) > 0) {
     char* text = nullptr;
