@@ -325,7 +325,8 @@ TEST(CompareSides, WhatCannotBeMeantIsRefusedUnlessToldOtherwise) {
        [](MacroCurve& c) { c.start.radius_max = 0.02, c.start.bodies = "other"; }},
       {"bodies start elsewhere", [](MacroCurve& c) { c.start.bodies = "other"; }},
       {"E of the grains [Pa]: 500000 against 1000000", [](MacroCurve& c) { c.start.youngs_modulus = 1e6; }},
-      {"nu = 0.3, mu = 0.3, the grains of the twin have nu = 0.2", [](MacroCurve& c) { c.start.poisson_ratio = 0.2; }},
+      {"measured with nu = 0.3, the grains of the twin have nu = 0.2",
+       [](MacroCurve& c) { c.start.poisson_ratio = 0.2; }},
       {"mu of the walls: 0 against 0.2", [](MacroCurve& c) { c.start.wall_friction = 0.2; }},
       {"test: oedometric against isotropic", [](MacroCurve& c) { c.test = "isotropic"; }},
       {"preload of the test: 0 against 0.1", [](MacroCurve& c) { c.preload = 0.1; }}};
