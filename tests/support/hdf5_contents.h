@@ -50,7 +50,12 @@ inline void add_attributes(hid_t object, const std::string& name, Hdf5Contents& 
   H5Oget_info(object, &info);
   for (hsize_t k = 0; k < info.num_attrs; ++k) {
     const hid_t a = H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, k, H5P_DEFAULT, H5P_DEFAULT);
-    std::string key(static_cast<std::size_t>(H5Aget_name(a, 0, nullptr)) + 1, '\0');
+    const ssize_t length = H5Aget_name(a, 0, nullptr);
+    if (length < 0) {
+      out[name + "@" + std::to_string(k)] = "unreadable";
+      continue;
+    }
+    std::string key(static_cast<std::size_t>(length) + 1, '\0');
     H5Aget_name(a, key.size(), key.data());
     key.pop_back();
     const hid_t type = H5Aget_type(a);
