@@ -371,44 +371,43 @@ Hdf5Contents data_of(const std::string& path) {
 }
 
 /// A wrong byte is found; where it is not, it lies where nobody reads: all data in the file are as they were.
-/// The first thing that is not the same in both.
-std::string difference_of(const Hdf5Contents& a, const Hdf5Contents& b) {
-  for (const auto& [name, value] : a) {
-    const auto found = b.find(name);
-    if (found == b.end() || found->second != value) return name;
-  }
-  return a.size() == b.size() ? "" : "something more";
-}
-
+/// Wrong bytes in what every reader needs are found. Elsewhere a number may have become another one that is as good,
+/// which nobody can know; but the program never breaks, and does not say anything else when no data changed.
 TEST_F(BadResults, WrongBytes) {
   const std::string path = directory_.file("case.h5");
   RandomStream random(12, RandomPurpose::test, 0);
-  int found = 0;
-  int unread = 0;
   for (const Writer write : {tiny_measurements, tiny_crowd, tiny_macro, tiny_grain_boxes}) {
     write(path);
     const std::string good = read_text(path);
     const Hdf5Contents contents = data_of(path);
     const std::string said = run_the_program("check '" + path + "'").output;
-    for (int k = 0; k < 6; ++k) {
+    const auto with_wrong_byte = [&](std::size_t place) {
       std::string text = good;
-      const std::size_t place = random.below(text.size());
       text[place] ^= static_cast<char>(1 + random.below(255));
       write_text_atomic(path, text);
-      const ProgramOutcome outcome = run_the_program("check '" + path + "'");
+      return run_the_program("check '" + path + "'");
+    };
+    // Signatures of the file and of the root group's members, which come first.
+    for (const char* signature : {"HDF\r\n", "TREE", "HEAP", "SNOD"}) {
+      const std::size_t place = good.find(signature);
+      ASSERT_NE(place, std::string::npos) << signature;
+      const ProgramOutcome outcome = with_wrong_byte(place + random.below(4));
+      EXPECT_EQ(outcome.status, 4) << signature << ": " << outcome.output;
+      EXPECT_NE(outcome.output.find("case.h5"), std::string::npos) << outcome.output;
+    }
+    for (int k = 0; k < 6; ++k) {
+      const std::size_t place = random.below(good.size());
+      const ProgramOutcome outcome = with_wrong_byte(place);
       if (outcome.status == 0) {
-        ++unread;
-        EXPECT_EQ(outcome.output, said) << "byte " << place;
-        EXPECT_EQ(difference_of(contents, data_of(path)), "") << "byte " << place << " was read";
-      } else {
-        ++found;
-        EXPECT_EQ(outcome.status, 4) << outcome.output;
-        EXPECT_NE(outcome.output.find("case.h5"), std::string::npos) << outcome.output;
+        if (data_of(path) == contents) {
+          EXPECT_EQ(outcome.output, said) << "byte " << place;
+        }
+        continue;
       }
+      EXPECT_EQ(outcome.status, 4) << "byte " << place << ": " << outcome.output;
+      EXPECT_NE(outcome.output.find("case.h5"), std::string::npos) << outcome.output;
     }
   }
-  EXPECT_GE(found, 6);
-  EXPECT_LE(unread, 18);
 }
 
 /// What a list of particles may look like when it did not come through.
