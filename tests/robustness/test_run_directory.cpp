@@ -88,7 +88,9 @@ TEST_F(RunDirectory, ARunOfAnotherKindLeavesNothingInTheReport) {
 TEST_F(RunDirectory, TheSameKindStartsAnewAndResumeKeeps) {
   expect(macro(), 0);
   ASSERT_TRUE(fs::exists(out("states_macro.h5")));
+  save(synthetic::measurements(4), out("measurements.h5"));
   expect(macro("--set output.snapshots=0"), 0);
+  EXPECT_FALSE(fs::exists(out("measurements.h5")));
   EXPECT_FALSE(fs::exists(out("states_macro.h5"))) << "of the run before";
   save(synthetic::measurements(4), out("measurements.h5"));
   expect(macro("--resume --set output.snapshots=0"), 0);
