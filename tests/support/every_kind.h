@@ -46,7 +46,7 @@ law = "law.toml"
 [macro]
 bodies = 6
 steps = 1
-strain = 0.05
+strain = 0.08
 increments_per_step = 3
 resolved = ["shelled"]
 )";
