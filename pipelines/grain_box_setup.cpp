@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "microsim/grain_box/analysis.h"
+#include "microsim/particles/scene_memory.h"
 #include "pipelines/variant_name.h"
 
 namespace softgrain {
@@ -206,6 +207,17 @@ void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
         fmt::format("a wall would move more than the smallest grain's radius at once; must be below {:.3g}", most));
 }
 
+/// One pack after another runs, so that each must fit by itself. `t`: [box], or the variant.
+void require_memory(const SceneTable& t, const GrainBoxSpec& spec) {
+  const double available = available_memory();
+  const double needed = forecast(spec).bytes;
+  if (!(available > 0.0) || needed <= available) return;
+  t.reject("grains",
+           fmt::format("a pack of {} grains needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}",
+                       spec.grains, needed / 1e9, available / 1e9,
+                       std::floor(static_cast<double>(spec.grains) * available / needed)));
+}
+
 GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow) {
   spec.name = read_variant_name(t);
   spec.grains = t.count("grains", 8, 10000000, spec.grains);
@@ -217,6 +229,7 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
   read_increments(t, spec.loading);
   read_end(t, spec.loading);
   require_sense(t, spec);
+  require_memory(t, spec);
   return spec;
 }
 
@@ -247,6 +260,7 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
   }
   if (setup.packs.empty()) {
     require_sense(loading, spec);
+    require_memory(root.table_or_empty("box"), spec);
     setup.packs.push_back(spec);
   }
   root.finish();

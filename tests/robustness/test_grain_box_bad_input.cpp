@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/io/text_file.h"
+#include "microsim/particles/scene_memory.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -51,6 +52,12 @@ class GrainBoxBadInput : public ::testing::Test {
   }
   TemporaryDirectory directory_;
 };
+
+TEST_F(GrainBoxBadInput, APackThatMemoryDoesNotHold) {
+  if (available_memory() > 1e11) GTEST_SKIP() << "a machine with more memory than the largest pack takes";
+  expect("grains = 40", "grains = 10000000",
+         {"scene.toml:13: grains", "a pack of 10000000 grains needs about 110 GB", "allowed: up to "});
+}
 
 TEST_F(GrainBoxBadInput, Material) {
   expect("radius_max = \"0.13 mm\"", "radius_max = \"0.05 mm\"", {"scene.toml:5: radius_max", "radius_min"});
