@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/core/larger_or_nan.h"
 #include "common/core/solid_sphere.h"
 #include "common/statics/least_work.h"
 
@@ -46,10 +47,10 @@ BoxStress box_stress(const GrainPack& pack) {
     const double pushed_high = forces[low + 1][k] / area;
     out.normal[k] = 0.5 * (pushed_low + pushed_high);
     if (out.normal[k] > 0.0)
-      out.imbalance = std::max(out.imbalance, std::abs(pushed_high - pushed_low) / out.normal[k]);
+      out.imbalance = larger_or_nan(out.imbalance, std::abs(pushed_high - pushed_low) / out.normal[k]);
     for (const std::size_t wall : {low, low + 1})
       for (const int across : {(k + 1) % 3, (k + 2) % 3})
-        out.shear = std::max(out.shear, std::abs(forces[wall][across]) / area);
+        out.shear = larger_or_nan(out.shear, std::abs(forces[wall][across]) / area);
   }
   return out;
 }

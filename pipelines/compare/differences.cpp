@@ -15,6 +15,13 @@ void note(List& out, const char* what, const T& candidate, const T& reference) {
   if (candidate != reference) out.push_back(fmt::format("{}: {} against {}", what, candidate, reference));
 }
 
+/// Of soft particles not all is known; what neither side knows is no difference, what one does not know may be one.
+void note_known(List& obstacles, List& said, const char* what, double candidate, double reference) {
+  if (is_known(candidate) && is_known(reference)) return note(obstacles, what, candidate, reference);
+  if (is_known(candidate) || is_known(reference))
+    said.push_back(fmt::format("{}: not known of the {}", what, is_known(candidate) ? "reference" : "candidate"));
+}
+
 bool is_twin(const MacroCurve& c) { return c.engine == "shelled" || c.engine == "free"; }
 
 std::string radii(const MacroStart& s) { return fmt::format("{:.6g} to {:.6g} m", s.radius_min, s.radius_max); }
@@ -90,12 +97,13 @@ Differences differences(const SoftParticleSpec& candidate, const SoftParticleSpe
   Differences out;
   note(out.said, "Rs [m]", candidate.shell_radius, reference.shell_radius);
   note(out.said, "E of the grains [Pa]", candidate.youngs_modulus, reference.youngs_modulus);
-  note(out.obstacles, "nu of the grains", candidate.poisson_ratio, reference.poisson_ratio);
-  note(out.obstacles, "mu of the grains", candidate.friction, reference.friction);
-  note(out.obstacles, "exponent of the radii", candidate.exponent, reference.exponent);
-  note(out.obstacles, "polydispersity", candidate.polydispersity, reference.polydispersity);
-  note(out.obstacles, "largest grain over Rs", candidate.rmax_over_shell, reference.rmax_over_shell);
-  note(out.obstacles, "packing, beta", candidate.beta, reference.beta);
+  note_known(out.obstacles, out.said, "nu of the grains", candidate.poisson_ratio, reference.poisson_ratio);
+  note_known(out.obstacles, out.said, "mu of the grains", candidate.friction, reference.friction);
+  note_known(out.obstacles, out.said, "exponent of the radii", candidate.exponent, reference.exponent);
+  note_known(out.obstacles, out.said, "polydispersity", candidate.polydispersity, reference.polydispersity);
+  note_known(out.obstacles, out.said, "largest grain over Rs", candidate.rmax_over_shell, reference.rmax_over_shell);
+  note_known(out.obstacles, out.said, "packing, beta", candidate.beta, reference.beta);
+  if (candidate.trials == 0 || reference.trials == 0) return out;  // how one was packed is not known
   note(out.obstacles, "packing, trials", candidate.trials, reference.trials);
   const auto placement = [](const SoftParticleSpec& s) { return s.placement == Placement::voids ? "voids" : "trials"; };
   note(out.said, "packing, placement", std::string(placement(candidate)), std::string(placement(reference)));

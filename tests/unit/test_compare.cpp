@@ -361,6 +361,19 @@ TEST(CompareSides, TwoLawsOnOtherSamplesAreComparedAndSaidToBe) {
   EXPECT_NE(all_of(before.differences).find("the reference is of an earlier version"), std::string::npos);
 }
 
+TEST(CompareSides, WhatNobodyKnowsIsNoDifference) {
+  CompareSide a;
+  CompareSide b;
+  a.measurements = b.measurements = synthetic::measurements();
+  const SoftParticleSpec known = a.measurements->spec;
+  b.measurements->spec = unknown_soft_particle(known.shell_radius, known.youngs_modulus);
+  const std::string said = all_of(compare_sides(a, b).differences);
+  EXPECT_NE(said.find("mu of the grains: not known of the reference"), std::string::npos) << said;
+  EXPECT_EQ(said.find("nan"), std::string::npos) << said;
+  a.measurements->spec = b.measurements->spec;
+  EXPECT_EQ(all_of(compare_sides(a, b).differences), "");
+}
+
 TEST(CompareSides, MeasurementsOfOtherPackingsAreRefusedAndOtherScalesAreSaid) {
   CompareSide a;
   CompareSide b;
