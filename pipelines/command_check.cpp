@@ -23,17 +23,15 @@ namespace {
 
 void check_pipeline(const SceneTable& root, Findings& out) {
   const PipelineSetup setup = read_pipeline_setup(root);
-  check_measurements(setup.measure, out);
-  if (setup.macro)
-    check_macro(*setup.macro, out.facts["grains"].get<double>(), nullptr, out.facts["solid_fraction"].get<double>(),
-                out);
+  const MeasureTrial trial = check_measurements(setup.measure, out);
+  if (setup.macro) check_macro(*setup.macro, content_of(trial), nullptr, out);
 }
 
 void check_soft_particle(const SceneTable& root, Findings& out) {
   (void)root.text("title", "");
   const MeasureSetup setup = read_measure_setup(root);
   root.finish();
-  check_measurements(setup, out);
+  (void)check_measurements(setup, out);
 }
 
 void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
@@ -56,7 +54,7 @@ void check_scene(const std::string& path, const CommonOptions& options, Findings
   else if (kind == "hierarchy")
     check_hierarchy(scene, out);
   else if (kind == "inverse")
-    check_inverse(scene, out.facts, out.lines);
+    check_inverse(scene, out);
   else if (kind == "macro")
     check_macro_scene(scene, options.law, out);
   else if (kind == "macro-comparison")
@@ -92,6 +90,7 @@ ExitStatus command_check(const CommonOptions& options) {
   const std::string& path = options.inputs[0];
   Findings out;
   check_file(path, options, out);
+  out.close_times();
   out.facts["status"] = "good";
   out.facts["warnings"] = out.warnings();
   if (options.json) {

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "common/dynamics/force_pass.h"
 #include "microsim/crowd_experiment.h"
 #include "microsim/particles/scene_memory.h"
-#include "microsim/shell_packing.h"
 #include "pipelines/hierarchy_setup.h"
 #include "pipelines/law_table_setup.h"
 #include "pipelines/measure_check.h"
@@ -85,42 +84,26 @@ void add_overlaps(const CrowdSetup& setup, Findings& out) {
                     deepest, overlap));
 }
 
-struct Trial {
-  double packing_seconds = 0.0;
-  double pass_seconds = 0.0;  ///< of one soft particle, squeezed
-  double grains = 0.0;
-};
-
-Trial try_one(const CrowdSetup& setup, Findings& out) {
+/// Core seconds of a loop pass over one soft particle, squeezed, and of its packing.
+MeasureTrial try_one(const CrowdSetup& setup, Findings& out) {
   constexpr double kBudget = 0.3;
-  Trial t;
-  SoftContent content;
-  t.packing_seconds = seconds_of([&] { content.grains = generate_shell_packing(setup.spec, setup.seed, 0); });
-  t.grains = static_cast<double>(content.grains.radius.size());
-  out.add("grains", content.grains.radius.size(),
-          fmt::format("grains in the first packing: {}, solid fraction {:.3f}", content.grains.radius.size(),
-                      content.grains.solid_fraction()));
-  out.facts["solid_fraction"] = content.grains.solid_fraction();
-  CrowdConfiguration one;
-  one.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
-  one.stages = {{"load", {0.1}, 0.0}};
-  CrowdExperiment e = make_crowd(setup.spec, one, content, {});
-  e.move_to({0.05}, 0.0);
-  force_pass(e.system, 0.0);
-  t.pass_seconds = seconds_per_call([&] { force_pass(e.system, 0.0); }, kBudget, 500);
+  MeasureTrial t = try_soft_particle(setup.spec, setup.seed, kBudget);
+  out.add("grains", t.packing.radius.size(),
+          fmt::format("grains in the first packing: {}, solid fraction {:.3f}", t.packing.radius.size(),
+                      t.packing.solid_fraction()));
+  out.facts["solid_fraction"] = t.packing.solid_fraction();
   return t;
 }
 
-/// Core seconds of one pass through all configurations with one packing each.
-double seconds_per_packing(const CrowdSetup& setup, const Trial& trial) {
-  constexpr double kSqueezed = 1.5;  // pairs of the squeezed state over those of the first
+/// Core seconds of all configurations with one packing each.
+double seconds_per_packing(const CrowdSetup& setup, double pass_seconds) {
   double passes = 0.0;
   for (const CrowdConfiguration& c : setup.configurations)
     passes += (1.0 + softs_of(c)) * static_cast<double>(increments_of(c, setup.options)) * kPassesPerIncrement;
-  return kSqueezed * passes * trial.pass_seconds;
+  return passes * pass_seconds;
 }
 
-void check_crowd(const CrowdSetup& setup, Findings& out) {
+MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
   const auto configurations = static_cast<std::int64_t>(setup.configurations.size());
   std::int64_t increments = 0;
   std::int64_t stages = 0;
@@ -140,26 +123,36 @@ void check_crowd(const CrowdSetup& setup, Findings& out) {
                   setup.packings_max, configurations * setup.packings_min, configurations * setup.packings_max);
   out.lines +=
       fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
-  const Trial trial = try_one(setup, out);
-  const double bodies = trial.grains * (1.0 + softs);
+  const MeasureTrial trial = try_one(setup, out);
+  const double bodies = static_cast<double>(trial.packing.radius.size()) * (1.0 + softs);
   const double memory = estimated_memory(static_cast<std::int64_t>(bodies), kPairsPerGrain * bodies);
   out.add("bytes", memory, "memory: about " + bytes_text(memory) + " for the largest measurement under way");
   add_overlaps(setup, out);
-  const double seconds = seconds_per_packing(setup, trial);
-  const auto least = static_cast<double>(setup.packings_min);
-  const auto most = static_cast<double>(setup.packings_max);
-  out.facts["core_seconds_max"] = most * (seconds + trial.packing_seconds);
-  out.add_time("core_seconds", least * (seconds + trial.packing_seconds),
-               "measuring with the fewest packings, one core");
   warn_of_configurations(setup, out);
   warn_of_soft_particle(setup.spec, out);
+  return trial;
+}
+
+/// Packings that a configuration takes in the mean until its target is met, those of the pilot included: forces at
+/// the largest overlap scatter by about a fifth between packings.
+double expected_packings(const CrowdSetup& setup) {
+  constexpr double kScatter = 0.2;
+  const double needed = std::pow(kScatter / setup.target, 2);
+  return std::clamp(needed, static_cast<double>(setup.packings_min), static_cast<double>(setup.packings_max));
+}
+
+/// Packings and runs of a whole crowd measurement.
+void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
+                    Findings& out) {
+  out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.packings_max));
+  out.spend(part, times * expected_packings(setup) * seconds_per_packing(setup, trial.pass_seconds));
 }
 
 }  // namespace
 
 void check_law_table(const Scene& scene, Findings& out) {
   const LawTableSetup setup = read_law_table(scene);
-  check_crowd(setup.crowd, out);
+  spend_on_crowd(setup.crowd, check_crowd(setup.crowd, out), 1.0, "measuring", out);
   out.facts["variants"] = setup.variants.size();
   for (const LawTableVariant& v : setup.variants)
     out.lines += fmt::format("  the same on {} packings with beta = {}, {} trials per grain\n", v.packings, v.spec.beta,
@@ -178,9 +171,7 @@ void check_hierarchy(const Scene& scene, Findings& out) {
   out.lines += fmt::format("  {} levels, up to {} on the way to the fixed point, {} to {} runs each\n", setup.levels,
                            setup.iterations, configurations * setup.crowd.packings_min,
                            configurations * setup.crowd.packings_max);
-  check_crowd(setup.crowd, out);
-  out.add_time("core_seconds_levels", static_cast<double>(setup.levels) * out.facts["core_seconds"].get<double>(),
-               "all levels, one core, grains alone (inner soft particles come on top)");
+  spend_on_crowd(setup.crowd, check_crowd(setup.crowd, out), static_cast<double>(setup.levels), "levels", out);
 }
 
 }  // namespace softgrain

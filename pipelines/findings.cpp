@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 namespace softgrain {
@@ -32,9 +31,26 @@ void Findings::warn(const std::string& text) {
   if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(text);
 }
 
-void Findings::add_time(const std::string& key, double seconds, const std::string& of_what) {
-  add(key, seconds, of_what + ": about " + time_text(seconds));
-  if (seconds > kDay) warn(of_what + " takes about " + time_text(seconds) + ": see what can be smaller before it runs");
+void Findings::spend(const std::string& part, double core_seconds) {
+  const auto known = std::find_if(times_.begin(), times_.end(), [&](const auto& t) { return t.first == part; });
+  if (known == times_.end())
+    times_.emplace_back(part, core_seconds);
+  else
+    known->second += core_seconds;
+}
+
+void Findings::close_times() {
+  if (times_.empty()) return;
+  constexpr double kTrifle = 0.02;  // of the whole: such parts are in the facts alone
+  double total = 0.0;
+  for (const auto& [part, seconds] : times_) total += seconds;
+  std::string parts;
+  for (const auto& [part, seconds] : times_) {
+    facts["core_seconds_parts"][part] = seconds;
+    if (seconds >= kTrifle * total) parts += (parts.empty() ? "" : ", ") + part + " " + time_text(seconds);
+  }
+  add("core_seconds", total, "time: about " + time_text(total) + " of one core (" + parts + ")");
+  if (total > kDay) warn("the run takes about " + time_text(total) + " of one core: see what can be smaller");
 }
 
 void Findings::add_disk(double bytes) {
@@ -57,22 +73,6 @@ std::string time_text(double seconds) {
 std::string bytes_text(double bytes) {
   if (bytes < 1e6) return fmt::format("{:.3g} kB", bytes / 1e3);
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
-}
-
-double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most) {
-  std::int64_t calls = 0;
-  double spent = 0.0;
-  while (calls == 0 || (calls < most && spent < budget)) {
-    spent += seconds_of(work);
-    ++calls;
-  }
-  return spent / static_cast<double>(calls);
 }
 
 }  // namespace softgrain

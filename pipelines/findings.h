@@ -2,9 +2,9 @@
 // give.
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace softgrain {
@@ -20,24 +20,21 @@ class Findings {
   /// Nothing is wrong, but it may not be what was meant. Said once.
   void warn(const std::string& text);
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Time that a run will take [s of wall time or of one core], with a warning when that is more than a day.
-  void add_time(const std::string& key, double seconds, const std::string& of_what);
+  /// Adds to the time that the run will take [s of one core] what a part of it ("measuring", "twins") takes.
+  void spend(const std::string& part, double core_seconds);
+  /// Says the time of the run and its parts, once all are there; with a warning when it is more than a day.
+  void close_times();
   /// Bytes that a run will write to disk, with a warning when less is free in the directory of results here.
   void add_disk(double bytes);
 
  private:
   std::vector<std::string> warnings_;
+  std::vector<std::pair<std::string, double>> times_;  ///< core seconds of the parts of the run
 };
 
 /// "0.4 s", "12 s", "3 min", "2.5 h", "4 days".
 std::string time_text(double seconds);
 /// "12 kB", "3.4 MB", "1.2 GB".
 std::string bytes_text(double bytes);
-
-/// Wall time of one call [s].
-double seconds_of(const std::function<void()>& work);
-
-/// Mean wall time of a call [s]: called at least once and at most `most` times, until `budget` seconds have passed.
-double seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most);
 
 }  // namespace softgrain

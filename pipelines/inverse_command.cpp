@@ -206,20 +206,4 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }
 
-void check_inverse(const Scene& scene, json& facts, std::string& lines) {
-  const InverseSetup setup = read_inverse(scene);
-  const std::int64_t runs = setup.budget * setup.packings + setup.confirm;
-  facts["evaluations"] = setup.budget;
-  facts["runs"] = runs;
-  facts["points_per_run"] = setup.target.delta.size();
-  lines += fmt::format("  {} evaluations of {} packings and {} to confirm: {} runs of {} {} states\n", setup.budget,
-                       setup.packings, setup.confirm, runs, setup.target.delta.size(), to_string(setup.kind));
-  for (const SearchParameter& p : setup.search)
-    lines += fmt::format("  {} from {:.4g} to {:.4g}{}\n", p.name, p.low, p.high,
-                         p.logarithmic ? ", evenly in its logarithm" : "");
-  lines +=
-      fmt::format("  target: Delta from {:.4g} to {:.4g}, force up to {:.4g} N\n", setup.target.delta.front(),
-                  setup.target.delta.back(), *std::max_element(setup.target.force.begin(), setup.target.force.end()));
-}
-
 }  // namespace softgrain

@@ -1,6 +1,7 @@
 // softgrain run SCENE.toml of kind "inverse": the soft particle whose curve comes nearest to a target.
 #pragma once
 
+#include "pipelines/findings.h"
 #include "pipelines/run_context.h"
 
 namespace softgrain {
@@ -9,7 +10,7 @@ namespace softgrain {
 /// summary.json and the report. Status 3 when the target is not reached.
 ExitStatus run_inverse(const Scene& scene, const CommonOptions& options);
 
-/// Adds what follows from the scene without running it, as facts and as lines for people.
-void check_inverse(const Scene& scene, nlohmann::json& facts, std::string& lines);
+/// What follows from the scene without running it.
+void check_inverse(const Scene& scene, Findings& out);
 
 }  // namespace softgrain

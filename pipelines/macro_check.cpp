@@ -8,9 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/data/law_remarks.h"
-#include "common/dynamics/force_pass.h"
 #include "macrosim/constructed_packing.h"
-#include "microsim/shell_packing.h"
 #include "pipelines/crowd_law_fit.h"
 #include "pipelines/kept_states.h"
 #include "pipelines/lammps/lammps_program.h"
@@ -28,8 +26,6 @@ using nlohmann::json;
 
 /// Grains in a soft particle of the published kind.
 constexpr double kGrainsPerSoft = 400.0;
-/// Loop passes per increment of a law run at the default tolerance, measured in the quickstart (241).
-constexpr double kPassesPerIncrement = 240.0;
 /// Above it the pair law, measured with one contact, is far off.
 constexpr double kCrowdedShare = 0.05;
 
@@ -167,32 +163,6 @@ void check_laws_of(const LawSources& laws, const MacroSpec& spec, double content
   }
 }
 
-/// Law runs: a small scene of the same kind, its pass timed and scaled by the number of bodies.
-void add_law_time(const MacroSetup& setup, const BodyCounts& count, const LawSources& laws, double fraction,
-                  Findings& out) {
-  constexpr std::int64_t kTrialBodies = 60;
-  constexpr double kBudget = 0.2;
-  if (setup.spec.construction == "voids") return;  // made already; what it takes is in the twin's figures
-  MacroSpec spec = setup.spec;
-  spec.bodies = std::min(spec.bodies, kTrialBodies);
-  spec.preparation = "softgrain";
-  LawSources one = laws;
-  one.range = RangePolicy::clamp;
-  one.forms = {laws.forms.front()};
-  try {
-    const MacroPacking packing = make_packing(spec, 1, 0);
-    const NamedLaws law = scene_law(one, spec, fraction, "law");
-    MacroSystem macro = make_law_system(spec, packing, law.laws, fraction > 0.0 ? fraction : 1.0);
-    force_pass(macro.system, 0.0);
-    const double pass = seconds_per_call([&] { force_pass(macro.system, 0.0); }, kBudget, 2000);
-    const auto increments = static_cast<double>(spec.steps * spec.increments_per_step + spec.preload_steps);
-    const double seconds = pass * count.all / static_cast<double>(spec.bodies) * increments * kPassesPerIncrement *
-                           static_cast<double>(setup.samples) * static_cast<double>(laws.forms.size());
-    out.add_time("core_seconds_laws", seconds, "law runs, one core");
-  } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
-  }
-}
-
 /// A scene that LAMMPS prepares: what it takes there, and whether it is here.
 void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
   // Measured with a million bodies on two ranks.
@@ -239,8 +209,10 @@ void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& o
 }
 
 /// One packing stands for all.
-double solid_fraction_of(const SoftParticleSpec& spec, std::uint64_t seed) {
-  return generate_shell_packing(spec, seed, 0).solid_fraction();
+MacroContent content_of(const SoftParticleSpec& spec, std::uint64_t seed) {
+  constexpr double kBudget = 0.2;
+  const MeasureTrial trial = try_soft_particle(spec, seed, kBudget);
+  return content_of(trial);
 }
 
 }  // namespace
@@ -253,10 +225,18 @@ AffineOverlap affine_overlap(const MacroSpec& spec) {
   return {2.0 * spec.preload, along};
 }
 
-void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSources* laws, double contents_fraction,
-                 Findings& out) {
+MacroContent content_of(const MeasureTrial& trial) {
+  const auto grains = static_cast<double>(trial.packing.radius.size());
+  return {.grains_per_soft = grains,
+          .grain_pass_seconds = trial.pass_seconds / grains,
+          .solid_fraction = trial.packing.solid_fraction()};
+}
+
+void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, Findings& out) {
   const BodyCounts count = count_bodies(setup);
-  const double resolved = count.all + count.soft * grains_per_soft;
+  content.bodies = count.all;
+  content.soft = count.soft;
+  const double resolved = count.all + count.soft * content.grains_per_soft;
   const double memory = macro_memory(resolved);
   out.add("macro_bodies", count.all,
           fmt::format("macro: {} sample{} of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
@@ -272,9 +252,8 @@ void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSourc
   }
   warn_of_scene(setup, count, out);
   check_lammps(setup, count, out);
-  if (laws == nullptr) return;
-  check_laws_of(*laws, setup.spec, contents_fraction, out);
-  add_law_time(setup, count, *laws, contents_fraction, out);
+  if (laws != nullptr) check_laws_of(*laws, setup.spec, content.solid_fraction, out);
+  spend_on_macro(setup, content, laws, out);
 }
 
 void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
@@ -298,24 +277,24 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
   if (const std::string assumed = assumed_text(macro); !assumed.empty()) out.warn(assumed);
   if (path.empty()) {
     out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");
-    check_macro(macro, kGrainsPerSoft, nullptr, 0.0, out);
+    check_macro(macro, {.grains_per_soft = kGrainsPerSoft}, nullptr, out);
     return;
   }
   out.add("law_file", path, "law from " + path);
-  const double fraction = macro.twins.empty() ? 0.0 : solid_fraction_of(spec, seed);
-  check_macro(macro, kGrainsPerSoft, &laws, fraction, out);
+  check_macro(macro, macro.twins.empty() ? MacroContent{} : content_of(spec, seed), &laws, out);
 }
 
 void check_macro_comparison(const Scene& scene, Findings& out) {
   const MacroComparisonSetup setup = read_macro_comparison(scene);
   out.lines += fmt::format("  comparison of laws with twins on {} scenes\n", setup.scenes.size());
-  const double fraction = solid_fraction_of(setup.spec, setup.seed);
-  out.add("solid_fraction", fraction, fmt::format("solid fraction of the first content: {:.3f}", fraction));
+  const MacroContent content = content_of(setup.spec, setup.seed);
+  out.add("solid_fraction", content.solid_fraction,
+          fmt::format("solid fraction of the first content: {:.3f}", content.solid_fraction));
   json scenes = json::array();
   for (const ComparisonScene& s : setup.scenes) {
     const json common = std::exchange(out.facts, json{{"name", s.name}});
     out.lines += "  scene " + s.name + ":\n";
-    check_macro(s.setup, kGrainsPerSoft, &setup.laws, fraction, out);
+    check_macro(s.setup, content, &setup.laws, out);
     scenes.push_back(std::exchange(out.facts, common));
   }
   out.facts["scenes"] = scenes;

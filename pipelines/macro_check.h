@@ -4,7 +4,9 @@
 #include <string>
 
 #include "pipelines/findings.h"
+#include "pipelines/macro_cost.h"
 #include "pipelines/macro_stage.h"
+#include "pipelines/measure_cost.h"
 
 namespace softgrain {
 
@@ -15,10 +17,12 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
 /// Laws with twins on several scenes.
 void check_macro_comparison(const Scene& scene, Findings& out);
 
-/// Bodies, twins, memory. `laws`: what acts between soft particles; null: not known yet (a pipeline fits them).
-/// `contents_fraction`: solid fraction of the contents; 0: not known.
-void check_macro(const MacroSetup& setup, double grains_per_soft, const LawSources* laws, double contents_fraction,
-                 Findings& out);
+/// What such packings bring into the soft particles of a scene.
+MacroContent content_of(const MeasureTrial& trial);
+
+/// Bodies, twins, memory, time. `content`: of soft particles (bodies are counted here). `laws`: what acts between soft
+/// particles; null: not known yet (a pipeline fits them).
+void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, Findings& out);
 
 /// Overlaps of contacts of equal bodies at the end of a test if all moved with the box: h/R = 2 eps along the load and
 /// two thirds of that (oedometric: a third) in the mean over all directions.

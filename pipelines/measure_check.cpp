@@ -4,24 +4,15 @@
 
 #include <algorithm>
 
-#include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
 #include "microsim/particles/scene_memory.h"
-#include "microsim/shell_packing.h"
+#include "microsim/soft_experiment.h"
 
 namespace softgrain {
 
 namespace {
 
 using nlohmann::json;
-
-/// Loop passes per recorded point of each relaxation, as measured on the published parameters.
-double typical_passes(const std::string& relaxation, bool rotated) {
-  if (relaxation == "published") return 55000.0;
-  if (relaxation == "damped") return rotated ? 450.0 : 2500.0;
-  if (rotated) return 270.0;
-  return relaxation == "least-work" ? 2500.0 : 6700.0;
-}
 
 struct PointCounts {
   std::int64_t normal = 0;
@@ -73,21 +64,8 @@ void add_overlaps(const MeasureSeries& series, PairKind kind, Findings& out) {
                     to_string(kind), deltas.back(), overlap));
 }
 
-/// Time from one packing and a short trial of the loop on this machine, one thread.
-struct Trial {
-  double packing_time = 0.0;
-  double pass_time = 0.0;
-};
-
-Trial try_one(const MeasureSetup& setup, Findings& out) {
-  constexpr double kBudget = 0.3;
-  constexpr std::int64_t kTrials = 500;
-  ShellPacking packing;
-  Trial trial;
-  trial.packing_time = seconds_of([&] { packing = generate_shell_packing(setup.spec, setup.seed, 0); });
-  SoftExperiment e = make_soft_solid(setup.spec, packing, true);
-  force_pass(e.system, 0.0);
-  trial.pass_time = seconds_per_call([&] { force_pass(e.system, 0.0); }, kBudget, kTrials);
+void describe_packing(const MeasureSetup& setup, const ShellPacking& packing, Findings& out) {
+  const SoftExperiment e = make_soft_solid(setup.spec, packing, true);
   const StepLimit limit = step_limit(e.system);
   out.add("grains", packing.radius.size(),
           fmt::format("grains in the first packing: {}, solid fraction {:.3f}", packing.radius.size(),
@@ -111,7 +89,20 @@ Trial try_one(const MeasureSetup& setup, Findings& out) {
   if (packing.radius.size() < kFew)
     out.warn(fmt::format("{} grains in the shell are few: single grains make the law, and packings will differ widely",
                          packing.radius.size()));
-  return trial;
+}
+
+/// Core seconds of a series; says what it records.
+double series_seconds(const MeasureSetup& setup, const MeasureSeries& series, double pass_seconds, Findings& out) {
+  double seconds = 0.0;
+  for (const PairKind kind : series.kinds) {
+    const PointCounts points = count_points(series, kind);
+    seconds += static_cast<double>(series.packings) *
+               measuring_seconds(setup, series.relaxation, series.plan(kind), kind, pass_seconds);
+    out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
+            fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind),
+                        series.packings, points.normal, points.rotated));
+  }
+  return seconds;
 }
 
 }  // namespace
@@ -135,29 +126,25 @@ void warn_of_soft_particle(const SoftParticleSpec& spec, Findings& out) {
                     spec.youngs_modulus));
 }
 
-void check_measurements(const MeasureSetup& setup, Findings& out) {
-  const Trial trial = try_one(setup, out);
-  double seconds = trial.packing_time * static_cast<double>(setup.packings());
+MeasureTrial check_measurements(const MeasureSetup& setup, Findings& out) {
+  constexpr double kBudget = 0.3;
+  const MeasureTrial trial = try_soft_particle(setup.spec, setup.seed, kBudget);
+  describe_packing(setup, trial.packing, out);
+  double pairs = 0.0;  // packings for second bodies
   for (const MeasureSeries& series : setup.series) {
-    for (const PairKind kind : series.kinds) {
-      const PointCounts points = count_points(series, kind);
-      const double weight =
-          (kind == PairKind::soft_soft ? 2.2 : 1.0) * 2.0;  // the squeezed state has about twice the pairs of the first
-      seconds += weight * trial.pass_time *
-                 (static_cast<double>(points.normal) * typical_passes(series.relaxation, false) +
-                  static_cast<double>(points.rotated) * typical_passes(series.relaxation, true));
-      out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
-              fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind),
-                          series.packings, points.normal, points.rotated));
-    }
+    out.spend(&series == &setup.series.front() ? "measuring" : "reference",
+              series_seconds(setup, series, trial.pass_seconds, out));
+    if (std::count(series.kinds.begin(), series.kinds.end(), PairKind::soft_soft) > 0)
+      pairs = std::max(pairs, static_cast<double>(series.packings));
   }
+  out.spend("packings", trial.packing_seconds * (static_cast<double>(setup.packings()) + pairs));
   if (!setup.series.empty())
     for (const PairKind kind : setup.series.front().kinds) {
       add_overlaps(setup.series.front(), kind, out);
       warn_of_series(setup.series.front(), kind, out);
     }
-  out.add("core_seconds_measuring", seconds, fmt::format("measuring: about {:.0f} s of one core", seconds));
   warn_of_soft_particle(setup.spec, out);
+  return trial;
 }
 
 }  // namespace softgrain

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "pipelines/findings.h"
-#include "pipelines/measure_setup.h"
+#include "pipelines/measure_cost.h"
 
 namespace softgrain {
 
 /// Counts, time step and who sets it, expected overlaps, memory and time, from one packing and a short trial of the
-/// loop. Adds "grains" and "solid_fraction" of that packing.
-void check_measurements(const MeasureSetup& setup, Findings& out);
+/// loop, which is returned. Adds "grains" and "solid_fraction" of that packing.
+MeasureTrial check_measurements(const MeasureSetup& setup, Findings& out);
 
 /// Warnings about the law of sizes and the material that hold for every scene with [material] and [packing].
 void warn_of_soft_particle(const SoftParticleSpec& spec, Findings& out);

@@ -15,6 +15,7 @@
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/contact_totals.h"
 #include "microsim/particles/scene_memory.h"
+#include "pipelines/trial_times.h"
 
 namespace softgrain {
 

@@ -1,6 +1,7 @@
 // softgrain check: what follows from scenes, laws, results and run directories, with the warnings that a colleague
 // would give, in a moment and without a trace.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -62,7 +63,8 @@ TEST_F(Check, AMacroSceneOpensItsLaw) {
   const json sound = scene_facts(macro(kCard, "strain = 0.1\nsoft_share = 0.0\nbodies = 200\nsamples = 3\n"));
   EXPECT_EQ(sound["law soft-solid"]["delta_max"], 0.3);
   EXPECT_EQ(sound["warnings"], json::array()) << sound["warnings"];
-  EXPECT_GT(sound["core_seconds_laws"].get<double>(), 0.0);
+  EXPECT_GT(sound["core_seconds_parts"]["law runs"].get<double>(), 0.0);
+  EXPECT_EQ(sound["core_seconds_parts"]["twins"], 0.0);
   const json deep = scene_facts(macro(kCard, "strain = 0.2\n"));
   EXPECT_TRUE(warned(deep, "soft-solid Delta along the load: about 0.4")) << deep["warnings"];
   EXPECT_TRUE(warned(deep, "take a law table"));
@@ -86,6 +88,43 @@ TEST_F(Check, ATableIsHeldAgainstTheSizesOfTheScene) {
   EXPECT_TRUE(warned(far, "soft neighbours of ratio 1 to 5"));
   EXPECT_TRUE(warned(far, "lost volume of soft particles"));
   EXPECT_TRUE(warned(far, "overlaps of single soft contacts"));
+}
+
+/// Processor time of the programs that were run and have ended [s].
+double time_of_children() {
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+/// tests/bench/check_times.py does this for the shipped scenes; here one of each way of telling, in small.
+TEST_F(Check, TheTimeIsThatOfTheRun) {
+  const std::string measured =
+      "kind = \"soft-particle\"\n[packing]\ncount = 10\nplacement = \"voids\"\n[measure]\nrelaxation = \"damped\"\n"
+      "[measure.soft_solid]\ndeltas = [0.1, 0.15, 0.2, 0.25, 0.3]\n";
+  const std::string assembled =
+      "kind = \"cohesive-powder\"\nsamples = 1\n[disks]\ncount = 300\n[contact]\nkappa = 1e3\n[assembly]\npressure = "
+      "0.01\n";
+  const std::string packed =
+      "kind = \"grain-box\"\n[box]\ngrains = 200\n[generation]\npressure = \"10 MPa\"\n[loading]\nend_stress = "
+      "\"40 MPa\"\n";
+  for (const std::string& scene : {measured, assembled, packed}) {
+    const json expected = scene_facts(scene);
+    double parts = 0.0;
+    for (const auto& part : expected["core_seconds_parts"]) parts += part.get<double>();
+    EXPECT_DOUBLE_EQ(expected["core_seconds"].get<double>(), parts);
+    const double before = time_of_children();
+    const test::ProgramOutcome outcome = run_the_program("microsim '" + directory_.file("scene.toml") +
+                                                         "' --threads 1 --out '" + directory_.file("run") + "'");
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const double ratio = expected["core_seconds"].get<double>() / (time_of_children() - before);
+    EXPECT_GT(ratio, 1.0 / 3.0) << scene;
+    EXPECT_LT(ratio, 3.0) << scene;
+    fs::remove_all(directory_.file("run"));
+  }
 }
 
 /// What holds for a law is said once, what a scene asks of it for every scene.
