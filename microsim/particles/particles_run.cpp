@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -74,6 +75,7 @@ class ParticlesRun {
   void begin();
   void order_grains();
   [[nodiscard]] std::int64_t next_event(std::int64_t end) const;
+  [[nodiscard]] std::optional<h5::Group> open_saved() const;
   bool restore();
   void advance();
   LoopPart advance_to(std::int64_t step);
@@ -110,16 +112,27 @@ void ParticlesRun<D>::count_time() {
   started_ = now;
 }
 
+/// What was saved last; nothing when there is none, or none of which a copy is sound.
+template <int D>
+std::optional<h5::Group> ParticlesRun<D>::open_saved() const {
+  std::string note;
+  std::optional<h5::Group> saved;
+  try {
+    saved = open_checkpoint(control_.checkpoint, identity_, note);
+    if (!saved) note = "no checkpoint, starting from the beginning";
+  } catch (const DamagedCheckpoint& e) {
+    note = std::string(e.what()) + ": the run starts afresh";
+    remove_checkpoint(control_.checkpoint);
+  }
+  if (control_.say && !note.empty()) control_.say(note);
+  return saved;
+}
+
 template <int D>
 bool ParticlesRun<D>::restore() {
   if (!control_.resume || control_.checkpoint.empty()) return false;
-  std::string note;
-  const auto saved = open_checkpoint(control_.checkpoint, identity_, note);
-  if (control_.say && !note.empty()) control_.say(note);
-  if (!saved) {
-    if (control_.say) control_.say("no checkpoint, starting from the beginning");
-    return false;
-  }
+  const std::optional<h5::Group> saved = open_saved();
+  if (!saved) return false;
   read_system(saved->open("system"), system_);
   trajectory_ = read_trajectory(saved->open("trajectory"));
   const auto& p = system_.particles;

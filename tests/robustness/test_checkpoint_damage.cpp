@@ -161,6 +161,65 @@ TEST(DamagedRun, StartsATaskAfreshOfWhichNothingIsLeft) {
   }
 }
 
+/// The files below a run directory from which --resume goes on.
+std::vector<fs::path> kept_files(const std::string& directory) {
+  std::vector<fs::path> kept;
+  std::error_code not_there_yet;
+  for (const auto& entry : fs::recursive_directory_iterator(directory, not_there_yet)) {
+    const std::string name = entry.path().filename().string();
+    const bool checkpoint = name.starts_with("checkpoint.h5") || entry.path().parent_path().filename() == "work";
+    if (checkpoint && entry.is_regular_file() && !name.ends_with(".tmp")) kept.push_back(entry.path());
+  }
+  return kept;
+}
+
+/// Whatever the kind: where every copy of everything that was kept is damaged, the run begins again with a word, and
+/// ends in the same bits.
+class DamagedEverywhere : public ::testing::TestWithParam<KindScene> {
+ protected:
+  DamagedEverywhere() : runs_(GetParam()) {}
+
+  void interrupt() const {
+    const auto start = [&] { return start_program(runs_.arguments("out", {"--checkpoint-every", "0"})); };
+    const auto begun = [&] { return !kept_files(runs_.out("out")).empty(); };
+    ASSERT_TRUE(interrupted_in_the_middle(start, begun, runs_.out("out")));
+  }
+  static void damage(const std::vector<fs::path>& files) {
+    for (std::size_t k = 0; k < files.size(); ++k)
+      if (k % 2 == 0)
+        flip(files[k].string(), fs::file_size(files[k]) / 2, 4);
+      else
+        fs::resize_file(files[k], fs::file_size(files[k]) / 3);
+  }
+  /// Of the run, and of the parts of a series.
+  [[nodiscard]] std::string logs() const {
+    std::string text;
+    for (const auto& entry : fs::recursive_directory_iterator(runs_.out("out")))
+      if (entry.path().filename() == "log.txt") text += read_text(entry.path().string());
+    return text;
+  }
+  void expect_to_start_afresh() const {
+    ASSERT_TRUE(ended_with(wait_for(start_program(runs_.arguments("whole"))), GetParam().status));
+    interrupt();
+    const std::vector<fs::path> kept = kept_files(runs_.out("out"));
+    ASSERT_FALSE(kept.empty());
+    damage(kept);
+    const int status = wait_for(start_program(runs_.arguments("out", {"--resume"})));
+    EXPECT_TRUE(ended_with(status, GetParam().status)) << status;
+    EXPECT_NE(logs().find("starts afresh"), std::string::npos) << logs();
+    expect_same_runs(runs_.out("whole"), runs_.out("out"));
+  }
+
+  KindRuns runs_;
+};
+
+TEST_P(DamagedEverywhere, StartsAfreshWhereNothingIsLeft) { expect_to_start_afresh(); }
+INSTANTIATE_TEST_SUITE_P(Kinds, DamagedEverywhere, ::testing::ValuesIn(quick_kinds()), name_of_kind);
+
+using SlowDamagedEverywhere = DamagedEverywhere;
+TEST_P(SlowDamagedEverywhere, StartsAfreshWhereNothingIsLeft) { expect_to_start_afresh(); }
+INSTANTIATE_TEST_SUITE_P(Kinds, SlowDamagedEverywhere, ::testing::ValuesIn(slow_kinds()), name_of_kind);
+
 /// A law that was changed between two parts of a run is another run.
 TEST(DamagedRun, DoesNotGoOnWithAnotherLaw) {
   const KindRuns runs({"macro-comparison", "run", kTinyComparison, 0});

@@ -149,14 +149,23 @@ TEST_F(ParticlesKill, ACheckpointOfAnotherSceneIsRefused) {
   EXPECT_NE(outcome.output.find("another scene"), std::string::npos) << outcome.output;
 }
 
-TEST_F(ParticlesKill, DamagedCheckpointsFallBackThenSaySo) {
+TEST_F(ParticlesKill, ADamagedCheckpointFallsBackToTheOneBefore) {
   const std::string out = directory_.file("stopped");
   stop_at(out, "checkpoint.h5.previous");
   fs::resize_file(out + "/checkpoint.h5", 1000);
   ASSERT_TRUE(ended_well(end_after(start(scene_, out, true), kPatience, SIGKILL)));
   expect_same_end(out);
+}
+
+/// The only one there is: what it was saved for is run again from the beginning, and the log says so.
+TEST_F(ParticlesKill, WhereTheOnlyCheckpointIsDamagedTheRunStartsAfresh) {
+  const std::string out = directory_.file("stopped");
+  stop_at(out, "checkpoint.h5");
+  fs::remove(out + "/checkpoint.h5.previous");
   write_text_atomic(out + "/checkpoint.h5", "nonsense");
-  EXPECT_EQ(run_the_program("microsim '" + scene_ + "' --out '" + out + "' --quiet --resume").status, 4);
+  ASSERT_TRUE(ended_well(end_after(start(scene_, out, true), kPatience, SIGKILL)));
+  EXPECT_NE(read_text(out + "/log.txt").find("checkpoint is left: the run starts afresh"), std::string::npos);
+  expect_same_end(out);
 }
 
 }  // namespace

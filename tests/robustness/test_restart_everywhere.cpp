@@ -2,7 +2,6 @@
 // file.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "common/io/text_file.h"
@@ -70,27 +69,15 @@ TEST_P(SlowRestartEverywhere, TerminatedAtRandomItEndsInTheSameBits) {
 
 TEST_P(SlowRestartEverywhere, KilledFiftyTimesItEndsInTheSameBits) { kill_fifty_times(0.2 * run_whole()); }
 
-std::string name_of(const ::testing::TestParamInfo<KindScene>& info) {
-  std::string name = info.param.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-/// Law tables and hierarchies take several seconds; they have tests of a stop of their own among the default ones.
-std::vector<KindScene> quick_kinds() {
-  std::vector<KindScene> kinds = every_kind();
-  std::erase_if(kinds, [](const KindScene& k) { return k.name == "law-table" || k.name == "hierarchy"; });
-  return kinds;
-}
-
-INSTANTIATE_TEST_SUITE_P(Kinds, RestartEverywhere, ::testing::ValuesIn(quick_kinds()), name_of);
-INSTANTIATE_TEST_SUITE_P(Kinds, SlowRestartEverywhere, ::testing::ValuesIn(every_kind()), name_of);
+/// Law tables and hierarchies have tests of a stop of their own among the default ones.
+INSTANTIATE_TEST_SUITE_P(Kinds, RestartEverywhere, ::testing::ValuesIn(quick_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Kinds, SlowRestartEverywhere, ::testing::ValuesIn(every_kind()), name_of_kind);
 
 /// Of the default tests, the one with fifty kills: each engine of the others is killed as often by the slow tests.
 using FiftyKills = RestartEverywhere;
 TEST_P(FiftyKills, OfParticlesLeaveTheSameBits) { kill_fifty_times(0.1 * run_whole()); }
 INSTANTIATE_TEST_SUITE_P(Particles, FiftyKills,
-                         ::testing::Values(KindScene{"particles", "microsim", tiny_particles(), 0}), name_of);
+                         ::testing::Values(KindScene{"particles", "microsim", tiny_particles(), 0}), name_of_kind);
 
 TEST(RestartQuickstart, SlowKilledFiftyTimesItEndsInTheSameBits) {
   const TemporaryDirectory directory;

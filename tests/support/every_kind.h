@@ -1,6 +1,9 @@
 // One tiny scene of every kind that a command runs, each about a second: for tests that hold for all of them.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -226,6 +229,28 @@ inline std::vector<KindScene> every_kind() {
           {"powder", "microsim", kTinyPowder, 0},
           {"powder-variants", "microsim", kTinyPowderVariants, 0},
           {"grain-box", "microsim", kTinyGrainBox, 0}};
+}
+
+inline bool is_slow(const KindScene& k) { return k.name == "law-table" || k.name == "hierarchy"; }
+
+/// Those that take about a second.
+inline std::vector<KindScene> quick_kinds() {
+  std::vector<KindScene> kinds = every_kind();
+  std::erase_if(kinds, is_slow);
+  return kinds;
+}
+
+/// Those that take several seconds.
+inline std::vector<KindScene> slow_kinds() {
+  std::vector<KindScene> kinds = every_kind();
+  std::erase_if(kinds, [](const KindScene& k) { return !is_slow(k); });
+  return kinds;
+}
+
+inline std::string name_of_kind(const ::testing::TestParamInfo<KindScene>& info) {
+  std::string name = info.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 /// The scene of a kind with what it needs beside it; arguments for the program.
