@@ -1,10 +1,10 @@
 // softgrain report DIR: writes DIR/report.html. Makes no run directory of its own, so that the run's summary stays as
 // it is.
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/io/text_file.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run_context.h"
 
@@ -31,9 +31,9 @@ ExitStatus command_report(const CommonOptions& options) {
   const std::string path = directory + "/report.html";
   if (options.json) {
     const nlohmann::json summary{{"command", "report"}, {"status", "good"}, {"files", {{"report", path}}}};
-    std::printf("%s\n", summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    write_standard_output(summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   } else {
-    std::printf("report: %s\n", path.c_str());
+    write_standard_output("report: " + path + "\n");
   }
   return ExitStatus::good;
 }

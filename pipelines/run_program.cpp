@@ -34,27 +34,29 @@ struct Command {
   const char* inputs_help;
   int least;
   int most;
+  bool saves;  ///< at a signal it saves what it has done; others end at once
   ExitStatus (*function)(const CommonOptions&);
 };
 
 constexpr std::array<Command, 8> kCommands{{
     {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
-     1, 1, command_run},
+     1, 1, true, command_run},
     {"microsim",
      "One particle-scale scene: soft particles packed and measured, particles and walls, a grain box, a cohesive "
      "powder",
-     "SCENE.toml", "scene to run", 1, 1, command_microsim},
+     "SCENE.toml", "scene to run", 1, 1, true, command_microsim},
     {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA",
-     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, command_calibrate},
+     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
-     command_macrosim},
+     true, command_macrosim},
     {"compare", "Error norms and cost of two runs: A against the reference B", "RUN",
-     "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, command_compare},
-    {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, command_report},
+     "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, false, command_compare},
+    {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, false,
+     command_report},
     {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
-     "file or run directory to check", 1, 1, command_check},
+     "file or run directory to check", 1, 1, false, command_check},
     {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
-     "run directory, or one of its files with states", 1, 1, command_export},
+     "run directory, or one of its files with states", 1, 1, false, command_export},
 }};
 
 constexpr const char* kFooter =
@@ -204,7 +206,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   }
   if (!options.out.empty()) require_writable_directory(options.out);
   if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
-  if (chosen->function != command_check) install_interrupt_handler();
+  if (chosen->saves) install_interrupt_handler();
   const ExitStatus status = chosen->function(options);
   if (!observables.empty()) write_observables(options.out, options.overrides, observables);
   return status;

@@ -1,5 +1,6 @@
 #include "common/io/interrupt.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -14,7 +15,14 @@ namespace {
 volatile std::sig_atomic_t requested = 0;
 
 extern "C" void softgrain_note_signal(int) { requested = 1; }
-extern "C" void softgrain_end_at_once(int) { ::_exit(static_cast<int>(ExitStatus::interrupted)); }
+
+/// Says why, unless that would have to wait for somebody to read it.
+extern "C" void softgrain_end_at_once(int) {
+  constexpr char kWhy[] = "softgrain: stopped by a signal\n";
+  pollfd errors{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&errors, 1, 0) > 0) (void)!::write(STDERR_FILENO, kWhy, sizeof kWhy - 1);
+  ::_exit(static_cast<int>(ExitStatus::interrupted));
+}
 
 void install(void (*handler)(int)) {
   struct sigaction action {};

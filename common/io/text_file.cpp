@@ -1,9 +1,11 @@
 #include "common/io/text_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +15,7 @@
 
 #include "common/core/error.h"
 #include "common/io/atomic_rename.h"
+#include "common/io/interrupt.h"
 
 namespace softgrain {
 
@@ -29,6 +32,16 @@ bool write_all(int descriptor, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
+}
+
+/// Waits a little for whoever reads at the other end of a pipe. Throws Interrupted when a signal came meanwhile.
+bool has_room(int descriptor) {
+  constexpr int kPatience = 200;  // milliseconds
+  pollfd stream{descriptor, POLLOUT, 0};
+  const int ready = ::poll(&stream, 1, kPatience);
+  if (ready > 0 || (ready < 0 && errno != EINTR)) return true;  // what is wrong with it, writing will tell
+  if (interrupt_requested()) throw Interrupted("stopped by a signal while standard output was not read");
+  return false;
 }
 
 void write_file(const std::string& path, const std::string& text) {
@@ -60,9 +73,14 @@ const char* other_than_file(fs::file_type type) {
 }  // namespace
 
 void write_standard_output(std::string_view text) {
-  const bool flushed = std::fflush(stdout) == 0;  // what was printed before comes first
-  if (!flushed || !write_all(STDOUT_FILENO, text))
-    throw FileTrouble("standard output: cannot be written: " + system_message());
+  bool good = std::fflush(stdout) == 0;  // what was printed before comes first
+  while (good && !text.empty()) {
+    if (!has_room(STDOUT_FILENO)) continue;
+    const std::string_view piece = text.substr(0, PIPE_BUF);  // so much never waits where there is room
+    good = write_all(STDOUT_FILENO, piece);
+    text.remove_prefix(piece.size());
+  }
+  if (!good) throw FileTrouble("standard output: cannot be written: " + system_message());
 }
 
 void require_readable_file(const std::string& path) {

@@ -9,7 +9,8 @@ namespace softgrain {
 /// Writes to `path + ".tmp"`, flushes to disk and renames. Throws FileTrouble.
 void write_text_atomic(const std::string& path, const std::string& text);
 
-/// Writes to standard output and flushes it. Throws FileTrouble: what nobody could read has not been said.
+/// Writes to standard output and flushes it. Throws FileTrouble: what nobody could read has not been said; and
+/// Interrupted when a signal comes while it waits for somebody to read.
 void write_standard_output(std::string_view text);
 
 /// Reads a whole file. Throws FileTrouble naming the path.

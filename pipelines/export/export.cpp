@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "common/core/error.h"
-#include "common/io/interrupt.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 #include "pipelines/snapshots/snapshots.h"
@@ -83,7 +84,19 @@ class Exporter {
     for (Series& known : all_)
       if (known.facts.name == s.series) return known;
     all_.push_back({{s.series, s.kind, 0, 0, {}}, s.moment_name(), {}});
+    // An index of an earlier export would name states of this one, should it not come to its end.
+    for (const std::string& old : index_files(all_.back())) {
+      std::error_code nothing_there;
+      std::filesystem::remove(directory_ + "/" + old, nothing_there);
+    }
     return all_.back();
+  }
+
+  /// Of particles, and of contacts where a format has two.
+  [[nodiscard]] std::vector<std::string> index_files(const Series& s) const {
+    const std::string stem = file_name_of(s.facts.name);
+    if (format_ == ExportFormat::vtp) return {stem + "_particles.pvd", stem + "_contacts.pvd"};
+    return format_ == ExportFormat::csv ? std::vector{stem + ".csv"} : std::vector<std::string>{};
   }
 
   [[nodiscard]] std::vector<ExportFile> files_of(const Snapshot& s, std::int64_t number) const {
@@ -94,16 +107,16 @@ class Exporter {
   void write(const ExportFile& file) const { write_text_atomic(directory_ + "/" + file.name, file.text); }
 
   void write_index(Series& s) const {
-    const std::string stem = file_name_of(s.facts.name);
+    const std::vector<std::string> names = index_files(s);
     if (format_ == ExportFormat::vtp) {
-      s.facts.files = {stem + "_particles.pvd"};
-      write({"index", s.facts.files.back(), collection(s.entries, &Entry::particles_file)});
+      s.facts.files = {names[0]};
+      write({"index", names[0], collection(s.entries, &Entry::particles_file)});
       if (s.facts.with_contacts == 0) return;
-      s.facts.files.push_back(stem + "_contacts.pvd");
-      write({"index", s.facts.files.back(), collection(s.entries, &Entry::contacts_file)});
+      s.facts.files.push_back(names[1]);
+      write({"index", names[1], collection(s.entries, &Entry::contacts_file)});
     } else if (format_ == ExportFormat::csv) {
-      s.facts.files = {stem + ".csv"};
-      write({"index", s.facts.files.back(), table(s)});
+      s.facts.files = names;
+      write({"index", names[0], table(s)});
     } else {
       s.facts.files = {s.entries.front().particles_file};
     }
@@ -142,8 +155,6 @@ std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat f
   Exporter exporter(format, directory);
   bool any = false;
   for_each_snapshot(run, SnapshotChoice::all, [&](const Snapshot& s) {
-    if (interrupt_requested())
-      throw Interrupted("stopped by a signal while exporting; " + directory + " is incomplete");
     if (!any) require_writable_directory(directory);
     any = true;
     exporter.add(s);

@@ -33,10 +33,10 @@ void write_report(const std::string& run_directory) {
   body += provenance_section(run);
   body = heading_section(run) + contents(body) + remarks_section(run) + body;
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
-  write_text_atomic(run_directory + "/report.html", page("softgrain: " + name, body));
   std::filesystem::create_directories(run_directory + "/figures");
   for (const Figure& figure : figures_of(body))
     write_text_atomic(run_directory + "/figures/" + figure.name + ".svg", figure.svg);
+  write_text_atomic(run_directory + "/report.html", page("softgrain: " + name, body));
 }
 
 }  // namespace softgrain

@@ -43,6 +43,8 @@ std::vector<std::vector<std::string>> everything_said(const std::string& run) {
           {"check", run},
           {"export", run, "--to", "csv"},
           {"export", run, "--to", "csv", "--json"},
+          {"report", run},
+          {"report", run, "--json"},
           {"--help"},
           {"law", "--help"},
           {"--version"}};
