@@ -117,15 +117,27 @@ std::int64_t cell_index(const Level<D>& level, const typename Level<D>::Index& c
   return index;
 }
 
+/// Clamped before the conversion: a place may be a number that no integer holds, or none.
+std::int64_t cell_at(double place, std::int64_t cells) {
+  const auto n = static_cast<double>(cells);
+  return static_cast<std::int64_t>(std::min(std::max(0.0, std::floor(place * n)), n - 1.0));
+}
+
 template <int D>
 typename Level<D>::Index cell_of(const Level<D>& level, const Vec<D>& unit) {
   typename Level<D>::Index c;
-  for (int k = 0; k < D; ++k) {
-    const auto n = level.cells[static_cast<std::size_t>(k)];
-    c[static_cast<std::size_t>(k)] =
-        std::clamp(static_cast<std::int64_t>(std::floor(unit[k] * static_cast<double>(n))), std::int64_t{0}, n - 1);
-  }
+  for (int k = 0; k < D; ++k)
+    c[static_cast<std::size_t>(k)] = cell_at(unit[k], level.cells[static_cast<std::size_t>(k)]);
   return c;
+}
+
+/// The search looks no farther than one image: who lies beyond has diverged.
+template <int D>
+void require_at_home(const Particles<D>& p, const Cell<D>& cell, const Vec<D>& unit, Slot slot) {
+  constexpr double kRounding = 0.125;
+  for (int k = 0; k < D; ++k)
+    if (cell.periodic[static_cast<std::size_t>(k)] && !(std::abs(unit[k] - 0.5) <= 0.5 + kRounding))
+      throw NotUsable(grain_name(p, slot) + " is lost: it is outside of its periodic cell");
 }
 
 template <int D>
@@ -136,6 +148,7 @@ void sort_members(Level<D>& level, const Frame<D>& frame, const Particles<D>& p,
   level.start.assign(static_cast<std::size_t>(total) + 1, 0);
   for (std::size_t m = 0; m < level.members.size(); ++m) {
     const Vec<D> unit = frame.unit(p.sphere[static_cast<std::size_t>(level.members[m])].x);
+    require_at_home(p, *frame.cell, unit, level.members[m]);
     where[m] = static_cast<std::int32_t>(cell_index(level, cell_of(level, unit)));
     ++level.start[static_cast<std::size_t>(where[m]) + 1];
   }
@@ -185,7 +198,7 @@ std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<doubl
 template <int D>
 void require_wide_cell(const Cell<D>& cell, double largest_reach) {
   const double period = shortest_period(cell);
-  if (period < 4.0 * largest_reach)
+  if (!(period >= 4.0 * largest_reach))
     throw BadInput("cell: images of a body are " + std::to_string(period) +
                    " m apart, less than two diameters of the largest grain with skin (" +
                    std::to_string(4.0 * largest_reach) + " m)");
@@ -235,15 +248,12 @@ class Search {
  private:
   [[nodiscard]] Range range(const Level<D>& level, double unit, double reach, int axis) const {
     const auto k = static_cast<std::size_t>(axis);
-    const auto n = static_cast<double>(level.cells[k]);
     const double half = reach / frame_.width[axis] * (1.0 + 1e-12);  // rounding must not cut off a partner
-    // Clamped before the conversion: a box without extent along an open axis makes numbers that no integer holds.
-    const auto cell_at = [&](double place) {
-      const double cell = std::floor(place * n);
-      return static_cast<std::int64_t>(cell_.periodic[k] ? cell : std::clamp(cell, 0.0, n - 1.0));
+    const auto place = [&](double at) {
+      return cell_.periodic[k] ? static_cast<std::int64_t>(std::floor(at * static_cast<double>(level.cells[k])))
+                               : cell_at(at, level.cells[k]);
     };
-    const Range r{cell_at(unit - half), cell_at(unit + half)};
-    return r;
+    return {place(unit - half), place(unit + half)};
   }
 
   /// All rows along the first axis: visit(index of their first cell, image without the first axis).
@@ -352,6 +362,11 @@ constexpr Slot kParallelGrains = 4000;
 }  // namespace
 
 template <int D>
+std::string grain_name(const Particles<D>& p, Slot slot) {
+  return "grain " + std::to_string(p.id.empty() ? slot : p.id[static_cast<std::size_t>(slot)]);
+}
+
+template <int D>
 double shortest_period(const Cell<D>& cell) {
   double shortest2 = std::numeric_limits<double>::infinity();
   for (int image = 0; image < image_count<D>(); ++image) {
@@ -411,6 +426,8 @@ std::vector<CandidatePair> candidate_pairs_brute_force(const Particles<D>& p, co
   return out;
 }
 
+template std::string grain_name<2>(const Particles<2>&, Slot);
+template std::string grain_name<3>(const Particles<3>&, Slot);
 template double shortest_period<2>(const Cell<2>&);
 template double shortest_period<3>(const Cell<3>&);
 template std::vector<CandidatePair> candidate_pairs<2>(const Particles<2>&, const Cell<2>&, const std::vector<double>&);

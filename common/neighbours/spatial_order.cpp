@@ -32,7 +32,9 @@ std::uint64_t morton(const Vec<D>& unit) {
   std::uint64_t code = 0;
   for (int bit = kBits - 1; bit >= 0; --bit)
     for (int k = 0; k < D; ++k) {
-      const double whole = std::clamp(std::floor(unit[k] * (1 << kBits)), 0.0, static_cast<double>((1 << kBits) - 1));
+      // A place that is no number lies at the start: whoever follows the motion will say so.
+      const double whole =
+          std::min(std::max(0.0, std::floor(unit[k] * (1 << kBits))), static_cast<double>((1 << kBits) - 1));
       code = code << 1 | (static_cast<std::uint64_t>(whole) >> bit & 1U);
     }
   return code;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -218,13 +219,30 @@ void fill_constants(System<D>& s) {
         s.laws.law(section.law));
 }
 
+/// Radii from the origin beyond which a grain is lost: its overlap with a neighbour would be no number of 53 bits.
+constexpr double kFarthest = 0x1p45;
+
+template <int D>
+[[noreturn]] void lose(const Particles<D>& p, Slot i) {
+  double farthest = 0.0;
+  for (const double x : p.sphere[static_cast<std::size_t>(i)].x.v) {
+    if (!std::isfinite(x)) throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
+    farthest = std::max(farthest, std::abs(x));
+  }
+  std::ostringstream what;
+  what << (i < p.grains ? grain_name(p, i) : "body " + std::to_string(i)) << " is lost: it is " << farthest
+       << " m away";
+  throw NotUsable(what.str());
+}
+
 template <int D>
 void require_sound(const Particles<D>& p) {
   for (Slot i = 0; i < p.size(); ++i) {
     const auto u = static_cast<std::size_t>(i);
-    if (!std::isfinite(norm2(p.sphere[u].x)))
-      throw NotUsable("body " + std::to_string(i) + " has a position that is not finite");
+    const double distance2 = norm2(p.sphere[u].x);
+    if (!std::isfinite(distance2)) lose(p, i);
     if (i >= p.grains) continue;
+    if (distance2 > kFarthest * kFarthest * p.sphere[u].r * p.sphere[u].r) lose(p, i);
     for (Slot k = p.shell[u]; k >= 0; k = p.shell[static_cast<std::size_t>(k)]) {
       const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(k)];
       const double outside = norm(p.sphere[u].x - shell.x) - p.sphere[u].r - shell.r;

@@ -164,7 +164,7 @@ class Phase {
     integrator_ = StressCellVerlet<2>(dt, control_);
     integrator_.initialise(state_.system);
     const double pause = phase_.stiffening * kGrowth / std::abs(way);
-    return std::clamp<std::int64_t>(static_cast<std::int64_t>(pause / dt), 1, options_.test_every);
+    return static_cast<std::int64_t>(std::clamp(pause / dt, 1.0, static_cast<double>(options_.test_every)));
   }
 
   /// Keeps a picture at the start, after the phase, and whenever the solid fraction or what a recorded point says of

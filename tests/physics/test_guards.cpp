@@ -103,6 +103,23 @@ TEST(Guards, EnergyThatGrowsOfItselfStopsTheRun) {
   EXPECT_GT(counted.guards.energy.count, 0);
 }
 
+/// Finite positions beyond all proportion, within fewer steps than from one look to the next.
+TEST(Guards, WhatFliesApartBetweenTwoLooksIsLost) {
+  const std::string periodic = compressed_lattice("3e-4", "0.0, 0.0, 0.0");  // its places are rounded: it moves
+  std::string open = periodic;
+  open.replace(open.find("true, true, true"), 16, "false, false, false");
+  std::string strained = periodic;
+  strained.insert(strained.find("periodic ="), "shear_rate = 0.3\n");
+  const std::string ignored = "[guards.overlap]\naction = \"ignore\"\n[guards.energy]\naction = \"ignore\"\n";
+  for (const std::string& text : {periodic, open, strained})
+    for (const double step : {1e2, 1e5, 1e8, 1e20, 1e60}) {
+      const ParticlesResult r = run_with_step(text + ignored, step);
+      EXPECT_FALSE(r.usable) << step;
+      EXPECT_NE(r.reason.find(" is lost: "), std::string::npos) << step << ": " << r.reason;
+      EXPECT_LE(r.system.step, 64) << r.reason;
+    }
+}
+
 TEST(Guards, StepsThatManyContactsMakeUnstableAreRefusedOrNotTaken) {
   const auto refusal = [](const std::string& step) -> std::string {
     try {

@@ -88,6 +88,77 @@ TEST(Neighbours, DegenerateArrangements) {
   EXPECT_EQ(sorted(candidate_pairs(p, cell, skin)), sorted(candidate_pairs_brute_force(p, cell, skin)));
 }
 
+/// What a diverged run leaves behind: finite, and farther away than any number of cells.
+constexpr double kWild[] = {7e18, -7e18, 1e100, 1e300, -1e300, 1.7e308};
+
+template <int D>
+System<D> wild_system(Box box, double place, Slot many) {
+  System<D> s;
+  s.cell = cell_of<D>(box, 7.0);
+  s.particles = cloud<D>(s.cell, 150, 4.0, 23);
+  s.materials = {{"grain", 1.0, 1.0, 0.0, false}};
+  s.laws = LawSet(1);
+  for (Slot i = 0; i < many; ++i)
+    for (int k = 0; k < D; ++k) s.particles.sphere[static_cast<std::size_t>(7 * i)].x[k] = i % 2 == 0 ? place : -place;
+  return s;
+}
+
+template <int D>
+void expect_lost(Box box, double place, Slot many) {
+  System<D> s = wild_system<D>(box, place, many);
+  try {
+    rebuild_neighbours(s);
+    ADD_FAILURE() << "taken for a state: " << place << ", box " << static_cast<int>(box);
+  } catch (const NotUsable& e) {
+    EXPECT_NE(std::string(e.what()).find("grain 0 is lost"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Neighbours, GrainsFartherThanNumbersReachAreLost) {
+  for (const double place : kWild)
+    for (const Box box : {Box::open, Box::periodic, Box::half_periodic, Box::sheared})
+      for (const Slot many : {1, 20}) {
+        expect_lost<2>(box, place, many);
+        expect_lost<3>(box, place, many);
+      }
+}
+
+/// The search by itself, of whoever asks: a grain outside its cell has no image that could be told.
+template <int D>
+void expect_search_survives(Box box, double place, Slot many) {
+  const System<D> s = wild_system<D>(box, place, many);
+  const std::vector<double> skin = default_skin(s.particles);
+  if (box != Box::open) {
+    EXPECT_THROW((void)candidate_pairs(s.particles, s.cell, skin), NotUsable) << place << static_cast<int>(box);
+    return;
+  }
+  EXPECT_EQ(sorted(candidate_pairs(s.particles, s.cell, skin)),
+            sorted(candidate_pairs_brute_force(s.particles, s.cell, skin)));
+}
+
+TEST(Neighbours, TheSearchSurvivesPlacesOutsideOfEveryCell) {
+  for (const double place : kWild)
+    for (const Box box : {Box::open, Box::periodic, Box::half_periodic, Box::sheared})
+      for (const Slot many : {1, 20}) {
+        expect_search_survives<2>(box, place, many);
+        expect_search_survives<3>(box, place, many);
+      }
+}
+
+/// A way of many periods is none to be lost on.
+TEST(Neighbours, GrainsComeHomeFromAfar) {
+  for (const double place : {7e3, -7e6, 7e9})
+    for (const Box box : {Box::periodic, Box::half_periodic, Box::sheared}) {
+      System<3> s = wild_system<3>(box, place, 20);
+      rebuild_neighbours(s);
+      for (Slot i = 0; i < s.particles.grains; ++i) {
+        const Vec<3> unit = s.cell.fractional(s.particles.sphere[static_cast<std::size_t>(i)].x);
+        for (int k = 0; k < 3; ++k)
+          EXPECT_NEAR(unit[k], 0.5, s.cell.periodic[static_cast<std::size_t>(k)] ? 0.5 + 1e-6 : 1e10) << place;
+      }
+    }
+}
+
 TEST(Neighbours, ANarrowPeriodicCellIsRefused) {
   const Cell<3> cell = box_cell<3>({{3.9, 10.0, 10.0}}, {true, true, true});
   Particles<3> p;

@@ -81,6 +81,27 @@ TEST(SpatialOrder, HistoriesAndMotionGoOn) {
   reorder_while_running<3>();
 }
 
+/// Numbers that no integer holds, and such as are none, in a run that has diverged.
+template <int D>
+void order_wild_places(bool periodic) {
+  System<D> s = sheared_crowd<D>();
+  s.cell.periodic.fill(periodic);
+  std::size_t u = 0;
+  for (const double place : {1e18, 1e300, -1.7e308, 1.7e308, HUGE_VAL, std::nan("")})
+    for (int k = 0; k < D; ++k) s.particles.sphere[3 * ++u].x[k] = place;
+  std::vector<Slot> order = spatial_order(s);
+  std::sort(order.begin(), order.end());
+  ASSERT_EQ(order.size(), static_cast<std::size_t>(s.particles.grains));
+  for (std::size_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], static_cast<Slot>(k));
+}
+
+TEST(SpatialOrder, WildPlacesHaveAnOrderToo) {
+  for (const bool periodic : {false, true}) {
+    order_wild_places<2>(periodic);
+    order_wild_places<3>(periodic);
+  }
+}
+
 TEST(SpatialOrder, SmallOnesFirstAndNeighboursClose) {
   const System3 s = sheared_crowd<3>();
   System3 t = s;
