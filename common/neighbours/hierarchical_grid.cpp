@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/core/error.h"
+#include "common/neighbours/search_frame.h"
 
 namespace softgrain {
 
@@ -32,69 +33,9 @@ struct Level {
   std::vector<Entry<D>> sorted;
 };
 
-/// Maps positions to cell coordinates: fractional on periodic axes, bounding box on open ones.
-template <int D>
-struct Frame {
-  const Cell<D>* cell = nullptr;
-  Vec<D> low{};     ///< lower corner of the bounding box, fractional units
-  Vec<D> extent{};  ///< its size; 1 along periodic axes
-  Vec<D> width{};   ///< the same in metres, perpendicular distance between faces
-
-  [[nodiscard]] Vec<D> unit(const Vec<D>& x) const {
-    Vec<D> s = cell->fractional(x);
-    for (int k = 0; k < D; ++k) {
-      s[k] = (s[k] - low[k]) / extent[k];
-    }
-    return s;
-  }
-};
-
-/// Perpendicular distance between opposite faces of the cell, per axis (upper triangular edges).
-template <int D>
-Vec<D> face_distances(const Cell<D>& cell) {
-  Vec<D> out;
-  for (int k = 0; k < D; ++k) {
-    // Row k of the inverse of the edges is the gradient of the fractional coordinate k; its norm is 1/distance.
-    Vec<D> gradient;
-    for (int c = 0; c < D; ++c) {
-      Vec<D> e;
-      e[c] = 1.0;
-      gradient[c] = cell.fractional(e)[k];
-    }
-    out[k] = 1.0 / norm(gradient);
-  }
-  return out;
-}
-
-template <int D>
-Frame<D> make_frame(const Particles<D>& p, const Cell<D>& cell) {
-  Frame<D> frame;
-  frame.cell = &cell;
-  const Vec<D> faces = face_distances(cell);
-  Vec<D> low = cell.fractional(p.sphere[0].x);
-  Vec<D> high = low;
-  for (Slot i = 1; i < p.grains; ++i) {
-    const Vec<D> s = cell.fractional(p.sphere[static_cast<std::size_t>(i)].x);
-    for (int k = 0; k < D; ++k) {
-      low[k] = std::min(low[k], s[k]);
-      high[k] = std::max(high[k], s[k]);
-    }
-  }
-  for (int k = 0; k < D; ++k) {
-    if (cell.periodic[static_cast<std::size_t>(k)]) {
-      low[k] = 0.0;
-      high[k] = 1.0;
-    }
-    frame.low[k] = low[k];
-    frame.extent[k] = std::max(high[k] - low[k], 1e-300);
-    frame.width[k] = frame.extent[k] * faces[k];
-  }
-  return frame;
-}
-
 /// Cells at least `edge` wide; no more than a few per grain, so that sparse fine classes cost no memory.
 template <int D>
-void choose_cells(Level<D>& level, const Frame<D>& frame, double edge) {
+void choose_cells(Level<D>& level, const SearchFrame<D>& frame, double edge) {
   const double budget = 4.0 * static_cast<double>(level.members.size()) + 64.0;
   for (int round = 0; round < 64; ++round) {
     double total = 1.0;
@@ -141,7 +82,8 @@ void require_at_home(const Particles<D>& p, const Cell<D>& cell, const Vec<D>& u
 }
 
 template <int D>
-void sort_members(Level<D>& level, const Frame<D>& frame, const Particles<D>& p, const std::vector<double>& skin) {
+void sort_members(Level<D>& level, const SearchFrame<D>& frame, const Particles<D>& p,
+                  const std::vector<double>& skin) {
   std::int64_t total = 1;
   for (const auto n : level.cells) total *= n;
   std::vector<std::int32_t> where(level.members.size());
@@ -165,7 +107,7 @@ void sort_members(Level<D>& level, const Frame<D>& frame, const Particles<D>& p,
 
 /// Classes by halving of r + skin, largest first; empty ones are left out.
 template <int D>
-std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<double>& skin, const Frame<D>& frame,
+std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<double>& skin, const SearchFrame<D>& frame,
                                   std::vector<std::int32_t>& level_of) {
   double largest = 0.0;
   for (Slot i = 0; i < p.grains; ++i)
@@ -223,7 +165,7 @@ int wrap_of(std::int64_t cell, std::int64_t cells) { return cell < 0 ? -1 : (cel
 template <int D>
 class Search {
  public:
-  Search(const Particles<D>& p, const Cell<D>& cell, const std::vector<double>& skin, const Frame<D>& frame)
+  Search(const Particles<D>& p, const Cell<D>& cell, const std::vector<double>& skin, const SearchFrame<D>& frame)
       : p_(p), cell_(cell), skin_(skin), frame_(frame) {
     for (int image = 0; image < image_count<D>(); ++image)
       shift_[static_cast<std::size_t>(image)] = cell.image_shift(image);
@@ -305,13 +247,13 @@ class Search {
   const Particles<D>& p_;
   const Cell<D>& cell_;
   const std::vector<double>& skin_;
-  const Frame<D>& frame_;
+  const SearchFrame<D>& frame_;
   std::array<Vec<D>, static_cast<std::size_t>(image_count<D>())> shift_;
 };
 
 /// Cells rows that a grain of one class looks at in another, about.
 template <int D>
-double rows_seen(const Level<D>& from, const Level<D>& in, const Frame<D>& frame) {
+double rows_seen(const Level<D>& from, const Level<D>& in, const SearchFrame<D>& frame) {
   double rows = 1.0;
   for (int k = 1; k < D; ++k) {
     const auto cells = static_cast<double>(in.cells[static_cast<std::size_t>(k)]);
@@ -323,7 +265,7 @@ double rows_seen(const Level<D>& from, const Level<D>& in, const Frame<D>& frame
 /// Which of two classes looks for partners in the other: the one that looks at fewer rows in all. A large grain sees
 /// many small cells, but there are few large ones. looks[a][b]: grains of class a look into b.
 template <int D>
-std::vector<std::vector<bool>> who_looks(const std::vector<Level<D>>& levels, const Frame<D>& frame) {
+std::vector<std::vector<bool>> who_looks(const std::vector<Level<D>>& levels, const SearchFrame<D>& frame) {
   std::vector<std::vector<bool>> looks(levels.size(), std::vector<bool>(levels.size(), false));
   for (std::size_t a = 0; a < levels.size(); ++a) {
     looks[a][a] = true;
@@ -382,7 +324,7 @@ template <int D>
 std::vector<CandidatePair> candidate_pairs(const Particles<D>& particles, const Cell<D>& cell,
                                            const std::vector<double>& skin) {
   if (particles.grains < 2) return {};
-  const Frame<D> frame = make_frame(particles, cell);
+  const SearchFrame<D> frame = search_frame(particles, cell);
   std::vector<std::int32_t> level_of;
   const auto levels = make_levels(particles, skin, frame, level_of);
   require_wide_cell(cell, levels.front().reach);

@@ -2,6 +2,7 @@
 #include "common/neighbours/hierarchical_grid.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <tuple>
 
@@ -143,6 +144,29 @@ TEST(Neighbours, TheSearchSurvivesPlacesOutsideOfEveryCell) {
         expect_search_survives<2>(box, place, many);
         expect_search_survives<3>(box, place, many);
       }
+}
+
+/// Seconds of the quicker of two searches among grains side by side, some of which lie far away.
+double search_seconds(Slot far, double place) {
+  Particles<3> p;
+  for (int n = 0; n < 27000; ++n)
+    add_grain(p, solid_sphere<3>({{2.0 * (n % 30), 2.0 * (n / 30 % 30), 2.0 * (n / 900)}}, 1.0, 1.0));
+  for (Slot i = 0; i < far; ++i) p.sphere[static_cast<std::size_t>(100 * i)].x = {{place * (1.0 + i), -place, 1.0}};
+  const std::vector<double> skin = default_skin(p);
+  double best = HUGE_VAL;
+  for (int k = 0; k < 2; ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_GT(candidate_pairs(p, open_cell<3>(), skin).size(), 70000U);
+    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return best;
+}
+
+/// Not by as much as their number, as when all the others share a cell.
+TEST(Neighbours, GrainsThatFlewOffSlowTheSearchDownLittle) {
+  const double near = search_seconds(0, 0.0);
+  for (const double place : {1e4, 1e8, 1e12}) EXPECT_LT(search_seconds(1, place), 8.0 * near) << place;
+  EXPECT_LT(search_seconds(12, 1e8), 8.0 * near);
 }
 
 /// A way of many periods is none to be lost on.
