@@ -76,11 +76,12 @@ std::size_t CurveRows::sample_of(const CsvRow& row) {
   if (name.empty())
     throw BadInput(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
                                file_.columns()[at_.sample].title));
-  for (std::size_t k = 0; k < out_.samples.size(); ++k)
-    if (out_.samples[k].name == name) return k;
-  out_.samples.push_back({name, {}, {}});
-  lines_.emplace_back();
-  return out_.samples.size() - 1;
+  const auto [known, is_new] = index_.try_emplace(name, out_.samples.size());
+  if (is_new) {
+    out_.samples.push_back({name, {}, {}});
+    lines_.emplace_back();
+  }
+  return known->second;
 }
 
 void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {

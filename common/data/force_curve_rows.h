@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "common/data/force_curves.h"
@@ -40,7 +41,8 @@ class CurveRows {
   const CurveLayout& at_;
   const ForceCurveOptions& options_;
   ForceCurves& out_;
-  std::vector<std::vector<int>> lines_;  ///< of the normal points of each sample
+  std::unordered_map<std::string, std::size_t> index_;  ///< of each sample by its name
+  std::vector<std::vector<int>> lines_;                 ///< of the normal points of each sample
   std::int64_t before_touch_ = 0;
   std::int64_t dropped_ = 0;
 };

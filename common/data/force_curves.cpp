@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <unordered_set>
 
 #include "common/core/error.h"
 #include "common/data/force_curve_rows.h"
@@ -224,12 +225,11 @@ std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& 
       continue;
     }
     const std::string stem = std::filesystem::path(path).stem().string();
+    std::unordered_set<std::string> taken;
+    for (const ForceCurve& s : same->samples) taken.insert(s.name);
     for (ForceCurve& s : one.samples) {
-      const auto taken = [&](const std::string& name) {
-        return std::any_of(same->samples.begin(), same->samples.end(), [&](const auto& x) { return x.name == name; });
-      };
-      if (taken(s.name)) s.name = stem + ": " + s.name;
-      if (taken(s.name)) throw BadInput(path + ": sample \"" + s.name + "\" was read before");
+      if (taken.contains(s.name)) s.name = stem + ": " + s.name;
+      if (!taken.insert(s.name).second) throw BadInput(path + ": sample \"" + s.name + "\" was read before");
       same->samples.push_back(std::move(s));
     }
     for (const SpecName& n : kSaid)

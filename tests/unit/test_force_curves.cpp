@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
 #include "common/io/text_file.h"
@@ -110,6 +112,28 @@ TEST_F(ForceCurveFile, SamplesErrorsAndUnknownColumns) {
   EXPECT_TRUE(c.has_errors);
   ASSERT_EQ(c.remarks.size(), 1U);
   EXPECT_NE(c.remarks[0].find("temperature"), std::string::npos);
+}
+
+/// A wrong column that is taken for the sample gives one to every row.
+TEST_F(ForceCurveFile, AsManySamplesAsRowsTakeNoLonger) {
+  constexpr int kRows = 120000;
+  const auto seconds = [&](bool alike, const std::vector<std::string>& words) {
+    std::string text = "# kind = soft-solid\n# Rs = 16 mm\n# E = 1 MPa\nsample,hn [mm],Fn [N]\n";
+    for (int k = 0; k < kRows; ++k)
+      text += (alike ? "a" : "a reading at " + std::to_string(k) + " s") + "," + std::to_string(1e-4 * k) + ",1\n";
+    const std::string path = write(text);
+    const auto start = std::chrono::steady_clock::now();
+    std::string message = "read";
+    try {
+      EXPECT_EQ(read_force_curves(path, {}).samples.size(), 1U);
+    } catch (const BadInput& e) {
+      message = e.what();
+    }
+    for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const double one = seconds(true, {"read"});
+  EXPECT_LT(seconds(false, {"too few points: 1 of the normal force in the longest sample"}), 10.0 * one);
 }
 
 TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
