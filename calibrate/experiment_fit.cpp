@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "calibrate/bootstrap.h"
 #include "calibrate/law_estimate.h"
@@ -110,6 +113,57 @@ std::vector<GivenError> errors_of(const std::vector<ForceCurve>& samples, double
   return out;
 }
 
+std::size_t overlaps_of(const std::vector<TangentialPoint>& points) {
+  std::set<double> deltas;
+  for (const TangentialPoint& p : points) deltas.insert(p.delta);
+  return deltas.size();
+}
+
+/// Averages of each angle in even bins of Delta, the same for all samples, where one has more overlaps than the fit can
+/// take. Returns whether that was so.
+bool bin_rotations(std::vector<ForceCurve>& samples) {
+  std::size_t most = 0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = 0.0;
+  for (const ForceCurve& s : samples) {
+    most = std::max(most, overlaps_of(s.tangential));
+    for (const TangentialPoint& p : s.tangential) {
+      low = std::min(low, p.delta);
+      high = std::max(high, p.delta);
+    }
+  }
+  if (most <= kMostPoints) return false;
+  const double width = (high - low) / static_cast<double>(kMostPoints);
+  const auto bin_of = [&](double delta) {
+    return std::min(static_cast<std::size_t>((delta - low) / width), kMostPoints - 1);
+  };
+  std::array<double, kMostPoints> delta{};
+  std::array<double, kMostPoints> count{};
+  for (const ForceCurve& s : samples)
+    for (const TangentialPoint& p : s.tangential) {
+      delta[bin_of(p.delta)] += p.delta;
+      count[bin_of(p.delta)] += 1.0;
+    }
+  for (ForceCurve& s : samples) {
+    std::map<std::pair<std::size_t, double>, std::pair<double, double>> forces;  // sum and count of each angle
+    for (const TangentialPoint& p : s.tangential) {
+      auto& [sum, number] = forces[{bin_of(p.delta), p.angle_deg}];
+      sum += p.force_parallel;
+      number += 1.0;
+    }
+    s.tangential.clear();
+    for (const auto& [at, force] : forces) {
+      TangentialPoint p;
+      p.delta = delta[at.first] / count[at.first];
+      p.angle_deg = at.second;
+      p.force_parallel = force.first / force.second;
+      p.converged = true;
+      s.tangential.push_back(p);
+    }
+  }
+  return true;
+}
+
 PackingRun run_of(const ForceCurve& sample, std::size_t index, PairKind kind) {
   PackingRun run;
   run.packing = static_cast<std::int64_t>(index);
@@ -194,6 +248,9 @@ PreparedCurves prepare_curves(const ForceCurves& curves) {
         fmt::format("{}: {} points per sample are averaged in {} bins of Delta", kind, s.normal.size(), kMostPoints);
     s.normal = binned(s.normal, kMostPoints);
   }
+  if (bin_rotations(samples))
+    out.note += (out.note.empty() ? kind + ": " : "; ") +
+                fmt::format("stiffness at more than {0} overlaps is averaged in {0} bins of Delta", kMostPoints);
   out.data.spec = curves.spec;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     PackingInfo info;

@@ -122,6 +122,40 @@ TEST(ExperimentFit, LongSeriesAreAveragedWithoutBias) {
   EXPECT_FALSE(fit.remarks.empty());
 }
 
+/// Two rotations at each overlap, of a stiffness that rises with it.
+ForceCurves with_stiffness(int points) {
+  ForceCurves curves = make({.samples = 3, .points = points});
+  for (ForceCurve& s : curves.samples)
+    for (const ForcePoint& p : s.normal)
+      for (const double angle : {-0.05, 0.05}) {
+        TangentialPoint t;
+        t.delta = p.delta;
+        t.angle_deg = angle;
+        t.force_parallel = 40.0 * angle * p.delta;
+        t.converged = true;
+        s.tangential.push_back(t);
+      }
+  return curves;
+}
+
+/// What a fit to every overlap of a long table would take minutes for.
+TEST(ExperimentFit, LongSeriesOfStiffnessAreAveragedInBinsOfAllSamples) {
+  const PreparedCurves few = prepare_curves(with_stiffness(120));
+  EXPECT_EQ(few.note.find("stiffness"), std::string::npos) << few.note;
+  EXPECT_EQ(few.data.runs.at(0).tangential.size(), 240U);
+  const PreparedCurves many = prepare_curves(with_stiffness(3000));
+  EXPECT_NE(many.note.find("stiffness at more than 120 overlaps is averaged in 120 bins"), std::string::npos);
+  for (const PackingRun& run : many.data.runs) {
+    ASSERT_EQ(run.tangential.size(), 240U);
+    for (std::size_t k = 0; k < run.tangential.size(); ++k) {
+      const TangentialPoint& p = run.tangential[k];
+      EXPECT_EQ(p.delta, many.data.runs.front().tangential[k].delta) << "every sample has the same overlaps";
+      EXPECT_NEAR(p.force_parallel / (40.0 * p.angle_deg * p.delta), 1.0, 1e-9) << "no bias";
+      EXPECT_TRUE(p.converged);
+    }
+  }
+}
+
 TEST(ExperimentFit, NoiseWithoutForceCrossesNoThreshold) {
   KnownLaw nothing;
   nothing.a = 0.0;
