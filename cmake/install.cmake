@@ -53,9 +53,10 @@ install(FILES ${softgrain_generated}/softgrainConfig.cmake ${softgrain_generated
   DESTINATION ${package_dir})
 
 # Scenes keep their place relative to the laws that they name.
-install(DIRECTORY pipelines/ DESTINATION ${softgrain_scenes}/pipelines FILES_MATCHING PATTERN "*.toml"
-  PATTERN report EXCLUDE PATTERN compare EXCLUDE PATTERN guide EXCLUDE PATTERN export EXCLUDE PATTERN law EXCLUDE
-  PATTERN python EXCLUDE)
+file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/pipelines/*.toml)
+install(FILES ${scenes} DESTINATION ${softgrain_scenes}/pipelines)
+install(FILES pipelines/grainlearning_example/soft_particle.toml
+  DESTINATION ${softgrain_scenes}/pipelines/grainlearning_example)
 install(DIRECTORY pipelines/python DESTINATION ${softgrain_scenes} PATTERN __pycache__ EXCLUDE PATTERN "*.egg-info" EXCLUDE)
 foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 hierarchy/law_table.toml)
   get_filename_component(folder ${law} DIRECTORY)

@@ -1,6 +1,7 @@
 // How a measurement comes to rest: the published protocol (the reference) and faster ones, behind one small interface.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,6 +10,10 @@
 #include "microsim/soft_experiment.h"
 
 namespace softgrain {
+
+/// The names a scene may give as `relaxation`, and under which series are recorded. "slow-dynamics" is the least-work
+/// protocol without a single increment by least work (increment_passes = 0), which no result may pass off as that.
+inline constexpr std::array kRelaxations{"least-work", "slow-dynamics", "damped", "published"};
 
 struct PublishedOptions {
   double approach_speed = 0.0;  ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise

@@ -18,14 +18,14 @@ GUIDE = "pipelines/guide"
 # Page: its sources, keys that go through a variable there, and words that look like keys of scenes and are none.
 PAGES = {
     "scene_pipeline.md": (
-        ["pipelines/measure_setup.cpp", "pipelines/pipeline_setup.cpp", "pipelines/macro_setup.cpp",
-         "pipelines/command_macrosim.cpp", "pipelines/macro_comparison_setup.cpp", "pipelines/named_laws.cpp",
-         "pipelines/soft_particle_command.cpp", "pipelines/command_calibrate.cpp", "pipelines/fit_settings.cpp",
-         "pipelines/kept_states.cpp"],
+        ["pipelines/kinds/soft_particle/scene.cpp", "pipelines/kinds/pipeline/scene.cpp", "pipelines/kinds/macro/scene.cpp",
+         "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
+         "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
+         "pipelines/kinds/soft_particle/kept_states.cpp"],
         {"beyond"}, {"entry", "pair", "macrosim"}),
     "scene_law_table.md": (
-        ["pipelines/law_table_setup.cpp", "pipelines/crowd_setup.cpp", "pipelines/crowd_law_fit.cpp",
-         "pipelines/hierarchy_setup.cpp"],
+        ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/crowd_scene.cpp", "pipelines/kinds/law_table/crowd_law_fit.cpp",
+         "pipelines/kinds/hierarchy/scene.cpp"],
         {"material", "packing"}, set()),
     "scene_particles.md": (
         ["microsim/particles/guards.cpp", "microsim/particles/particles_scene.cpp", "microsim/particles/scene_bodies.cpp",
@@ -33,19 +33,19 @@ PAGES = {
          "microsim/particles/scene_materials.cpp", "microsim/particles/scene_soft_laws.cpp", "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
         {"beyond"}, {"energy_unwatched", "entry"}),
     "scene_powder.md": (
-        ["pipelines/powder_setup.cpp", "pipelines/powder_variants.cpp", "pipelines/variant_name.cpp"],
+        ["pipelines/kinds/cohesive_powder/scene.cpp", "pipelines/kinds/cohesive_powder/variants.cpp", "pipelines/run/variant_name.cpp"],
         {"Phi", "z", "Phi_error", "z_error"}, set()),
-    "own_data.md": (["pipelines/calibrate_curves.cpp", "pipelines/fit_settings.cpp", "pipelines/inverse_setup.cpp"],
+    "own_data.md": (["pipelines/commands/calibrate_curves.cpp", "pipelines/law/fit_settings.cpp", "pipelines/kinds/inverse/scene.cpp"],
                     {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"}, {"kind", "title"}),
-    "scene_grain_box.md": (["pipelines/grain_box_setup.cpp", "pipelines/variant_name.cpp"], set(), set()),
+    "scene_grain_box.md": (["pipelines/kinds/grain_box/scene.cpp", "pipelines/run/variant_name.cpp"], set(), set()),
 }
 
 # Sources that read cards and tables, or a scene only to see what it is.
 NO_SCENES = {
     "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
-    "pipelines/command_check.cpp", "pipelines/macro_check.cpp", "pipelines/command_microsim.cpp", "pipelines/command_run.cpp",
-    "pipelines/calibrate_crowd.cpp", "pipelines/observables.cpp", "pipelines/powder_command.cpp",
-    "pipelines/powder_variants_command.cpp", "pipelines/scene_kind.cpp",
+    "pipelines/commands/check.cpp", "pipelines/kinds/kinds.cpp", "pipelines/kinds/macro/run.cpp", "pipelines/kinds/pipeline/run.cpp",
+    "pipelines/commands/calibrate_crowd.cpp", "pipelines/commands/observables.cpp", "pipelines/kinds/cohesive_powder/run.cpp",
+    "pipelines/kinds/cohesive_powder/variants_run.cpp",
 }
 
 READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"

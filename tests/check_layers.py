@@ -133,7 +133,7 @@ BAD = [
     ("microsim/x.cpp", '#include "macrosim/lammps/local.h"\n', "microsim/x.cpp:1:"),
     ("microsim/x.cpp", '# include "../calibrate/fit.cpp"\n', "microsim/x.cpp:1:"),
     ("calibrate/x.cpp", "#include <microsim/d.h>\n", "calibrate/x.cpp:1:"),
-    ("macrosim/x.cpp", '#include "pipelines/run_context.h"\n', "macrosim/x.cpp:1:"),
+    ("macrosim/x.cpp", '#include "pipelines/run/run_context.h"\n', "macrosim/x.cpp:1:"),
     ("pipelines/x.cpp", '#include "tests/support/t.h"\n', "pipelines/x.cpp:1:"),
     ("calibrate/x.h", "#include <ceres/problem.h>\n", "calibrate/x.h:1:"),
     ("pipelines/x.cpp", '#include "ceres/ceres.h"\n', "pipelines/x.cpp:1:"),

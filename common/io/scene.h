@@ -67,6 +67,7 @@ class SceneTable {
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback) const;
   /// One of a list of words; the error names the nearest.
   [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words) const;
+  [[nodiscard]] std::string choice(const std::string& key, const std::vector<const char*>& words) const;
   [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words,
                                    const std::string& fallback) const;
   [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit) const;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <span>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
@@ -96,7 +97,7 @@ std::string text_of(const Table& table, const std::string& key, const toml::node
 }
 
 std::string choice_of(const Table& table, const std::string& key, const toml::node& node,
-                      std::initializer_list<const char*> words) {
+                      std::span<const char* const> words) {
   std::string value = text_of(table, key, node);
   const std::vector<std::string> known(words.begin(), words.end());
   if (std::find(known.begin(), known.end(), value) != known.end()) return value;
@@ -162,12 +163,15 @@ std::string SceneTable::text(const std::string& key, const std::string& fallback
 }
 
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words) const {
+  return choice_of(*impl_, key, impl_->require(key), {words.begin(), words.size()});
+}
+std::string SceneTable::choice(const std::string& key, const std::vector<const char*>& words) const {
   return choice_of(*impl_, key, impl_->require(key), words);
 }
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words,
                                const std::string& fallback) const {
   const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : choice_of(*impl_, key, *node, words);
+  return node == nullptr ? fallback : choice_of(*impl_, key, *node, {words.begin(), words.size()});
 }
 
 Vec3 SceneTable::vector3(const std::string& key, Unit unit) const {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/lammps/points_file.h"
+#include "macrosim/lammps_run/points_file.h"
 
 namespace softgrain::test {
 

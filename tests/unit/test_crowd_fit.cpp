@@ -10,7 +10,7 @@
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
-#include "pipelines/crowd_law_fit.h"
+#include "pipelines/kinds/law_table/crowd_law_fit.h"
 #include "tests/support/synthetic_crowd.h"
 
 namespace softgrain {

@@ -7,7 +7,7 @@
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
 #include "macrosim/macro_system.h"
-#include "pipelines/named_laws.h"
+#include "pipelines/law/named_laws.h"
 #include "tests/support/synthetic_crowd.h"
 
 namespace softgrain {

@@ -5,9 +5,9 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "pipelines/crowd_cache.h"
-#include "pipelines/crowd_plan.h"
-#include "pipelines/crowd_setup.h"
+#include "pipelines/kinds/law_table/crowd_cache.h"
+#include "pipelines/kinds/law_table/crowd_plan.h"
+#include "pipelines/kinds/law_table/crowd_scene.h"
 #include "tests/support/crowd.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_law_table.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "pipelines/crowd_stage.h"
-#include "pipelines/crowd_summary.h"
+#include "pipelines/kinds/law_table/crowd_stage.h"
+#include "pipelines/kinds/law_table/crowd_summary.h"
 #include "tests/support/crowd.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_law_table.h"

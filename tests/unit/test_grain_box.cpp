@@ -10,7 +10,7 @@
 #include "microsim/grain_box/arrangement.h"
 #include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/grain_box_run.h"
-#include "pipelines/grain_box_setup.h"
+#include "pipelines/kinds/grain_box/scene.h"
 #include "tests/support/temporary_directory.h"
 
 namespace {

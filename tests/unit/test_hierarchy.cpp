@@ -8,7 +8,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
 #include "microsim/crowd_arrangements.h"
-#include "pipelines/hierarchy_level.h"
+#include "pipelines/kinds/hierarchy/level.h"
 #include "tests/support/crowd.h"
 #include "tests/support/synthetic_crowd.h"
 

@@ -1,5 +1,5 @@
 // Laws in a summary: units, intervals, and nulls where nothing is known.
-#include "pipelines/law_json.h"
+#include "pipelines/law/law_json.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "pipelines/measure_check.h"
-#include "pipelines/measure_setup.h"
+#include "pipelines/kinds/soft_particle/check.h"
+#include "pipelines/kinds/soft_particle/scene.h"
 
 namespace softgrain {
 namespace {

@@ -9,11 +9,11 @@
 #include "microsim/powder/powder_snapshots.h"
 #include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_start.h"
-#include "pipelines/powder_command.h"
-#include "pipelines/powder_setup.h"
-#include "pipelines/powder_structure.h"
-#include "pipelines/report/powder_plots.h"
-#include "pipelines/report/powder_view.h"
+#include "pipelines/kinds/cohesive_powder/report_plots.h"
+#include "pipelines/kinds/cohesive_powder/report_view.h"
+#include "pipelines/kinds/cohesive_powder/run.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
+#include "pipelines/kinds/cohesive_powder/structure.h"
 #include "pipelines/report/report.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/temporary_directory.h"
@@ -197,7 +197,7 @@ mesh = 20
   options.out = directory.file("run");
   options.quiet = true;
   testing::internal::CaptureStdout();
-  (void)run_powder_scene(Scene::load(directory.file("tiny.toml")), options);
+  (void)cohesive_powder_kind().run(Scene::load(directory.file("tiny.toml")), options);
   (void)testing::internal::GetCapturedStdout();
   write_report(options.out);
   const std::string html = read_text(options.out + "/report.html");

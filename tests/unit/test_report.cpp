@@ -13,7 +13,7 @@
 #include "pipelines/report/reference_curves.h"
 #include "pipelines/report/report.h"
 #include "pipelines/report/run_data.h"
-#include "pipelines/run_context.h"
+#include "pipelines/run/run_context.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"

@@ -8,7 +8,7 @@
 #include "common/data/law_remarks.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/sections.h"
-#include "pipelines/run_summary.h"
+#include "pipelines/run/run_summary.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"
 

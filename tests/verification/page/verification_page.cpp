@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "common/io/provenance.h"
-#include "pipelines/text_table.h"
+#include "pipelines/run/text_table.h"
 #include "tests/verification/page/page.h"
 
 namespace {

@@ -1,0 +1,16 @@
+// The bodies of a macro scene as a data file of LAMMPS.
+#pragma once
+
+#include <string>
+
+#include "macrosim/lammps_run/body_types.h"
+
+namespace softgrain::lammps {
+
+/// atom_style sphere: id (from 1, in the order of the packing) type diameter density x y z, SI; numbers read back to
+/// the same bits. Soft bodies have the density of their contents. Written line by line, atomically: memory does not
+/// grow with the scene. `title` goes to the first line. Throws FileTrouble.
+void write_data_file(const std::string& path, const std::string& title, const MacroPacking& packing,
+                     const BodyTypes& types, double density, double inner_solid_fraction);
+
+}  // namespace softgrain::lammps

@@ -1,0 +1,118 @@
+#include "macrosim/lammps_run/lammps_curve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "macrosim/curve_notes.h"
+#include "macrosim/test_protocol.h"
+
+namespace softgrain::lammps {
+
+namespace {
+
+/// As fix softgrain/relax numbers them.
+RelaxationEnd end_of(double code) {
+  if (code == 1.0) return RelaxationEnd::converged;
+  if (code == 2.0) return RelaxationEnd::capped;
+  return code == 3.0 ? RelaxationEnd::diverged : RelaxationEnd::not_run;
+}
+
+LawUse law_use(const PointRow& row) {
+  const auto whole = [&](Point p) { return static_cast<std::int64_t>(row[p]); };
+  return {whole(Point::law_asked), whole(Point::law_beyond), row[Point::law_largest], whole(Point::law_refused),
+          whole(Point::law_clamped)};
+}
+
+/// Mean of both walls across an axis, over their area [Pa].
+double wall_stress(const PointRow& row, Point low, Point high, double area) {
+  return 0.5 * (row[low] + row[high]) / area;
+}
+
+void add_stresses(const PointRow& row, MacroCurve& c) {
+  const double lx = row[Point::lx];
+  const double ly = row[Point::ly];
+  const double lz = row[Point::lz];
+  if (!(lx > 0.0 && ly > 0.0 && lz > 0.0)) throw FileTrouble("points.txt: a box without room");
+  const double x = wall_stress(row, Point::wall_xlo, Point::wall_xhi, ly * lz);
+  const double y = wall_stress(row, Point::wall_ylo, Point::wall_yhi, lx * lz);
+  const double z = wall_stress(row, Point::wall_zlo, Point::wall_zhi, lx * ly);
+  c.stress_axial.push_back(z);
+  c.stress_lateral.push_back(0.5 * (x + y));
+  c.stress_x.push_back(x);
+  c.stress_y.push_back(y);
+  c.stress_deviator.push_back(z - x);
+  c.stress_axial_contacts.push_back(row[Point::branch_zz] / (lx * ly * lz));
+}
+
+void add_point(const PointRow& row, const MacroSpec& spec, MacroCurve& c) {
+  const double strain = strain_at(spec, static_cast<std::int64_t>(c.strain.size()));
+  if (std::abs(row[Point::strain] - strain) > 1e-9)
+    throw FileTrouble(fmt::format("points.txt: point {} is at strain {}, the test has {} there: another test was run",
+                                  row[Point::number], row[Point::strain], strain));
+  c.strain.push_back(strain);
+  add_stresses(row, c);
+  const auto bodies = static_cast<double>(c.bodies);
+  c.coordination.push_back(2.0 * row[Point::contacts] / bodies);
+  c.coordination_bodies.push_back((2.0 * row[Point::contacts] - row[Point::wall_contacts]) / bodies);
+  c.fabric.push_back(row[Point::fabric]);
+  c.fabric_bodies.push_back(row[Point::fabric]);
+  c.residual.push_back(row[Point::residual]);
+  c.cost += {static_cast<std::int64_t>(row[Point::passes]), static_cast<std::int64_t>(row[Point::looked_at]),
+             row[Point::seconds]};
+  const auto passes = static_cast<std::int64_t>(row[Point::passes]);
+  note_relaxation(c, {end_of(row[Point::end]), passes, row[Point::residual]}, strain, spec.tolerance);
+  record_law_use(c, law_use(row));
+}
+
+}  // namespace
+
+bool ended_early(const PointRow& row) { return row[Point::law_refused] > 0.0 || row[Point::behind_walls] > 0.0; }
+
+void add_points(const std::vector<PointRow>& rows, const MacroSpec& spec, MacroCurve& curve) {
+  for (const PointRow& row : rows) add_point(row, spec, curve);
+  if (!rows.empty() && curve.soft > 0) note_law_use(curve, law_use(rows.back()), curve.strain.back());
+}
+
+std::vector<double> normal_forces(const std::vector<DumpedContact>& contacts) {
+  std::vector<double> forces;
+  for (const DumpedContact& c : contacts) forces.push_back(c.normal_force);
+  return forces;
+}
+
+void move_to(const DumpedBodies& bodies, MacroSystem& macro) {
+  auto& p = macro.system.particles;
+  for (std::size_t k = 0; k < bodies.x.size(); ++k) p.sphere[k].x = bodies.x[k];
+  const Vec3 middle = (bodies.low + bodies.high) * 0.5;
+  for (int wall = 0; wall < 6; ++wall) {
+    Vec3 x = middle;
+    x[wall / 2] = wall % 2 == 0 ? bodies.low[wall / 2] : bodies.high[wall / 2];
+    p.sphere[static_cast<std::size_t>(macro.box.plane[static_cast<std::size_t>(wall)])].x = x;
+  }
+}
+
+std::vector<SnapshotContact> snapshot_contacts_of(const std::vector<DumpedContact>& contacts,
+                                                  const MacroSystem& macro) {
+  const auto& sphere = macro.system.particles.sphere;
+  std::vector<SnapshotContact> out;
+  for (const DumpedContact& c : contacts) {
+    SnapshotContact s;
+    s.i = c.i;
+    s.j = c.j;
+    s.from = sphere[static_cast<std::size_t>(c.i)].x;
+    const double length = norm(c.branch);
+    const double r = sphere[static_cast<std::size_t>(c.i)].r;
+    const bool wall = c.j >= macro.bodies;
+    const double overlap = r + (wall ? 0.0 : sphere[static_cast<std::size_t>(c.j)].r) - length;
+    s.point = s.from - c.branch * ((r - 0.5 * overlap) / length);
+    s.to = wall ? s.point : s.from - c.branch;
+    s.force = c.force;
+    s.normal_force = c.normal_force;
+    out.push_back(s);
+  }
+  return out;
+}
+
+}  // namespace softgrain::lammps

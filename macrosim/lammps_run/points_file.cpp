@@ -1,0 +1,109 @@
+#include "macrosim/lammps_run/points_file.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "macrosim/lammps_run/input_script.h"
+
+namespace softgrain::lammps {
+
+namespace {
+
+std::string head_line(const std::string& key) { return fmt::format("{}, scene {}", kPointsHead, key); }
+
+/// Lines that end with a newline: what follows the last one was cut short.
+std::vector<std::string> whole_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+std::vector<std::string> lines_of(const std::string& path) {
+  return std::filesystem::exists(path) ? whole_lines(read_text(path)) : std::vector<std::string>{};
+}
+
+PointRow parse(const std::string& line, const std::string& where) {
+  PointRow row;
+  std::istringstream words(line);
+  std::string word;
+  std::size_t k = 0;
+  while (words >> word) {
+    double x = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(x))
+      throw FileTrouble(where + ": '" + word + "' is no finite number");
+    if (k < row.values.size()) row.values[k] = x;
+    ++k;
+  }
+  if (k != row.values.size())
+    throw FileTrouble(fmt::format("{}: {} numbers, {} expected", where, k, row.values.size()));
+  return row;
+}
+
+/// Takes a row in, in the place of one of the same number.
+void take(const PointRow& row, const std::string& where, std::vector<PointRow>& rows) {
+  const double number = row[Point::number];
+  if (!(number >= 0.0) || number != std::floor(number) || number > static_cast<double>(rows.size()))
+    throw FileTrouble(fmt::format("{}: point {} follows {} points", where, number, rows.size()));
+  rows.resize(static_cast<std::size_t>(number));
+  rows.push_back(row);
+}
+
+}  // namespace
+
+std::vector<PointRow> read_points(const std::string& directory, const std::string& key) {
+  const std::string path = directory + "/" + kPointsFile;
+  const auto lines = lines_of(path);
+  const auto copy = lines_of(directory + "/" + kPointsCopy);
+  if (lines.empty()) return {};
+  if (!lines[0].starts_with(kPointsHead)) throw FileTrouble(path + ": not a table of points of softgrain");
+  if (lines[0] != head_line(key)) throw BadInput(path + ": belongs to another scene, seed or law than this run");
+  const std::size_t both = std::min(lines.size(), copy.size());
+  if (lines.size() > copy.size() + 1 || copy.size() > lines.size() + 1)
+    throw FileTrouble(fmt::format("{}: has {} lines, its copy {} has {}: one of them is damaged", path, lines.size(),
+                                  kPointsCopy, copy.size()));
+  std::vector<PointRow> rows;
+  for (std::size_t k = 0; k < both; ++k) {
+    const std::string where = fmt::format("{}, line {}", path, k + 1);
+    if (lines[k] != copy[k])
+      throw FileTrouble(fmt::format("{}: differs from its copy {}: one of them is damaged", where, kPointsCopy));
+    if (!lines[k].starts_with('#')) take(parse(lines[k], where), where, rows);
+  }
+  return rows;
+}
+
+void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows) {
+  std::string text = head_line(key) + "\n#";
+  for (const PointColumn& c : kPointColumns) text += std::string(" ") + c.name;
+  text += "\n";
+  for (const PointRow& row : rows) {
+    text += fmt::format("{}", row.values[0]);
+    for (std::size_t k = 1; k < row.values.size(); ++k) text += fmt::format(" {}", row.values[k]);
+    text += "\n";
+  }
+  write_text_atomic(directory + "/" + kPointsCopy, text);
+  write_text_atomic(directory + "/" + kPointsFile, text);
+}
+
+std::int64_t count_points(const std::string& directory) {
+  std::ifstream in(directory + "/" + kPointsFile);
+  std::set<std::string> numbers;
+  std::string line;
+  while (std::getline(in, line))
+    if (!line.empty() && line[0] >= '0' && line[0] <= '9') numbers.insert(line.substr(0, line.find(' ')));
+  return static_cast<std::int64_t>(numbers.size());
+}
+
+}  // namespace softgrain::lammps

@@ -1,0 +1,31 @@
+// points.txt, as the script of LAMMPS leaves it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "macrosim/lammps_run/points_columns.h"
+
+namespace softgrain::lammps {
+
+/// One recorded point.
+struct PointRow {
+  std::array<double, static_cast<std::size_t>(Point::count)> values{};
+
+  [[nodiscard]] double operator[](Point p) const { return values[static_cast<std::size_t>(p)]; }
+};
+
+/// The rows that stand in both tables, points.txt and its copy, from point 0 on without gap; a last row that is in one
+/// of them alone or cut short was being written when the run ended, and is left out. A row that comes again replaces
+/// the earlier one and those after it: a run that went on from there. Nothing without tables. Throws FileTrouble when
+/// the tables differ or hold what the script does not write, BadInput when they belong to another scene (`key`).
+std::vector<PointRow> read_points(const std::string& directory, const std::string& key);
+
+/// Both tables with these rows and no others, for a run that goes on after the last of them.
+void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows);
+
+/// Rows so far, for progress: lines that begin with a number, nothing tested.
+std::int64_t count_points(const std::string& directory);
+
+}  // namespace softgrain::lammps

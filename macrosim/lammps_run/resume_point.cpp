@@ -1,0 +1,52 @@
+#include "macrosim/lammps_run/resume_point.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "common/io/text_file.h"
+#include "macrosim/lammps_run/input_script.h"
+#include "macrosim/lammps_run/lammps_curve.h"
+#include "macrosim/lammps_run/points_file.h"
+
+namespace softgrain::lammps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The last round of a compaction whose restart file is there, and the step that comes next.
+std::vector<std::string> last_round(const std::string& directory) {
+  if (fs::exists(directory + "/" + kTouchingFile)) return {"-var", "prepared", "1"};
+  if (!fs::exists(directory + "/" + kCompactionFile)) return {};
+  std::istringstream in(read_text(directory + "/" + kCompactionFile));
+  std::vector<std::string> settings;
+  for (std::string line; std::getline(in, line) && !in.eof();) {
+    std::istringstream words(line);
+    std::int64_t round = 0;
+    std::string step;
+    if (words >> round >> step && fs::exists(fmt::format("{}/restart.compaction.{}", directory, round)))
+      settings = {"-var", "round_done", std::to_string(round), "-var", "first_step", step};
+  }
+  return settings;
+}
+
+}  // namespace
+
+ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points) {
+  auto rows = read_points(directory, key);
+  const auto there = [&](const std::string& file) { return fs::exists(directory + "/" + file); };
+  const bool early = !rows.empty() && ended_early(rows.back());
+  if (early || static_cast<std::int64_t>(rows.size()) >= points) {
+    if (there(kEndFile)) return {true, {}};
+    if (early) rows.pop_back();  // the script would go on beyond it
+  }
+  while (!rows.empty() && !there(fmt::format("restart.{}", rows.size() - 1))) rows.pop_back();
+  fs::remove(directory + "/" + kEndFile);
+  if (rows.empty()) return {false, last_round(directory)};
+  write_points(directory, key, rows);
+  return {false, {"-var", "from", std::to_string(rows.size() - 1)}};
+}
+
+}  // namespace softgrain::lammps

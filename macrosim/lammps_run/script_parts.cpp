@@ -1,0 +1,206 @@
+#include "macrosim/lammps_run/script_parts.h"
+
+#include <fmt/format.h>
+
+#include "macrosim/lammps_run/points_columns.h"
+#include "macrosim/test_protocol.h"
+
+namespace softgrain::lammps {
+
+namespace {
+
+constexpr std::size_t kRowWidth = 90;
+
+/// All columns of a row as one print command, over several lines.
+std::string row_command() {
+  std::string text = "print \"${point}";
+  std::size_t width = text.size();
+  for (std::size_t k = 1; k < kPointColumns.size(); ++k) {
+    const std::string cell = fmt::format(" $({}:%.17g)", kPointColumns[k].expression);
+    if (width + cell.size() > kRowWidth) {
+      text += " &\n ";
+      width = 1;
+    }
+    text += cell;
+    width += cell.size();
+  }
+  return text + " &\n  \" append ${file} screen no\n";
+}
+
+/// Nominal strain `end` in `total` equal increments: the box after increment n over that before.
+std::string nominal_factor(const std::string& end, const std::string& total) {
+  return fmt::format("(1-{0}*v_n/{1})/ &\n  (1-{0}*(v_n-1)/{1})", end, total);
+}
+
+std::string variable(const std::string& name, const std::string& formula) {
+  return fmt::format("variable {} equal \"{}\"\n", name, formula);
+}
+
+/// As is_snapshot() has it.
+std::string kept_states() {
+  return variable("share", "(v_states-1)/v_last") +
+         variable("kept", "floor(v_point*v_share) > floor((v_point-1)*v_share)");
+}
+
+/// Commands that dump bodies and contacts at the next `run 0`, each between `before` and `after`.
+std::string dumps(const std::string& point, const std::string& before, const std::string& after) {
+  const std::string commands[] = {
+      "dump bodies all custom 1 " + bodies_file(point) + " id type radius x y z",
+      "dump_modify bodies sort id format float %.17g",
+      "dump contacts all local 1 " + contacts_file(point) + " c_contacts[*]",
+      "dump_modify contacts format float %.17g",
+  };
+  std::string text;
+  for (const std::string& command : commands) text += before + command + after;
+  return text;
+}
+
+/// Names of the columns as a comment of points.txt, over several lines of the script.
+std::string column_names() {
+  std::string text;
+  std::string line = "#";
+  for (const PointColumn& c : kPointColumns) {
+    if (line.size() + std::string(c.name).size() > kRowWidth) {
+      text += line + " &\n";
+      line = " ";
+    }
+    line += std::string(" ") + c.name;
+  }
+  return text + line;
+}
+
+std::string heads(const ScriptScene& s) {
+  return section("Heads of the tables of points") + fmt::format(
+                                                        "variable file index {} {}\n"
+                                                        "label head\n"
+                                                        "if \"${{from}} < 0\" then &\n"
+                                                        "  'print \"{}, scene {}\" file ${{file}} screen no' &\n"
+                                                        "  'print \"{}\" append ${{file}} screen no'\n"
+                                                        "next file\njump SELF head\n",
+                                                        kPointsFile, kPointsCopy, kPointsHead, s.key, column_names());
+}
+
+}  // namespace
+
+std::string section(const std::string& title) {
+  std::string line = "\n# ---- " + title + " ";
+  line.resize(std::max<std::size_t>(line.size(), 79), '-');
+  return line + "\n";
+}
+
+std::string setting(const std::string& name, const std::string& value, const std::string& meaning) {
+  return fmt::format("variable {:<13} index {:<22} # {}\n", name, value, meaning);
+}
+
+std::string watching() {
+  return "compute      contacts all softgrain/contacts\n"
+         "thermo_style custom step atoms c_contacts[1] c_contacts[3] c_contacts[11]\n"
+         "thermo_modify lost error\n"
+         "thermo       1000\n"
+         "variable     clock equal cpu\n"
+         "fix          clock all ave/time 1 1 1 v_clock\n";
+}
+
+std::string test_variables(const ScriptScene& s) {
+  const std::string total = "(v_steps*v_increments)";
+  std::string text = section("The test: strain of the box in increment n of all");
+  text += variable("n", "(v_point-1)*v_increments + v_k");
+  if (s.spec.test == "shear") {
+    const std::string grow = "exp(v_strain_end/" + total + ")";
+    const std::string shrink = "exp(-v_strain_end/" + total + ")";
+    if (preload_points(s.spec) > 0) {
+      const std::string loads = "(v_preload_steps*v_increments)";
+      text += "# all axes to the nominal strain of the preload; then z shortens, x lengthens\n";
+      text += variable("loading", "v_n <= " + loads);
+      text += variable("load", nominal_factor("v_preload", loads));
+      text += variable("fx", "v_loading*v_load + (1-v_loading)*" + grow);
+      text += variable("fy", "v_loading*v_load + (1-v_loading)");
+      text += variable("fz", "v_loading*v_load + (1-v_loading)*" + shrink);
+      text += variable("since", "v_point - v_preload_steps");
+      text += variable("strain",
+                       "(v_since<0)*v_preload*v_since/v_preload_steps &\n  + (v_since>0)*v_strain_end*v_since/v_steps");
+      return text + variable("last", "v_preload_steps + v_steps") + kept_states();
+    }
+    text += "# z shortens, x lengthens by equal logarithmic strains\n";
+    text += variable("fx", grow) + variable("fy", "1") + variable("fz", shrink);
+  } else {
+    const bool all = s.spec.test == "isotropic";
+    text += all ? "# all axes shorten\n" : "# z shortens, x and y stand\n";
+    text += variable("fz", nominal_factor("v_strain_end", total));
+    text += variable("fx", all ? "v_fz" : "1") + variable("fy", all ? "v_fz" : "1");
+  }
+  return text + variable("strain", "v_strain_end*v_point/v_steps") + variable("last", "v_steps") + kept_states();
+}
+
+namespace {
+
+/// From the state before to rest under the new strain.
+std::string one_increment() {
+  return "if \"${point} > 0\" then &\n"
+         "  \"change_box all x scale $(v_fx:%.17g) y scale $(v_fy:%.17g) &\n"
+         "   z scale $(v_fz:%.17g) remap units box\"\n"
+         "run ${max_passes} post no\n"
+         "variable end equal $(f_relax[3])\n"
+         "variable residual equal $(f_relax[2]:%.17g)\n"
+         "variable mean_force equal $(f_relax[4]:%.17g)\n"
+         "variable passes equal $(v_passes+f_relax[1]+1:%.17g)\n"
+         "variable looked_at equal $(v_looked_at+f_relax[6]-v_looked_before:%.17g)\n"
+         "variable looked_before equal $(f_relax[6]:%.17g)\n"
+         "variable seconds equal $(v_seconds+f_clock:%.17g)\n";
+}
+
+}  // namespace
+
+std::string test_loop(const ScriptScene& s) {
+  std::string text = heads(s) + section("The test: points, and increments between them");
+  text +=
+      "if \"${from} >= ${last}\" then \"jump SELF end\"\n"
+      "variable point loop $(v_from+1) ${last}\n"
+      "label point\n"
+      "variable passes equal 0\n"
+      "variable looked_at equal 0\n"
+      "variable seconds equal 0\n"
+      "# point 0 is the start at rest: relaxed once, without strain\n"
+      "variable k loop $((v_point==0)+(v_point>0)*v_increments)\n"
+      "label increment\n"
+      "# the box is strained, bodies move with it, springs of contacts go along; then all\n"
+      "# come to rest\n";
+  text += one_increment();
+  text +=
+      fmt::format("if \"${{end}} == 3\" then &\n  'print \"${{point}} $(v_strain:%.17g)\" file {}' &\n  \"quit 0\"\n",
+                  kDivergedFile);
+  return text + "next k\njump SELF increment\n";
+}
+
+std::string recording() {
+  std::string states = dumps("${point}", "  \"", "\" &\n");
+  states.erase(states.size() - 3, 2);  // nothing follows the last command
+  return section("A recorded point: restart file, state, row") +
+         "write_restart restart.${point}\n"
+         "if \"${point} > 1\" then \"shell rm restart.$(v_point-2)\"\n"
+         "# states are kept evenly spread over the points\n"
+         "if \"${kept} > 0\" then &\n" +
+         states +
+         "# forces and sums of the state at rest\n"
+         "run 0 post no\n"
+         "variable looked_before equal $(f_relax[6]:%.17g)\n"
+         "if \"${kept} > 0\" then \"undump bodies\" \"undump contacts\"\n"
+         "# twice: a table that is cut short or damaged differs from its copy\n"
+         "variable file index " +
+         kPointsFile + " " + kPointsCopy + "\nlabel row\n" + row_command() +
+         "next file\njump SELF row\n"
+         "# a law that is asked beyond its range and does not allow it, or a body behind a wall,\n"
+         "# ends the test\n"
+         "if \"$(c_contacts[15]) > 0 || $(c_contacts[17]) > 0\" then \"jump SELF end\"\n"
+         "next point\njump SELF point\n";
+}
+
+std::string the_end() {
+  return section("The last state") + "label end\n" + dumps("end", "", "\n") +
+         "run 0 post no\n"
+         "undump bodies\n"
+         "undump contacts\n" +
+         fmt::format("print \"both files of the last state are complete\" file {} screen no\n", kEndFile);
+}
+
+}  // namespace softgrain::lammps

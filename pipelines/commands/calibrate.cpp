@@ -1,0 +1,111 @@
+// softgrain calibrate DATA...: fits the contact laws to measurements; writes law.toml, law.h5 and summary.json.
+// Files of crowd measurements: see calibrate_crowd.h; of experiments (CSV): see calibrate_curves.h.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "calibrate/merge_measurements.h"
+#include "calibrate/threshold_fit.h"
+#include "pipelines/commands/calibrate_crowd.h"
+#include "pipelines/commands/calibrate_curves.h"
+#include "pipelines/law/fit_settings.h"
+#include "pipelines/law/law_json.h"
+#include "pipelines/run/run_context.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+/// Settings of the command, all through --set; no scene file is needed.
+FitOptions read_options(const SceneTable& t) {
+  FitOptions o = read_fit_settings(t);
+  o.relaxation = t.text("relaxation", o.relaxation);
+  t.finish();
+  return o;
+}
+
+Measurements load_all(const std::vector<std::string>& files) {
+  if (files.empty()) throw BadInput("calibrate: no measurement file given (softgrain calibrate DATA.h5...)");
+  std::vector<Measurements> parts;
+  for (const std::string& file : files) parts.push_back(load_measurements(file));
+  return merge_measurements(parts, files);
+}
+
+json reports_json(const std::vector<FitReport>& reports) {
+  json out = json::object();
+  for (const FitReport& r : reports)
+    out[to_string(r.law.kind)] = {{"fit", r.fit_message},
+                                  {"iterations", r.iterations},
+                                  {"normal_points_left_out", r.normal_left_out},
+                                  {"tangential_points_left_out", r.tangential_left_out},
+                                  {"replicates", r.replicates.size()},
+                                  {"replicates_failed", r.replicates_failed},
+                                  {"replicates_at_bound", r.replicates_at_bound}};
+  return out;
+}
+
+json options_json(const FitOptions& o) {
+  return {{"delta_low", o.delta_low},
+          {"delta_high", std::isfinite(o.delta_high) ? json(o.delta_high) : json(nullptr)},
+          {"initial_angle_deg", o.initial_angle_deg},
+          {"secant_angle_deg", o.secant_angle_deg},
+          {"noise_floor", o.noise_floor},
+          {"scatter_floor", o.scatter_floor},
+          {"min_packings", o.min_packings},
+          {"replicates", o.replicates},
+          {"seed", o.seed}};
+}
+
+std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
+  const PairLaw& law = report.law;
+  std::string line = fmt::format("{}: {}", to_string(law.kind), law.status);
+  if (!law.reason.empty()) line += " - " + law.reason;
+  if (law.normal.b.value <= 0.0) return line + "\n";
+  const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
+  const ThresholdPowerLaw& n = law.normal;
+  line += fmt::format(
+      "\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta = {:.4g} "
+      "[{:.4g}, {:.4g}]",
+      newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value,
+      n.delta.value, n.delta.low, n.delta.high);
+  const std::vector<double> at{law.delta_max};
+  const Band band = law_band(report, LawCurve::normal, at).front();
+  line +=
+      fmt::format("\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]; {} packings, {} points, {} left out (not converged)\n",
+                  band.delta, newton * band.value, newton * band.low, newton * band.high, law.packings, law.points,
+                  report.normal_left_out + report.tangential_left_out);
+  return line;
+}
+
+}  // namespace
+
+ExitStatus command_calibrate(const CommonOptions& options) {
+  if (are_curve_files(options)) return calibrate_curves(options);
+  if (are_crowd_files(options.inputs)) return calibrate_crowd(options);
+  const Scene settings = Scene::parse("", "calibrate", options.overrides);
+  FitOptions fit = read_options(settings.root());
+  const Measurements data = load_all(options.inputs);
+  const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
+  fit.seed = run.seed(fit.seed);
+  std::vector<FitReport> reports;
+  const LawCard card = calibrate(data, fit, &reports);
+  save_card(card, run.path("law.toml"), run.provenance(settings, fit.seed));
+
+  const bool good =
+      std::all_of(card.pairs.begin(), card.pairs.end(), [](const PairLaw& law) { return law.status == "good"; });
+  std::string people;
+  for (const FitReport& report : reports) people += people_line(report, card.spec);
+  people += "law card: " + run.path("law.toml") + "\n";
+  json summary = {{"status", good ? "good" : "not usable"}, {"inputs", options.inputs},
+                  {"relaxation", card.relaxation},          {"laws", laws_json(card)},
+                  {"fits", reports_json(reports)},          {"options", options_json(fit)}};
+  run.finish(std::move(summary), people);
+  return good ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,100 @@
+#include "pipelines/commands/calibrate_crowd.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/contact/crowd_table_file.h"
+#include "common/io/hdf5_file.h"
+#include "pipelines/kinds/law_table/crowd_law_fit.h"
+#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Settings {
+  CrowdFitOptions fit;
+  double target = CrowdSetup{}.target;
+};
+
+Settings read_settings(const SceneTable& t) {
+  Settings s;
+  s.fit = read_crowd_fit(t);
+  s.target = t.number("target", Unit::none, Range{0.0, 1.0, true, false}, s.target);
+  t.finish();
+  return s;
+}
+
+/// The report draws the first measurement beside its laws; it may lie in the run directory already.
+void keep_for_report(const CrowdMeasurements& data, const std::string& source, const RunContext& context,
+                     const Provenance& provenance) {
+  const std::string path = context.path("crowd.h5");
+  if (!fs::exists(path) || !fs::equivalent(path, source)) save_crowd(data, path, provenance);
+}
+
+nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurements>& data, const Settings& settings,
+                         const CommonOptions& options, const RunContext& context, const Provenance& provenance) {
+  nlohmann::json summary;
+  summary["status"] = fit.usable ? "good" : "not usable";
+  summary["inputs"] = options.inputs;
+  summary["crowd"] = crowd_json(data.front(), settings.target);
+  summary["entries"] = entries_json(fit.table);
+  summary["options"] = {{"discrepancy", settings.fit.discrepancy},
+                        {"replicates", settings.fit.replicates},
+                        {"min_packings", settings.fit.min_packings},
+                        {"largest_error", settings.fit.largest_error},
+                        {"target", settings.target},
+                        {"seed", settings.fit.seed}};
+  summary["remarks"] = fit.remarks;
+  for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5", "report.html"})
+    summary["files"][file] = context.path(file);
+  summary["provenance"] = provenance_json(provenance);
+  return summary;
+}
+
+std::string people_text(const CrowdLawFit& fit, const RunContext& context) {
+  std::string text = entries_text(fit.table);
+  for (const std::string& remark : fit.remarks) text += "note: " + remark + "\n";
+  return text + fmt::format("law table: {}; report: {}", context.path("law_table.toml"), context.path("report.html"));
+}
+
+}  // namespace
+
+bool are_crowd_files(const std::vector<std::string>& files) {
+  const auto crowds = std::count_if(files.begin(), files.end(),
+                                    [](const std::string& file) { return h5::open_file(file).has("configurations"); });
+  if (crowds != 0 && crowds != static_cast<std::ptrdiff_t>(files.size()))
+    throw BadInput("calibrate: measurements of one contact and of several at once need a run each: " + files.front() +
+                   " and others");
+  return crowds != 0;
+}
+
+ExitStatus calibrate_crowd(const CommonOptions& options) {
+  const Scene scene = Scene::parse("", "calibrate", options.overrides);
+  Settings settings = read_settings(scene.root());
+  std::vector<CrowdMeasurements> data;
+  for (const std::string& file : options.inputs) data.push_back(load_crowd(file));
+  const RunContext context(options, "calibrate", fs::path(options.inputs.front()).stem().string());
+  settings.fit.seed = context.seed(settings.fit.seed);
+  const Provenance provenance = context.provenance(scene, settings.fit.seed);
+  CrowdLawFit fit;
+  context.guard([&] {
+    for (const CrowdMeasurements& d : data) {
+      add_entry(fit, d, settings.fit, settings.target);
+      if (fit.table.entries.size() == 1) fit.table.entries.front().main = true;
+    }
+  });
+  save_law_table(fit.table, context.path("law_table.toml"), provenance);
+  keep_for_report(data.front(), options.inputs.front(), context, provenance);
+  context.finish(summarise(fit, data, settings, options, context, provenance), people_text(fit, context));
+  write_report(context.directory());
+  return fit.usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain

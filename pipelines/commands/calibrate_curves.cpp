@@ -1,0 +1,217 @@
+#include "pipelines/commands/calibrate_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "calibrate/experiment_fit.h"
+#include "pipelines/law/fit_settings.h"
+#include "pipelines/law/law_json.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+bool is_curve_file(const std::string& path) {
+  const std::string end = std::filesystem::path(path).extension().string();
+  return end == ".csv" || end == ".tsv" || end == ".txt" || end == ".dat";
+}
+
+struct Settings {
+  FitOptions fit;
+  ForceCurveOptions curves;
+  bool mirror = false;
+};
+
+/// An option of the command line with a unit.
+std::optional<double> quantity(const char* option, const std::string& text, Unit unit) {
+  if (text.empty()) return std::nullopt;
+  double value = 0.0;
+  try {
+    value = parse_quantity(text, unit);
+  } catch (const BadInput& e) {
+    throw BadInput(fmt::format("{} {}: {}", option, text, e.what()));
+  }
+  if (!(value > 0.0)) throw BadInput(fmt::format("{} {}: must be above 0", option, text));
+  return value;
+}
+
+Settings read_settings(const SceneTable& t, const CommonOptions& options) {
+  Settings s;
+  s.fit = read_fit_settings(t);
+  s.curves.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
+  s.mirror = t.flag("mirror", false);
+  s.curves.initial_angle_deg = s.fit.initial_angle_deg;
+  s.curves.secant_angle_deg = s.fit.secant_angle_deg;
+  t.finish();
+  if (!options.kind.empty()) {
+    if (options.kind != "soft-solid" && options.kind != "soft-soft")
+      throw BadInput("--kind " + options.kind + ": must be soft-solid or soft-soft");
+    s.curves.kind = options.kind == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+  }
+  s.curves.shell_radius = quantity("--radius", options.radius, Unit::length);
+  s.curves.youngs_modulus = quantity("--modulus", options.modulus, Unit::pressure);
+  return s;
+}
+
+json error_or_null(double error) { return std::isfinite(error) ? json(error) : json(nullptr); }
+
+/// More points than these in all are not drawn, nor more samples: a page must open, and nobody sees them one by one.
+constexpr std::size_t kMostDrawn = 4000;
+constexpr std::size_t kMostSamples = 100;
+
+/// At most `most` of n points: of every even stretch the lowest and the highest force, and both ends, so that what lies
+/// far from the law is among them.
+std::vector<std::size_t> drawn_points(const std::vector<ForcePoint>& points, std::size_t most) {
+  const std::size_t n = points.size();
+  std::vector<std::size_t> out;
+  if (n <= most) {
+    for (std::size_t k = 0; k < n; ++k) out.push_back(k);
+    return out;
+  }
+  const std::size_t stretches = std::max<std::size_t>(most / 2, 2) - 1;
+  out.push_back(0);
+  for (std::size_t s = 0; s < stretches; ++s) {
+    const auto begin = points.begin() + static_cast<std::ptrdiff_t>(s * n / stretches);
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>((s + 1) * n / stretches);
+    const auto [low, high] =
+        std::minmax_element(begin, end, [](const ForcePoint& a, const ForcePoint& b) { return a.force < b.force; });
+    for (const auto at : {std::min(low, high), std::max(low, high)})
+      if (const auto k = static_cast<std::size_t>(at - points.begin()); k > out.back()) out.push_back(k);
+  }
+  if (out.back() != n - 1) out.push_back(n - 1);
+  return out;
+}
+
+json sample_json(const ForceCurves& kind, const ForceCurve& s, std::size_t most) {
+  json one = {{"kind", to_string(kind.kind)}, {"name", s.name}, {"delta", json::array()}, {"force", json::array()}};
+  for (const std::size_t k : drawn_points(s.normal, most)) {
+    const ForcePoint& p = s.normal[k];
+    one["delta"].push_back(p.delta);
+    one["force"].push_back(p.force);
+    if (kind.has_errors) one["error"].push_back(error_or_null(p.error));
+  }
+  one["points"] = s.normal.size();
+  one["tangential_points"] = s.tangential.size();
+  return one;
+}
+
+/// The measured points as the report draws them; each sample says how many it has.
+json samples_json(const std::vector<ForceCurves>& curves) {
+  std::size_t samples = 0;
+  for (const ForceCurves& kind : curves) samples += kind.samples.size();
+  const std::size_t drawn = std::min(samples, kMostSamples);
+  json out = json::array();
+  std::size_t number = 0;
+  for (const ForceCurves& kind : curves)
+    for (const ForceCurve& s : kind.samples) {
+      const bool chosen = number * drawn / samples != (number + 1) * drawn / samples;  // evenly spread
+      ++number;
+      if (chosen) out.push_back(sample_json(kind, s, kMostDrawn / drawn));
+    }
+  return out;
+}
+
+/// How many of the measured points the summary and the report hold, when not all.
+void note_thinned(const std::vector<ForceCurves>& curves, const json& drawn, std::vector<std::string>& remarks) {
+  std::size_t points = 0;
+  std::size_t samples = 0;
+  std::size_t kept = 0;
+  for (const ForceCurves& kind : curves) {
+    samples += kind.samples.size();
+    for (const ForceCurve& s : kind.samples) points += s.normal.size();
+  }
+  for (const json& one : drawn) kept += one["delta"].size();
+  if (kept < points)
+    remarks.push_back(
+        fmt::format("{} of {} points (of {} of {} samples) are drawn and in the summary; the fit is to all", kept,
+                    points, drawn.size(), samples));
+}
+
+std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
+  const PairLaw& law = report.law;
+  std::string line = fmt::format("{}: {}", to_string(law.kind), law.status);
+  if (!law.reason.empty()) line += " - " + law.reason;
+  if (law.normal.b.value <= 0.0) return line + "\n";
+  const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
+  const ThresholdPowerLaw& n = law.normal;
+  const std::vector<double> ends{law.delta_max};
+  const Band band = law_band(report, LawCurve::normal, ends).front();
+  return line +
+         fmt::format(
+             "\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta "
+             "= {:.4g} [{:.4g}, {:.4g}]\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]\n",
+             newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value,
+             n.delta.value, n.delta.low, n.delta.high, band.delta, newton * band.value, newton * band.low,
+             newton * band.high);
+}
+
+/// Macro scenes ask for both kinds of contact.
+void add_missing_kind(const ExperimentFit& fit, std::vector<std::string>& remarks) {
+  if (fit.card.pairs.size() > 1) return;
+  const bool solid = fit.card.pairs.front().kind == PairKind::soft_solid;
+  remarks.push_back(
+      fmt::format("a macro scene needs the law of {} contacts too: give their measurements as another file, or take "
+                  "them from these "
+                  "by symmetry with --set mirror=true",
+                  solid ? "soft-soft" : "soft-solid"));
+}
+
+}  // namespace
+
+bool are_curve_files(const CommonOptions& options) {
+  const auto curves = std::count_if(options.inputs.begin(), options.inputs.end(), is_curve_file);
+  if (curves != 0 && curves != static_cast<std::ptrdiff_t>(options.inputs.size()))
+    throw BadInput("calibrate: tables of an experiment and files of this program need a run each");
+  if (curves == 0)
+    for (const auto& [option, value] : {std::pair{"--kind", &options.kind}, std::pair{"--radius", &options.radius},
+                                        std::pair{"--modulus", &options.modulus}})
+      if (!value->empty())
+        throw BadInput(fmt::format("calibrate: {} is for tables of an experiment (.csv, .tsv, .txt, .dat)", option));
+  return curves != 0;
+}
+
+ExitStatus calibrate_curves(const CommonOptions& options) {
+  const Scene scene = Scene::parse("", "calibrate", options.overrides);
+  Settings settings = read_settings(scene.root(), options);
+  const std::vector<ForceCurves> curves = read_force_curve_files(options.inputs, settings.curves);
+  const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
+  settings.fit.seed = run.seed(settings.fit.seed);
+  const ExperimentFit fit = fit_experiment(curves, settings.fit, settings.mirror);
+  const Provenance provenance = run.provenance(scene, settings.fit.seed);
+  save_card(fit.card, run.path("law.toml"), provenance);
+
+  std::vector<std::string> remarks = fit.remarks;
+  add_missing_kind(fit, remarks);
+  bool good = true;  // of what was measured; a law by symmetry says itself that it was not
+  std::string people;
+  for (const FitReport& r : fit.reports) {
+    good = good && (r.law.status == "good" || r.law.points == 0);
+    if (r.law.status != "good" && r.law.points > 0)
+      remarks.insert(remarks.begin(), fmt::format("{} law: {}: {}", to_string(r.law.kind), r.law.status, r.law.reason));
+    people += force_line(r, fit.card.spec);
+  }
+  json samples = samples_json(curves);
+  note_thinned(curves, samples, remarks);
+  for (const std::string& remark : remarks) people += "note: " + remark + "\n";
+  people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
+  json summary = {{"status", good ? "good" : "not usable"},
+                  {"inputs", options.inputs},
+                  {"relaxation", fit.card.relaxation},
+                  {"intervals", fit.card.intervals},
+                  {"laws", laws_json(fit.card)},
+                  {"experiment", std::move(samples)},
+                  {"remarks", remarks},
+                  {"provenance", provenance_json(provenance)}};
+  run.finish(std::move(summary), people);
+  write_report(run.directory());
+  return good ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,63 @@
+// softgrain check: is this file sound, and what follows from it. Runs nothing that takes more than a moment.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "pipelines/commands/result_check.h"
+#include "pipelines/kinds/kinds.h"
+#include "pipelines/law/law_check.h"
+#include "pipelines/run/run_context.h"
+
+namespace softgrain {
+
+namespace {
+
+void check_scene(const std::string& path, const CommonOptions& options, Findings& out) {
+  const Scene scene = Scene::load(path, options.overrides);
+  const SceneKind& kind = kind_of(scene);
+  out.add("kind", kind.name, std::string("scene of kind ") + kind.name);
+  if (!options.law.empty() && !kind.takes_law) throw BadInput("check: --law goes with scenes of kind \"macro\"");
+  kind.check(scene, options.law, out);
+}
+
+/// Laws and scenes are both TOML; cards and tables of laws have a schema at the top.
+bool holds_laws(const std::string& path) { return Scene::load(path).root().has("schema"); }
+
+void check_file(const std::string& path, const CommonOptions& options, Findings& out) {
+  std::error_code ignored;
+  const std::string extension = std::filesystem::path(path).extension();
+  if (std::filesystem::is_directory(path, ignored))
+    check_directory(path, out);
+  else if (extension == ".h5")
+    check_data(path, out);
+  else if (extension == ".json")
+    check_summary(path, out);
+  else if (holds_laws(path))
+    check_laws(path, out);
+  else
+    check_scene(path, options, out);
+}
+
+}  // namespace
+
+ExitStatus command_check(const CommonOptions& options) {
+  if (options.inputs.size() != 1) throw BadInput("check: give one file");
+  const std::string& path = options.inputs[0];
+  Findings out;
+  check_file(path, options, out);
+  out.close_times();
+  out.facts["status"] = "good";
+  out.facts["warnings"] = out.warnings();
+  if (options.json) {
+    write_standard_output(out.facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    return ExitStatus::good;
+  }
+  std::string text = path + ": sound\n" + out.lines;
+  for (const std::string& warning : out.warnings()) text += "  mind: " + warning + "\n";
+  write_standard_output(text);
+  return ExitStatus::good;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,407 @@
+// softgrain law: what a fitted law says, for people and for other programs. Writes no run directory.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/io/scene.h"
+#include "common/io/text_file.h"
+#include "pipelines/commands/law_options.h"
+#include "pipelines/law/law_difference.h"
+#include "pipelines/law/law_json.h"
+#include "pipelines/law/law_show.h"
+#include "pipelines/law/pair_table.h"
+#include "pipelines/law/terminal_plot.h"
+#include "pipelines/law/value_output.h"
+
+namespace softgrain {
+
+namespace {
+
+using law::LawFile;
+using law::ValueTable;
+using law::ValueUnits;
+using nlohmann::json;
+
+void print(const std::string& text) { write_standard_output(text); }
+void print(const json& object) { print(object.dump(2, ' ', false, json::error_handler_t::replace) + "\n"); }
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void refuse(const LawOptions& o, std::initializer_list<const char*> names, const std::string& why) {
+  for (const char* name : names)
+    if (has(o.given, name)) throw BadInput("law " + o.action + ": " + name + " " + why);
+}
+
+/// What goes with cards does not go with tables, and the reverse.
+void require_fitting_options(const LawOptions& o, const LawFile& file) {
+  const bool pairs = o.format == "lammps-table";
+  if (file.card)
+    refuse(o, {"--form", "--arrangement", "--partner", "--ratio", "--shallow", "--solid-fraction", "--range"},
+           "goes with a law table; " + file.path + " is a law card, which knows pairs alone");
+  else if (!pairs)
+    refuse(o, {"--kind"},
+           "goes with a law card; " + file.path + " is a law table: give --partner plane, solid or soft");
+  if (pairs)
+    refuse(o,
+           {"--delta", "--from", "--to-delta", "--steps", "--arrangement", "--partner", "--ratio", "--shallow", "--kt"},
+           "does not go with --to lammps-table, which has --kind, --ratios, --rows and --delta-max");
+  else
+    refuse(o, {"--ratios", "--rows", "--delta-max"}, "goes with --to lammps-table");
+  if (o.arrangement != "beside-five") refuse(o, {"--shallow"}, "goes with --arrangement beside-five");
+  if (file.table && o.partner == "plane")
+    refuse(o, {"--ratio"}, "goes with --partner solid or soft: a plane has no radius");
+}
+
+double positive(const LawOptions& o, const char* name, double value, double high) {
+  if (std::isfinite(value) && value > 0.0 && value <= high) return value;
+  throw BadInput(fmt::format("law {}: {} {}: must be above 0 and at most {}", o.action, name, value, high));
+}
+
+double overlap(const LawOptions& o, const char* name, double value) {
+  if (std::isfinite(value) && value >= 0.0 && value < 2.0) return value;
+  throw BadInput(fmt::format("law {}: {} {}: must be at least 0 and below 2", o.action, name, value));
+}
+
+std::size_t whole(const LawOptions& o, const char* name, std::int64_t value, std::int64_t low) {
+  constexpr std::int64_t kMost = 1000000;
+  if (value >= low && value <= kMost) return static_cast<std::size_t>(value);
+  throw BadInput(fmt::format("law {}: {} {}: must be a whole number from {} to {}", o.action, name, value, low, kMost));
+}
+
+/// Delta of every value: those given, or evenly spread up to the end of the measured range.
+std::vector<double> overlaps(const LawOptions& o, double end, std::int64_t steps) {
+  const char* last = o.action == "eval" ? "--to" : "--to-delta";
+  if (has(o.given, "--delta")) {
+    refuse(o, {"--from", last, "--steps"}, "does not go with --delta");
+    for (const double d : o.deltas) (void)overlap(o, "--delta", d);
+    return o.deltas;
+  }
+  const double low = overlap(o, "--from", o.from);
+  const double high = has(o.given, last) ? overlap(o, last, o.to_delta) : end;
+  if (!(low < high)) throw BadInput(fmt::format("law {}: --from {} must be below {} {}", o.action, low, last, high));
+  return law::even(low, high, whole(o, "--steps", has(o.given, "--steps") ? o.steps : steps, 2));
+}
+
+std::optional<Beyond> beyond_of(const LawOptions& o) {
+  if (o.beyond.empty()) return std::nullopt;
+  if (o.beyond == "error") return Beyond::error;
+  return o.beyond == "clamp" ? Beyond::clamp : Beyond::extrapolate;
+}
+
+RangePolicy range_of(const LawOptions& o) { return o.range == "clamp" ? RangePolicy::clamp : RangePolicy::reject; }
+
+std::optional<double> fraction_of(const LawOptions& o) {
+  if (!has(o.given, "--solid-fraction")) return std::nullopt;
+  return positive(o, "--solid-fraction", o.solid_fraction, 1.0);
+}
+
+std::vector<PairKind> kinds_of(const LawOptions& o) {
+  std::vector<PairKind> kinds;
+  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft})
+    if (has(o.kinds, to_string(kind))) kinds.push_back(kind);
+  return kinds;
+}
+
+const SoftParticleSpec& spec_of(const LawFile& file) {
+  return file.card ? file.card->spec : main_entry(*file.table).spec;
+}
+
+double quantity(const LawOptions& o, const char* name, const std::string& text, Unit unit) {
+  try {
+    const double value = parse_quantity(text, unit);
+    if (std::isfinite(value) && value > 0.0) return value;
+  } catch (const BadInput& e) {
+    throw BadInput(fmt::format("law {}: {} \"{}\": {}", o.action, name, text, e.what()));
+  }
+  throw BadInput(fmt::format("law {}: {} \"{}\": must be above 0", o.action, name, text));
+}
+
+ValueUnits units_of(const LawOptions& o, const LawFile& file) {
+  ValueUnits units;
+  units.si = !o.modulus.empty() || !o.radius.empty() || o.format == "lammps-table";
+  units.modulus = spec_of(file).youngs_modulus;
+  units.radius = spec_of(file).shell_radius;
+  if (!o.modulus.empty()) units.modulus = quantity(o, "--E", o.modulus, Unit::pressure);
+  if (!o.radius.empty()) units.radius = quantity(o, "--radius", o.radius, Unit::length);
+  return units;
+}
+
+bool usable(const PairLaw& pair) { return pair.status == "good" || pair.status == "underdetermined"; }
+
+std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+  std::vector<ValueTable> out;
+  const std::vector<PairKind> wanted = kinds_of(o);
+  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+    const PairLaw* pair = file.card->find(kind);
+    const bool named = has(o.kinds, to_string(kind));
+    if (wanted.empty() ? pair == nullptr || !usable(*pair) : !named) continue;
+    const auto values = [&](const std::vector<double>& at) {
+      return law::card_values(*file.card, kind, at, beyond_of(o));
+    };
+    if (pair == nullptr) (void)values({});  // says what is wrong
+    ValueTable t;
+    t.law = to_string(kind);
+    t.status = pair->status;
+    t.remark = pair->reason;
+    t.beyond = beyond_of(o).value_or(pair->beyond);
+    t.use_secant = o.tangential == "secant";
+    t.points = values(overlaps(o, pair->delta_max, steps));
+    out.push_back(std::move(t));
+  }
+  if (out.empty()) throw NotUsable(file.path + ": the card has no usable law (softgrain law show says why)");
+  return out;
+}
+
+PartnerKind partner_of(const LawOptions& o) {
+  if (o.partner == "plane") return PartnerKind::plane;
+  return o.partner == "solid" ? PartnerKind::solid : PartnerKind::soft;
+}
+
+std::string question_text(const law::CrowdQuestion& q, const law::CrowdAnswer& a) {
+  const std::string size = q.partner == PartnerKind::plane ? "" : fmt::format(" of ratio {:g}", q.ratio);
+  return fmt::format("{} {}{}, {} law at solid fraction {:.4f}", q.arrangement, to_string(q.partner), size, a.form,
+                     a.entry.solid_fraction);
+}
+
+/// What a colleague would add to numbers of a table: how far off the law is, and where it was not measured.
+std::string table_remark(const law::CrowdAnswer& a) {
+  const CrowdLaw& form = *a.entry.find(a.form);
+  std::string text = std::isnan(form.error_cross)
+                         ? std::string("fitted to one loading of planes, so that nothing could be left out")
+                         : fmt::format("off by {:.1f} % leaving one loading of planes out", 100.0 * form.error_cross);
+  return a.remark.empty() ? text : text + "; " + a.remark;
+}
+
+/// Which law of a table is meant.
+law::CrowdQuestion fraction_question(const LawOptions& o) {
+  law::CrowdQuestion q;
+  q.form = o.form;
+  q.solid_fraction = fraction_of(o);
+  q.range = range_of(o);
+  q.beyond = beyond_of(o);
+  return q;
+}
+
+ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+  law::CrowdQuestion q = fraction_question(o);
+  q.arrangement = o.arrangement;
+  q.partner = partner_of(o);
+  q.ratio = positive(o, "--ratio", o.ratio, 1e6);
+  q.shallow = positive(o, "--shallow", o.shallow, 1.0);
+  const double end = law::crowd_values(*file.table, q, {}).overlap_max;
+  const law::CrowdAnswer answer = law::crowd_values(*file.table, q, overlaps(o, end, steps));
+  ValueTable t;
+  t.law = question_text(q, answer);
+  t.status = answer.entry.find(answer.form)->status;
+  t.remark = table_remark(answer);
+  t.beyond = q.beyond.value_or(answer.entry.beyond);
+  t.points = answer.points;
+  return t;
+}
+
+std::vector<ValueTable> value_tables(const LawOptions& o, const LawFile& file, std::int64_t steps) {
+  return file.card ? card_tables(o, file, steps) : std::vector<ValueTable>{table_values(o, file, steps)};
+}
+
+json head_json(const LawOptions& o, const LawFile& file) {
+  return {{"command", "law " + o.action},
+          {"status", "good"},
+          {"file", file.path},
+          {"kind", file.card ? "law card" : "law table"},
+          {"provenance",
+           {{"version", file.origin.version},
+            {"commit", file.origin.commit},
+            {"seed", file.origin.seed},
+            {"command", file.origin.command}}}};
+}
+
+json parameters_json(const LawFile& file) { return file.card ? laws_json(*file.card) : law_table_json(*file.table); }
+
+/// Refused values are no result to go on with.
+ExitStatus status_of(const std::vector<ValueTable>& tables) {
+  for (const ValueTable& t : tables)
+    for (const law::LawPoint& p : t.points)
+      if (p.refused) return ExitStatus::not_usable;
+  return ExitStatus::good;
+}
+
+const char* status_word(ExitStatus status) { return status == ExitStatus::good ? "good" : "not usable"; }
+
+json values_json(const std::vector<ValueTable>& tables, const ValueUnits& units) {
+  json out = json::array();
+  for (const ValueTable& t : tables) out.push_back(law::values_json(t, units));
+  return out;
+}
+
+json units_json(const ValueUnits& units) {
+  return {{"force", law::force_unit(units)},
+          {"stiffness", law::stiffness_unit(units)},
+          {"E", units.modulus},
+          {"R", units.radius}};
+}
+
+ExitStatus eval(const LawOptions& o) {
+  const LawFile file = law::load_law_file(o.files.front());
+  require_fitting_options(o, file);
+  const ValueUnits units = units_of(o, file);
+  const std::vector<ValueTable> tables = value_tables(o, file, o.steps);
+  const ExitStatus status = status_of(tables);
+  if (o.json) {
+    json out = head_json(o, file);
+    out["status"] = status_word(status);
+    out["units"] = units_json(units);
+    out["laws"] = values_json(tables, units);
+    print(out);
+    return status;
+  }
+  std::string text;
+  for (const ValueTable& t : tables) text += (text.empty() ? "" : "\n") + law::values_text(t, units);
+  print(text);
+  return status;
+}
+
+law::PairTableChoice pair_choice(const LawOptions& o, const ValueUnits& units) {
+  law::PairTableChoice c;
+  c.kinds = kinds_of(o);
+  c.ratios = o.ratios;
+  for (const double ratio : c.ratios) (void)positive(o, "--ratios", ratio, 1e6);
+  c.rows = whole(o, "--rows", o.rows, 2);
+  c.modulus = units.modulus;
+  c.radius = units.radius;
+  if (has(o.given, "--delta-max")) {
+    c.delta_max = overlap(o, "--delta-max", o.delta_max);
+    (void)positive(o, "--delta-max", o.delta_max, 2.0);
+  }
+  c.beyond = beyond_of(o);
+  c.form = o.form;
+  c.solid_fraction = fraction_of(o);
+  c.range = range_of(o);
+  return c;
+}
+
+std::string lammps_file(const LawOptions& o, const LawFile& file, const ValueUnits& units) {
+  const std::vector<law::PairTable> tables = law::pair_tables(file, pair_choice(o, units));
+  std::vector<std::string> head{"soft particles of softgrain, from " + file.path,
+                                fmt::format("E = {:.6g} Pa; normal forces without friction and damping; of two bodies "
+                                            "alone:",
+                                            units.modulus),
+                                "a soft particle with several neighbours is stiffer than a pair potential can say"};
+  if (file.table) {
+    const law::CrowdAnswer a = law::crowd_values(*file.table, fraction_question(o), {});
+    head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", a.form, a.entry.solid_fraction,
+                               a.remark.empty() ? "" : " (" + a.remark + ")"));
+  }
+  const std::string origin = law::origin_text(file.origin);
+  if (!origin.empty()) head.insert(head.begin() + 1, origin);
+  head.push_back(
+      fmt::format("use: pair_style table linear {}; pair_coeff I J FILE {}", o.rows, tables.front().keyword));
+  return law::lammps_text(tables, head);
+}
+
+json full_json(const LawOptions& o, const LawFile& file, const std::vector<ValueTable>& tables,
+               const ValueUnits& units) {
+  json out = head_json(o, file);
+  out["status"] = status_word(status_of(tables));
+  out["parameters"] = parameters_json(file);
+  out["units"] = units_json(units);
+  out["laws"] = values_json(tables, units);
+  return out;
+}
+
+ExitStatus export_law(const LawOptions& o) {
+  if (o.format.empty()) throw BadInput("law export: give --to lammps-table, csv or json");
+  const LawFile file = law::load_law_file(o.files.front());
+  require_fitting_options(o, file);
+  const ValueUnits units = units_of(o, file);
+  constexpr std::int64_t kSteps = 101;
+  ExitStatus status = ExitStatus::good;
+  std::string text;
+  if (o.format == "lammps-table") {
+    text = lammps_file(o, file, units);
+  } else {
+    const std::vector<ValueTable> tables = value_tables(o, file, kSteps);
+    status = status_of(tables);
+    text = o.format == "csv"
+               ? law::values_csv(tables, units)
+               : full_json(o, file, tables, units).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  }
+  if (!o.out.empty()) write_text_atomic(o.out, text);
+  if (o.json) {
+    json summary = head_json(o, file);
+    summary["status"] = status_word(status);
+    summary["format"] = o.format;
+    summary[o.out.empty() ? "text" : "written"] = o.out.empty() ? text : o.out;
+    print(summary);
+  } else {
+    print(o.out.empty() ? text : "written: " + o.out + "\n");
+  }
+  return status;
+}
+
+json row_json(const law::DifferenceRow& r) {
+  const auto interval = [](const law::Quantity& q) {
+    return q.interval ? json{q.interval->low, q.interval->high} : json(nullptr);
+  };
+  return {{"delta", r.delta},
+          {"a", r.a.value},
+          {"a_interval", interval(r.a)},
+          {"b", r.b.value},
+          {"b_interval", interval(r.b)},
+          {"relative", std::isfinite(r.relative) ? json(r.relative) : json(nullptr)},
+          {"within", r.known ? json(r.within) : json(nullptr)}};
+}
+
+ExitStatus compare(const LawOptions& o, const LawFile& a, const LawFile& b) {
+  const std::vector<law::LawDifference> differences = law::law_differences(a, b);
+  if (!o.json) {
+    print(law::differences_text(a, b, differences, law::terminal_is_utf8()));
+    return ExitStatus::good;
+  }
+  json out{{"command", "law show"}, {"status", "good"}, {"files", {a.path, b.path}}, {"differences", json::array()}};
+  for (const law::LawDifference& d : differences) {
+    json one{{"pair", d.pair},
+             {"quantity", d.quantity},
+             {"delta_range", {d.low, d.high}},
+             {"root_mean_square", d.root_mean_square},
+             {"largest", d.largest},
+             {"values", json::array()}};
+    for (const law::DifferenceRow& r : d.rows) one["values"].push_back(row_json(r));
+    out["differences"].push_back(std::move(one));
+  }
+  print(out);
+  return ExitStatus::good;
+}
+
+ExitStatus show(const LawOptions& o) {
+  const LawFile file = law::load_law_file(o.files.front());
+  if (o.files.size() == 2) return compare(o, file, law::load_law_file(o.files.back()));
+  if (!o.json) {
+    print(law::law_text(file, law::terminal_is_utf8()));
+    return ExitStatus::good;
+  }
+  json out = head_json(o, file);
+  out["parameters"] = parameters_json(file);
+  print(out);
+  return ExitStatus::good;
+}
+
+void require_files(const LawOptions& o, std::size_t most) {
+  if (!o.files.empty() && o.files.size() <= most) return;
+  throw BadInput(fmt::format("law {} needs {} LAW, {} given (see softgrain law {} --help)", o.action,
+                             most == 1 ? "1" : "1 or 2", o.files.size(), o.action));
+}
+
+}  // namespace
+
+ExitStatus command_law(const LawOptions& options) {
+  if (options.action == "none") throw BadInput("law: give show, eval or export and a law (see softgrain law --help)");
+  require_files(options, options.action == "show" ? 2 : 1);
+  if (options.action == "show") return show(options);
+  return options.action == "eval" ? eval(options) : export_law(options);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,111 @@
+#include "pipelines/commands/law_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "microsim/crowd_arrangements.h"
+
+namespace softgrain {
+
+namespace {
+
+void add_files(CLI::App& app, LawOptions& o, const char* help) {
+  app.add_option("LAW", o.files, help)->option_text(" ");
+  app.add_flag("--json", o.json, "One JSON object on standard output");
+}
+
+void add_overlaps(CLI::App& app, LawOptions& o, const std::string& to) {
+  app.add_option("--delta", o.deltas, "Overlaps Delta = h/R (crowds: h/Rs)")->option_text("D1 D2 ...");
+  app.add_option("--from", o.from, "First overlap; default 0")->option_text("D");
+  app.add_option(to, o.to_delta, "Last overlap; default the end of the measured range")->option_text("D");
+  app.add_option("--steps", o.steps, "Overlaps from first to last")->option_text("N");
+}
+
+void add_law_choices(CLI::App& app, LawOptions& o) {
+  app.add_option("--kind", o.kinds, "Cards and pair tables: kind of pair; default all")
+      ->option_text("soft-solid|soft-soft")
+      ->check(CLI::IsMember({"soft-solid", "soft-soft"}).description(""));
+  app.add_option("--beyond", o.beyond, "Beyond the measured range, instead of what the law says")
+      ->option_text("error|clamp|extrapolate")
+      ->check(CLI::IsMember({"error", "clamp", "extrapolate"}).description(""));
+  app.add_option("--E", o.modulus, "Young's modulus, \"0.5 MPa\" or in Pa; default as measured. Asks for SI units")
+      ->option_text("E");
+  app.add_option("--radius", o.radius, "Radius of the soft particle, \"16 mm\" or in m; as measured. Asks for SI units")
+      ->option_text("R");
+  app.add_option("--form", o.form, "Tables: form of the law; default the best")
+      ->option_text("pair|bag|directional")
+      ->check(CLI::IsMember({"pair", "bag", "directional"}).description(""));
+  app.add_option("--solid-fraction", o.solid_fraction, "Tables: of the soft particle; default that of the main entry")
+      ->option_text("PHI");
+  app.add_option("--range", o.range, "Tables: what to do with solid fractions that were not measured")
+      ->option_text("reject|clamp")
+      ->check(CLI::IsMember({"reject", "clamp"}).description(""));
+}
+
+void add_neighbours(CLI::App& app, LawOptions& o) {
+  app.add_option("--arrangement", o.arrangement, "Tables: neighbours; all are pressed in by Delta")
+      ->option_text("NAME")
+      ->check(CLI::IsMember(std::vector<std::string>(kArrangements.begin(), kArrangements.end())).description(""));
+  app.add_option("--partner", o.partner, "Tables: kind of neighbours; default plane")
+      ->option_text("plane|solid|soft")
+      ->check(CLI::IsMember({"plane", "solid", "soft"}).description(""));
+  app.add_option("--ratio", o.ratio, "Tables: radius of the neighbours over that of the soft particle; default 1")
+      ->option_text("Q");
+  app.add_option("--shallow", o.shallow, "Tables: overlap of the first of beside-five over that of the others")
+      ->option_text("S");
+  app.add_option("--kt", o.tangential, "Tangential stiffness in the terminal's table; default initial")
+      ->option_text("initial|secant")
+      ->check(CLI::IsMember({"initial", "secant"}).description(""));
+}
+
+void add_export(CLI::App& app, LawOptions& o) {
+  app.add_option("--to", o.format, "Format")
+      ->option_text("lammps-table|csv|json")
+      ->check(CLI::IsMember({"lammps-table", "csv", "json"}).description(""));
+  app.add_option("--out", o.out, "File to write; default standard output")->option_text("FILE");
+  app.add_option("--ratios", o.ratios, "lammps-table: radii of the other body over that of the soft one; default 1")
+      ->option_text("Q1 Q2 ...");
+  app.add_option("--rows", o.rows, "lammps-table: rows of a table; default 1001")->option_text("N");
+  app.add_option("--delta-max", o.delta_max, "lammps-table: deepest overlap; default the end of the measured range")
+      ->option_text("D");
+}
+
+/// Names of the options that stand on the command line.
+std::vector<std::string> given_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0) names.push_back(option->get_name());
+  return names;
+}
+
+}  // namespace
+
+void add_law_command(CLI::App& app, LawOptions& options) {
+  CLI::App* law = app.add_subcommand("law", "Shows, evaluates and converts law cards and law tables");
+  law->require_subcommand(0, 1);
+  law->parse_complete_callback([law, &options] {
+    if (law->get_subcommands().empty()) options.action = "none";
+  });
+  const auto add = [&](const char* name, const char* does) {
+    CLI::App* sub = law->add_subcommand(name, does);
+    sub->parse_complete_callback([sub, name, &options] {
+      options.action = name;
+      options.given = given_options(*sub);
+    });
+    return sub;
+  };
+  CLI::App* show = add("show", "Parameters, intervals, range and a plot; of two laws: how they differ");
+  add_files(*show, options, "card (law.toml), table (law_table.toml) or run directory; two: A and B");
+  CLI::App* eval = add("eval", "Forces and stiffnesses at given overlaps, with 95 % intervals");
+  add_files(*eval, options, "card, table or run directory");
+  add_overlaps(*eval, options, "--to");
+  add_law_choices(*eval, options);
+  add_neighbours(*eval, options);
+  CLI::App* converted = add("export", "A pair table of LAMMPS, CSV or JSON");
+  add_files(*converted, options, "card, table or run directory");
+  add_overlaps(*converted, options, "--to-delta");
+  add_law_choices(*converted, options);
+  add_neighbours(*converted, options);
+  add_export(*converted, options);
+}
+
+}  // namespace softgrain

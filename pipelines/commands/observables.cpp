@@ -1,0 +1,149 @@
+#include "pipelines/commands/observables.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "common/core/error.h"
+#include "common/data/macro_result.h"
+#include "common/data/measurements.h"
+#include "common/io/scene.h"
+#include "common/io/text_file.h"
+#include "pipelines/compare/statistics.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Named columns of equal length.
+using Columns = std::vector<std::pair<std::string, std::vector<double>>>;
+
+std::string text_of(const Columns& columns) {
+  std::string text = "#";
+  for (const auto& [name, values] : columns) text += " " + name;
+  text += "\n";
+  for (std::size_t row = 0; row < columns.front().second.size(); ++row) {
+    for (const auto& column : columns)
+      text += fmt::format("{}{:.10g}", &column == columns.data() ? "" : " ", column.second[row]);
+    text += "\n";
+  }
+  return text;
+}
+
+/// Overlaps, means and standard errors of the first relaxation of a kind.
+struct ForceColumns {
+  std::vector<double> delta;
+  std::vector<double> mean;
+  std::vector<double> error;
+};
+
+ForceColumns forces_of(const Measurements& data, PairKind kind) {
+  std::map<double, std::vector<double>> values;
+  std::string relaxation;
+  for (const PackingRun& run : data.runs) {
+    if (run.kind != kind) continue;
+    if (relaxation.empty()) relaxation = run.relaxation;
+    if (run.relaxation != relaxation) continue;
+    for (const NormalPoint& p : run.normal) {
+      auto& list = values[p.delta];  // an overlap without a converged point keeps its row: all runs have equal lengths
+      if (p.converged) list.push_back(p.force);
+    }
+  }
+  ForceColumns out;
+  for (const auto& [delta, list] : values) {
+    const MeanError m = list.empty() ? MeanError{} : mean_error(list);
+    out.delta.push_back(delta);
+    out.mean.push_back(list.empty() ? std::nan("") : m.mean);
+    out.error.push_back(list.empty() ? std::nan("") : m.error);
+  }
+  return out;
+}
+
+Columns force_columns(const Measurements& data) {
+  ForceColumns first = forces_of(data, PairKind::soft_solid);
+  ForceColumns second = forces_of(data, PairKind::soft_soft);
+  if (first.delta.empty()) std::swap(first, second);
+  if (first.delta.empty()) throw BadInput("observables: the run measured no force");
+  Columns out{{"Delta", first.delta}, {"Fn", first.mean}, {"Fn_error", first.error}};
+  if (second.delta == first.delta)
+    out.insert(out.end(), {{"Fn_soft_soft", second.mean}, {"Fn_soft_soft_error", second.error}});
+  return out;
+}
+
+Columns macro_columns(const std::vector<MacroCurve>& curves) {
+  std::string law;
+  for (const MacroCurve& c : curves)
+    if (law.empty() && c.engine != "shelled" && c.engine != "free") law = c.engine;
+  Columns out{{"strain", {}}, {"stress", {}}, {"lateral_stress", {}}, {"coordination", {}}};
+  double samples = 0.0;
+  for (const MacroCurve& c : curves) {
+    if (c.engine != law) continue;
+    samples += 1.0;
+    const std::vector<double>* const parts[] = {&c.strain, &c.stress_axial, &c.stress_lateral, &c.coordination};
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      std::vector<double>& sum = out[k].second;
+      sum.resize(std::max(sum.size(), c.strain.size()), 0.0);
+      for (std::size_t row = 0; row < parts[k]->size(); ++row) sum[row] += (*parts[k])[row];
+    }
+  }
+  if (samples == 0.0 || out.front().second.empty()) throw BadInput("observables: the macro run recorded nothing");
+  for (auto& [name, values] : out)
+    for (double& x : values) x /= samples;
+  return out;
+}
+
+/// "key=value" with a value that is a plain number.
+bool plain_number(const std::string& override_text, std::string& key, double& value) {
+  const std::size_t mark = override_text.find('=');
+  if (mark == std::string::npos) return false;
+  key = override_text.substr(0, mark);
+  const std::string text = override_text.substr(mark + 1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+Columns parameter_columns(const std::vector<std::string>& overrides) {
+  std::map<std::string, int> times;
+  const auto last = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
+  Columns out;
+  for (const std::string& text : overrides) {
+    std::string key;
+    double value = 0.0;
+    if (!plain_number(text, key, value)) continue;
+    ++times[last(key)];
+    out.push_back({key, {value}});
+  }
+  for (auto& [key, value] : out)
+    if (times[last(key)] == 1) key = last(key);
+  return out;
+}
+
+}  // namespace
+
+void require_observables(const std::string& scene, const std::vector<std::string>& overrides) {
+  const std::string kind = Scene::load(scene, overrides).root().text("kind");
+  const std::set<std::string> known{"pipeline", "soft-particle", "macro"};
+  if (known.count(kind) == 0)
+    throw BadInput(scene + ": --observables: a scene of kind \"" + kind +
+                   "\" has none; kinds pipeline, soft-particle and macro do");
+}
+
+void write_observables(const std::string& directory, const std::vector<std::string>& overrides,
+                       const std::string& prefix) {
+  const std::string macro = directory + "/macro.h5";
+  const Columns observed = std::filesystem::exists(macro)
+                               ? macro_columns(load_macro(macro))
+                               : force_columns(load_measurements(directory + "/measurements.h5"));
+  const Columns parameters = parameter_columns(overrides);
+  const std::string folder = std::filesystem::path(prefix).parent_path().string();
+  if (!folder.empty()) require_writable_directory(folder);
+  if (!parameters.empty()) write_text_atomic(prefix + "_param.txt", text_of(parameters));
+  write_text_atomic(prefix + "_sim.txt", text_of(observed));
+}
+
+}  // namespace softgrain

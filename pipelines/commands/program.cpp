@@ -1,0 +1,272 @@
+// The command line: what there is to ask for, and how errors become messages and exit statuses.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <limits>
+#include <new>
+#include <sstream>
+#include <system_error>
+
+#include "common/io/interrupt.h"
+#include "common/io/text_file.h"
+#include "pipelines/commands/law_options.h"
+#include "pipelines/commands/observables.h"
+#include "pipelines/run/run_context.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr int kMostThreads = 4096;
+constexpr std::int64_t kMostRanks = 1'000'000;
+
+struct Command {
+  const char* name;
+  const char* does;
+  const char* inputs;  ///< name of the positional arguments in the help
+  const char* inputs_help;
+  int least;
+  int most;
+  bool saves;  ///< at a signal it saves what it has done; others end at once
+  ExitStatus (*function)(const CommonOptions&);
+};
+
+constexpr std::array<Command, 8> kCommands{{
+    {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
+     1, 1, true, command_run},
+    {"microsim",
+     "One particle-scale scene: soft particles packed and measured, particles and walls, a grain box, a cohesive "
+     "powder",
+     "SCENE.toml", "scene to run", 1, 1, true, command_microsim},
+    {"calibrate", "Fits contact laws to measurements and writes the law card and its table", "DATA",
+     "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, command_calibrate},
+    {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
+     true, command_macrosim},
+    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN",
+     "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, false, command_compare},
+    {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, false,
+     command_report},
+    {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
+     "file or run directory to check", 1, 1, false, command_check},
+    {"export", "Writes the states of a run for ParaView, OVITO and others; default RUN/export-FORM", "RUN",
+     "run directory, or one of its files with states", 1, 1, false, command_export},
+}};
+
+constexpr const char* kFooter =
+    "Exit status: 0 good; 2 bad input; 3 ran but the result is not usable; 4 file or disk trouble; 130 interrupted.\n"
+    "Numbers in files are SI, or text with a unit: radius = \"16 mm\".";
+
+/// The command line as one text that a shell would read back.
+std::string joined_command_line(int argc, char** argv) {
+  std::string text;
+  for (int k = 0; k < argc; ++k) {
+    const std::string word = argv[k];
+    const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`*?[]{}()<>|&;#~!") == std::string::npos;
+    text += (k > 0 ? " " : "") + (plain ? word : "'" + word + "'");
+  }
+  return text;
+}
+
+CLI::Validator whole_number(const char* option, std::int64_t low, std::int64_t high) {
+  return {[=](std::string& text) -> std::string {
+            std::int64_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool number = error == std::errc{} && end == text.data() + text.size();
+            if (number && value >= low && value <= high) return "";
+            const std::string limit = high == std::numeric_limits<std::int64_t>::max()
+                                          ? fmt::format("at least {}", low)
+                                          : fmt::format("from {} to {}", low, high);
+            return fmt::format("{} {}: must be a whole number, {}", option, text, limit);
+          },
+          "", "whole number"};
+}
+
+void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::string& observables) {
+  app.add_option(command.inputs, o.inputs, command.inputs_help)->option_text(" ");
+  app.add_option(
+         "--out", o.out,
+         "Run directory; default results/<name of the first input>, with _run behind where that holds kept results")
+      ->option_text("DIR");
+  app.add_option("--threads", o.threads, "Threads to use; default all cores. Results do not depend on it")
+      ->option_text("N")
+      ->transform(whole_number("--threads", 1, kMostThreads));
+  app.add_option("--seed", o.seed, "Seed of the random numbers; default that of the scene")
+      ->option_text("N")
+      ->transform(whole_number("--seed", 0, std::numeric_limits<std::int64_t>::max()));
+  app.add_option("--set", o.overrides, "Replaces a key of the scene: --set packing.beta=2.5 (repeatable)")
+      ->option_text("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  app.add_flag("--resume", o.resume, "Continues from the checkpoint in the run directory");
+  app.add_option("--checkpoint-every", o.checkpoint_seconds,
+                 "Seconds between two checkpoints within a recorded point; default 5, 0: whenever possible")
+      ->option_text("S")
+      ->check(CLI::Range(0.0, 1e9).description(""));
+  app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
+  app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
+  if (command.function == command_run)
+    app.add_option("--law-cache", o.law_cache,
+                   "Keeps finished measurements of law tables here and takes from here what is known already")
+        ->option_text("DIR");
+  if (command.function == command_compare)
+    app.add_flag("--different", o.different,
+                 "Compares runs that differ in bodies, materials, tests or packings too, and lists in what");
+  if (command.function == command_export)
+    app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump or csv")->option_text("FORM");
+  if (command.function == command_run || command.function == command_microsim || command.function == command_macrosim)
+    app.add_option("--observables", observables,
+                   "Writes what was observed to PREFIX_sim.txt and the numbers set by --set to PREFIX_param.txt, as "
+                   "GrainLearning reads them; run directory PREFIX_run unless --out is given")
+        ->option_text("PREFIX");
+  if (command.function == command_calibrate) {
+    app.add_option("--kind", o.kind, "CSV: which contact was measured, soft-solid or soft-soft")->option_text("KIND");
+    app.add_option("--radius", o.radius, "CSV: radius Rs of the soft particle, e.g. \"16 mm\"")->option_text("LENGTH");
+    app.add_option("--modulus", o.modulus, "CSV: Young's modulus E of its grains, e.g. \"0.5 MPa\"")
+        ->option_text("PRESSURE");
+  }
+  if (command.function == command_macrosim) {
+    app.add_option("--engine", o.engine, "What runs the scene with the law: softgrain (default) or lammps")
+        ->option_text("NAME");
+    app.add_option("--ranks", o.ranks, "With --engine lammps: MPI ranks; default 1")
+        ->option_text("N")
+        ->transform(whole_number("--ranks", 1, kMostRanks));
+    app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
+  }
+  if (command.function == command_macrosim || command.function == command_check)
+    app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
+        ->option_text("LAW.toml");
+}
+
+/// Counted here and not by the parser, so that an unknown option is named before what follows it.
+void require_inputs(const Command& command, const CommonOptions& options) {
+  const auto given = static_cast<int>(options.inputs.size());
+  if (given >= command.least && given <= command.most) return;
+  const std::string wanted = command.least == command.most ? fmt::format("{}", command.least)
+                             : given < command.least       ? fmt::format("at least {}", command.least)
+                                                           : fmt::format("at most {}", command.most);
+  throw BadInput(fmt::format("{} needs {} {}, {} given (see softgrain {} --help)", command.name, wanted, command.inputs,
+                             given, command.name));
+}
+
+/// A first word that is no command: names the nearest.
+void require_command(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  std::string list;
+  for (const Command& c : kCommands) {
+    names.emplace_back(c.name);
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  names.emplace_back("law");
+  list += ", law";
+  const std::string word = argv[1];
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::string near = nearest_word(word, names);
+  throw BadInput("unknown command '" + word + "'; " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                 "commands are " + list);
+}
+
+/// Parses and runs. CLI::ParseError (help, version, mistakes) and Error go up.
+ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
+  CommonOptions options;
+  options.command_line = joined_command_line(argc, argv);
+  std::string observables;
+  const Command* chosen = nullptr;
+  for (const Command& command : kCommands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.does);
+    sub->footer(kFooter);
+    add_options(*sub, command, options, observables);
+    sub->callback([&chosen, &command] { chosen = &command; });
+    sub->parse_complete_callback([&options, sub] { options.seed_given = sub->count("--seed") > 0; });
+  }
+  LawOptions law;
+  add_law_command(app, law);
+  require_command(argc, argv);
+  app.parse(argc, argv);
+  // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
+  std::signal(SIGXFSZ, SIG_IGN);
+  end_at_once_on_signals();
+  if (!law.action.empty()) return command_law(law);
+  if (chosen == nullptr) {
+    std::fputs(app.help().c_str(), stderr);
+    return ExitStatus::bad_input;
+  }
+  require_inputs(*chosen, options);
+  if (!observables.empty()) {
+    require_observables(options.inputs.front(), options.overrides);
+    if (options.out.empty()) options.out = observables + "_run";
+  }
+  if (!options.out.empty()) require_writable_directory(options.out);
+  if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
+  if (chosen->saves) install_interrupt_handler();
+  const ExitStatus status = chosen->function(options);
+  if (!observables.empty()) write_observables(options.out, options.overrides, observables);
+  return status;
+}
+
+int complain(ExitStatus status, const std::string& message) {
+  // Not by fmt: it throws where standard error cannot be written, and the status is what is left to tell then.
+  (void)std::fputs(("softgrain: " + message + "\n").c_str(), stderr);
+  return static_cast<int>(status);
+}
+
+/// Help and version go to standard output with status 0, mistakes to standard error with status 2.
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
+  if (e.get_exit_code() == 0) {
+    std::ostringstream text;
+    (void)app.exit(e, text, text);
+    write_standard_output(text.str());
+    return static_cast<int>(ExitStatus::good);
+  }
+  std::string message = e.what();
+  // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
+  for (const std::string option : {"--threads", "--seed", "--ranks"})
+    if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
+  return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)");
+}
+
+int parse_and_run_or_explain(CLI::App& app, int argc, char** argv) {
+  try {
+    return static_cast<int>(parse_and_run(app, argc, argv));
+  } catch (const CLI::ParseError& e) {
+    return end_of_parsing(app, e);
+  }
+}
+
+/// A standard stream that came closed stays unusable: its number must not go to the next file that is opened, which
+/// would then receive what is meant for people.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  occupy_closed_streams();
+  CLI::App app{"softgrain: contact laws of soft particles for extremely polydisperse packings", "softgrain"};
+  const Provenance build = build_provenance();
+  app.set_version_flag("--version", "softgrain " + build.version + " (" + build.commit + ")");
+  app.footer(kFooter);
+  try {
+    return parse_and_run_or_explain(app, argc, argv);
+  } catch (const Error& e) {
+    return complain(e.status(), e.what());
+  } catch (const std::bad_alloc&) {
+    return complain(ExitStatus::not_usable, "not enough memory");
+  } catch (const std::system_error& e) {  // of file systems and streams
+    return complain(ExitStatus::file_trouble, e.what());
+  } catch (const std::exception& e) {
+    return complain(ExitStatus::not_usable, std::string("unexpected: ") + e.what());
+  }
+}
+
+}  // namespace softgrain

@@ -1,0 +1,90 @@
+#include "pipelines/kinds/cohesive_powder/scene.h"
+
+#include "common/io/hdf5_file.h"
+
+namespace softgrain {
+
+namespace {
+
+void read_disks(const SceneTable& t, PowderSpec& spec) {
+  spec.disks = t.count("count", 2, 1000000, spec.disks);
+  spec.diameter_min = t.number("diameter_min", Unit::none, Range{0.0, 1.0, true, false}, spec.diameter_min);
+  spec.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 0.9, true, true}, spec.solid_fraction);
+}
+
+void read_contact(const SceneTable& t, PowderSpec& spec) {
+  spec.cohesive = t.flag("cohesive", spec.cohesive);
+  spec.stiffness = t.number("kappa", Unit::none, Range::closed(1.0, 1e12), spec.stiffness);
+  spec.stiffness_ratio = t.number("kt_ratio", Unit::none, Range::positive(), spec.stiffness_ratio);
+  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
+  spec.damping = t.number("zeta", Unit::none, Range::not_negative(), spec.damping);
+  spec.range = t.number("range", Unit::none, Range{0.0, 0.5, true, false}, spec.range);
+  spec.rolling = t.flag("rolling", spec.rolling);
+  spec.rolling_stiffness = t.number("rolling_stiffness", Unit::none, Range::positive(), spec.rolling_stiffness);
+  spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
+}
+
+void read_protocol(const SceneTable& t, PowderSetup& setup) {
+  PowderProtocol& p = setup.protocol;
+  const bool aggregates = p.method == 2;
+  p.strain_rate_cap = t.number("strain_rate_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
+  for (const char* key : {"aggregation_kappa", "stiffening_time"})
+    if (!aggregates && t.has(key)) t.reject(key, "only method 2 has disks that aggregate first");
+  if (!aggregates) return;
+  p.aggregation_kappa = t.number("aggregation_kappa", Unit::none, Range::not_negative(), 0.0);
+  if (p.aggregation_kappa == 0.0 && t.has("stiffening_time"))
+    t.reject("stiffening_time", "nothing stiffens without an aggregation_kappa");
+  if (p.aggregation_kappa > 0.0)
+    p.stiffening_time = t.number("stiffening_time", Unit::none, Range::positive(), p.stiffening_time);
+}
+
+void read_assembly(const SceneTable& t, PowderSetup& setup) {
+  setup.protocol.method = static_cast<int>(t.count("method", 1, 2, 1));
+  if (!setup.spec.cohesive && t.has("pressure"))
+    t.reject("pressure", "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
+  if (!setup.spec.cohesive && setup.protocol.method == 2) t.reject("method", "disks without cohesion do not aggregate");
+  setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
+  if (setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
+    t.reject("pressure", "method 1 starts at rest: without pressure nothing moves");
+  setup.spec.start_speed =
+      setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
+  read_protocol(t, setup);
+  setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
+  setup.options.step = t.number("step", Unit::none, Range::closed(1e-6, 0.5), setup.options.step);
+  setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
+  setup.options.settle_kinetic =
+      t.number("settle_kinetic", Unit::none, Range::not_negative(), setup.options.settle_kinetic);
+  setup.options.settle_after = t.number("settle_after", Unit::none, Range::not_negative(), setup.options.settle_after);
+  setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
+  setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
+}
+
+void read_structure(const SceneTable& t, PowderStructureOptions& o) {
+  o.scattering = t.flag("scattering", o.scattering);
+  o.holes = t.flag("holes", o.holes);
+  o.mesh = t.number("mesh", Unit::none, Range{5.0, 1000.0, false, false}, o.mesh);
+  o.fit_k_max = t.number("fit_k_max", Unit::none, Range{0.0, 100.0, true, false}, o.fit_k_max);
+}
+
+}  // namespace
+
+PowderSetup read_powder(const Scene& scene) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"cohesive-powder"});
+  PowderSetup setup;
+  setup.title = root.text("title", "");
+  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.samples = root.count("samples", 1, 10000, 1);
+  read_disks(root.table_or_empty("disks"), setup.spec);
+  read_contact(root.table_or_empty("contact"), setup.spec);
+  read_assembly(root.table_or_empty("assembly"), setup);
+  const SceneTable analysis = root.table_or_empty("analysis");
+  setup.rigidity = analysis.flag("rigidity", setup.rigidity);
+  setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
+  if (!setup.states.empty()) (void)h5::open_file(setup.states);  // what is not there shows before any work
+  read_structure(analysis, setup.structure);
+  root.finish();
+  return setup;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,30 @@
+// Tables of a scene of kind "cohesive-powder".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/io/scene.h"
+#include "microsim/powder/powder_assembly.h"
+#include "pipelines/kinds/cohesive_powder/structure.h"
+
+namespace softgrain {
+
+struct PowderSetup {
+  std::string title;
+  PowderSpec spec;
+  PowderOptions options;
+  PowderStructureOptions structure;
+  PowderProtocol protocol;
+  std::int64_t samples = 1;
+  std::uint64_t seed = 1;
+  std::string states;    ///< powder.h5 of an earlier run: its states are analysed instead of new ones assembled
+  bool rigidity = true;  ///< whether the rigidity matrix is factorised at the end
+
+  [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, protocol); }
+};
+
+/// Reads the scene to the last key. Throws BadInput; FileTrouble when there are no `states` to be read.
+PowderSetup read_powder(const Scene& scene);
+
+}  // namespace softgrain

@@ -1,0 +1,104 @@
+#include "pipelines/kinds/cohesive_powder/variants.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "common/core/error.h"
+#include "pipelines/run/variant_name.h"
+
+namespace softgrain {
+
+namespace {
+
+/// What stands beside the variants in the directory of the run.
+constexpr std::array kTakenNames{"figures", "work", "summary.json", "log.txt", "report.html", "table.csv", "table.md"};
+
+constexpr std::array kPublished{"Phi", "z"};
+
+/// Keys of a variant that replace those of the scene.
+constexpr std::array kReplacing{"title", "samples", "disks", "contact", "assembly", "analysis"};
+
+std::vector<PublishedValue> read_published(const SceneTable& t) {
+  std::vector<PublishedValue> out;
+  for (const std::string quantity : kPublished) {
+    const std::string error = quantity + "_error";
+    if (!t.has(quantity)) {
+      if (t.has(error)) t.reject(error, "without the value " + quantity);
+      continue;
+    }
+    out.push_back({quantity, t.number(quantity, Unit::none, Range::not_negative()), std::nullopt});
+    if (t.has(error)) out.back().error = t.number(error, Unit::none, Range::positive());
+  }
+  return out;
+}
+
+/// The variant's own keys; those that replace keys of the scene are looked at where they end up.
+void read_own(const SceneTable& t, PowderVariant& variant) {
+  variant.name = read_variant_name(t);
+  if (std::find(kTakenNames.begin(), kTakenNames.end(), variant.name) != kTakenNames.end())
+    t.reject("name", "is that of a file or folder beside the variants");
+  for (const char* key : kReplacing) (void)t.has(key);
+  variant.published = read_published(t.table_or_empty("published"));
+  t.finish();
+}
+
+void read_as_scene(PowderVariant& variant) {
+  try {
+    variant.setup = read_powder(variant.scene);
+  } catch (const BadInput& e) {
+    throw BadInput(fmt::format("{} (in the variant \"{}\")", e.what(), variant.name));
+  }
+}
+
+/// Names after `only`, one alone also without brackets.
+std::vector<std::string> read_only(const SceneTable& root) {
+  if (root.is_text("only")) return {root.text("only")};
+  std::vector<std::string> names = root.texts("only");
+  if (names.empty()) root.reject("only", "at least one name is needed");
+  return names;
+}
+
+void pick(const SceneTable& root, std::vector<PowderVariant>& variants) {
+  if (!root.has("only")) return;
+  std::vector<std::string> known;
+  for (PowderVariant& v : variants) {
+    known.push_back(v.name);
+    v.picked = false;
+  }
+  for (const std::string& name : read_only(root)) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found != known.end()) {
+      variants[static_cast<std::size_t>(found - known.begin())].picked = true;
+      continue;
+    }
+    const std::string near = nearest_word(name, known);
+    root.reject("only", fmt::format("there is no variant \"{}\"; {}", name,
+                                    near.empty() ? fmt::format("variants are {}", fmt::join(known, ", "))
+                                                 : fmt::format("nearest is \"{}\"", near)));
+  }
+}
+
+}  // namespace
+
+bool has_powder_variants(const Scene& scene) { return scene.root().has("variant"); }
+
+std::vector<PowderVariant> read_powder_variants(const Scene& scene) {
+  const SceneTable root = scene.root();
+  const std::vector<SceneTable> tables = root.tables("variant");
+  if (tables.empty()) root.reject("variant", "at least one is needed");
+  std::vector<PowderVariant> variants;
+  std::set<std::string> names;
+  for (const SceneTable& table : tables) {
+    variants.push_back({.scene = scene.variant(variants.size(), {"only", "name", "published"})});
+    read_own(table, variants.back());
+    if (!names.insert(variants.back().name).second) table.reject("name", "is used twice");
+    read_as_scene(variants.back());
+  }
+  pick(root, variants);
+  return variants;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,107 @@
+#include "pipelines/kinds/grain_box/run.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <mutex>
+
+#include "common/io/progress.h"
+#include "microsim/grain_box/grain_box_run.h"
+#include "pipelines/kinds/grain_box/check.h"
+#include "pipelines/kinds/grain_box/scene.h"
+#include "pipelines/kinds/grain_box/summary.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/parallel_tasks.h"
+#include "pipelines/run/run_summary.h"
+#include "pipelines/run/task_store.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Runs one pack from its checkpoint, or from the start; keeps its last state for --resume.
+GrainBoxResult run_pack(const GrainBoxSpec& spec, std::uint64_t seed, const TaskStore& store, const RunContext& context,
+                        Progress& progress) {
+  GrainBoxState state;
+  store.load(spec.name, [&](const h5::Group& group) { state = read_state(group); });
+  double reported = 0.0;
+  GrainBoxControl control;
+  control.checkpoint_seconds = store.seconds();
+  control.save = [&](const GrainBoxState& now) {
+    store.save(spec.name, [&](const h5::Group& group) { write_state(group, now); });
+  };
+  control.say = [&](const std::string& line) { context.say(line); };
+  control.progress = [&](const GrainBoxState&, double share) {
+    if (share <= reported) return;
+    progress.advance(share - reported);
+    reported = share;
+  };
+  GrainBoxResult result = run_grain_box(spec, seed, std::move(state), control);
+  if (result.usable) control.save(result.state);
+  progress.advance(1.0 - reported);
+  return result;
+}
+
+std::vector<GrainBoxResult> run_packs(const GrainBoxSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                      const RunContext& context) {
+  std::vector<GrainBoxResult> results(setup.packs.size());
+  Progress progress("grain boxes", static_cast<double>(setup.packs.size()), context.quiet());
+  parallel_tasks(static_cast<std::int64_t>(setup.packs.size()), [&](std::int64_t k) {
+    const auto u = static_cast<std::size_t>(k);
+    results[u] = run_pack(setup.packs[u], seed, store, context, progress);
+  });
+  progress.finish();
+  return results;
+}
+
+std::string people_text(const std::vector<GrainBoxResult>& results, const RunContext& context) {
+  std::string text;
+  for (const GrainBoxResult& r : results) {
+    const auto points = r.points_of(BoxPhase::loading);
+    text += fmt::format("{}: {} grains, {} states in {:.1f} s", r.spec.name, r.spec.grains, r.state.points.size(),
+                        r.state.seconds);
+    if (!points.empty())
+      text += fmt::format(", sigma_c {:.4g} MPa, last K {:.3g} GPa, G {:.3g} GPa", points.back()->pressure * 1e-6,
+                          points.back()->bulk * 1e-9, points.back()->shear_modulus * 1e-9);
+    text += r.usable ? "\n" : "; NOT USABLE: " + r.reason + "\n";
+  }
+  return text + "report: " + context.path("report.html");
+}
+
+ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options) {
+  const GrainBoxSetup setup = read_grain_box(scene);
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(setup.seed);
+  const TaskStore store(context, scene, seed);
+  const std::vector<GrainBoxResult> results = run_packs(setup, seed, store, context);
+  const Provenance provenance = context.provenance(scene, seed);
+  save_grain_boxes(context.path("grain_box.h5"), results, provenance);
+
+  bool usable = true;
+  for (const GrainBoxResult& r : results) usable = usable && r.usable;
+  nlohmann::json summary;
+  summary["status"] = usable ? "good" : "not usable";
+  summary["kind"] = "grain-box";
+  summary["title"] = setup.title;
+  summary["packs"] = grain_boxes_json(results);
+  summary["remarks"] = grain_box_remarks(results);
+  summary["files"] = {{"record", context.path("grain_box.h5")}, {"report", context.path("report.html")}};
+  summary["provenance"] = provenance_json(provenance);
+  context.finish(summary, people_text(results, context));
+  write_report(context.directory());
+  store.clear();
+  return usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace
+
+SceneKind grain_box_kind() {
+  return {.name = "grain-box",
+          .command = "microsim",
+          .run = run_grain_box_scene,
+          .check = [](const Scene& scene, const std::string&,
+                      Findings& out) { check_grain_box(read_grain_box(scene), out); },
+          .read = [](const Scene& scene) { (void)read_grain_box(scene); }};
+}
+
+}  // namespace softgrain

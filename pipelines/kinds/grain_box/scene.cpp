@@ -1,0 +1,270 @@
+#include "pipelines/kinds/grain_box/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "common/core/error.h"
+#include "microsim/grain_box/analysis.h"
+#include "microsim/particles/scene_memory.h"
+#include "pipelines/run/variant_name.h"
+
+namespace softgrain {
+
+namespace {
+
+const Range kPoisson = Range::closed(-0.9, 0.499);
+const Range kScatter{0.0, 0.3, false, false};
+const Range kIncrement = Range::closed(1e-9, 0.1);
+
+/// A coefficient of friction, or "infinite".
+double read_friction(const SceneTable& t, const std::string& key, double fallback) {
+  if (!t.is_text(key)) return t.number(key, Unit::none, Range::closed(0.0, 1000.0), fallback);
+  (void)t.choice(key, {"infinite"});
+  return std::numeric_limits<double>::infinity();
+}
+
+int read_axis(const SceneTable& t, int fallback) {
+  const std::string axis = t.choice("axis", {"x", "y", "z"}, std::string(1, "xyz"[fallback]));
+  return axis[0] - 'x';
+}
+
+void read_material(const SceneTable& t, GrainBoxMaterial& m) {
+  m.radius_min = t.number("radius_min", Unit::length, Range::positive(), m.radius_min);
+  m.radius_max = t.number("radius_max", Unit::length, Range::positive(), m.radius_max);
+  if (m.radius_max < m.radius_min) t.reject("radius_max", "must not be below radius_min");
+  if (m.radius_max > 20.0 * m.radius_min) t.reject("radius_max", "must be at most 20 times radius_min");
+  m.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), m.youngs_modulus);
+  m.youngs_modulus_scatter = t.number("E_sd", Unit::none, kScatter, m.youngs_modulus_scatter);
+  m.poisson_ratio = t.number("nu", Unit::none, kPoisson, m.poisson_ratio);
+  m.poisson_ratio_scatter = t.number("nu_sd", Unit::none, kScatter, m.poisson_ratio_scatter);
+  m.density = t.number("density", Unit::density, Range::positive(), m.density);
+}
+
+void read_walls(const SceneTable& t, GrainBoxSpec& spec) {
+  spec.walls.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), 100.0 * spec.material.youngs_modulus);
+  spec.walls.poisson_ratio = t.number("nu", Unit::none, kPoisson, spec.walls.poisson_ratio);
+  spec.walls.friction = read_friction(t, "mu", spec.friction);
+}
+
+void read_box(const SceneTable& t, GrainBoxSpec& spec) {
+  spec.grains = t.count("grains", 8, 10000000, spec.grains);
+  spec.aspect = t.vector3("aspect", Unit::none, spec.aspect);
+  for (int k = 0; k < 3; ++k)
+    if (!(spec.aspect[k] > 0.0 && spec.aspect[k] <= 1e6))
+      t.reject("aspect", "the box is not closed: all three sides must be above 0 (and at most 1e6)");
+  spec.solid_fraction = t.number("solid_fraction", Unit::none, Range::closed(0.01, 0.36), spec.solid_fraction);
+}
+
+void read_generation(const SceneTable& t, GrainBoxGeneration& g) {
+  g.pressure = t.number("pressure", Unit::pressure, Range::positive(), g.pressure);
+  g.pressure_tolerance = t.number("tolerance", Unit::none, Range{0.0, 0.1, true, false}, g.pressure_tolerance);
+  g.growth = t.number("growth", Unit::none, Range{0.0, 0.1, true, false}, g.growth);
+  g.growth_passes = t.count("growth_passes", 1, 100000, g.growth_passes);
+  g.increment = t.number("increment", Unit::none, kIncrement, g.increment);
+  g.window = t.count("window", 2, 10000, g.window);
+  g.saturation = t.number("saturation", Unit::none, Range{0.0, 1.0, true, false}, g.saturation);
+  g.max_increments = t.count("max_increments", 1, 1000000, g.max_increments);
+  g.axis = read_axis(t, g.axis);
+}
+
+void read_coulomb(const SceneTable& t, LeastWorkOptions& o) {
+  const std::string fallback = o.coulomb == CoulombRule::current ? "current" : "reference";
+  o.coulomb = t.choice("coulomb", {"current", "reference"}, fallback) == "current" ? CoulombRule::current
+                                                                                   : CoulombRule::reference;
+}
+
+void read_solver(const SceneTable& t, LeastWorkOptions& o) {
+  const bool published = t.choice("method", {"fast", "published"}, "fast") == "published";
+  o.method = published ? LeastWorkMethod::published : LeastWorkMethod::fast;
+  read_coulomb(t, o);
+  o.torsion = t.flag("torsion", o.torsion);
+  o.max_iterations = t.count("max_iterations", 1, 100000000, o.max_iterations);
+  if (!published) {
+    o.residual_tolerance = t.number("tolerance", Unit::none, Range{0.0, 0.1, true, false}, o.residual_tolerance);
+    return;
+  }
+  o.refresh = static_cast<int>(t.count("refresh", 1, 1000000, o.refresh));
+  o.sub_increment_interval = static_cast<int>(t.count("sub_increment_interval", 1, 1000000, o.sub_increment_interval));
+  o.sub_increments = static_cast<int>(t.count("sub_increments", 1, 1000, o.sub_increments));
+  o.max_move = t.number("max_move", Unit::none, Range{0.0, 1.0, true, false}, o.max_move);
+  o.work_tolerance = t.number("work_tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.work_tolerance);
+  o.force_tolerance = t.number("force_tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.force_tolerance);
+}
+
+/// `increment`, or `increments` with the strain that every stage but the last covers.
+void read_increments(const SceneTable& t, GrainBoxLoading& l) {
+  if (t.has("increment")) {
+    if (t.has("increments")) t.reject("increments", "give increment or increments, not both");
+    l.increments = {t.number("increment", Unit::none, kIncrement)};
+    l.stage_strains.clear();
+  } else if (t.has("increments")) {
+    l.increments = t.numbers("increments", Unit::none, kIncrement);
+    l.stage_strains = t.numbers("stage_strains", Unit::none, Range{0.0, 0.5, true, false}, {});
+    if (l.increments.empty()) t.reject("increments", "at least one value is needed");
+    if (l.stage_strains.size() + 1 != l.increments.size())
+      t.reject("increments", fmt::format("{} stages need {} stage_strains (the last stage goes on to the end)",
+                                         l.increments.size(), l.increments.size() - 1));
+  }
+}
+
+void read_end(const SceneTable& t, GrainBoxLoading& l) {
+  l.end_stress = t.number("end_stress", Unit::pressure, Range::positive(), l.end_stress);
+  l.end_strain = t.number("end_strain", Unit::none, Range{0.0, 0.4, true, false}, l.end_strain);
+}
+
+Vec3 along(int axis, double axial, double lateral) {
+  Vec3 out{{lateral, lateral, lateral}};
+  out[axis] = axial;
+  return out;
+}
+
+void read_triaxial(const SceneTable& t, GrainBoxLoading& l) {
+  const int axis = read_axis(t, 2);
+  l.strain_rate = along(axis, 1.0, 0.0);
+  if (t.has("lateral_stress") == t.has("lateral_strain_rate"))
+    t.reject("test", "a triaxial test needs either lateral_stress or lateral_strain_rate");
+  if (t.has("lateral_strain_rate")) {
+    l.strain_rate = along(axis, 1.0, t.number("lateral_strain_rate", Unit::none, Range::closed(-10.0, 10.0)));
+    return;
+  }
+  l.control = {AxisControl::stress, AxisControl::stress, AxisControl::stress};
+  l.control[static_cast<std::size_t>(axis)] = AxisControl::strain;
+  l.stress = along(axis, 0.0, t.number("lateral_stress", Unit::pressure, Range::positive()));
+}
+
+void read_polyaxial(const SceneTable& t, GrainBoxLoading& l) {
+  l.strain_rate = t.vector3("strain_rates", Unit::none);
+  double fastest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(l.strain_rate[k]) > 1e3) t.reject("strain_rates", "each must be from -1000 to 1000");
+    fastest = std::max(fastest, std::abs(l.strain_rate[k]));
+  }
+  if (t.has("control")) {
+    const std::vector<std::string> control = t.texts("control");
+    if (control.size() != 3) t.reject("control", "must have three words, \"strain\" or \"stress\"");
+    l.stress = t.vector3("stresses", Unit::pressure);
+    fastest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (control[k] != "strain" && control[k] != "stress")
+        t.reject("control", "'" + control[k] + "': must be \"strain\" or \"stress\"");
+      l.control[k] = control[k] == "stress" ? AxisControl::stress : AxisControl::strain;
+      if (l.control[k] == AxisControl::stress && !(l.stress.v[k] > 0.0))
+        t.reject("stresses", fmt::format("the stress of {} must be above 0: grains cannot be pulled", "xyz"[k]));
+      if (l.control[k] == AxisControl::strain) fastest = std::max(fastest, std::abs(l.strain_rate.v[k]));
+    }
+  }
+  if (!(fastest > 0.0)) t.reject("strain_rates", "at least one axis must be strained");
+}
+
+void read_loading(const SceneTable& t, GrainBoxLoading& l) {
+  l.test = t.choice("test", {"uniaxial", "isotropic", "polyaxial", "triaxial"}, l.test);
+  if (l.test == "uniaxial") l.strain_rate = along(read_axis(t, 2), 1.0, 0.0);
+  if (l.test == "isotropic") l.strain_rate = {{1.0, 1.0, 1.0}};
+  if (l.test == "polyaxial") read_polyaxial(t, l);
+  if (l.test == "triaxial") read_triaxial(t, l);
+  read_increments(t, l);
+  read_end(t, l);
+  l.probe_every = t.count("probe_every", 0, 1000000, l.probe_every);
+  l.stress_tolerance = t.number("stress_tolerance", Unit::none, Range{0.0, 0.1, true, false}, l.stress_tolerance);
+  l.max_halvings = static_cast<int>(t.count("max_halvings", 0, 12, l.max_halvings));
+}
+
+std::array<double, 2> read_range(const SceneTable& t, const std::string& key, const std::array<double, 2>& fallback) {
+  const std::vector<double> v =
+      t.numbers(key, Unit::pressure, Range::positive(), std::vector<double>(fallback.begin(), fallback.end()));
+  if (v.size() != 2 || v[1] <= v[0]) t.reject(key, "must be two ascending stresses");
+  return {v[0], v[1]};
+}
+
+void read_fit(const SceneTable& t, GrainBoxFit& fit) {
+  fit.low = read_range(t, "low", fit.low);
+  fit.high = read_range(t, "high", fit.high);
+}
+
+/// What no single key shows. `t` is the table to blame: [loading], or the variant.
+void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
+  const GrainBoxLoading& l = spec.loading;
+  if (!std::isfinite(l.end_stress) && !std::isfinite(l.end_strain))
+    t.reject("end_stress", "the loading has no end: give end_stress or end_strain");
+  if (spec.generation.pressure >= l.end_stress)
+    t.reject("end_stress", fmt::format("must be above the generation pressure of {:.4g} Pa", spec.generation.pressure));
+  const GrainBoxForecast f = forecast(spec);
+  if (f.overlap_ratio > 0.5)
+    t.reject(
+        "end_stress",
+        fmt::format("grains would overlap by about {:.2f} of their radius at the largest stress: beyond what contacts "
+                    "of small strain describe (0.5)",
+                    f.overlap_ratio));
+  const double largest =
+      std::max(*std::max_element(l.increments.begin(), l.increments.end()), spec.generation.increment);
+  const double most = spec.material.radius_min / f.box_length;
+  if (largest >= most)
+    t.reject(
+        t.has("increments") ? "increments" : "increment",
+        fmt::format("a wall would move more than the smallest grain's radius at once; must be below {:.3g}", most));
+}
+
+/// One pack after another runs, so that each must fit by itself. `t`: [box], or the variant.
+void require_memory(const SceneTable& t, const GrainBoxSpec& spec) {
+  const double available = available_memory();
+  const double needed = forecast(spec).bytes;
+  if (!(available > 0.0) || needed <= available) return;
+  t.reject("grains",
+           fmt::format("a pack of {} grains needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}",
+                       spec.grains, needed / 1e9, available / 1e9,
+                       std::floor(static_cast<double>(spec.grains) * available / needed)));
+}
+
+GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow) {
+  spec.name = read_variant_name(t);
+  spec.grains = t.count("grains", 8, 10000000, spec.grains);
+  spec.friction = read_friction(t, "mu", spec.friction);
+  if (walls_follow) spec.walls.friction = spec.friction;
+  spec.walls.friction = read_friction(t, "wall_mu", spec.walls.friction);
+  spec.generation.pressure = t.number("pressure", Unit::pressure, Range::positive(), spec.generation.pressure);
+  read_coulomb(t, spec.solver);
+  read_increments(t, spec.loading);
+  read_end(t, spec.loading);
+  require_sense(t, spec);
+  require_memory(t, spec);
+  return spec;
+}
+
+}  // namespace
+
+GrainBoxSetup read_grain_box(const Scene& scene) {
+  const SceneTable root = scene.root();
+  GrainBoxSetup setup;
+  (void)root.choice("kind", {"grain-box"});
+  setup.title = root.text("title", "");
+  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  GrainBoxSpec spec;
+  const SceneTable material = root.table_or_empty("material");
+  read_material(material, spec.material);
+  spec.friction = read_friction(material, "mu", spec.friction);
+  const SceneTable walls = root.table_or_empty("walls");
+  read_walls(walls, spec);
+  read_box(root.table_or_empty("box"), spec);
+  read_generation(root.table_or_empty("generation"), spec.generation);
+  read_solver(root.table_or_empty("solver"), spec.solver);
+  const SceneTable loading = root.table("loading");
+  read_loading(loading, spec.loading);
+  read_fit(root.table_or_empty("fit"), spec.fit);
+  std::set<std::string> names;
+  for (const SceneTable& variant : root.tables("variant")) {
+    setup.packs.push_back(read_variant(variant, spec, !walls.has("mu")));
+    if (!names.insert(setup.packs.back().name).second) variant.reject("name", "is used twice");
+  }
+  if (setup.packs.empty()) {
+    require_sense(loading, spec);
+    require_memory(root.table_or_empty("box"), spec);
+    setup.packs.push_back(spec);
+  }
+  root.finish();
+  return setup;
+}
+
+}  // namespace softgrain

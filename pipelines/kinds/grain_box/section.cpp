@@ -1,0 +1,250 @@
+// Packs of grains between six planes: stresses, moduli, contacts, and a look inside.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "microsim/grain_box/analysis.h"
+#include "microsim/grain_box/box_measure.h"
+#include "pipelines/kinds/grain_box/curves.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain::report {
+
+namespace {
+
+using Packs = std::vector<GrainBoxResult>;
+
+constexpr double kGiga = 1e-9;
+constexpr double kMega = 1e-6;
+
+/// Colours repeat after seven packs; dashes then keep them apart.
+SeriesStyle line_style(std::size_t index) {
+  return {.color = palette::cycle(index), .width = 1.6, .dash = index < 7 ? "" : "6 3"};
+}
+
+std::string strain_figure(const Packs& packs, const PlotOptions& options, PointValue value, double unit,
+                          const std::string& caption) {
+  Plot plot(options);
+  for (std::size_t k = 0; k < packs.size(); ++k) {
+    Series s = over_strain(packs[k], value, unit, line_style(k));
+    if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return std::isfinite(y); })) plot.add(std::move(s));
+  }
+  return plot.empty() ? "" : figure(plot.svg(), caption);
+}
+
+std::string stress_figures(const Packs& packs) {
+  const AxisOptions strain{.label = "strain along the main axis [%]"};
+  return figure_row(
+      {strain_figure(
+           packs,
+           {.id = "box-stress", .title = "Confining stress", .x = strain, .y = {.label = "sigma_c [MPa]", .low = 0.0}},
+           [](const BoxPoint& p) { return p.pressure; }, kMega,
+           "Mean of the three wall stresses. Strain from the length at which stress first appears."),
+       strain_figure(
+           packs,
+           {.id = "box-deviator",
+            .title = "Deviatoric stress",
+            .x = strain,
+            .y = {.label = "sqrt(3 J2) [MPa]", .low = 0.0}},
+           [](const BoxPoint& p) { return p.deviator; }, kMega,
+           "Axial minus lateral stress when two stresses are equal."),
+       strain_figure(
+           packs,
+           {.id = "box-sliding",
+            .title = "Sliding contacts",
+            .x = strain,
+            .y = {.label = "share of contacts", .low = 0.0}},
+           [](const BoxPoint& p) { return p.sliding_share; }, 1.0,
+           "Contacts with |Q| at the Coulomb limit, of all that carry force. From the moment friction is on."),
+       strain_figure(
+           packs,
+           {.id = "box-coordination",
+            .title = "Coordination number",
+            .x = strain,
+            .y = {.label = "contacts per grain"}},
+           [](const BoxPoint& p) { return p.coordination; }, 1.0,
+           "A wall contact counts for one grain, a contact of two grains for both.")});
+}
+
+/// The first pack in full: single intervals, fits, probe, effective medium.
+std::string first_pack_figure(const GrainBoxResult& result, bool bulk) {
+  const GrainBoxFits fits = fit_growth(result);
+  const PowerFit& low = bulk ? fits.bulk_low : fits.shear_low;
+  const PowerFit& high = bulk ? fits.bulk_high : fits.shear_high;
+  const std::string symbol = bulk ? "K" : "G";
+  Plot plot({.id = "box-first-" + symbol,
+             .title = fmt::format("{} modulus, {}", bulk ? "Bulk" : "Shear", result.spec.name),
+             .x = {.label = "sigma_c [MPa]", .scale = Scale::logarithmic},
+             .y = {.label = symbol + " [GPa]", .scale = Scale::logarithmic}});
+  Series dots = over_pressure(
+      result, bulk ? &BoxPoint::bulk : &BoxPoint::shear_modulus, kGiga,
+      {.color = palette::sky, .width = 0.0, .opacity = 0.6, .marker = Marker::circle, .marker_size = 1.4});
+  dots.label = "per interval";
+  dots.sets_range = false;
+  if (dots.x.empty()) return "";
+  plot.add(std::move(dots));
+  Series mean = binned_over_pressure(result, bulk ? &BoxPoint::bulk : &BoxPoint::shear_modulus, kGiga,
+                                     {.color = palette::blue, .width = 2.0});
+  mean.label = "mean";
+  plot.add(std::move(mean));
+  Series probe = over_pressure(result, bulk ? &BoxPoint::bulk_probe : &BoxPoint::shear_probe, kGiga,
+                               {.color = palette::green, .width = 0.0, .marker = Marker::hollow, .marker_size = 3.0});
+  probe.label = "elastic probe (nothing slides)";
+  if (!probe.x.empty()) plot.add(std::move(probe));
+  Series medium = over_pressure(result, bulk ? &BoxPoint::bulk_medium : &BoxPoint::shear_medium, kGiga,
+                                {.color = palette::black, .width = 1.3, .dash = "5 3"});
+  medium.label = "effective medium";
+  if (!medium.x.empty()) plot.add(std::move(medium));
+  const auto add_fit = [&](const PowerFit& fit, const std::array<double, 2>& range, const char* color) {
+    if (!std::isfinite(fit.exponent)) return;
+    plot.add(fitted_line(fit, range, kGiga, fmt::format("~ sigma_c^{:.3f}", fit.exponent),
+                         {.color = color, .width = 1.4, .dash = "2 2"}));
+  };
+  add_fit(low, result.spec.fit.low, palette::vermillion);
+  add_fit(high, result.spec.fit.high, palette::purple);
+  return figure(plot.svg(), fmt::format("{} of every interval by Hooke's law, and its mean over bins of sigma_c. The "
+                                        "effective medium has the pack's own "
+                                        "solid fraction and coordination number, and contacts that never slide.",
+                                        symbol));
+}
+
+std::string all_packs_figure(const Packs& packs, bool bulk) {
+  const std::string symbol = bulk ? "K" : "G";
+  Plot plot({.id = "box-all-" + symbol,
+             .title = fmt::format("{} modulus against confining stress", bulk ? "Bulk" : "Shear"),
+             .x = {.label = "sigma_c [MPa]", .scale = Scale::logarithmic},
+             .y = {.label = symbol + " [GPa]", .scale = Scale::logarithmic}});
+  for (std::size_t k = 0; k < packs.size(); ++k) {
+    Series s = binned_over_pressure(packs[k], bulk ? &BoxPoint::bulk : &BoxPoint::shear_modulus, kGiga, line_style(k));
+    if (!s.x.empty()) plot.add(std::move(s));
+  }
+  return plot.empty() ? "" : figure(plot.svg(), "Means over bins of sigma_c.");
+}
+
+std::string modulus_figures(const Packs& packs) {
+  std::string out = figure_row({first_pack_figure(packs.front(), true), first_pack_figure(packs.front(), false)});
+  if (packs.size() > 1) out += figure_row({all_packs_figure(packs, true), all_packs_figure(packs, false)});
+  return out;
+}
+
+std::string share_text(double share) { return std::isfinite(share) ? format_number(share, 3) : "–"; }
+
+/// Last point of a phase; of the phase before it where it has none.
+const BoxPoint& last_of(const GrainBoxResult& result, BoxPhase phase) {
+  static const BoxPoint none{};
+  for (auto k = static_cast<std::int64_t>(phase); k >= static_cast<std::int64_t>(BoxPhase::compaction); --k) {
+    const auto points = result.points_of(static_cast<BoxPhase>(k));
+    if (!points.empty()) return *points.back();
+  }
+  return none;
+}
+
+std::string generation_table(const Packs& packs) {
+  HtmlTable table({"pack", "grains", "mu", "sigma_c (mu = 0) [MPa]", "solid fraction", "contacts per grain",
+                   "sigma_c at start of loading [MPa]", "sliding there", "sigma_c of smallest G [MPa]"});
+  for (const GrainBoxResult& r : packs) {
+    const BoxPoint& a = last_of(r, BoxPhase::compaction);
+    const BoxPoint& b = last_of(r, BoxPhase::friction);
+    table.row({r.spec.name, format_count(r.spec.grains),
+               std::isfinite(r.spec.friction) ? format_number(r.spec.friction, 3) : "infinite",
+               format_number(a.pressure * kMega, 4), format_number(a.solid_fraction, 4),
+               format_number(a.coordination, 4), format_number(b.pressure * kMega, 4), share_text(b.sliding_share),
+               format_number(pressure_of_smallest_shear(r) * kMega, 3)});
+  }
+  return table.html();
+}
+
+std::string end_table(const Packs& packs) {
+  HtmlTable table({"at the end", "sigma_c [MPa]", "solid fraction", "contacts per grain", "sliding",
+                   "with |Q| = mu P as it is then", "shear/sigma_c, largest [%]", "status"});
+  for (const GrainBoxResult& r : packs) {
+    const BoxPoint& c = last_of(r, BoxPhase::loading);
+    double shear = 0.0;
+    for (const BoxPoint* p : r.points_of(BoxPhase::loading)) shear = std::max(shear, p->shear / p->pressure);
+    table.row({r.spec.name, format_number(c.pressure * kMega, 4), format_number(c.solid_fraction, 4),
+               format_number(c.coordination, 4), share_text(c.sliding_share),
+               share_text(share_at_current_limit(r.state.pack)), format_number(100.0 * shear, 2),
+               r.usable ? "good" : "broke off"});
+  }
+  return table.html();
+}
+
+std::string fit_text(const PowerFit& fit) {
+  return std::isfinite(fit.exponent) ? format_with_error(fit.exponent, fit.standard_error) : "–";
+}
+
+std::string exponents_table(const Packs& packs) {
+  const GrainBoxFit& range = packs.front().spec.fit;
+  const auto text = [](const std::array<double, 2>& r) {
+    return fmt::format("{} to {} MPa", format_number(r[0] * kMega, 3), format_number(r[1] * kMega, 3));
+  };
+  HtmlTable table({"growth exponent", "K, " + text(range.low), "K, " + text(range.high), "G, " + text(range.low),
+                   "G, " + text(range.high)});
+  for (const GrainBoxResult& r : packs) {
+    const GrainBoxFits f = fit_growth(r);
+    table.row(
+        {r.spec.name, fit_text(f.bulk_low), fit_text(f.bulk_high), fit_text(f.shear_low), fit_text(f.shear_high)});
+  }
+  return table.html();
+}
+
+std::string moduli_table(const Packs& packs, bool bulk) {
+  const std::vector<double> stresses = comparison_stresses(packs);
+  std::vector<std::string> header{fmt::format("{} [GPa] at sigma_c [MPa]", bulk ? "K" : "G")};
+  for (const double s : stresses) header.push_back(format_number(s * kMega, 3));
+  HtmlTable table(header);
+  for (const GrainBoxResult& r : packs) {
+    std::vector<std::string> row{r.spec.name};
+    for (const double s : stresses) {
+      const ModuliAt m = moduli_at(r, s);
+      const double value = bulk ? m.bulk : m.shear;
+      row.push_back(
+          std::isfinite(value) ? format_with_error(value * kGiga, (bulk ? m.bulk_error : m.shear_error) * kGiga) : "–");
+    }
+    table.row(std::move(row));
+  }
+  return table.html();
+}
+
+std::string effort_table(const Packs& packs) {
+  HtmlTable table({"pack", "states", "iterations", "loop passes", "factorisations", "tries that failed",
+                   "worst residual", "seconds", "seconds per state"});
+  for (const GrainBoxResult& r : packs) {
+    const StepEffort e = total_effort(r.state);
+    const auto states = static_cast<double>(r.state.points.size());
+    table.row({r.spec.name, format_count(static_cast<std::int64_t>(r.state.points.size())), format_count(e.iterations),
+               format_count(e.loop_passes), format_count(e.factorisations), format_count(e.retries),
+               format_number(e.residual, 2), format_seconds(r.state.seconds),
+               states > 0.0 ? format_number(r.state.seconds / states, 3) : "–"});
+  }
+  return table.html() + paragraph(
+                            "Residual: net force (or moment over radius) on a grain over its largest contact force, "
+                            "the worst grain of all states.");
+}
+
+}  // namespace
+
+std::string grain_box_section(const RunData& run) {
+  if (run.grain_boxes.empty()) return "";
+  const Packs& packs = run.grain_boxes;
+  const std::string view = pack_view(packs.front());
+  return section("grain-boxes", "Packs", generation_table(packs) + end_table(packs) + stress_figures(packs)) +
+         section(
+             "moduli", "Moduli",
+             modulus_figures(packs) + exponents_table(packs) + moduli_table(packs, true) + moduli_table(packs, false) +
+                 paragraph(
+                     "Mean over the intervals within 10 % of the stress, with the standard error of their scatter.")) +
+         section("pack-view", "Inside",
+                 view.empty()
+                     ? ""
+                     : figure_row({figure(
+                           view,
+                           "Grains cut by the middle plane, and the forces between grains within a mean radius of "
+                           "it: as wide as the force; red where the contact slides.")})) +
+         section("grain-box-cost", "Cost", effort_table(packs));
+}
+
+}  // namespace softgrain::report

@@ -1,0 +1,131 @@
+#include "pipelines/kinds/grain_box/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "microsim/grain_box/analysis.h"
+#include "microsim/grain_box/box_measure.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+/// What is not defined is null.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json point_json(const std::vector<const BoxPoint*>& points) {
+  if (points.empty()) return nullptr;
+  const BoxPoint& p = *points.back();
+  return {{"states", points.size()},
+          {"pressure", p.pressure},
+          {"stress", p.stress.v},
+          {"strain", p.strain.v},
+          {"deviator", p.deviator},
+          {"shear_stress", p.shear},
+          {"solid_fraction", p.solid_fraction},
+          {"coordination", p.coordination},
+          {"coordination_without_rattlers", p.coordination_without},
+          {"rattlers", p.rattlers},
+          {"fewest_contacts", p.fewest_contacts},
+          {"sliding_share", number(p.sliding_share)},
+          {"mean_normal_force", p.mean_force}};
+}
+
+json moduli_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
+  json out = json::array();
+  for (const double stress : stresses) {
+    const ModuliAt m = moduli_at(result, stress);
+    if (m.points < 3) continue;
+    out.push_back({{"pressure", stress},
+                   {"K", number(m.bulk)},
+                   {"K_error", number(m.bulk_error)},
+                   {"G", number(m.shear)},
+                   {"G_error", number(m.shear_error)},
+                   {"intervals", m.points}});
+  }
+  return out;
+}
+
+json fit_json(const PowerFit& fit) {
+  return {{"exponent", number(fit.exponent)}, {"standard_error", number(fit.standard_error)}, {"points", fit.points}};
+}
+
+json effort_json(const GrainBoxState& state) {
+  const StepEffort e = total_effort(state);
+  return {{"states", state.points.size()},
+          {"worst_residual", e.residual},
+          {"iterations", e.iterations},
+          {"loop_passes", e.loop_passes},
+          {"contact_evaluations", e.contact_evaluations},
+          {"factorisations", e.factorisations},
+          {"linear_iterations", e.linear_iterations},
+          {"equilibria", e.solutions},
+          {"retries", e.retries},
+          {"loose_passes", state.loose_passes},
+          {"seconds", state.seconds}};
+}
+
+/// Tangential wall stress over sigma_c, the largest of the loading.
+double largest_shear_ratio(const GrainBoxResult& result) {
+  double largest = 0.0;
+  for (const BoxPoint* p : result.points_of(BoxPhase::loading)) largest = std::max(largest, p->shear / p->pressure);
+  return largest;
+}
+
+json result_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
+  const GrainBoxFits fits = fit_growth(result);
+  json out = {{"name", result.spec.name},
+              {"status", result.usable ? "good" : "not usable"},
+              {"grains", result.spec.grains},
+              {"mu", std::isfinite(result.spec.friction) ? json(result.spec.friction) : json("infinite")},
+              {"generation_pressure", result.spec.generation.pressure},
+              {"test", result.spec.loading.test},
+              {"increments", result.spec.loading.increments},
+              {"growth_passes", result.state.growth_passes},
+              {"after_compaction", point_json(result.points_of(BoxPhase::compaction))},
+              {"after_friction", point_json(result.points_of(BoxPhase::friction))},
+              {"at_end", point_json(result.points_of(BoxPhase::loading))},
+              {"share_at_current_limit_at_end", number(share_at_current_limit(result.state.pack))},
+              {"pressure_of_smallest_G", number(pressure_of_smallest_shear(result))},
+              {"largest_shear_stress_ratio", largest_shear_ratio(result)},
+              {"moduli", moduli_json(result, stresses)},
+              {"effort", effort_json(result.state)}};
+  out["exponents"] = {{"K_low", fit_json(fits.bulk_low)},
+                      {"K_high", fit_json(fits.bulk_high)},
+                      {"G_low", fit_json(fits.shear_low)},
+                      {"G_high", fit_json(fits.shear_high)}};
+  if (!result.usable) out["reason"] = result.reason;
+  return out;
+}
+
+}  // namespace
+
+nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results) {
+  const std::vector<double> stresses = comparison_stresses(results);
+  json out = json::array();
+  for (const GrainBoxResult& result : results) out.push_back(result_json(result, stresses));
+  return out;
+}
+
+std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& results) {
+  std::vector<std::string> remarks;
+  for (const GrainBoxResult& r : results) {
+    if (!r.usable) remarks.push_back(fmt::format("pack '{}' broke off: {}", r.spec.name, r.reason));
+    if (!r.state.failures.empty())
+      remarks.push_back(
+          fmt::format("pack '{}': {} tries of increments did not come to rest and were halved or repeated; "
+                      "they are listed in grain_box.h5",
+                      r.spec.name, r.state.failures.size()));
+    const double shear = largest_shear_ratio(r);
+    if (shear > 0.02)
+      remarks.push_back(fmt::format("pack '{}': tangential wall stresses reach {:.1f} % of the confining stress",
+                                    r.spec.name, 100.0 * shear));
+  }
+  return remarks;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,65 @@
+// One level of a hierarchy: its content, its measurement, its law, and how far it is from the level below.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "calibrate/crowd_fit.h"
+#include "pipelines/kinds/hierarchy/scene.h"
+#include "pipelines/kinds/law_table/crowd_stage.h"
+
+namespace softgrain {
+
+/// Force at the end of loading, this level over the one below it on the same packings.
+struct LevelChange {
+  std::string configuration;
+  double ratio = 1.0;
+  double error = 0.0;  ///< standard error over packings, of the paired ratio of means
+};
+
+struct HierarchyLevel {
+  std::int64_t number = 0;  ///< 0: the finest, grains only
+  LawTableEntry entry;
+  double inner_mean = 0.0;    ///< soft particles inside, mean over packings
+  double inner_volume = 0.0;  ///< their volume over that of the shell
+  double inner_low = 0.0;     ///< radii over Rs
+  double inner_high = 0.0;
+  std::vector<LevelChange> changes;   ///< against the level below; empty for the finest
+  double distance = 0.0;              ///< of the two laws, see law_distance() (form of the hierarchy)
+  double distance_noise = 0.0;        ///< what packings alone would make of it, from the standard errors of the changes
+  std::vector<std::string> left_out;  ///< a sentence for each measurement that broke off
+  Cost cost;
+  double seconds = 0.0;
+  double grains = 0.0;  ///< that a resolved soft particle of this level would hold
+};
+
+/// Soft particles in the voids of a packing; deterministic.
+SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing);
+
+/// The same content at every level: packings are filled once.
+class LevelContents {
+ public:
+  explicit LevelContents(const HierarchySetup& setup) : setup_(setup) {}
+  /// Of the packing with this number in the pool; safe from several threads.
+  SoftContent of(const ShellPacking& packing, std::int64_t number);
+
+ private:
+  const HierarchySetup& setup_;
+  std::mutex mutex_;
+  std::map<std::int64_t, SoftContent> known_;
+};
+
+/// Laws of inner soft particles from the entry of the level below. E is that of the grains.
+InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below);
+
+/// Measures and fits level `number` on top of `below` (none for the finest).
+HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
+                         const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
+                         const TaskStore& store, const RunContext& context, const Provenance& provenance);
+
+/// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
+double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form);
+
+}  // namespace softgrain

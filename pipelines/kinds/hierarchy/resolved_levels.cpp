@@ -1,0 +1,159 @@
+#include "pipelines/kinds/hierarchy/resolved_levels.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/io/progress.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/kinds/law_table/kept_crowd.h"
+#include "pipelines/run/parallel_tasks.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Packings of inner soft particles come from this place of the random stream on, far from those of the centre.
+constexpr std::uint64_t kInnerPackings = 1000000;
+constexpr std::size_t kDifferentInner = 8;  ///< different ones, used turn by turn
+
+enum class Engine { empty, law, resolved };
+constexpr Engine kEngines[] = {Engine::resolved, Engine::law, Engine::empty};
+
+const char* name_of(Engine engine) {
+  return engine == Engine::empty ? "empty" : engine == Engine::law ? "law" : "resolved";
+}
+
+CrowdConfiguration one_plane(const std::vector<double>& overlaps) {
+  CrowdConfiguration c;
+  c.name = "check";
+  c.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
+  c.stages = {{"load", {overlaps.back()}, 0.0}};
+  return c;
+}
+
+SoftContent content_of(const HierarchySetup& setup, const ShellPacking& packing, Engine engine,
+                       const std::vector<ShellPacking>& inner) {
+  SoftContent content = fill_level(setup, packing);
+  if (setup.check_inner > 0 && content.inner.size() > static_cast<std::size_t>(setup.check_inner))
+    content.inner.resize(static_cast<std::size_t>(setup.check_inner));
+  if (engine == Engine::empty) content.inner.clear();
+  if (engine == Engine::resolved) content.inner_packings = inner;
+  return content;
+}
+
+struct Task {
+  Engine engine = Engine::law;
+  std::size_t packing = 0;
+};
+
+/// Means and the error of the paired ratio.
+CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<CrowdRun>& law,
+                    const std::vector<CrowdRun>& empty, std::size_t k) {
+  const auto n = static_cast<double>(resolved.size());
+  CheckPoint p;
+  p.overlap = resolved.front().points[k].overlap[0];
+  const auto force = [k](const CrowdRun& run) { return run.points[k].normal[0]; };
+  for (std::size_t j = 0; j < resolved.size(); ++j) {
+    p.resolved += force(resolved[j]) / n;
+    p.law += force(law[j]) / n;
+    p.empty += force(empty[j]) / n;
+  }
+  if (!(p.resolved > 0.0)) return p;
+  p.ratio = p.law / p.resolved;
+  if (n < 2.0) return p;
+  const double scale = 1.0 / (n * (n - 1.0));
+  for (std::size_t j = 0; j < resolved.size(); ++j) {
+    p.law_error += scale * (force(law[j]) - p.law) * (force(law[j]) - p.law);
+    p.resolved_error += scale * (force(resolved[j]) - p.resolved) * (force(resolved[j]) - p.resolved);
+    const double rest = force(law[j]) - p.ratio * force(resolved[j]);
+    p.ratio_error += scale * rest * rest;
+  }
+  p.law_error = std::sqrt(p.law_error);
+  p.resolved_error = std::sqrt(p.resolved_error);
+  p.ratio_error = std::sqrt(p.ratio_error) / p.resolved;
+  return p;
+}
+
+/// One loading and what was inside.
+struct CheckRun {
+  Task task;
+  CrowdRun run;
+  double grains = 0.0;  ///< of the resolved system
+  double inside = 0.0;  ///< inner soft particles
+};
+
+std::vector<CheckRun> check_tasks(std::size_t packings) {
+  std::vector<CheckRun> runs;
+  for (const Engine engine : kEngines)
+    for (std::size_t p = 0; p < packings; ++p) runs.push_back({{engine, p}, {}});
+  return runs;
+}
+
+/// Loads the stored run, or measures and stores it.
+void measure(CheckRun& check, const HierarchySetup& setup, std::uint64_t seed, const InnerLaws& laws,
+             const std::vector<ShellPacking>& inner, const CrowdPlan& plan, const TaskStore& store) {
+  const ShellPacking packing = generate_shell_packing(setup.crowd.spec, seed, check.task.packing);
+  const SoftContent content = content_of(setup, packing, check.task.engine, inner);
+  CrowdExperiment e = make_crowd(setup.crowd.spec, one_plane(setup.check_overlaps), content, {}, &laws);
+  check.grains = static_cast<double>(e.system.particles.grains);
+  check.inside = static_cast<double>(content.inner.size());
+  const std::string name = fmt::format("check-{}-{}", name_of(check.task.engine), check.task.packing);
+  bool known = false;
+  store.load(name, [&](const h5::Group& g) {
+    check.run = read_crowd_runs(g).at(0);
+    known = true;
+  });
+  if (known) return;
+  check.run = run_kept_crowd(store, name, e, plan, setup.crowd.options, {});
+  store.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {check.run}); });
+}
+
+std::vector<CrowdRun> runs_of(const std::vector<CheckRun>& checks, Engine engine) {
+  std::vector<CrowdRun> runs;
+  for (const CheckRun& c : checks)
+    if (c.task.engine == engine) runs.push_back(c.run);
+  return runs;
+}
+
+CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup& setup) {
+  CheckResult result;
+  result.packings = setup.check_packings;
+  const auto resolved = runs_of(checks, Engine::resolved);
+  const auto law = runs_of(checks, Engine::law);
+  const auto empty = runs_of(checks, Engine::empty);
+  for (std::size_t k = 0; k < setup.check_overlaps.size(); ++k)
+    result.points.push_back(point_of(resolved, law, empty, k));
+  for (const CheckRun& c : checks) {
+    if (c.task.engine == Engine::resolved) {
+      result.resolved_cost += c.run.cost;
+      result.grains += c.grains / static_cast<double>(setup.check_packings);
+      result.inner += c.inside / static_cast<double>(setup.check_packings);
+    }
+    if (c.task.engine == Engine::law) result.law_cost += c.run.cost;
+    for (const CrowdPoint& p : c.run.points) result.converged = result.converged && p.converged;
+  }
+  return result;
+}
+
+}  // namespace
+
+CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const TaskStore& store,
+                              const RunContext& context) {
+  const std::uint64_t seed = context.seed(setup.crowd.seed);
+  std::vector<ShellPacking> inner;
+  for (std::size_t k = 0; k < kDifferentInner; ++k)
+    inner.push_back(generate_shell_packing(setup.crowd.spec, seed, kInnerPackings + k));
+  const InnerLaws laws = inner_laws(setup, finest);
+  CrowdPlan plan(1);
+  for (const double x : setup.check_overlaps) plan[0].push_back(x / setup.check_overlaps.back());
+  std::vector<CheckRun> checks = check_tasks(static_cast<std::size_t>(setup.check_packings));
+  Progress progress("two decades, resolved", static_cast<double>(checks.size()), context.quiet());
+  parallel_tasks(static_cast<std::int64_t>(checks.size()), [&](std::int64_t t) {
+    measure(checks[static_cast<std::size_t>(t)], setup, seed, laws, inner, plan, store);
+    progress.advance();
+  });
+  return result_of(checks, setup);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,37 @@
+// Two decades with every grain: one soft particle whose inner soft particles hold their grains, against the same one
+// whose inner soft particles act by law.
+#pragma once
+
+#include <vector>
+
+#include "pipelines/kinds/hierarchy/level.h"
+
+namespace softgrain {
+
+/// At one overlap with a plane, means over packings. Forces over E Rs^2.
+struct CheckPoint {
+  double overlap = 0.0;
+  double law = 0.0;
+  double law_error = 0.0;
+  double resolved = 0.0;
+  double resolved_error = 0.0;
+  double ratio = 0.0;
+  double ratio_error = 0.0;  ///< of the paired ratio of means
+  double empty = 0.0;        ///< without inner soft particles
+};
+
+struct CheckResult {
+  std::vector<CheckPoint> points;
+  double inner = 0.0;   ///< soft particles inside, mean
+  double grains = 0.0;  ///< of a resolved run, mean
+  std::int64_t packings = 0;
+  Cost law_cost;
+  Cost resolved_cost;
+  bool converged = true;
+};
+
+/// Runs the check with the law of the finest level. Finished runs are kept in the store.
+CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const TaskStore& store,
+                              const RunContext& context);
+
+}  // namespace softgrain

@@ -1,0 +1,266 @@
+#include "pipelines/kinds/hierarchy/run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/contact/crowd_table_file.h"
+#include "pipelines/kinds/hierarchy/level.h"
+#include "pipelines/kinds/hierarchy/resolved_levels.h"
+#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+struct HierarchyRun {
+  std::vector<HierarchyLevel> levels;  ///< the finest first
+  std::optional<std::int64_t> fixed;   ///< level at which the law stopped changing
+  std::optional<CheckResult> check;
+  std::vector<std::string> remarks;
+  bool usable = true;
+};
+
+/// The law no longer changes by more than the tolerance, or by more than packings alone would make of it.
+bool at_rest(const HierarchySetup& setup, const HierarchyLevel& level) {
+  return level.number > 0 && level.distance <= std::max(setup.tolerance, level.distance_noise);
+}
+
+void run_levels(const HierarchySetup& setup, const TaskStore& store, const RunContext& context,
+                const Provenance& provenance, HierarchyRun& run) {
+  CrowdMeasurements below;
+  LevelContents contents(setup);
+  for (std::int64_t k = 0; k < setup.iterations; ++k) {
+    if (k >= setup.levels && run.fixed) break;
+    context.say(k == 0 ? "level 0: grains only" : fmt::format("level {}: on top of the law of level {}", k, k - 1));
+    CrowdMeasurements data;
+    const HierarchyLevel* last = run.levels.empty() ? nullptr : &run.levels.back();
+    HierarchyLevel level = run_level(setup, contents, k, last, &below, data, store, context, provenance);
+    for (const std::string& r : crowd_remarks(data, setup.crowd.target))
+      run.remarks.push_back(fmt::format("level {}: {}", k, r));
+    for (const std::string& text : level.left_out) run.remarks.push_back(fmt::format("level {}: {}", k, text));
+    const CrowdLaw& law = *level.entry.find(setup.form);
+    save_law_table({1, {level.entry}}, context.path(fmt::format("law_table_level_{}.toml", k)), provenance);
+    if (law.status == "no threshold crossing")
+      throw NotUsable(fmt::format("level {}: its law never crosses its threshold ({})", k, law.reason));
+    if (law.status != "good") {
+      run.usable = false;
+      run.remarks.push_back(fmt::format("level {}: {} law: {}: {}", k, setup.form, law.status, law.reason));
+    }
+    if (!run.fixed && at_rest(setup, level)) run.fixed = k;
+    if (k > 0)
+      context.say(fmt::format("level {}: the law differs by {:.1f} % from the one below (packings alone: {:.1f} %)", k,
+                              100.0 * level.distance, 100.0 * level.distance_noise));
+    run.levels.push_back(std::move(level));
+    below = std::move(data);
+  }
+  save_law_table({1, {run.levels.back().entry}}, context.path("law_table.toml"), provenance);
+}
+
+/// Forces of one plane and of six, per plane, over overlap.
+json curves_json(const HierarchyLevel& level, const std::string& form) {
+  const CrowdModel model = crowd_model(*level.entry.find(form));
+  std::vector<CrowdPartner> cube;
+  for (int k = 0; k < 6; ++k) {
+    CrowdPartner plane;
+    plane.direction[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
+    cube.push_back(plane);
+  }
+  json out{{"overlap", json::array()}, {"one", json::array()}, {"cube", json::array()}};
+  for (int k = 1; k <= 50; ++k) {
+    const double x = level.entry.overlap_max * k / 50.0;
+    out["overlap"].push_back(x);
+    out["one"].push_back(crowd_forces(model, {cube[0]}, {x})[0]);
+    out["cube"].push_back(crowd_forces(model, cube, std::vector<double>(6, x))[0]);
+  }
+  return out;
+}
+
+json level_json(const HierarchyLevel& level, const std::string& form) {
+  const CrowdLaw& law = *level.entry.find(form);
+  json out{{"level", level.number},
+           {"inner",
+            {{"mean", level.inner_mean},
+             {"radius_low", level.inner_low},
+             {"radius_high", level.inner_high},
+             {"volume_percent", 100.0 * level.inner_volume}}},
+           {"law",
+            {{"a", law.a.value},
+             {"b", law.b.value},
+             {"delta", law.delta.value},
+             {"m0", law.m0.value},
+             {"m1", law.m1.value},
+             {"m2", law.m2.value},
+             {"status", law.status},
+             {"error_cross", law.error_cross}}},
+           {"resolved_grains", level.grains},
+           {"loop_passes", level.cost.loop_passes},
+           {"contact_evaluations", level.cost.contact_evaluations},
+           {"seconds", level.seconds},
+           {"curves", curves_json(level, form)}};
+  if (level.number == 0) {
+    out.erase("inner");
+    return out;
+  }
+  out["distance_percent"] = 100.0 * level.distance;
+  out["noise_percent"] = 100.0 * level.distance_noise;
+  for (const LevelChange& c : level.changes)
+    out["changes"].push_back({{"configuration", c.configuration}, {"ratio", c.ratio}, {"error", c.error}});
+  return out;
+}
+
+json check_json(const CheckResult& check) {
+  json out{{"packings", check.packings},
+           {"inner", check.inner},
+           {"grains", check.grains},
+           {"law_contact_evaluations", check.law_cost.contact_evaluations},
+           {"resolved_contact_evaluations", check.resolved_cost.contact_evaluations},
+           {"law_seconds", check.law_cost.seconds},
+           {"resolved_seconds", check.resolved_cost.seconds},
+           {"converged", check.converged}};
+  for (const CheckPoint& p : check.points)
+    out["points"].push_back({{"overlap", p.overlap},
+                             {"law", p.law},
+                             {"law_error", p.law_error},
+                             {"resolved", p.resolved},
+                             {"resolved_error", p.resolved_error},
+                             {"ratio", p.ratio},
+                             {"ratio_error", p.ratio_error},
+                             {"empty", p.empty}});
+  out["text"] = fmt::format(
+      "Two decades checked with all their grains: {:.0f} inner soft particles, {:.0f} grains on average, {} packings; "
+      "{:.0f} times fewer contact evaluations by law.",
+      check.inner, check.grains, check.packings,
+      static_cast<double>(check.resolved_cost.contact_evaluations) /
+          static_cast<double>(std::max<std::int64_t>(check.law_cost.contact_evaluations, 1)));
+  return out;
+}
+
+/// Radii from the largest grain of the coarsest level down to the smallest of the finest one, largest over smallest.
+double span(const HierarchySetup& setup, const HierarchyRun& run, std::int64_t levels) {
+  double inner = 0.0;  // mean radius of an inner soft particle over that of its parent
+  for (const HierarchyLevel& l : run.levels)
+    if (l.number > 0) inner = 0.5 * (l.inner_low + l.inner_high);
+  return setup.crowd.spec.polydispersity * std::pow(1.0 / inner, static_cast<double>(levels - 1));
+}
+
+std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& run) {
+  const HierarchyLevel& coarsest = run.levels[static_cast<std::size_t>(setup.levels - 1)];
+  std::string text =
+      fmt::format("{} levels: radii 1 to {:.2g}; a soft particle of the coarsest level stands for {:.3g} grains. ",
+                  setup.levels, span(setup, run, setup.levels), coarsest.grains);
+  if (run.fixed)
+    return text + fmt::format(
+                      "From level {} on the law no longer changes (by {:.2f} %; limit {:.2f} %, or what packings "
+                      "alone make of it, {:.2f} %): the fixed point of an unbounded hierarchy.",
+                      *run.fixed, 100.0 * run.levels[static_cast<std::size_t>(*run.fixed)].distance,
+                      100.0 * setup.tolerance, 100.0 * run.levels[static_cast<std::size_t>(*run.fixed)].distance_noise);
+  return text + fmt::format("No fixed point within {} levels: the last two differ by {:.2f} %.", run.levels.size(),
+                            100.0 * run.levels.back().distance);
+}
+
+json summarise(const HierarchySetup& setup, const HierarchyRun& run, const RunContext& context,
+               const Provenance& provenance, double seconds) {
+  json s;
+  s["status"] = run.usable ? "good" : "not usable";
+  s["title"] = setup.title;
+  s["seconds"] = seconds;
+  double evaluations = 0.0;
+  for (const HierarchyLevel& l : run.levels) {
+    s["levels"].push_back(level_json(l, setup.form));
+    evaluations += static_cast<double>(l.cost.contact_evaluations);
+  }
+  const HierarchyLevel& finest = run.levels.front();
+  const HierarchyLevel& coarsest = run.levels[static_cast<std::size_t>(setup.levels - 1)];
+  s["four_decades"] = {{"levels", setup.levels},
+                       {"radius_span", span(setup, run, setup.levels)},
+                       {"resolved_grains", coarsest.grains},
+                       {"resolved_contact_evaluations",
+                        static_cast<double>(finest.cost.contact_evaluations) * coarsest.grains / finest.grains},
+                       {"contact_evaluations", evaluations}};
+  s["fixed_point"] = {{"reached", run.fixed.has_value()}, {"text", fixed_text(setup, run)}};
+  if (run.fixed) s["fixed_point"]["level"] = *run.fixed;
+  if (run.check) s["check"] = check_json(*run.check);
+  s["remarks"] = run.remarks;
+  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s["files"][file] = context.path(file);
+  s["provenance"] = provenance_json(provenance);
+  return s;
+}
+
+std::string people_text(const HierarchySetup& setup, const HierarchyRun& run, const RunContext& context,
+                        double seconds) {
+  std::string text = fixed_text(setup, run) + "\n";
+  for (const HierarchyLevel& l : run.levels) {
+    if (l.number == 0) continue;
+    text += fmt::format("  level {}: {:.0f} soft particles inside ({:.1f} % of the volume), law changes by {:.1f} %",
+                        l.number, l.inner_mean, 100.0 * l.inner_volume, 100.0 * l.distance);
+    if (!l.changes.empty())
+      text += fmt::format(", {} force x {:.3f}({:.3f})", l.changes[0].configuration, l.changes[0].ratio,
+                          l.changes[0].error);
+    text += "\n";
+  }
+  if (run.check) {
+    text += check_json(*run.check)["text"].get<std::string>() + "\n";
+    for (const CheckPoint& p : run.check->points)
+      text += fmt::format("  h/Rs = {:.3f}: law over resolved {:.3f}({:.3f})\n", p.overlap, p.ratio, p.ratio_error);
+  }
+  for (const std::string& remark : run.remarks) text += "note: " + remark + "\n";
+  return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
+}
+
+void check_levels(const HierarchySetup& setup, const TaskStore& store, const RunContext& context, HierarchyRun& run) {
+  if (setup.check_packings == 0) return;
+  try {
+    run.check = check_two_decades(setup, run.levels.front().entry, store, context);
+  } catch (const NotUsable& e) {  // the levels are kept and said
+    run.usable = false;
+    run.remarks.push_back("no resolved check: " + std::string(e.what()));
+    return;
+  }
+  if (run.check->converged) return;
+  run.usable = false;
+  run.remarks.emplace_back("the resolved check holds states that did not converge");
+}
+
+ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const HierarchySetup setup = read_hierarchy_setup(scene.root());
+  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(setup.crowd.seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  const TaskStore store(context, scene, seed);
+  HierarchyRun run;
+  context.guard([&] {
+    run_levels(setup, store, context, provenance, run);
+    check_levels(setup, store, context, run);
+  });
+  if (!run.fixed) {
+    run.usable = false;
+    run.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  context.finish(summarise(setup, run, context, provenance, seconds), people_text(setup, run, context, seconds));
+  write_report(context.directory());
+  store.clear();
+  return run.usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace
+
+SceneKind hierarchy_kind() {
+  return {.name = "hierarchy",
+          .command = "run",
+          .run = run_hierarchy,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_hierarchy(scene, out); },
+          .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene.root()); }};
+}
+
+}  // namespace softgrain

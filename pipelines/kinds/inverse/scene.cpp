@@ -1,0 +1,180 @@
+#include "pipelines/kinds/inverse/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calibrate/experiment_fit.h"
+#include "calibrate/response_surface.h"
+#include "common/core/error.h"
+#include "common/data/force_curves.h"
+
+namespace softgrain {
+
+namespace {
+
+/// What may be searched: key in [search], allowed values, how it is spread, and where it goes.
+struct KnownParameter {
+  const char* name;
+  Range range;
+  bool logarithmic;
+  double SoftParticleSpec::*member;  ///< null: trials
+};
+
+const std::array<KnownParameter, 7>& known_parameters() {
+  static const std::array<KnownParameter, 7> known{
+      {{"beta", Range::above(1.0), true, &SoftParticleSpec::beta},
+       {"trials", Range::closed(1.0, 1e9), true, nullptr},
+       {"mu", Range::not_negative(), false, &SoftParticleSpec::friction},
+       {"nu", Range::closed(-0.99, 0.5), false, &SoftParticleSpec::poisson_ratio},
+       {"rmax_over_shell", Range{0.0, 1.0, true, true}, false, &SoftParticleSpec::rmax_over_shell},
+       {"exponent", Range::above(1.0), false, &SoftParticleSpec::exponent},
+       {"polydispersity", Range::above(1.0), true, &SoftParticleSpec::polydispersity}}};
+  return known;
+}
+
+std::vector<SearchParameter> read_search(const SceneTable& t) {
+  std::vector<SearchParameter> out;
+  for (const KnownParameter& k : known_parameters()) {
+    if (!t.has(k.name)) continue;
+    const std::vector<double> ends = t.numbers(k.name, Unit::none, k.range);
+    if (ends.size() != 2 || !(ends[0] < ends[1])) t.reject(k.name, "must be a range of two rising values [low, high]");
+    out.push_back({k.name, ends[0], ends[1], k.logarithmic && ends[0] > 0.0});
+  }
+  if (out.empty())
+    t.reject("beta",
+             "nothing is searched: give the range of at least one of beta, trials, mu, nu, rmax_over_shell, "
+             "exponent, polydispersity, e.g. mu = [0.1, 0.6]");
+  return out;
+}
+
+/// The largest packings of the box must be drawable too.
+void require_box(const SceneTable& t, const InverseSetup& setup) {
+  const std::size_t d = setup.search.size();
+  for (std::size_t corner = 0; corner < (std::size_t{1} << d); ++corner) {
+    std::vector<double> u;
+    for (std::size_t a = 0; a < d; ++a) u.push_back((corner >> a & 1U) != 0 ? 1.0 : 0.0);
+    require_drawable(t, spec_at(setup, u));
+  }
+}
+
+void read_budget(const SceneTable& t, InverseSetup& s) {
+  const auto surface = static_cast<std::int64_t>(ResponseSurface::coefficients(s.search.size()));
+  s.budget = t.count("budget", surface + 2, 100000, std::max<std::int64_t>(40, 2 * surface + 10));
+  s.design = t.count("design", surface, s.budget, std::max(surface + 2, s.budget / 2));
+  s.batch = t.count("batch", 1, 1000, 6);
+  s.confirm = t.count("confirm", 2, 100000, s.packings);
+  s.replicates = static_cast<int>(t.count("replicates", 20, 100000, s.replicates));
+}
+
+/// Points given in the scene itself.
+void read_points(const SceneTable& t, InverseSetup& s) {
+  s.target.delta = t.numbers("delta", Unit::none, Range{0.0, 0.9, true, false});
+  s.target.force = t.numbers("force", Unit::force);
+  const std::size_t n = s.target.delta.size();
+  if (s.target.force.size() != n) t.reject("force", fmt::format("must have as many values as delta ({})", n));
+  for (std::size_t k = 1; k < n; ++k)
+    if (s.target.delta[k] <= s.target.delta[k - 1]) t.reject("delta", "values must ascend");
+  s.target.error.assign(n, 0.0);
+  if (!t.has("error")) return;
+  s.target.error = t.numbers("error", Unit::force, Range::not_negative());
+  if (s.target.error.size() != n) t.reject("error", fmt::format("must have as many values as delta ({})", n));
+}
+
+/// Mean curve of a file, at evenly spread overlaps within its range.
+void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
+  ForceCurveOptions options;
+  options.kind = s.kind;
+  options.shell_radius = s.measure.spec.shell_radius;
+  options.youngs_modulus = s.measure.spec.youngs_modulus;
+  options.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
+  const ForceCurves curves = read_force_curves(scene.resolve(t.text("file")), options);
+  s.remarks = curves.remarks;
+  const CurveMeans means = mean_curve(curves);
+  const auto points = static_cast<std::size_t>(t.count("points", 3, 1000, 8));
+  const double low =
+      t.number("delta_low", Unit::none, Range{0.0, 0.9, true, false}, std::max(means.delta.front(), 1e-3));
+  const double high = t.number("delta_high", Unit::none, Range{0.0, 0.9, true, false}, means.delta.back());
+  if (!(high > low) || low > means.delta.back() || high < means.delta.front())
+    t.reject("delta_high",
+             fmt::format("the file has Delta from {:.4g} to {:.4g}", means.delta.front(), means.delta.back()));
+  s.target.delta.clear();
+  std::size_t last = means.delta.size();
+  for (std::size_t k = 0; k < points; ++k) {
+    const double wanted = low + (high - low) * static_cast<double>(k) / static_cast<double>(points - 1);
+    std::size_t near = 0;  // measured overlaps are taken as they are: nothing is interpolated twice
+    for (std::size_t i = 0; i < means.delta.size(); ++i)
+      if (std::abs(means.delta[i] - wanted) < std::abs(means.delta[near] - wanted)) near = i;
+    if (near == last || !(means.delta[near] > 0.0)) continue;
+    last = near;
+    s.target.delta.push_back(means.delta[near]);
+    s.target.force.push_back(means.mean[near]);
+    s.target.error.push_back(means.deviation[near]);
+  }
+}
+
+void read_target(const Scene& scene, const SceneTable& t, InverseSetup& s) {
+  s.kind = t.choice("contact", {"soft-solid", "soft-soft"}, "soft-solid") == "soft-solid" ? PairKind::soft_solid
+                                                                                          : PairKind::soft_soft;
+  s.target.discrepancy = t.number("discrepancy", Unit::none, Range::closed(0.0, 1.0), s.target.discrepancy);
+  if (t.has("file") && t.has("delta")) t.reject("delta", "give the target as a file or as points, not both");
+  if (t.has("file"))
+    read_file(scene, t, s);
+  else
+    read_points(t, s);
+  const char* key = t.has("file") ? "file" : "force";
+  if (s.target.delta.size() < 3) t.reject(key, "at least three points are needed");
+  if (!(*std::max_element(s.target.force.begin(), s.target.force.end()) > 0.0))
+    t.reject(key, "no force of the target is above zero");
+  if (s.target.discrepancy <= 0.0 && *std::min_element(s.target.error.begin(), s.target.error.end()) <= 0.0)
+    t.reject("discrepancy", "must be above 0 where the target has no errors");
+}
+
+}  // namespace
+
+double SearchParameter::value(double u) const {
+  if (u <= 0.0) return low;
+  if (u >= 1.0) return high;
+  return logarithmic ? low * std::pow(high / low, u) : low + (high - low) * u;
+}
+
+double SearchParameter::coordinate(double x) const {
+  return logarithmic ? std::log(x / low) / std::log(high / low) : (x - low) / (high - low);
+}
+
+void SearchParameter::set(SoftParticleSpec& spec, double x) const {
+  for (const KnownParameter& k : known_parameters()) {
+    if (name != k.name) continue;
+    if (k.member != nullptr)
+      spec.*k.member = x;
+    else
+      spec.trials = std::llround(x);
+  }
+}
+
+SoftParticleSpec spec_at(const InverseSetup& setup, const std::vector<double>& u) {
+  SoftParticleSpec spec = setup.measure.spec;
+  for (std::size_t a = 0; a < setup.search.size(); ++a) setup.search[a].set(spec, setup.search[a].value(u[a]));
+  return spec;
+}
+
+InverseSetup read_inverse(const Scene& scene) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"inverse"});
+  InverseSetup s;
+  s.title = root.text("title", "");
+  s.measure = read_measure_protocols(root, s.relaxation, s.plan);
+  s.packings = root.table_or_empty("packing").count("count", 2, 100000, 8);
+  const SceneTable search = root.table("search");
+  s.search = read_search(search);
+  require_box(search, s);
+  read_budget(search, s);
+  read_target(scene, root.table("target"), s);
+  s.plan.deltas = s.target.delta;
+  root.finish();
+  return s;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,49 @@
+// Scene of kind "inverse": which soft particle gives a target curve?
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibrate/inverse_search.h"
+#include "pipelines/kinds/soft_particle/scene.h"
+
+namespace softgrain {
+
+/// A quantity of the soft particle that may be searched.
+struct SearchParameter {
+  std::string name;  ///< key in [search]
+  double low = 0.0;  ///< range
+  double high = 0.0;
+  bool logarithmic = false;  ///< spread evenly in its logarithm
+
+  /// From [0, 1] and back.
+  [[nodiscard]] double value(double u) const;
+  [[nodiscard]] double coordinate(double value) const;
+  /// Puts it into a soft particle; whole numbers are rounded.
+  void set(SoftParticleSpec& spec, double value) const;
+};
+
+struct InverseSetup {
+  std::string title;
+  MeasureSetup measure;  ///< protocols; what is not searched of the soft particle
+  std::string relaxation;
+  MeasurementPlan plan;  ///< the target's overlaps
+  PairKind kind = PairKind::soft_solid;
+  InverseTarget target;  ///< forces in N
+  std::vector<SearchParameter> search;
+  std::int64_t packings = 8;  ///< of each evaluation
+  std::int64_t budget = 40;   ///< evaluations
+  std::int64_t design = 20;   ///< of these, spread over the whole box at first
+  std::int64_t batch = 6;     ///< evaluations between two looks at the surface
+  std::int64_t confirm = 8;   ///< packings of the last evaluation, with other random numbers
+  int replicates = 400;
+  std::vector<std::string> remarks;
+};
+
+/// The soft particle at a point of the box.
+SoftParticleSpec spec_at(const InverseSetup& setup, const std::vector<double>& u);
+
+/// Throws BadInput: nothing to search, ranges that cannot be drawn, a target without points, more...
+InverseSetup read_inverse(const Scene& scene);
+
+}  // namespace softgrain

@@ -1,0 +1,27 @@
+// The measuring part of a reverse search: packings at points of the box, each kept as it is finished.
+#pragma once
+
+#include <vector>
+
+#include "common/io/progress.h"
+#include "pipelines/kinds/inverse/scene.h"
+#include "pipelines/run/task_store.h"
+
+namespace softgrain {
+
+/// All evaluations of a search and the confirming one.
+struct InverseResult {
+  std::vector<InverseEvaluation> evaluations;
+  InverseAnswer answer;
+  Measurements confirmed;   ///< at the answer, with packings that the search has not seen
+  InverseEvaluation check;  ///< the same as curves
+  Cost cost;                ///< of everything
+  std::int64_t not_converged = 0;
+  std::int64_t points = 0;
+};
+
+/// Runs the search. Finished packings are taken from the store; results depend on no thread count. Throws NotUsable,
+/// Interrupted.
+InverseResult run_inverse_stage(const InverseSetup& setup, const TaskStore& store, std::uint64_t seed, bool quiet);
+
+}  // namespace softgrain

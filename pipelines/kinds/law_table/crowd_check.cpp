@@ -1,0 +1,150 @@
+#include "pipelines/kinds/law_table/crowd_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "microsim/crowd_experiment.h"
+#include "microsim/particles/scene_memory.h"
+#include "pipelines/kinds/soft_particle/check.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Loop passes per increment between two relaxations, recorded states included: pipelines/law_table.toml takes five
+/// minutes on two cores.
+constexpr double kPassesPerIncrement = 150.0;
+
+double softs_of(const CrowdConfiguration& c) {
+  return static_cast<double>(std::count_if(c.partners.begin(), c.partners.end(),
+                                           [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; }));
+}
+
+std::int64_t increments_of(const CrowdConfiguration& c, const CrowdOptions& options) {
+  return count_increments(c, CrowdPlan(c.stages.size(), {1.0}), options);
+}
+
+bool has_stage(const CrowdConfiguration& c, const char* name) {
+  return std::any_of(c.stages.begin(), c.stages.end(), [&](const CrowdStage& s) { return s.name == name; });
+}
+
+/// What the fit will miss.
+void warn_of_configurations(const CrowdSetup& setup, Findings& out) {
+  const auto any = [&](const auto& holds) {
+    return std::any_of(setup.configurations.begin(), setup.configurations.end(), holds);
+  };
+  const auto partner = [](PartnerKind kind) {
+    return [kind](const CrowdConfiguration& c) { return c.partners.front().kind == kind; };
+  };
+  if (!any([](const CrowdConfiguration& c) {
+        return c.partners.size() == 1 && c.partners.front().kind == PartnerKind::plane && !c.held_out;
+      }))
+    out.warn("no configuration with one plane: nothing fixes the pressure, and there will be no law");
+  if (!any([](const CrowdConfiguration& c) {
+        return c.partners.size() > 2 && c.partners.front().kind == PartnerKind::plane && !c.held_out;
+      }))
+    out.warn("no configuration with three planes or more: the coupling of neighbours is not determined");
+  if (!any(partner(PartnerKind::solid))) out.warn("no solid neighbours: macro scenes cannot use such a table");
+  if (!any(partner(PartnerKind::soft))) out.warn("no soft neighbours: macro scenes cannot use such a table");
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, "slide"); }))
+    out.warn("no path slides: friction limit and tangential stiffness will not be measured");
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, "unload"); }))
+    out.warn("no path unloads: the unloading branch will not be measured");
+  if (!any([](const CrowdConfiguration& c) { return c.held_out; }))
+    out.warn("nothing is held out: how well the law predicts is known from leaving one out alone");
+  constexpr std::int64_t kFew = 6;
+  if (setup.packings_min < kFew)
+    out.warn(fmt::format("{} packings at least are few: single loadings differ by 10 % and more between packings",
+                         setup.packings_min));
+}
+
+void add_overlaps(const CrowdSetup& setup, Findings& out) {
+  double deepest = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations)
+    if (c.partners.front().kind == PartnerKind::plane)
+      for (const CrowdStage& s : c.stages)
+        deepest = std::max(deepest, *std::max_element(s.overlap.begin(), s.overlap.end()));
+  if (!(deepest > 0.0)) return;
+  const double overlap = expected_grain_overlap(PairKind::soft_solid, deepest);
+  out.add(
+      "grain_overlap", overlap,
+      fmt::format("grains overlap by about {:.2g} of the smaller radius at the largest overlap with a plane, {} Rs; "
+                  "more with several neighbours",
+                  overlap, deepest));
+  constexpr double kLarge = 1.0;
+  if (overlap > kLarge)
+    out.warn(
+        fmt::format("planes press in by {} Rs: grains overlap by about {:.2g} of the smaller radius, and Hertz' law is "
+                    "one of small overlaps",
+                    deepest, overlap));
+}
+
+/// Core seconds of a loop pass over one soft particle, squeezed, and of its packing.
+MeasureTrial try_one(const CrowdSetup& setup, Findings& out) {
+  constexpr double kBudget = 0.3;
+  MeasureTrial t = try_soft_particle(setup.spec, setup.seed, kBudget);
+  out.add("grains", t.packing.radius.size(),
+          fmt::format("grains in the first packing: {}, solid fraction {:.3f}", t.packing.radius.size(),
+                      t.packing.solid_fraction()));
+  out.facts["solid_fraction"] = t.packing.solid_fraction();
+  return t;
+}
+
+/// Core seconds of all configurations with one packing each.
+double seconds_per_packing(const CrowdSetup& setup, double pass_seconds) {
+  double passes = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations)
+    passes += (1.0 + softs_of(c)) * static_cast<double>(increments_of(c, setup.options)) * kPassesPerIncrement;
+  return passes * pass_seconds;
+}
+
+/// Packings that a configuration takes in the mean until its target is met, those of the pilot included: forces at
+/// the largest overlap scatter by about a fifth between packings.
+double expected_packings(const CrowdSetup& setup) {
+  constexpr double kScatter = 0.2;
+  const double needed = std::pow(kScatter / setup.target, 2);
+  return std::clamp(needed, static_cast<double>(setup.packings_min), static_cast<double>(setup.packings_max));
+}
+
+}  // namespace
+
+MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
+  const auto configurations = static_cast<std::int64_t>(setup.configurations.size());
+  std::int64_t increments = 0;
+  std::int64_t stages = 0;
+  double softs = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations) {
+    increments += increments_of(c, setup.options);
+    stages += static_cast<std::int64_t>(c.stages.size());
+    softs = std::max(softs, softs_of(c));
+  }
+  out.facts["configurations"] = configurations;
+  out.facts["runs_min"] = configurations * setup.packings_min;
+  out.facts["runs_max"] = configurations * setup.packings_max;
+  out.facts["points_per_packing"] = stages * setup.points;
+  out.facts["relaxations_per_packing"] = increments;
+  out.lines +=
+      fmt::format("  {} configurations on {} to {} packings: {} to {} runs\n", configurations, setup.packings_min,
+                  setup.packings_max, configurations * setup.packings_min, configurations * setup.packings_max);
+  out.lines +=
+      fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
+  const MeasureTrial trial = try_one(setup, out);
+  const double bodies = static_cast<double>(trial.packing.radius.size()) * (1.0 + softs);
+  const double memory = estimated_memory(static_cast<std::int64_t>(bodies), kPairsPerGrain * bodies);
+  out.add("bytes", memory, "memory: about " + bytes_text(memory) + " for the largest measurement under way");
+  add_overlaps(setup, out);
+  warn_of_configurations(setup, out);
+  warn_of_soft_particle(setup.spec, out);
+  return trial;
+}
+
+void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
+                    Findings& out) {
+  out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.packings_max));
+  out.spend(part, times * expected_packings(setup) * seconds_per_packing(setup, trial.pass_seconds));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,19 @@
+// softgrain check of what is measured with several neighbours: of law tables, and of every level of a hierarchy.
+#pragma once
+
+#include <string>
+
+#include "pipelines/kinds/law_table/crowd_scene.h"
+#include "pipelines/kinds/soft_particle/cost.h"
+#include "pipelines/run/findings.h"
+
+namespace softgrain {
+
+/// Counts, overlaps, memory, and what the table will lack; returns the trial of its first packing.
+MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out);
+
+/// Adds what packings and runs take, `times` over; `part`: their name among the parts of the time.
+void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
+                    Findings& out);
+
+}  // namespace softgrain

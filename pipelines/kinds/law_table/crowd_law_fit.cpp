@@ -1,0 +1,135 @@
+#include "pipelines/kinds/law_table/crowd_law_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "pipelines/kinds/law_table/crowd_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+bool all_converged(const CrowdMeasurements& data) {
+  for (const CrowdRun& run : data.runs)
+    for (const CrowdPoint& p : run.points)
+      if (!p.converged) return false;
+  return true;
+}
+
+/// Entries ascend in solid fraction; two at the same one could not be told apart.
+void insert(LawTable& table, LawTableEntry entry) {
+  constexpr double kSame = 1e-6;
+  const auto at = std::find_if(table.entries.begin(), table.entries.end(),
+                               [&](const LawTableEntry& e) { return e.solid_fraction > entry.solid_fraction - kSame; });
+  if (at != table.entries.end() && at->solid_fraction < entry.solid_fraction + kSame)
+    throw BadInput(
+        fmt::format("law table: two measurements have the same solid fraction {:.6f}; every entry needs its own",
+                    entry.solid_fraction));
+  table.entries.insert(at, std::move(entry));
+}
+
+nlohmann::json estimate_json(const Estimate& e) {
+  return {{"value", e.value}, {"standard_error", e.standard_error}, {"low", e.low}, {"high", e.high}};
+}
+
+nlohmann::json slide_json(const SlideLaw& s) {
+  return {{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
+}
+
+nlohmann::json law_json(const CrowdLaw& law) {
+  return {{"form", law.form},
+          {"status", law.status},
+          {"error_fitted", law.error_fitted},
+          {"error_held_out", law.error_held_out},
+          {"error_cross", law.error_cross},
+          {"criterion", law.criterion},
+          {"reason", law.reason},
+          {"replicates_failed", law.replicates_failed},
+          {"a", estimate_json(law.a)},
+          {"b", estimate_json(law.b)},
+          {"delta", estimate_json(law.delta)},
+          {"m0", estimate_json(law.m0)},
+          {"m1", estimate_json(law.m1)},
+          {"m2", estimate_json(law.m2)}};
+}
+
+nlohmann::json entry_json(const LawTableEntry& entry) {
+  nlohmann::json out{{"solid_fraction", entry.solid_fraction},
+                     {"packings", entry.packings},
+                     {"best", entry.best},
+                     {"volume_max", entry.volume_max},
+                     {"overlap_max", entry.overlap_max},
+                     {"grain_overlap_max", entry.grain_overlap_max},
+                     {"slide_plane", slide_json(entry.slide_plane)},
+                     {"slide_solid", slide_json(entry.slide_solid)},
+                     {"slide_soft", slide_json(entry.slide_soft)},
+                     {"retreat", estimate_json(entry.retreat)}};
+  for (const CrowdLaw& law : entry.laws) out["laws"].push_back(law_json(law));
+  return out;
+}
+
+std::string law_line(const CrowdLaw& law, bool best) {
+  return fmt::format("  {}{}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", law.form, best ? " (best)" : "",
+                     law.status == "good" ? "" : law.status + ", ", 100.0 * law.error_fitted, held_out_text(law),
+                     cross_text(law));
+}
+
+}  // namespace
+
+std::string held_out_text(const CrowdLaw& law) {
+  if (std::isnan(law.error_held_out)) return "nothing held out";
+  return fmt::format("{:.1f} % on what was held out", 100.0 * law.error_held_out);
+}
+
+std::string cross_text(const CrowdLaw& law) {
+  if (std::isnan(law.error_cross)) return "nothing to leave out";
+  return fmt::format("{:.1f} % leaving one out", 100.0 * law.error_cross);
+}
+
+CrowdFitOptions read_crowd_fit(const SceneTable& t) {
+  CrowdFitOptions o;
+  o.discrepancy = t.number("discrepancy", Unit::none, Range{0.0, 1.0, true, false}, o.discrepancy);
+  o.replicates = static_cast<int>(t.count("replicates", 0, 100000, o.replicates));
+  o.min_packings = static_cast<int>(t.count("min_packings", 2, 100000, o.min_packings));
+  o.largest_error = t.number("largest_error", Unit::none, Range::positive(), o.largest_error);
+  return o;
+}
+
+void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOptions& options, double target) {
+  const LawTableEntry entry = fit_crowd_laws(data, options);
+  fit.usable = fit.usable && all_converged(data);
+  for (const std::string& r : crowd_remarks(data, target))
+    fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", entry.solid_fraction, r));
+  for (const CrowdLaw& law : entry.laws) {
+    if (law.replicates_failed > 0)
+      fit.remarks.push_back(
+          fmt::format("solid fraction {:.3f}, {} law: {} of {} refits to drawn packings did not come to a minimum and "
+                      "are left out of "
+                      "the intervals",
+                      entry.solid_fraction, law.form, law.replicates_failed, options.replicates));
+    if (law.status == "good") continue;
+    fit.usable = fit.usable && law.form != entry.best;
+    fit.remarks.push_back(law.form + " law: " + law.status + ": " + law.reason);
+  }
+  insert(fit.table, entry);
+}
+
+nlohmann::json entries_json(const LawTable& table) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const LawTableEntry& entry : table.entries) out.push_back(entry_json(entry));
+  return out;
+}
+
+std::string entries_text(const LawTable& table) {
+  std::string text;
+  for (const LawTableEntry& entry : table.entries) {
+    text += fmt::format("laws at solid fraction {:.3f} ({} packings):\n", entry.solid_fraction, entry.packings);
+    for (const CrowdLaw& law : entry.laws) text += law_line(law, law.form == entry.best);
+  }
+  return text;
+}
+
+}  // namespace softgrain

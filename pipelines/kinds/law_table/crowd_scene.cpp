@@ -1,0 +1,144 @@
+#include "pipelines/kinds/law_table/crowd_scene.h"
+
+#include <algorithm>
+
+#include "microsim/crowd_arrangements.h"
+#include "pipelines/kinds/soft_particle/scene.h"
+
+namespace softgrain {
+
+namespace {
+
+const Range kShare{0.0, 1.0, true, true};
+
+void read_crowd(const SceneTable& t, CrowdSetup& setup) {
+  CrowdOptions& o = setup.options;
+  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
+  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+  setup.packings_min = t.count("packings_min", 2, 100000, setup.packings_min);
+  setup.packings_max = t.count("packings_max", 2, 100000, std::max(setup.packings_max, setup.packings_min));
+  if (setup.packings_max < setup.packings_min) t.reject("packings_max", "must be at least packings_min");
+  setup.target = t.number("target", Unit::none, kShare, setup.target);
+  setup.points = t.count("points", 2, 1000, setup.points);
+}
+
+PartnerKind read_partner(const SceneTable& t) {
+  const std::string word = t.choice("partner", {"plane", "solid", "soft"});
+  if (word == "plane") return PartnerKind::plane;
+  return word == "solid" ? PartnerKind::solid : PartnerKind::soft;
+}
+
+std::string read_arrangement(const SceneTable& t) {
+  static_assert(kArrangements.size() == 10);
+  const auto& a = kArrangements;
+  return t.choice("arrangement", {a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9]});
+}
+
+/// What a [[configuration]] says, before it becomes neighbours and stages.
+struct Wanted {
+  std::string arrangement;
+  PartnerKind partner = PartnerKind::plane;
+  double ratio = 0.0;
+  double overlap = 0.0;
+  double shallow = 1.0;
+  std::string path;
+  double slide = 0.0;
+};
+
+Wanted read_wanted(const SceneTable& t) {
+  Wanted w;
+  w.arrangement = read_arrangement(t);
+  w.partner = read_partner(t);
+  const bool plane = w.partner == PartnerKind::plane;
+  if (plane && t.has("ratio")) t.reject("ratio", "a plane has no radius; leave it out");
+  if (!plane) w.ratio = t.number("ratio", Unit::none, Range::positive(), 1.0);
+  w.overlap = t.number("overlap", Unit::none, kShare);
+  if (!plane && w.overlap >= w.ratio)
+    t.reject("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
+  w.path = t.choice("path", {"together", "sequential", "unload", "slide"}, "together");
+  if (w.path == "slide")
+    w.slide = t.number("slide", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
+  else if (t.has("slide"))
+    t.reject("slide", "only a path that slides has it: path = \"slide\"");
+  if (w.arrangement == "beside-five")
+    w.shallow = t.number("shallow", Unit::none, Range{0.0, 1.0, true, false}, 0.5);
+  else if (t.has("shallow"))
+    t.reject("shallow", "only the arrangement beside-five has a shallow neighbour");
+  return w;
+}
+
+std::vector<CrowdStage> stages_of(const Wanted& w, const std::vector<double>& deepest) {
+  const std::vector<double> apart(deepest.size(), 0.0);
+  if (w.path == "unload") return {{"load", deepest, 0.0}, {"unload", apart, 0.0}, {"reload", deepest, 0.0}};
+  if (w.path == "slide") return {{"load", deepest, 0.0}, {"slide", deepest, w.slide}};
+  if (w.path == "together") return {{"load", deepest, 0.0}};
+  std::vector<CrowdStage> stages;
+  std::vector<double> reached = apart;
+  for (std::size_t k = 0; k < deepest.size(); ++k) {
+    reached[k] = deepest[k];
+    stages.push_back({"load", reached, 0.0});
+  }
+  return stages;
+}
+
+/// "0.25", "1", "2.5": as people write it.
+std::string short_number(double x) {
+  std::string text = std::to_string(x);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string default_name(const Wanted& w, bool free) {
+  std::string name = w.arrangement + "-" + to_string(w.partner);
+  if (w.partner != PartnerKind::plane) name += "-" + short_number(w.ratio);
+  if (w.path != "together") name += "-" + w.path;
+  return free ? name + "-free" : name;
+}
+
+CrowdConfiguration read_configuration(const SceneTable& t) {
+  const Wanted w = read_wanted(t);
+  CrowdConfiguration c;
+  std::vector<double> deepest = depth_shares(w.arrangement, w.shallow);
+  for (double& h : deepest) h *= w.overlap;
+  for (const Vec3& d : arrangement(w.arrangement)) c.partners.push_back({w.partner, w.ratio, d});
+  c.stages = stages_of(w, deepest);
+  c.centre_free = t.choice("centre", {"fixed", "free"}, "fixed") == "free";
+  c.held_out = t.flag("held_out", false);
+  c.name = t.text("name", default_name(w, c.centre_free));
+  if (c.name.empty()) t.reject("name", "must not be empty");
+  return c;
+}
+
+void require_packings(const SceneTable& t, const CrowdConfiguration& c, std::int64_t pool) {
+  const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
+                                   [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
+  if (softs >= pool)
+    t.reject("partner", std::to_string(softs) +
+                            " soft neighbours and the centre need as many different packings: raise "
+                            "crowd.packings_max to " +
+                            std::to_string(softs + 1) + " or more");
+}
+
+}  // namespace
+
+CrowdSetup read_crowd_setup(const SceneTable& root) {
+  CrowdSetup setup;
+  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.spec = read_soft_particle(root);
+  read_crowd(root.table_or_empty("crowd"), setup);
+  for (const SceneTable& t : root.tables("configuration")) {
+    setup.configurations.push_back(read_configuration(t));
+    const CrowdConfiguration& c = setup.configurations.back();
+    require_packings(t, c, setup.packings_max);
+    for (std::size_t k = 0; k + 1 < setup.configurations.size(); ++k)
+      if (setup.configurations[k].name == c.name)
+        t.reject("name", "'" + c.name + "' is there already; give another name");
+  }
+  if (setup.configurations.empty()) root.reject("configuration", "at least one [[configuration]] is needed");
+  return setup;
+}
+
+}  // namespace softgrain

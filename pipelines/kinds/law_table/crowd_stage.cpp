@@ -1,0 +1,306 @@
+#include "pipelines/kinds/law_table/crowd_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "common/io/interrupt.h"
+#include "common/io/progress.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/kinds/law_table/crowd_cache.h"
+#include "pipelines/kinds/law_table/crowd_plan.h"
+#include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/kept_crowd.h"
+#include "pipelines/run/parallel_tasks.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::int64_t kPilotPackings = 3;
+constexpr double kPilotIncrement = 4.0;  ///< of that of the measurement: a pilot looks for the onset only
+constexpr std::int64_t kBatch = 4;       ///< packings that a configuration gets at a time beyond the first ones
+
+/// One configuration of one packing.
+struct CrowdTask {
+  const CrowdConfiguration* configuration = nullptr;
+  const CrowdPlan* plan = nullptr;
+  std::int64_t index = 0;  ///< of the configuration
+  std::int64_t packing = 0;
+};
+
+std::int64_t soft_count(const CrowdConfiguration& c) {
+  return std::count_if(c.partners.begin(), c.partners.end(),
+                       [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
+}
+
+/// Packings of the centre and of its soft neighbours.
+std::vector<std::int64_t> packings_of(const CrowdTask& task, std::int64_t pool) {
+  std::vector<std::int64_t> packings{task.packing};
+  for (std::int64_t k = 0; k < soft_count(*task.configuration); ++k) packings.push_back((task.packing + 1 + k) % pool);
+  return packings;
+}
+
+/// What all tasks share, and the memory of what is measured already.
+class CrowdRunner {
+ public:
+  CrowdRunner(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
+              const std::vector<SoftContent>& contents, const CrowdLevel* level)
+      : setup_(setup),
+        store_(store),
+        context_(context),
+        cache_(context.law_cache(), [&context](const std::string& remark) { context.say(remark); }),
+        contents_(contents),
+        level_(level),
+        seed_(context.seed(setup.seed)) {}
+
+  /// Runs tasks in parallel, long ones first; results are in the order of the tasks.
+  /// Those that came to their end, in the order of tasks. What broke off (a grain squeezed out of its shell...) is left
+  /// out as a whole, and said.
+  std::vector<CrowdRun> measure(const std::vector<CrowdTask>& tasks, const CrowdOptions& options,
+                                const std::string& what) {
+    std::vector<double> weights;
+    double total = 0.0;
+    for (const CrowdTask& t : tasks) {
+      weights.push_back(static_cast<double>(count_increments(*t.configuration, *t.plan, options)) *
+                        (1.0 + static_cast<double>(soft_count(*t.configuration))));
+      total += weights.back();
+    }
+    std::vector<std::size_t> order(tasks.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
+    Progress progress(what, total, context_.quiet());
+    std::vector<CrowdRun> runs(tasks.size());
+    std::vector<std::string> broke_off(tasks.size());
+    parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
+      const std::size_t t = order[static_cast<std::size_t>(k)];
+      try {
+        runs[t] = known_or_measured(tasks[t], options, weights[t], progress);
+      } catch (const NotUsable& e) {
+        broke_off[t] = fmt::format(
+            "{}, packing {} is left out: it broke off: {}; smaller overlaps or increments may keep it whole",
+            tasks[t].configuration->name, tasks[t].packing, e.what());
+      }
+    });
+    progress.finish();
+    return whole_ones(std::move(runs), broke_off);
+  }
+
+  [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+
+ private:
+  std::vector<CrowdRun> whole_ones(std::vector<CrowdRun> runs, const std::vector<std::string>& broke_off) {
+    std::vector<CrowdRun> out;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      if (broke_off[k].empty()) {
+        out.push_back(std::move(runs[k]));
+        continue;
+      }
+      context_.say(broke_off[k]);
+      left_out_.push_back(broke_off[k]);
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::string key_of(const CrowdTask& task, const CrowdOptions& options) const {
+    std::string text = fmt::format("seed {} packings", seed_);
+    for (const std::int64_t p : packings_of(task, static_cast<std::int64_t>(contents_.size())))
+      text += fmt::format(" {}", p);
+    if (level_ != nullptr) text += "\nlevel " + level_->tag;
+    return crowd_run_key(setup_.spec, *task.configuration, *task.plan, options, text);
+  }
+
+  CrowdRun known_or_measured(const CrowdTask& task, const CrowdOptions& options, double weight,
+                             Progress& progress) const {
+    const std::string key = key_of(task, options);
+    const std::string name = crowd_run_name(key);
+    std::optional<CrowdRun> run = cache_.find(key);
+    if (!run) store_.load(name, [&](const h5::Group& g) { run = read_crowd_runs(g).at(0); });
+    if (run) {
+      progress.advance(weight);
+    } else {
+      run = measured(task, name, options, weight, progress);
+      store_.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {*run}); });
+      cache_.keep(key, *run);
+    }
+    run->configuration = task.index;
+    run->packing = task.packing;
+    return *run;
+  }
+
+  CrowdRun measured(const CrowdTask& task, const std::string& name, const CrowdOptions& options, double weight,
+                    Progress& progress) const {
+    const auto packings = packings_of(task, static_cast<std::int64_t>(contents_.size()));
+    std::vector<const SoftContent*> others;
+    for (std::size_t k = 1; k < packings.size(); ++k)
+      others.push_back(&contents_[static_cast<std::size_t>(packings[k])]);
+    std::size_t points = 0;
+    for (const auto& shares : *task.plan) points += shares.size();
+    CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
+                                   others, level_ != nullptr ? &level_->laws : nullptr);
+    const auto advance = [&](const CrowdPoint&) { progress.advance(weight / static_cast<double>(points)); };
+    return run_kept_crowd(store_, name, e, *task.plan, options, advance);
+  }
+
+  const CrowdSetup& setup_;
+  const TaskStore& store_;
+  const RunContext& context_;
+  CrowdCache cache_;
+  const std::vector<SoftContent>& contents_;
+  const CrowdLevel* level_;
+  std::uint64_t seed_;
+  std::vector<std::string> left_out_;
+};
+
+/// Throws NotUsable when fewer than half of the packings of a configuration are left: what is left are the soft ones.
+void require_enough(const CrowdConfiguration& c, std::size_t left, std::size_t tried, const CrowdRunner& runner) {
+  if (2 * left >= tried && left > 0) return;
+  throw NotUsable(fmt::format("{}: {} of {} packings broke off; {}", c.name, tried - left, tried,
+                              runner.left_out().empty() ? "" : runner.left_out().back()));
+}
+
+std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const RunContext& context) {
+  std::vector<ShellPacking> pool(static_cast<std::size_t>(setup.packings_max));
+  Progress progress("packing", static_cast<double>(pool.size()), context.quiet());
+  parallel_tasks(setup.packings_max, [&](std::int64_t k) {
+    if (interrupt_requested()) throw Interrupted("stopped by a signal while packing");
+    pool[static_cast<std::size_t>(k)] =
+        generate_shell_packing(setup.spec, context.seed(setup.seed), static_cast<std::uint64_t>(k));
+    progress.advance();
+  });
+  progress.finish();
+  return pool;
+}
+
+/// A coarse look at every way of loading; configurations that load alike share it.
+class Pilot {
+ public:
+  Pilot(const CrowdSetup& setup, CrowdRunner& runner) : setup_(setup) {
+    for (const CrowdConfiguration& c : setup.configurations) add(loading_part(c));
+    CrowdOptions options = setup.options;
+    options.increment *= kPilotIncrement;
+    std::vector<CrowdTask> tasks;
+    const std::int64_t packings = std::min(kPilotPackings, setup.packings_max);
+    for (std::size_t k = 0; k < parts_.size(); ++k)
+      for (std::int64_t p = 0; p < packings; ++p)
+        tasks.push_back({&parts_[k], &plans_[k], static_cast<std::int64_t>(k), p});
+    std::vector<std::vector<CrowdRun>> runs(parts_.size());
+    for (CrowdRun& run : runner.measure(tasks, options, "looking for onsets"))
+      runs[static_cast<std::size_t>(run.configuration)].push_back(std::move(run));
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      require_enough(parts_[k], runs[k].size(), static_cast<std::size_t>(packings), runner);
+      onsets_.push_back(onset_shares(parts_[k], runs[k]));
+    }
+  }
+
+  [[nodiscard]] CrowdPlan plan(std::size_t configuration) const {
+    return recording_plan(setup_.configurations[configuration], onsets_[part_[configuration]], setup_.points,
+                          setup_.options.increment);
+  }
+
+ private:
+  void add(const CrowdConfiguration& part) {
+    const CrowdPlan plan = coarse_plan(part);
+    const std::string key = crowd_run_key(setup_.spec, part, plan, setup_.options, "");
+    const auto [place, is_new] = known_.emplace(key, parts_.size());
+    if (is_new) {
+      parts_.push_back(part);
+      plans_.push_back(plan);
+    }
+    part_.push_back(place->second);
+  }
+
+  const CrowdSetup& setup_;
+  std::map<std::string, std::size_t> known_;
+  std::vector<CrowdConfiguration> parts_;
+  std::vector<CrowdPlan> plans_;
+  std::vector<std::size_t> part_;  ///< of each configuration
+  std::vector<std::vector<double>> onsets_;
+};
+
+/// Which runs are there, per configuration, and how many each one is to have.
+class Batches {
+ public:
+  Batches(const CrowdSetup& setup, const std::vector<CrowdPlan>& plans)
+      : setup_(setup),
+        plans_(plans),
+        runs_(setup.configurations.size()),
+        tried_(setup.configurations.size(), 0),
+        wanted_(setup.configurations.size(), setup.packings_min) {}
+
+  [[nodiscard]] std::vector<CrowdTask> next() const {
+    std::vector<CrowdTask> tasks;
+    for (std::size_t c = 0; c < runs_.size(); ++c)
+      for (auto p = tried_[c]; p < wanted_[c]; ++p)
+        tasks.push_back({&setup_.configurations[c], &plans_[c], static_cast<std::int64_t>(c), p});
+    return tasks;
+  }
+  void take(std::vector<CrowdRun> runs) {
+    for (CrowdRun& run : runs) runs_[static_cast<std::size_t>(run.configuration)].push_back(std::move(run));
+    tried_ = wanted_;
+    for (std::size_t c = 0; c < runs_.size(); ++c)
+      if (!met(end_force(setup_.configurations[c], runs_[c]), setup_.target))
+        wanted_[c] = std::min(setup_.packings_max, tried_[c] + kBatch);
+  }
+  void require_enough_left(const CrowdRunner& runner) const {
+    for (std::size_t c = 0; c < runs_.size(); ++c)
+      require_enough(setup_.configurations[c], runs_[c].size(), static_cast<std::size_t>(tried_[c]), runner);
+  }
+  [[nodiscard]] std::vector<CrowdRun> all() const {
+    std::vector<CrowdRun> out;
+    for (const auto& runs : runs_) out.insert(out.end(), runs.begin(), runs.end());
+    return out;
+  }
+
+ private:
+  const CrowdSetup& setup_;
+  const std::vector<CrowdPlan>& plans_;
+  std::vector<std::vector<CrowdRun>> runs_;
+  std::vector<std::int64_t> tried_;  ///< packings, those that broke off included
+  std::vector<std::int64_t> wanted_;
+};
+
+std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, const RunContext& context) {
+  std::vector<CrowdPlan> plans;
+  const Pilot pilot(setup, runner);
+  for (std::size_t c = 0; c < setup.configurations.size(); ++c) plans.push_back(pilot.plan(c));
+  Batches batches(setup, plans);
+  std::string what = "measuring";
+  for (auto tasks = batches.next(); !tasks.empty(); tasks = batches.next()) {
+    context.say(fmt::format("{}: {} runs", what, tasks.size()));
+    batches.take(runner.measure(tasks, setup.options, what));
+    what = "measuring more packings";
+  }
+  batches.require_enough_left(runner);
+  return batches.all();
+}
+
+}  // namespace
+
+CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
+                                  const Provenance& provenance, std::vector<std::string>& left_out,
+                                  std::vector<ShellPacking>* contents, const CrowdLevel* level) {
+  const std::vector<ShellPacking> pool = generate_pool(setup, context);
+  std::vector<SoftContent> filled(pool.size());
+  parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
+    const ShellPacking& packing = pool[static_cast<std::size_t>(k)];
+    filled[static_cast<std::size_t>(k)] =
+        level != nullptr && level->fill ? level->fill(packing, k) : SoftContent{packing, {}, {}};
+  });
+  CrowdMeasurements data;
+  data.spec = setup.spec;
+  data.relaxation = fmt::format("damped, increments of {} Rs, residual {} ({} between)", setup.options.increment,
+                                setup.options.tolerance, setup.options.tolerance_between);
+  data.configurations = setup.configurations;
+  for (const ShellPacking& p : pool) data.packings.push_back(describe(p, setup.spec));
+  CrowdRunner runner(setup, store, context, filled, level);
+  data.runs = measure_all(setup, runner, context);
+  left_out.insert(left_out.end(), runner.left_out().begin(), runner.left_out().end());
+  save_crowd(data, context.path(level != nullptr ? level->file : "crowd.h5"), provenance);
+  if (contents != nullptr) *contents = pool;
+  return data;
+}
+
+}  // namespace softgrain

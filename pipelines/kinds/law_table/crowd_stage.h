@@ -1,0 +1,36 @@
+// The measuring part of a law table: packings, pilot, and runs of every configuration in parallel until the means are
+// known well enough. What is finished is kept, for --resume and for --law-cache.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/data/crowd_measurements.h"
+#include "pipelines/kinds/law_table/crowd_scene.h"
+#include "pipelines/run/run_context.h"
+#include "pipelines/run/task_store.h"
+
+namespace softgrain {
+
+/// A level of a hierarchy whose soft particles hold soft particles; or another series of the same run, with a file of
+/// its own.
+struct CrowdLevel {
+  std::function<SoftContent(const ShellPacking&, std::int64_t packing)>
+      fill;  ///< adds what the packing leaves room for; empty: nothing
+  InnerLaws laws;
+  std::string tag;                ///< all that decides `fill` and `laws`, for the cache
+  std::string file = "crowd.h5";  ///< in the run directory
+};
+
+/// Measures and saves DIR/crowd.h5 (or the file of the level). All configurations use the packings 0, 1, ... of one
+/// pool of setup.packings_max; soft neighbour number k of packing p holds packing (p + 1 + k) mod packings_max.
+/// Recorded overlaps follow from a pilot of three packings and are the same for all of them. Batches of packings are
+/// added to a configuration until its target is met. Results do not depend on the number of threads. `left_out` gets a
+/// sentence for each run that broke off (a grain was squeezed out of its shell...). `contents`: the pool. Throws
+/// NotUsable when more than half of a configuration's packings broke off, Interrupted.
+CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
+                                  const Provenance& provenance, std::vector<std::string>& left_out,
+                                  std::vector<ShellPacking>* contents, const CrowdLevel* level = nullptr);
+
+}  // namespace softgrain

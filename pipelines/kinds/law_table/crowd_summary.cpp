@@ -1,0 +1,183 @@
+#include "pipelines/kinds/law_table/crowd_summary.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+/// Last stage of the loading at the beginning.
+std::int64_t last_loading(const CrowdConfiguration& c) {
+  std::int64_t last = 0;
+  while (last + 1 < static_cast<std::int64_t>(c.stages.size()) &&
+         c.stages[static_cast<std::size_t>(last) + 1].name == "load")
+    ++last;
+  return last;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// The last recorded point of a stage; nullptr when there is none.
+const CrowdPoint* last_of(const CrowdRun& run, std::int64_t stage) {
+  const CrowdPoint* last = nullptr;
+  for (const CrowdPoint& p : run.points)
+    if (p.stage == stage) last = &p;
+  return last;
+}
+
+MeanForce statistics(const std::vector<double>& values) {
+  MeanForce f{mean_of(values), std::numeric_limits<double>::infinity(), static_cast<std::int64_t>(values.size())};
+  if (values.size() < 2) return f;
+  double sum = 0.0;
+  for (const double v : values) sum += (v - f.mean) * (v - f.mean);
+  const auto n = static_cast<double>(values.size());
+  f.standard_error = std::sqrt(sum / (n - 1.0) / n);
+  return f;
+}
+
+std::vector<CrowdRun> runs_of(const CrowdMeasurements& data, std::size_t configuration) {
+  std::vector<CrowdRun> out;
+  for (const CrowdRun& r : data.runs)
+    if (r.configuration == static_cast<std::int64_t>(configuration)) out.push_back(r);
+  return out;
+}
+
+/// Deepest overlap among the neighbours [Rs].
+double deepest(const CrowdPoint& p) {
+  double h = 0.0;
+  for (const double x : p.overlap) h = std::max(h, x);
+  return h;
+}
+
+/// The first recorded overlap of the first stage where the mean force exceeds 1e-3 of that at its end.
+double onset(const std::vector<CrowdRun>& runs) {
+  if (runs.empty()) return 0.0;
+  std::vector<double> overlap;
+  std::vector<double> force;
+  for (std::size_t k = 0; k < runs[0].points.size() && runs[0].points[k].stage == 0; ++k) {
+    overlap.push_back(deepest(runs[0].points[k]));
+    force.push_back(0.0);
+    for (const CrowdRun& r : runs)
+      if (k < r.points.size()) force.back() += mean_of(r.points[k].normal);
+  }
+  for (std::size_t k = 0; k < force.size(); ++k)
+    if (force[k] > 1e-3 * force.back()) return overlap[k];
+  return overlap.empty() ? 0.0 : overlap.back();
+}
+
+struct Convergence {
+  std::int64_t points = 0;
+  std::int64_t converged = 0;
+};
+
+Convergence convergence(const std::vector<CrowdRun>& runs) {
+  Convergence c;
+  for (const CrowdRun& r : runs)
+    for (const CrowdPoint& p : r.points) {
+      ++c.points;
+      c.converged += p.converged ? 1 : 0;
+    }
+  return c;
+}
+
+Cost cost_of(const std::vector<CrowdRun>& runs) {
+  Cost cost;
+  for (const CrowdRun& r : runs) cost += r.cost;
+  return cost;
+}
+
+json cost_json(const Cost& cost) {
+  return {
+      {"loop_passes", cost.loop_passes}, {"contact_evaluations", cost.contact_evaluations}, {"seconds", cost.seconds}};
+}
+
+json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>& runs, double target) {
+  const MeanForce force = end_force(c, runs);
+  const Convergence points = convergence(runs);
+  json out = cost_json(cost_of(runs));
+  out["name"] = c.name;
+  out["neighbours"] = c.partners.size();
+  out["held_out"] = c.held_out;
+  out["packings"] = force.runs;
+  out["force"] = force.mean;
+  out["force_standard_error"] = force.standard_error;
+  out["target_met"] = met(force, target);
+  out["onset"] = onset(runs);
+  out["points"] = points.points;
+  out["converged_share"] =
+      points.points > 0 ? static_cast<double>(points.converged) / static_cast<double>(points.points) : 0.0;
+  return out;
+}
+
+}  // namespace
+
+MeanForce end_force(const CrowdConfiguration& configuration, const std::vector<CrowdRun>& runs) {
+  std::vector<double> values;
+  for (const CrowdRun& run : runs)
+    if (const CrowdPoint* p = last_of(run, last_loading(configuration)); p != nullptr)
+      values.push_back(mean_of(p->normal));
+  return statistics(values);
+}
+
+bool met(const MeanForce& force, double target) { return force.standard_error <= target * force.mean; }
+
+json crowd_json(const CrowdMeasurements& data, double target) {
+  json list = json::array();
+  for (std::size_t k = 0; k < data.configurations.size(); ++k)
+    list.push_back(configuration_json(data.configurations[k], runs_of(data, k), target));
+  json out = cost_json(cost_of(data.runs));
+  out["relaxation"] = data.relaxation;
+  out["runs"] = data.runs.size();
+  out["points"] = convergence(data.runs).points;
+  out["force_unit"] = "E Rs^2";
+  out["configurations"] = list;
+  return out;
+}
+
+std::vector<std::string> crowd_remarks(const CrowdMeasurements& data, double target) {
+  constexpr std::size_t kNamed = 3;  // more than these are counted
+  std::vector<std::string> remarks;
+  std::vector<std::string> missed;
+  for (std::size_t k = 0; k < data.configurations.size(); ++k) {
+    const std::vector<CrowdRun> runs = runs_of(data, k);
+    const std::string& name = data.configurations[k].name;
+    const MeanForce force = end_force(data.configurations[k], runs);
+    if (!met(force, target))
+      missed.push_back(
+          fmt::format("{}: standard error {:.1f} % of the mean force after {} packings, {:.1f} % was wanted", name,
+                      100.0 * force.standard_error / force.mean, force.runs, 100.0 * target));
+    const Convergence c = convergence(runs);
+    if (c.converged < c.points)
+      remarks.push_back(fmt::format("{}: {} of {} points did not converge", name, c.points - c.converged, c.points));
+  }
+  if (missed.size() > kNamed)
+    missed = {
+        fmt::format("{} of {} configurations are known less well than wanted ({:.1f} % of the mean force); see the "
+                    "table",
+                    missed.size(), data.configurations.size(), 100.0 * target)};
+  remarks.insert(remarks.begin(), missed.begin(), missed.end());
+  return remarks;
+}
+
+std::string crowd_text(const CrowdMeasurements& data) {
+  std::string text;
+  for (std::size_t k = 0; k < data.configurations.size(); ++k) {
+    const CrowdConfiguration& c = data.configurations[k];
+    const std::vector<CrowdRun> runs = runs_of(data, k);
+    const MeanForce f = end_force(c, runs);
+    text += fmt::format("  {:<28} {:>3} packings  onset {:.3f}  F/(E Rs^2) {:.5f} +- {:.5f}{}\n", c.name, f.runs,
+                        onset(runs), f.mean, f.standard_error, c.held_out ? "  (held out)" : "");
+  }
+  return text;
+}
+
+}  // namespace softgrain

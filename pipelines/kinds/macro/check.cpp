@@ -1,0 +1,268 @@
+#include "pipelines/kinds/macro/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/data/law_remarks.h"
+#include "macrosim/constructed_packing.h"
+#include "macrosim/lammps_run/lammps_program.h"
+#include "pipelines/kinds/law_table/crowd_law_fit.h"
+#include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/soft_particle/check.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/law/law_values.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+/// Grains in a soft particle of the published kind.
+constexpr double kGrainsPerSoft = 400.0;
+/// Above it the pair law, measured with one contact, is far off.
+constexpr double kCrowdedShare = 0.05;
+
+struct BodyCounts {
+  double all = 0.0;
+  double soft = 0.0;
+};
+
+/// Scenes by construction are made on trial, in a fraction of a second: how many soft particles fit, and whether the
+/// share does, is known only then.
+BodyCounts count_bodies(const MacroSetup& setup) {
+  const auto bodies = static_cast<double>(setup.spec.bodies);
+  if (setup.spec.construction != "voids") return {bodies, setup.spec.soft_share * bodies};
+  const SceneFacts facts = describe(make_packing(setup.spec, 1, 0), {});
+  return {static_cast<double>(facts.solid + facts.soft), static_cast<double>(facts.soft)};
+}
+
+std::string load_text(const MacroSpec& spec) {
+  const AffineOverlap overlap = affine_overlap(spec);
+  return fmt::format(
+      "overlaps at the end, were all bodies to move with the box: h/R = {:.2g} in the mean, {:.2g} along the "
+      "load",
+      overlap.mean, overlap.largest);
+}
+
+void beyond_range(const std::string& what, double asked, double end, Beyond beyond, Findings& out) {
+  if (!(end > 0.0) || !(asked > end)) return;
+  const char* then = beyond == Beyond::error   ? "the run will end there"
+                     : beyond == Beyond::clamp ? "forces will stay at that of the end"
+                                               : "the law will be extrapolated";
+  out.warn(fmt::format("{}: about {:.2g} at the end of the test, measured up to {:.2g}: {}", what, asked, end, then));
+}
+
+void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec& spec, Findings& out) {
+  const AffineOverlap overlap = affine_overlap(spec);
+  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+    const PairLaw* law = card.find(kind);
+    if (law == nullptr) continue;
+    const Beyond beyond = laws.beyond.value_or(law->beyond);
+    out.add_once("law " + to_string(kind),
+                 {{"status", law->status}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
+                 fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), law->status, law->delta_max));
+    beyond_range(to_string(kind) + " Delta along the load", overlap.largest, law->delta_max, beyond, out);
+    if (law->status == "underdetermined")
+      out.warn("the " + to_string(kind) + " law is underdetermined: " + law->reason);
+  }
+  (void)pair_law_of(card, spec, "law", laws.beyond);  // says what is not usable
+  if (spec.soft_share > kCrowdedShare)
+    out.warn(fmt::format(
+        "soft particles hold {:.0f} % of the bodies' volume and will have several neighbours each: {}; take a "
+        "law table",
+        100.0 * spec.soft_share, pair_law_remark()));
+}
+
+/// Ratios of radii between neighbours of a soft particle and itself that a scene can have.
+void check_ratios(const MacroSpec& spec, const CrowdLaw& law, Findings& out) {
+  const auto compare = [&](PartnerKind kind, double low, double high) {
+    const std::vector<PartnerRow> rows = law.rows(kind);
+    if (rows.empty()) {
+      out.warn(fmt::format("the law knows no {} neighbours", to_string(kind)));
+      return;
+    }
+    const double first = rows.front().ratio;
+    // Very large solid spheres are planes, which the law knows.
+    const double last = kind == PartnerKind::soft ? rows.back().ratio : HUGE_VAL;
+    out.facts["ratios " + to_string(kind)] = {low, high};
+    if (low < first * (1.0 - 1e-9) || high > last * (1.0 + 1e-9))
+      out.warn(fmt::format(
+          "{} neighbours of ratio {:.3g} to {:.3g} may meet; the table has {:.3g} to {:.3g}, and the nearest "
+          "row is used beyond",
+          to_string(kind), low, high, first, rows.back().ratio));
+  };
+  const double soft_min = spec.soft_radius_max / spec.soft_polydispersity;
+  const double solid_min = spec.solid_radius_max / spec.solid_polydispersity;
+  compare(PartnerKind::solid, solid_min / spec.soft_radius_max, spec.solid_radius_max / soft_min);
+  compare(PartnerKind::soft, 1.0, spec.soft_polydispersity);
+}
+
+/// S of a soft particle between six planes at the mean overlap, against what was measured.
+void check_volume(const LawTable& table, const LawSources& laws, const std::string& form, double fraction,
+                  const MacroSpec& spec, Findings& out) {
+  law::CrowdQuestion q;
+  q.form = form;
+  q.arrangement = "cube";
+  q.solid_fraction = fraction;
+  q.range = laws.range;
+  q.beyond = laws.beyond;
+  const AffineOverlap overlap = affine_overlap(spec);
+  const law::CrowdAnswer answer = law::crowd_values(table, q, {overlap.mean});
+  const Beyond beyond = laws.beyond.value_or(answer.entry.beyond);
+  const double volume = answer.points.front().volume;
+  out.add("law_volume", {{"expected", volume}, {"measured", answer.entry.volume_max}},
+          fmt::format(
+              "{}: lost volume of a soft particle between six neighbours at the mean overlap {:.2g}, measured up to "
+              "{:.2g}",
+              answer.form, volume, answer.entry.volume_max));
+  beyond_range("lost volume of soft particles", volume, answer.entry.volume_max, beyond, out);
+  beyond_range("overlaps of single soft contacts along the load", overlap.largest, answer.entry.overlap_max, beyond,
+               out);
+  const CrowdLaw& law = *answer.entry.find(answer.form);
+  if (law.status != "good") out.warn("the " + answer.form + " law is " + law.status + ": " + law.reason);
+}
+
+/// One content stands for all: a solid fraction outside the table is no refusal yet.
+void check_table_law(const LawTable& table, const LawSources& given, const std::string& form, const MacroSpec& spec,
+                     double contents_fraction, Findings& out) {
+  LawSources laws = given;
+  laws.range = RangePolicy::clamp;
+  const NamedLaws named = table_law_of(laws, form, spec, contents_fraction);  // says what is not usable
+  std::string remark;
+  const LawTableEntry entry = law_entry(laws, contents_fraction, remark);
+  const CrowdLaw& law = *entry.find(named.form);
+  json facts = identity_json(named.identity);
+  facts["error_cross"] = law.error_cross;
+  out.add_once("law", facts,
+               fmt::format("law: {}{}; off by {}", identity_text(named.identity),
+                           entry.main ? ", the main entry of the table" : "", cross_text(law)));
+  const bool of_content = !laws.solid_fraction && contents_fraction > 0.0;
+  if (!remark.empty())
+    out.warn(
+        !of_content
+            ? remark
+            : "one content was made: " + remark +
+                  (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
+  check_ratios(spec, law, out);
+  check_volume(table, laws, named.form, entry.solid_fraction, spec, out);
+}
+
+void check_laws_of(const LawSources& laws, const MacroSpec& spec, double contents_fraction, Findings& out) {
+  for (const std::string& form : laws.forms) {
+    if (laws.card && (form == "pair" || !laws.table))
+      check_card_law(*laws.card, laws, spec, out);
+    else
+      check_table_law(*laws.table, laws, form, spec, contents_fraction, out);
+  }
+}
+
+/// A scene that LAMMPS prepares: what it takes there, and whether it is here.
+void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
+  // Measured with a million bodies on two ranks.
+  constexpr double kFileBytes = 91.0;
+  constexpr double kRankBytes = 800.0;
+  if (setup.spec.preparation != "lammps") return;
+  const double files = count.all * kFileBytes * static_cast<double>(setup.samples);
+  out.add(
+      "engine", "lammps",
+      "runs with `softgrain macrosim --engine lammps` alone: bodies are placed here, LAMMPS compacts and strains them");
+  out.add("lammps_file_bytes", files, fmt::format("bodies for LAMMPS: about {:.3g} MB of text", files / 1e6));
+  out.add("lammps_bytes", count.all * kRankBytes,
+          fmt::format("memory in LAMMPS: about {:.3g} MB over all ranks when bodies are loose, more when they touch",
+                      count.all * kRankBytes / 1e6));
+  try {
+    const std::string program = lammps::find_program();
+    if (program.empty())
+      out.warn(lammps::missing_text());
+    else
+      out.add("lammps_program", program, "LAMMPS: " + program);
+  } catch (const BadInput& e) {
+    out.warn(e.what());
+  }
+}
+
+void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
+  constexpr double kFew = 50.0;
+  if (count.all < kFew)
+    out.warn(fmt::format("{:.0f} bodies are few: most touch a wall, and samples will differ widely", count.all));
+  if (setup.samples < 3 && count.all < 4.0 * kFew)
+    out.warn(
+        fmt::format("{} sample{} of {:.0f} bodies: no way to tell scatter from difference; the scatter of stress is "
+                    "about 10 %",
+                    setup.samples, setup.samples == 1 ? "" : "s", count.all));
+  if (setup.spec.soft_share > 0.0 && count.soft < 1.0)
+    out.warn("soft_share is so small that the scene has no soft particle");
+  const double step = setup.spec.strain_end / static_cast<double>(setup.spec.steps * setup.spec.increments_per_step);
+  constexpr double kLargeStep = 0.01;
+  if (step > kLargeStep)
+    out.warn(
+        fmt::format("an increment strains by {:.2g}: bodies jump by a good part of an overlap; more steps or "
+                    "increments_per_step",
+                    step));
+}
+
+}  // namespace
+
+AffineOverlap affine_overlap(const MacroSpec& spec) {
+  const double strain = spec.test == "shear" ? spec.strain_end + spec.preload : spec.strain_end;
+  const double along = 2.0 * strain;
+  if (spec.test == "isotropic") return {along, along};
+  if (spec.test == "oedometric") return {along / 3.0, along};
+  return {2.0 * spec.preload, along};
+}
+
+MacroContent content_of(const SoftParticleSpec& spec, std::uint64_t seed) {
+  constexpr double kBudget = 0.2;
+  return content_of(try_soft_particle(spec, seed, kBudget));
+}
+
+MacroContent content_of(const MeasureTrial& trial) {
+  const auto grains = static_cast<double>(trial.packing.radius.size());
+  return {.grains_per_soft = grains,
+          .grain_pass_seconds = trial.pass_seconds / grains,
+          .solid_fraction = trial.packing.solid_fraction()};
+}
+
+void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, Findings& out) {
+  const BodyCounts count = count_bodies(setup);
+  content.bodies = count.all;
+  content.soft = count.soft;
+  const double resolved = count.all + count.soft * content.grains_per_soft;
+  const double memory = macro_memory(resolved);
+  out.add("macro_bodies", count.all,
+          fmt::format("macro: {} sample{} of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
+                      setup.samples, setup.samples == 1 ? "" : "s", count.all, count.soft, setup.spec.test,
+                      setup.spec.strain_end));
+  const AffineOverlap overlap = affine_overlap(setup.spec);
+  out.add("affine_overlap", {{"mean", overlap.mean}, {"largest", overlap.largest}}, load_text(setup.spec));
+  for (const std::string& twin : setup.twins)
+    out.lines += fmt::format("  resolved twin ({}): about {:.0f} grains per sample\n", twin, resolved);
+  if (!setup.twins.empty()) {
+    out.facts["twin_grains"] = resolved;
+    out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
+  }
+  warn_of_scene(setup, count, out);
+  check_lammps(setup, count, out);
+  if (laws != nullptr) check_laws_of(*laws, setup.spec, content.solid_fraction, out);
+  spend_on_macro(setup, content, laws, out);
+}
+
+void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
+  const MacroScene macro = read_macro_scene(scene, law);
+  if (const std::string assumed = assumed_text(macro.setup); !assumed.empty()) out.warn(assumed);
+  if (macro.law_file.empty()) {
+    out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");
+    check_macro(macro.setup, {.grains_per_soft = kGrainsPerSoft}, nullptr, out);
+    return;
+  }
+  out.add("law_file", macro.law_file, "law from " + macro.law_file);
+  check_macro(macro.setup, macro.setup.twins.empty() ? MacroContent{} : content_of(macro.spec, macro.seed), &macro.law,
+              out);
+}
+
+}  // namespace softgrain

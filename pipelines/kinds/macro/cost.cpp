@@ -1,0 +1,105 @@
+#include "pipelines/kinds/macro/cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "macrosim/compression.h"
+#include "macrosim/constructed_packing.h"
+#include "pipelines/run/trial_times.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Scenes with more bodies are tried in small.
+constexpr std::int64_t kTrialBodies = 60;
+
+/// Strain increments of a test, those of its preload included.
+double increments_of(const MacroSpec& spec) {
+  return static_cast<double>((recorded_points(spec) - 1) * spec.increments_per_step);
+}
+
+/// Stands for laws that are still to be measured: those of results/published.
+NamedLaws like_published(const MacroSpec& spec) {
+  SoftContact solid;
+  solid.normal = {0.58, 2.8, -0.58 * std::pow(0.065, 2.8)};
+  solid.delta = 0.065;
+  solid.modulus = spec.youngs_modulus;
+  solid.friction = spec.friction;
+  SoftContact soft = solid;
+  soft.partner_is_soft = true;
+  soft.normal = {0.26, 5.5, -0.26 * std::pow(0.2, 5.5)};
+  soft.delta = 0.2;
+  NamedLaws out;
+  out.laws = pair_soft_laws(solid, soft, spec.wall_friction);
+  return out;
+}
+
+std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, double solid_fraction) {
+  if (laws == nullptr) return {like_published(spec)};
+  LawSources any = *laws;
+  any.range = RangePolicy::clamp;
+  std::vector<NamedLaws> out;
+  for (const std::string& form : laws->forms) {
+    any.forms = {form};
+    out.push_back(scene_law(any, spec, solid_fraction, form));
+  }
+  return out;
+}
+
+struct TrialOver {};
+
+/// Core seconds of a whole test by law, from as much of it as is done in a moment; 0 where nothing is.
+double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLaws& law, double solid_fraction) {
+  constexpr double kBudget = 0.4;
+  CompressionState state;
+  state.macro = make_law_system(spec, packing, law.laws, solid_fraction > 0.0 ? solid_fraction : 1.0);
+  state.curve = begin_curve(spec, packing, state.macro, law.name, 0);
+  double share = 0.0;
+  const double seconds = core_seconds_of([&] {
+    try {
+      compress(
+          state, spec,
+          [&](const CompressionState& s, double done) {
+            share = done;
+            if (s.curve.cost.seconds > kBudget) throw TrialOver{};
+          },
+          kBudget);
+    } catch (const TrialOver&) {
+    } catch (const NotUsable&) {  // the run will say so
+    }
+  });
+  return share > 0.0 ? seconds / share : 0.0;
+}
+
+/// Loop passes of a twin over a whole test: 620 and 670 per increment of strain 0.005 (quickstart, published), 820 to
+/// 1650 per one of 0.01 to 0.02 (macro_vs_resolved); grains without shells rearrange more.
+double twin_passes(const MacroSpec& spec, const std::string& twin) {
+  const double increments = increments_of(spec);
+  const double strain = (spec.strain_end + spec.preload) / increments;
+  return (twin == "free" ? 1.5 : 1.0) * increments * 650.0 * std::pow(strain / 0.005, 0.3);
+}
+
+}  // namespace
+
+void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const LawSources* laws, Findings& out) {
+  MacroSpec spec = setup.spec;
+  spec.preparation = "softgrain";
+  spec.bodies = std::min(spec.bodies, kTrialBodies);
+  const double larger = static_cast<double>(setup.spec.bodies) / static_cast<double>(spec.bodies);
+  const auto samples = static_cast<double>(setup.samples);
+  MacroPacking packing;
+  try {
+    const double preparation = core_seconds_of([&] { packing = make_packing(spec, 1, 0); });
+    out.spend("preparation", samples * larger * preparation);
+    for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction))
+      out.spend("law runs", samples * larger * try_law(spec, packing, law, content.solid_fraction));
+  } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
+  }
+  const double grains = content.bodies + content.soft * content.grains_per_soft;
+  for (const std::string& twin : setup.twins)
+    out.spend("twins", samples * grains * content.grain_pass_seconds * twin_passes(setup.spec, twin));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,238 @@
+#include "pipelines/kinds/macro/lammps_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "common/contact/law_file.h"
+#include "common/core/error.h"
+#include "common/dynamics/force_pass.h"
+#include "common/io/progress.h"
+#include "common/io/short_hash.h"
+#include "common/io/text_file.h"
+#include "macrosim/compression.h"
+#include "macrosim/curve_notes.h"
+#include "macrosim/lammps_run/data_file.h"
+#include "macrosim/lammps_run/input_script.h"
+#include "macrosim/lammps_run/lammps_curve.h"
+#include "macrosim/lammps_run/lammps_log.h"
+#include "macrosim/lammps_run/lammps_program.h"
+#include "macrosim/lammps_run/resume_point.h"
+#include "macrosim/preparation.h"
+#include "macrosim/test_protocol.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Materials of make_law_system().
+std::vector<NamedLaw> laws_of(const MacroSpec& spec, const SoftLaws& soft) {
+  const MacroSystem empty = make_law_system(spec, {}, soft, 1.0);
+  const LawSet& laws = empty.system.laws;
+  const auto law = [&](std::int32_t a, std::int32_t b) { return laws.law(laws.index(a, b)); };
+  return {{"solid-solid", law(0, 0)}, {"solid-wall", law(0, 2)}, {"soft-solid", law(1, 0)},
+          {"soft-soft", law(1, 1)},   {"soft-wall", law(1, 2)},  {"hard", hard_law(spec)}};
+}
+
+std::string key_of(const LammpsRuns& runs, std::int64_t sample) {
+  return short_hash(fmt::format("{}\n{} {}", runs.identity, runs.law.tag, sample));
+}
+
+std::int64_t kept_states(const LammpsRuns& runs, std::int64_t sample) {
+  return sample == 0 ? runs.setup.kept_states : 0;
+}
+
+void write_sample(const LammpsRuns& runs, const MacroPacking& packing, std::int64_t sample, const std::string& where) {
+  const auto missing = [&](const char* file) { return !fs::exists(where + "/" + file); };
+  const lammps::BodyTypes types = lammps::body_types(packing);
+  const MacroSpec& spec = runs.setup.spec;
+  if (missing(lammps::kLawsFile))
+    write_text_atomic(where + "/" + lammps::kLawsFile,
+                      "# " + identity_text(runs.law.identity) + "\n" + laws_text(laws_of(spec, runs.law.laws)));
+  if (missing(lammps::kDataFile))
+    lammps::write_data_file(where + "/" + lammps::kDataFile,
+                            fmt::format("softgrain: {} bodies, sample {}", packing.bodies.size(), sample), packing,
+                            types, spec.density, runs.inner_solid_fraction);
+  if (missing(lammps::kScriptFile))
+    write_text_atomic(
+        where + "/" + lammps::kScriptFile,
+        lammps::script_text({spec, packing, types, runs.title, key_of(runs, sample), kept_states(runs, sample)}));
+}
+
+/// One sample, from its files to its curve.
+class Sample {
+ public:
+  Sample(const LammpsRuns& runs, MacroPacking& packing, std::int64_t number, const RunContext& context)
+      : runs_(runs),
+        packing_(packing),
+        number_(number),
+        where_(lammps_directory(context, number)),
+        key_(key_of(runs, number)) {}
+
+  void run(const LammpsEngine& engine, const std::function<void(double)>& progress) {
+    lammps::ResumePoint from = lammps::find_resume_point(where_, key_, recorded_points(spec()));
+    if (from.done) return;
+    const std::string log = where_ + "/" + lammps::kLogFile;
+    const std::uintmax_t before = fs::exists(log) ? fs::file_size(log) : 0;
+    fs::remove(where_ + "/" + lammps::kDivergedFile);
+    const auto words = lammps::command_words(engine.program, engine.ranks, from.settings);
+    const ChildEnd end = run_child(words, where_, log, [&] {
+      progress(static_cast<double>(lammps::count_points(where_)) / static_cast<double>(recorded_points(spec())));
+    });
+    if (end.interrupted)
+      throw Interrupted(
+          "stopped by a signal while LAMMPS was straining; what was recorded is saved; go on with --resume");
+    if (end.status != 0 || end.signal != 0) fail(end, lammps::read_log(log, before));
+  }
+
+  [[nodiscard]] RunOutcome outcome() {
+    if (spec().preparation == "lammps") take_over_preparation();
+    const auto rows = lammps::read_points(where_, key_);
+    MacroSystem macro = make_law_system(spec(), packing_, runs_.law.laws, runs_.inner_solid_fraction);
+    RunOutcome out{begin_curve(spec(), packing_, macro, runs_.law.name, number_), {}};
+    out.curve.law = runs_.law.identity;
+    lammps::add_points(rows, spec(), out.curve);
+    if (note_diverged(rows, out.curve)) return out;
+    if (rows.empty() ||
+        (!lammps::ended_early(rows.back()) && static_cast<std::int64_t>(rows.size()) < recorded_points(spec())))
+      throw FileTrouble(fmt::format("{}/{}: {} of {} points, although LAMMPS ended without a complaint", where_,
+                                    lammps::kPointsFile, rows.size(), recorded_points(spec())));
+    if (!fs::exists(where_ + "/" + lammps::kEndFile))
+      throw FileTrouble(where_ + ": the last state is not there, although LAMMPS ended without a complaint");
+    read_states(rows, macro, out);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] const MacroSpec& spec() const { return runs_.setup.spec; }
+
+  /// Trouble of the scene is not usable, as with our own engine; any other is trouble while running.
+  [[noreturn]] void fail(const ChildEnd& end, const lammps::LogTail& log) const {
+    const auto points = static_cast<std::int64_t>(lammps::read_points(where_, key_).size());
+    const double strain = strain_at(spec(), std::max<std::int64_t>(points - 1, 0));
+    const std::string run = fmt::format("macro run '{}'", runs_.law.name);
+    if (log.says(lammps::kNotJammed))
+      throw NotUsable(
+          not_jammed_text(compaction_protocol(spec(), packing_.size(), packing_.bodies.size()), spec().youngs_modulus));
+    if (log.says("Lost atoms"))
+      throw NotUsable(fmt::format("{}: the centre of a body is behind a wall beyond strain {:.6f}", run, strain));
+    if (log.says("Non-numeric"))
+      throw NotUsable(fmt::format("{}: relaxation diverged beyond strain {:.6f}", run, strain));
+    throw FileTrouble(fmt::format("{} {}: {}; the whole log is in {}/{}; what was recorded is saved, --resume goes on",
+                                  lammps::kProgramName,
+                                  end.signal != 0 ? fmt::format("was ended by signal {}", end.signal)
+                                                  : fmt::format("ended with status {}", end.status),
+                                  log.complaint(), where_, lammps::kLogFile));
+  }
+
+  void take_over_preparation() {
+    const auto bodies = lammps::read_bodies(where_ + "/" + lammps::kPreparedFile, packing_);
+    packing_.low = bodies.low;
+    packing_.high = bodies.high;
+    for (std::size_t k = 0; k < bodies.x.size(); ++k) packing_.bodies[k].x = bodies.x[k];
+  }
+
+  /// A relaxation of which nothing was left to record.
+  [[nodiscard]] bool note_diverged(const std::vector<lammps::PointRow>& rows, MacroCurve& curve) const {
+    if (!fs::exists(where_ + "/" + lammps::kDivergedFile)) return false;
+    const double strain = strain_at(spec(), static_cast<std::int64_t>(rows.size()));
+    note_relaxation(curve, {RelaxationEnd::diverged, 0, HUGE_VAL}, strain, spec().tolerance);
+    if (rows.empty()) throw NotUsable(fmt::format("macro run '{}': {}", curve.engine, curve.note));
+    return true;
+  }
+
+  /// The state of a point, dumped as `name`.
+  Snapshot state(const std::string& name, const lammps::PointRow& row, MacroSystem& macro, const MacroCurve& curve,
+                 std::vector<lammps::DumpedContact>& contacts) const {
+    lammps::move_to(lammps::read_bodies(where_ + "/" + lammps::bodies_file(name), packing_), macro);
+    contacts = lammps::read_contacts(where_ + "/" + lammps::contacts_file(name), macro.bodies,
+                                     row[lammps::Point::contacts], row[lammps::Point::force_sum]);
+    MacroCurve up_to_here;
+    up_to_here.engine = curve.engine;
+    up_to_here.sample = number_;
+    const auto point = static_cast<std::size_t>(row[lammps::Point::number]);
+    up_to_here.strain = {curve.strain[point]};
+    Snapshot s = named_state(macro, packing_, up_to_here, "macro");
+    s.frame = static_cast<std::int64_t>(point);
+    s.contacts = lammps::snapshot_contacts_of(contacts, macro);
+    return s;
+  }
+
+  void read_states(const std::vector<lammps::PointRow>& rows, MacroSystem& macro, RunOutcome& out) const {
+    const std::int64_t wanted = kept_states(runs_, number_);
+    std::vector<lammps::DumpedContact> contacts;
+    for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+      if (is_snapshot(static_cast<std::int64_t>(k), recorded_points(spec()), wanted))
+        out.states.push_back(state(std::to_string(k), rows[k], macro, out.curve, contacts));
+    Snapshot last = state("end", rows.back(), macro, out.curve, contacts);
+    require_inside(rows.back(), macro, out.curve);
+    out.curve.body_forces = lammps::normal_forces(contacts);
+    if (wanted > 0) out.states.push_back(std::move(last));
+    if (!runs_.law.note || !out.curve.usable) return;
+    force_pass(macro.system, 0.0);
+    const std::string note = runs_.law.note(macro.system);
+    out.curve.note += (out.curve.note.empty() || note.empty() ? "" : "; ") + note;
+  }
+
+  void require_inside(const lammps::PointRow& row, const MacroSystem& macro, const MacroCurve& curve) const {
+    if (!(row[lammps::Point::behind_walls] > 0.0)) return;
+    const Vec3 low = box_low(macro.system, macro.box);
+    const Vec3 high = box_high(macro.system, macro.box);
+    std::int64_t body = 0;
+    for (std::int64_t k = 0; k < macro.bodies; ++k)
+      for (int a = 0; a < 3; ++a) {
+        const double x = macro.system.particles.sphere[static_cast<std::size_t>(k)].x[a];
+        if (x < low[a] || x > high[a]) body = k;
+      }
+    throw NotUsable(behind_wall_text(curve.engine, body, curve.strain.back()));
+  }
+
+  const LammpsRuns& runs_;
+  MacroPacking& packing_;
+  std::int64_t number_;
+  std::string where_;
+  std::string key_;
+};
+
+}  // namespace
+
+std::string lammps_directory(const RunContext& context, std::int64_t sample) {
+  return context.path(fmt::format("lammps-{}", sample));
+}
+
+void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>& packings, const RunContext& context) {
+  for (std::size_t k = 0; k < packings.size(); ++k) {
+    const auto sample = static_cast<std::int64_t>(k);
+    const std::string where = lammps_directory(context, sample);
+    std::error_code error;
+    fs::create_directories(where, error);
+    if (error) throw FileTrouble(where + ": cannot be created: " + error.message());
+    write_sample(runs, packings[k], sample, where);
+  }
+}
+
+std::vector<RunOutcome> run_with_lammps(const LammpsRuns& runs, const LammpsEngine& engine,
+                                        std::vector<MacroPacking>& packings, const RunContext& context) {
+  std::vector<RunOutcome> outcomes;
+  Progress progress("macro with LAMMPS", static_cast<double>(packings.size()), context.quiet());
+  for (std::size_t k = 0; k < packings.size(); ++k) {
+    Sample sample(runs, packings[k], static_cast<std::int64_t>(k), context);
+    sample.run(engine, [&](double share) { progress.set(static_cast<double>(k) + share); });
+    outcomes.push_back(sample.outcome());
+  }
+  return outcomes;
+}
+
+std::string lammps_release(const RunContext& context) {
+  std::ifstream log(lammps_directory(context, 0) + "/" + lammps::kLogFile);
+  std::string line;
+  while (std::getline(log, line))
+    if (line.starts_with("LAMMPS (")) return line.substr(8, line.rfind(')') - 8);
+  return "";
+}
+
+}  // namespace softgrain

@@ -1,0 +1,43 @@
+// Law runs of a macro scene by LAMMPS: what it needs is written to the run directory, run there, and read back.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/kinds/macro/stage.h"
+
+namespace softgrain {
+
+/// How LAMMPS is to be used.
+struct LammpsEngine {
+  std::int64_t ranks = 1;
+  bool write_only = false;
+  std::string program;  ///< softgrain-lammps; empty when only files are written
+};
+
+/// What all samples share.
+struct LammpsRuns {
+  const MacroSetup& setup;
+  const NamedLaws& law;
+  double inner_solid_fraction = 1.0;
+  std::string title;     ///< for people
+  std::string identity;  ///< scene, seed and law: tables of another one are refused
+};
+
+/// DIR/lammps-K of sample K.
+std::string lammps_directory(const RunContext& context, std::int64_t sample);
+
+/// The bodies, laws and script of every sample, to lammps_directory(). What an earlier part of the same run left there
+/// is kept. Throws FileTrouble.
+void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>& packings, const RunContext& context);
+
+/// Runs what write_lammps_files() wrote, one sample after another, from the last recorded point on. With preparation
+/// "lammps" the packings are those that LAMMPS prepared afterwards. Throws FileTrouble when LAMMPS fails, NotUsable
+/// when bodies are lost or do not jam, Interrupted.
+std::vector<RunOutcome> run_with_lammps(const LammpsRuns& runs, const LammpsEngine& engine,
+                                        std::vector<MacroPacking>& packings, const RunContext& context);
+
+/// The release of LAMMPS, as the log of the first sample names it; empty when it does not.
+std::string lammps_release(const RunContext& context);
+
+}  // namespace softgrain

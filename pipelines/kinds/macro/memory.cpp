@@ -1,0 +1,49 @@
+#include "pipelines/kinds/macro/memory.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "microsim/particles/scene_memory.h"
+#include "microsim/shell_packing.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kBytesPerBody = 300.0;
+constexpr double kBytesPerBodyContact = 160.0;
+constexpr double kContactsPerBody = 3.0;
+/// More than any soft particle of the published kind holds: what fits even so needs no closer look.
+constexpr double kManyGrains = 1e5;
+
+/// Grains of the largest run: the twin, when there is one.
+double resolved(const MacroSetup& setup, double grains) {
+  const auto bodies = static_cast<double>(setup.spec.bodies);
+  return setup.twins.empty() ? bodies : bodies * (1.0 + setup.spec.soft_share * grains);
+}
+
+}  // namespace
+
+double macro_memory(double bodies) { return bodies * (kBytesPerBody + kContactsPerBody * kBytesPerBodyContact); }
+
+std::string macro_memory_problem(const MacroSetup& setup, double grains, double available) {
+  const double all = resolved(setup, grains);
+  const double needed = macro_memory(all);
+  if (!(available > 0.0) || needed <= available) return "";
+  const double fit = std::floor(static_cast<double>(setup.spec.bodies) * available / needed);
+  return fmt::format("{} needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}{}",
+                     setup.twins.empty() ? "a run" : fmt::format("a resolved twin of about {:.3g} grains", all),
+                     needed / 1e9, available / 1e9, fit, setup.twins.empty() ? "" : ", or more with resolved = false");
+}
+
+void require_macro_memory(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& content) {
+  const double available = available_memory();
+  if (setup.spec.preparation == "lammps" || macro_memory_problem(setup, kManyGrains, available).empty()) return;
+  const double grains =
+      setup.twins.empty() ? 0.0 : static_cast<double>(generate_shell_packing(content, 1, 0).radius.size());
+  const std::string problem = macro_memory_problem(setup, grains, available);
+  if (!problem.empty()) macro.reject("bodies", problem);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,205 @@
+#include "pipelines/kinds/macro/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "pipelines/compare/compare.h"
+#include "macrosim/lammps_run/lammps_program.h"
+#include "pipelines/kinds/macro/lammps_stage.h"
+#include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/stage.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_context.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+std::string lateral_ratio(const MacroCurve& c) {
+  if (c.stress_axial.back() == 0.0) return "undefined (no axial stress)";
+  return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
+}
+
+std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& curves, const RunContext& context) {
+  std::string text = "law: " + identity_text(law.identity) + "\n";
+  for (const MacroCurve& c : curves)
+    text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
+                        c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
+                        c.usable ? "" : " (" + c.note + ")");
+  return text + "report: " + context.path("report.html");
+}
+
+/// Nothing for our own engine. Throws BadInput.
+std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
+  if (!options.engine.empty() && options.engine != "softgrain" && options.engine != "lammps") {
+    const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
+    throw BadInput("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                   "known are softgrain and lammps");
+  }
+  if (options.engine != "lammps") {
+    if (options.ranks > 0) throw BadInput("--ranks goes with --engine lammps");
+    if (options.write_only) throw BadInput("--write-only goes with --engine lammps");
+    return std::nullopt;
+  }
+  if (options.write_only && options.ranks > 0)
+    throw BadInput("--ranks goes with a run: with --write-only LAMMPS is not started");
+  LammpsEngine engine{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
+  if (engine.write_only) return engine;
+  engine.program = lammps::find_program();
+  if (engine.program.empty()) throw BadInput("macrosim: " + lammps::missing_text());
+  (void)lammps::command_words(engine.program, engine.ranks, {});  // mpirun must be there
+  return engine;
+}
+
+NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& contents) {
+  return scene_law(scene.law, scene.setup.spec, contents.empty() ? 0.0 : mean_solid_fraction(contents), "law");
+}
+
+/// What the law does beside the shelled twin; nothing to compare is a remark, as all that was computed is kept.
+void compare_with_twin(const std::vector<MacroCurve>& curves, nlohmann::json& summary) {
+  const auto undefined = [&](const std::string& what) {
+    summary["remarks"].push_back(what);
+    summary["status"] = "not usable";
+  };
+  try {
+    const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
+    summary["comparison"] = {{"stress_error", c.axial_difference.mean},
+                             {"speedup_seconds", c.speedup_seconds},
+                             {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
+    for (const std::string& one : c.undefined) undefined("law and twin: " + one);
+  } catch (const ZeroReference& e) {
+    undefined(std::string("law and twin cannot be compared: ") + e.what());
+  } catch (const BadInput& e) {
+    summary["remarks"].push_back(std::string("law and twin cannot be compared: ") + e.what());
+  }
+}
+
+nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
+                         bool usable) {
+  nlohmann::json summary;
+  const bool resolved = has_twin(scene.setup, "shelled");
+  summary["status"] = usable ? "good" : "not usable";
+  summary["title"] = scene.title;
+  summary["law"] = identity_json(law.identity);
+  summary["law"]["file"] = scene.law_file;
+  summary["macro"] = macro_json(curves, "law");
+  if (resolved) summary["resolved"] = macro_json(curves, "shelled");
+  if (has_twin(scene.setup, "free")) summary["free"] = macro_json(curves, "free");
+  summary["remarks"] = macro_remarks(curves);
+  if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary["remarks"].push_back(assumed);
+  if (resolved && usable) compare_with_twin(curves, summary);
+  return summary;
+}
+
+LammpsRuns lammps_runs(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
+                       const Provenance& provenance) {
+  return {scene.setup, law, mean_solid_fraction(contents), scene.title,
+          fmt::format("{}\n# seed {}\n{}", provenance.scene, provenance.seed, scene.law.text)};
+}
+
+constexpr const char* kInitialFile = "macro_initial.h5";
+
+/// Bodies that LAMMPS is still to bring into touch are no starting state.
+void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& packings, const RunContext& context,
+                      const Provenance& provenance) {
+  if (scene.setup.spec.preparation == "softgrain") save_packings(packings, context, provenance, kInitialFile);
+}
+
+/// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
+ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
+                      std::uint64_t seed, const TaskStore& store, const RunContext& context,
+                      const Provenance& provenance) {
+  context.guard([&] {
+    const auto packings = prepare_packings(scene.setup, seed, store, context, kInitialFile);
+    save_if_prepared(scene, packings, context, provenance);
+    write_lammps_files(lammps_runs(scene, law, contents, provenance), packings, context);
+  });
+  nlohmann::json summary = {{"status", "written"}, {"title", scene.title}, {"remarks", {"nothing was run"}}};
+  summary["law"] = identity_json(law.identity);
+  summary["law"]["file"] = scene.law_file;
+  for (std::int64_t k = 0; k < scene.setup.samples; ++k)
+    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
+  summary["provenance"] = provenance_json(provenance);
+  context.finish(summary,
+                 fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
+                             "--with-lammps builds); then the same command here with --resume and without --write-only",
+                             lammps_directory(context, 0),
+                             scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
+                             lammps::kProgramName));
+  return ExitStatus::good;
+}
+
+std::vector<MacroCurve> run(const MacroScene& scene, const std::optional<LammpsEngine>& lammps, const NamedLaws& law,
+                            const std::vector<ShellPacking>& contents, std::uint64_t seed, const TaskStore& store,
+                            const RunContext& context, const Provenance& provenance) {
+  if (!lammps) return run_macro_stage(scene.setup, law, contents, seed, store, context, provenance);
+  auto packings = prepare_packings(scene.setup, seed, store, context, kInitialFile);
+  save_if_prepared(scene, packings, context, provenance);
+  const LammpsRuns runs = lammps_runs(scene, law, contents, provenance);
+  write_lammps_files(runs, packings, context);
+  auto outcomes = run_with_lammps(runs, *lammps, packings, context);
+  if (scene.setup.spec.preparation == "lammps") save_packings(packings, context, provenance, kInitialFile);
+  auto curves = run_engines({scene.setup, packings, contents, seed, "macro"}, {}, store, context, provenance,
+                            "states_macro.h5", std::move(outcomes));
+  save_macro(curves, context.path("macro.h5"), provenance);
+  return curves;
+}
+
+void add_engine(const LammpsEngine& engine, std::int64_t samples, const RunContext& context, nlohmann::json& summary) {
+  summary["engine"] = {
+      {"name", "lammps"}, {"ranks", engine.ranks}, {"program", engine.program}, {"lammps", lammps_release(context)}};
+  for (std::int64_t k = 0; k < samples; ++k)
+    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
+}
+
+ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
+  const MacroScene macro = read_macro_scene(scene, options.law);
+  if (macro.law_file.empty())
+    scene.root().reject(
+        "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
+  const std::optional<LammpsEngine> lammps = read_engine(options);
+  if (macro.setup.spec.preparation == "lammps" && !lammps)
+    throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
+  const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string(), macro.law.files);
+  const std::uint64_t seed = context.seed(macro.seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  const TaskStore store(context, scene, seed, macro.law.text);
+  const auto contents =
+      macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, seed);
+  const NamedLaws law = law_of(macro, contents);
+  if (lammps && lammps->write_only)
+    return write_only(macro, law, contents, seed, store, context, provenance);
+  std::vector<MacroCurve> curves;
+  context.guard([&] { curves = run(macro, lammps, law, contents, seed, store, context, provenance); });
+
+  const bool usable = all_carry_stress(curves) &&
+                      std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
+  nlohmann::json summary = summarise(macro, law, curves, usable);
+  summary["files"] = {{"macro", context.path("macro.h5")},
+                      {"initial", context.path("macro_initial.h5")},
+                      {"report", context.path("report.html")}};
+  if (lammps) add_engine(*lammps, macro.setup.samples, context, summary);
+  summary["provenance"] = provenance_json(provenance);
+  const bool good = summary["status"] == "good";
+  context.finish(summary, people_text(law, curves, context));
+  write_report(context.directory());
+  store.clear();
+  return good ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace
+
+SceneKind macro_kind() {
+  return {.name = "macro",
+          .command = "macrosim",
+          .run = run_macro_scene,
+          .check = check_macro_scene,
+          .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
+          .takes_law = true};
+}
+
+}  // namespace softgrain

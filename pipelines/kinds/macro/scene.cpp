@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/core/error.h"
+#include "pipelines/kinds/macro/scene.h"
+
+#include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+
+namespace softgrain {
+
+namespace {
+
+void read_bodies(const SceneTable& t, MacroSpec& spec) {
+  spec.construction = t.choice("construction", {"mixed", "voids"}, spec.construction);
+  spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
+  spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
+  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+  spec.solid_radius_max = t.number("solid_radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
+  spec.solid_polydispersity =
+      t.number("solid_polydispersity", Unit::none, Range::above(1.0), spec.solid_polydispersity);
+  spec.soft_radius_max = t.number("soft_radius_max", Unit::length, Range::positive(), spec.soft_radius_max);
+  spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
+  spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
+  if (spec.construction == "voids" && spec.soft_share >= 1.0)
+    t.reject("soft_share", "construction \"voids\" needs solid grains: must be below 1");
+  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
+  spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
+  spec.preparation = t.choice("preparation", {"softgrain", "lammps"}, spec.preparation);
+  if (spec.preparation == "lammps" && spec.construction == "voids")
+    t.reject("preparation",
+             "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
+  spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
+}
+
+void read_test(const SceneTable& t, MacroSpec& spec) {
+  spec.test = t.choice("test", {"oedometric", "isotropic", "shear"}, spec.test);
+  spec.strain_end = t.number("strain", Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
+  spec.preload = t.number("preload", Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
+  spec.preload_steps = t.count("preload_steps", 1, 100000, spec.preload_steps);
+  spec.steps = t.count("steps", 1, 100000, spec.steps);
+  spec.increments_per_step = t.count("increments_per_step", 1, 10000, spec.increments_per_step);
+  spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
+  spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
+  spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
+  spec.kt_secant = t.choice("kt", {"initial", "secant"}, spec.kt_secant ? "secant" : "initial") == "secant";
+}
+
+/// `resolved`: true for the shelled twin, or a list of twins.
+std::vector<std::string> read_twins(const SceneTable& t, const std::vector<std::string>& fallback) {
+  if (!t.has("resolved")) return fallback;
+  if (!t.is_list("resolved"))
+    return t.flag("resolved", true) ? std::vector<std::string>{"shelled"} : std::vector<std::string>{};
+  std::vector<std::string> twins = t.texts("resolved");
+  for (std::size_t k = 0; k < twins.size(); ++k) {
+    if (twins[k] != "shelled" && twins[k] != "free")
+      t.reject("resolved", "unknown twin '" + twins[k] + "'; known are \"shelled\" and \"free\"");
+    if (std::count(twins.begin(), twins.end(), twins[k]) > 1) t.reject("resolved", "'" + twins[k] + "' twice");
+  }
+  return twins;
+}
+
+}  // namespace
+
+void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
+  if (setup.spec.preparation == "lammps")
+    macro.reject("preparation", "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
+}
+
+MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults) {
+  MacroSetup setup;
+  MacroSpec& spec = setup.spec;
+  spec.solid_radius_max = spec.soft_radius_max = defaults.shell_radius;
+  spec.youngs_modulus = defaults.youngs_modulus;
+  if (is_known(defaults.exponent)) spec.exponent = defaults.exponent;
+  const auto take = [&](const char* name, double known, double& value, const char* unit) {
+    if (is_known(known))
+      value = known;
+    else
+      setup.assumed.push_back(fmt::format("{} = {}{}", name, value, unit));
+  };
+  take("nu", defaults.poisson_ratio, spec.poisson_ratio, "");
+  take("density", defaults.density, spec.density, " kg/m^3");
+  if (is_known(defaults.friction) || !macro.has("mu")) take("mu", defaults.friction, spec.friction, "");
+  return read_macro_setup(macro, setup);
+}
+
+void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
+                            const std::string& law_file) {
+  if (setup.twins.empty() || packing_known(spec)) return;
+  macro.reject("resolved",
+               "a resolved twin is filled with grains, and " + law_file +
+                   " does not say what is inside the soft particle that was measured: give resolved = false, or add "
+                   "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
+}
+
+std::string assumed_text(const MacroSetup& setup) {
+  if (setup.assumed.empty()) return "";
+  std::string all;
+  for (const std::string& one : setup.assumed) all += (all.empty() ? "" : ", ") + one;
+  return "the law does not say all of the grains' material; of solid grains this is taken: " + all;
+}
+
+MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
+  MacroSetup setup = base;
+  read_bodies(macro, setup.spec);
+  read_test(macro, setup.spec);
+  setup.samples = macro.count("samples", 1, 10000, setup.samples);
+  setup.twins = read_twins(macro, setup.twins);
+  return setup;
+}
+
+namespace {
+
+MacroScene read_with_law(const Scene& scene, const std::string& law_file) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"macro"});
+  (void)root.text("law", "");
+  MacroScene out;
+  out.title = root.text("title", "");
+  out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  out.law_file = law_file;
+  if (law_file.empty()) {
+    read_law_choices(root, out.law);
+  } else {
+    out.law = read_scene_law(root, law_file);
+    out.spec = measured_spec(out.law);
+  }
+  out.setup = read_macro_setup(root.table("macro"), out.spec);
+  require_known_contents(root.table("macro"), out.setup, out.spec, law_file);
+  require_macro_memory(root.table("macro"), out.setup, out.spec);
+  out.setup.kept_states = read_kept_states(root);
+  out.contents = root.count("contents", 1, 100000, out.contents);
+  root.finish();
+  return out;
+}
+
+}  // namespace
+
+MacroScene read_macro_scene(const Scene& scene, const std::string& law) {
+  const std::string written = scene.root().text("law", "");
+  return read_with_law(scene, !law.empty() || written.empty() ? law : scene.resolve(written));
+}
+
+MacroScene read_macro_scene_alone(const Scene& scene) { return read_with_law(scene, ""); }
+
+}  // namespace softgrain

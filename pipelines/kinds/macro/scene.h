@@ -1,0 +1,60 @@
+// Macro scenes: table [macro] of any kind that has one, and kind "macro" as a whole.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/io/scene.h"
+#include "macrosim/macro_spec.h"
+#include "pipelines/law/named_laws.h"
+
+namespace softgrain {
+
+struct MacroSetup {
+  MacroSpec spec;
+  std::int64_t samples = 1;
+  std::vector<std::string> twins{"shelled"};  ///< of "shelled", "free": resolved beside every sample
+  std::int64_t kept_states = 0;               ///< of the first sample of every engine, for pictures
+  std::vector<std::string> assumed{};         ///< "nu = 0.3": of grains, where the law does not say them
+};
+
+[[nodiscard]] inline bool has_twin(const MacroSetup& setup, const std::string& name) {
+  return std::find(setup.twins.begin(), setup.twins.end(), name) != setup.twins.end();
+}
+
+/// Reads [macro]; material defaults come from the measured soft particle, as far as it is known. Throws BadInput.
+MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults);
+
+/// Replaces what a table says, keeps the rest. Throws BadInput.
+MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
+
+/// Twins are filled with packings like the one that was measured. Throws BadInput, at key `resolved`, when the scene
+/// has twins and `spec` of the law in this file does not say what is inside.
+void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
+                            const std::string& law_file);
+
+/// What was assumed because the law does not say it, as a sentence; empty when nothing was.
+std::string assumed_text(const MacroSetup& setup);
+
+/// For commands that do not run LAMMPS. Throws BadInput.
+void require_own_preparation(const SceneTable& macro, const MacroSetup& setup);
+
+/// A scene of kind "macro".
+struct MacroScene {
+  std::string title;
+  std::uint64_t seed = 1;
+  std::string law_file;  ///< empty: the scene names none
+  LawSources law;        ///< of it
+  MacroSetup setup;
+  SoftParticleSpec spec;      ///< that the law was measured on, and of the contents of twins
+  std::int64_t contents = 7;  ///< number of different ones
+};
+
+/// Reads it to the last key, and its law; `law` (a file) replaces the key of that name. Throws BadInput, FileTrouble.
+MacroScene read_macro_scene(const Scene& scene, const std::string& law);
+
+/// The scene without its law, whatever it names: twins are not held against what the law says. Throws BadInput.
+MacroScene read_macro_scene_alone(const Scene& scene);
+
+}  // namespace softgrain

@@ -1,0 +1,228 @@
+#include "pipelines/kinds/macro/stage.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+#include "common/io/progress.h"
+#include "common/state/system_io.h"
+#include "macrosim/compression.h"
+#include "macrosim/constructed_packing.h"
+#include "macrosim/macro_snapshot.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/run/parallel_tasks.h"
+
+namespace softgrain {
+
+namespace {
+
+void write_progress(const h5::Group& group, const CompressionState& state) {
+  group.attribute("increments", state.increments);
+  write_macro_curve(group.create("curve"), state.curve);
+  write_system(group.create("system"), state.macro.system);
+}
+
+void read_progress(const h5::Group& group, CompressionState& state) {
+  state.increments = group.integer("increments");
+  state.curve = read_macro_curve(group.open("curve"));
+  read_system(group.open("system"), state.macro.system);
+}
+
+/// Whether samples share the threads, or take them one after another.
+bool side_by_side(std::int64_t tasks) { return tasks >= omp_get_max_threads(); }
+
+/// Samples in parallel when there are enough of them for all threads, else one after another with threads inside.
+void over_samples(std::int64_t samples, const std::function<void(std::int64_t)>& task) {
+  if (side_by_side(samples)) {
+    parallel_tasks(samples, task);
+  } else {
+    for (std::int64_t k = 0; k < samples; ++k) task(k);
+  }
+}
+
+/// What the tasks share.
+struct Stage {
+  const MacroRuns& runs;
+  const TaskStore& store;
+  double inner_solid_fraction;
+};
+
+/// `laws` null: the twin of this name.
+MacroSystem make_system(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws) {
+  const MacroSpec& spec = stage.runs.setup.spec;
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
+  if (laws != nullptr) return make_law_system(spec, packing, laws->laws, stage.inner_solid_fraction);
+  const auto make = engine == "free" ? make_free_system : make_shelled_system;
+  return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
+}
+
+RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws,
+                   Progress& progress) {
+  const MacroSpec& spec = stage.runs.setup.spec;
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
+  CompressionState state;
+  state.macro = make_system(stage, sample, engine, laws);
+  state.curve = begin_curve(spec, packing, state.macro, engine, sample);
+  const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
+  const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
+  KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
+  stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
+  if (laws != nullptr) state.curve.law = laws->identity;
+  double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
+  progress.advance(done);
+  MacroCurve recorded = state.curve;
+  try {
+    compress(
+        state, spec,
+        [&](const CompressionState& s, double share) {
+          const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
+          if (s.increments == 0 && states.wants(point))
+            states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
+          stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
+          progress.advance(share - done);
+          done = share;
+          recorded = s.curve;
+        },
+        stage.store.seconds());
+  } catch (const NotUsable& e) {  // this run alone ends here; without a point there is nothing to go on with
+    if (recorded.strain.empty()) throw;
+    state.curve = std::move(recorded);
+    state.curve.usable = false;
+    state.curve.note += (state.curve.note.empty() ? "" : "; ") +
+                        fmt::format("broke off beyond strain {:.4g}: {}", state.curve.strain.back(), e.what());
+    progress.advance(1.0 - done);
+  }
+  if (laws != nullptr && laws->note && state.curve.usable) {
+    const std::string note = laws->note(state.macro.system);
+    state.curve.note += (state.curve.note.empty() || note.empty() ? "" : "; ") + note;
+  }
+  return {state.curve, states.take()};
+}
+
+/// Made by an earlier part of this run, or now.
+MacroPacking kept_packing(const MacroSpec& spec, std::uint64_t seed, std::int64_t sample, const TaskStore& store,
+                          const std::string& file_name) {
+  const std::string task = file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample);
+  std::optional<MacroPacking> packing;
+  store.load(task, [&](const h5::Group& g) { packing = read_macro_packing(g); });
+  if (packing) return std::move(*packing);
+  packing = make_packing(spec, seed, static_cast<std::uint64_t>(sample));
+  store.save(task, [&](const h5::Group& g) { write_macro_packing(g, *packing); });
+  return std::move(*packing);
+}
+
+struct Engine {
+  std::string name;
+  const NamedLaws* laws = nullptr;
+};
+
+/// All samples of all engines, in that order: engines of a kind cost about the same, and share the threads.
+void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std::string& title,
+              const RunContext& context, std::vector<RunOutcome>& runs) {
+  const std::int64_t samples = stage.runs.setup.samples;
+  const auto tasks = static_cast<std::int64_t>(engines.size()) * samples;
+  if (tasks == 0) return;
+  const std::size_t first = runs.size();
+  runs.resize(first + static_cast<std::size_t>(tasks));
+  Progress progress(stage.runs.name + title, static_cast<double>(tasks), context.quiet());
+  over_samples(tasks, [&](std::int64_t k) {
+    const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
+    runs[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine.name, engine.laws, progress);
+  });
+}
+
+}  // namespace
+
+Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& c,
+                     const std::string& runs) {
+  Snapshot s = macro_snapshot(macro, packing);
+  const bool twin = c.engine == "shelled" || c.engine == "free";
+  s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
+  s.strain = c.strain.back();
+  s.series = fmt::format("{}{}-{}", runs == "macro" ? "" : runs + "/", c.engine, c.sample);
+  s.label = fmt::format("{}{} {}, sample {}, strain {:.4g}", runs == "macro" ? "" : runs + ": ", c.engine,
+                        twin ? "twin" : "run", c.sample, s.strain);
+  return s;
+}
+
+double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
+  double sum = 0.0;
+  for (const ShellPacking& p : contents) sum += p.solid_fraction();
+  // Without contents the mass of soft particles is that of a solid of the same size; quasi-static results do not depend
+  // on it.
+  return contents.empty() ? 1.0 : sum / static_cast<double>(contents.size());
+}
+
+std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed) {
+  std::vector<ShellPacking> contents(static_cast<std::size_t>(count));
+  parallel_tasks(count, [&](std::int64_t k) {
+    contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
+  });
+  return contents;
+}
+
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                           const RunContext& context, const std::string& file_name) {
+  std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
+  Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
+  over_samples(setup.samples, [&](std::int64_t k) {
+    packings[static_cast<std::size_t>(k)] = kept_packing(setup.spec, seed, k, store, file_name);
+    progress.advance();
+  });
+  return packings;
+}
+
+void save_packings(const std::vector<MacroPacking>& packings, const RunContext& context, const Provenance& provenance,
+                   const std::string& file_name) {
+  h5::AtomicFile file(context.path(file_name));
+  write_provenance(file.root(), provenance);
+  for (std::size_t k = 0; k < packings.size(); ++k)
+    write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
+  file.commit();
+}
+
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                              const RunContext& context, const Provenance& provenance,
+                                              const std::string& file_name) {
+  auto packings = prepare_packings(setup, seed, store, context, file_name);
+  save_packings(packings, context, provenance, file_name);
+  return packings;
+}
+
+std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
+                                    const RunContext& context, const Provenance& provenance,
+                                    const std::string& states_file, std::vector<RunOutcome> before) {
+  const Stage stage{runs, store, mean_solid_fraction(runs.contents)};
+  std::vector<Engine> with_laws;
+  std::vector<Engine> twins;
+  for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
+  for (const std::string& name : runs.setup.twins) twins.push_back({name});
+  std::vector<RunOutcome> outcomes = std::move(before);
+  run_kind(stage, with_laws, " with laws", context, outcomes);
+  run_kind(stage, twins, ": resolved twins", context, outcomes);
+  std::vector<MacroCurve> curves;
+  std::vector<Snapshot> states;
+  for (RunOutcome& o : outcomes) {
+    curves.push_back(std::move(o.curve));
+    std::move(o.states.begin(), o.states.end(), std::back_inserter(states));
+  }
+  save_kept_states(states, context.path(states_file), provenance);
+  return curves;
+}
+
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
+                                        const std::vector<ShellPacking>& contents, std::uint64_t seed,
+                                        const TaskStore& store, const RunContext& context,
+                                        const Provenance& provenance) {
+  const auto packings = make_macro_packings(setup, seed, store, context, provenance, "macro_initial.h5");
+  auto curves =
+      run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context, provenance, "states_macro.h5");
+  save_macro(curves, context.path("macro.h5"), provenance);
+  return curves;
+}
+
+}  // namespace softgrain

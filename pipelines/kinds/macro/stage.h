@@ -1,0 +1,70 @@
+// The macro part of a run: samples with laws, their resolved twins, and what they have in common.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/macro_result.h"
+#include "common/data/shell_packing.h"
+#include "common/data/snapshot.h"
+#include "macrosim/macro_packing.h"
+#include "macrosim/macro_system.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/run/run_context.h"
+#include "pipelines/run/task_store.h"
+
+namespace softgrain {
+
+/// Packings number 0 .. count-1 of a seed, to fill soft particles with.
+std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed);
+
+/// The starting states of all samples, the same for all engines (with preparation "lammps": where bodies are placed
+/// before it); they are kept in the store until the run has ended, under the name of `file` without its extension.
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                           const RunContext& context, const std::string& file);
+
+/// Writes them to DIR/`file`.
+void save_packings(const std::vector<MacroPacking>& packings, const RunContext& context, const Provenance& provenance,
+                   const std::string& file);
+
+/// Both.
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
+                                              const RunContext& context, const Provenance& provenance,
+                                              const std::string& file);
+
+/// Of the contents, their mean; 1 without any.
+double mean_solid_fraction(const std::vector<ShellPacking>& contents);
+
+/// One scene with all its engines.
+struct MacroRuns {
+  const MacroSetup& setup;
+  const std::vector<MacroPacking>& packings;  ///< one per sample
+  const std::vector<ShellPacking>& contents;  ///< of soft particles
+  std::uint64_t seed = 1;
+  std::string name;  ///< of checkpoints and of progress: "macro", or that of the scene
+};
+
+/// A run and the states of it that are kept.
+struct RunOutcome {
+  MacroCurve curve;
+  std::vector<Snapshot> states;
+};
+
+/// The state at the end of a curve, with the names that people and files give it; `runs`: as MacroRuns::name.
+Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& curve,
+                     const std::string& runs);
+
+/// Every law, then every twin, each on all samples; goes on from checkpoints of recorded points. States that are kept
+/// for pictures go to DIR/`states_file`. `before`: runs of another engine, whose curves and states come first.
+std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
+                                    const RunContext& context, const Provenance& provenance,
+                                    const std::string& states_file, std::vector<RunOutcome> before = {});
+
+/// Runs all samples with `law` and the twins asked for, filled with `contents`; saves DIR/macro.h5,
+/// DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5.
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
+                                        const std::vector<ShellPacking>& contents, std::uint64_t seed,
+                                        const TaskStore& store, const RunContext& context,
+                                        const Provenance& provenance);
+
+}  // namespace softgrain

@@ -1,0 +1,248 @@
+#include "pipelines/kinds/macro_comparison/run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "common/io/text_file.h"
+#include "macrosim/constructed_packing.h"
+#include "pipelines/compare/macro_scores.h"
+#include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/macro_comparison/scene.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_summary.h"
+#include "pipelines/run/text_table.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json to_json(const MeanError& m) {
+  if (m.n == 0) return nullptr;
+  return {{"mean", number(m.mean)}, {"standard_error", number(m.error)}, {"n", m.n}};
+}
+
+json to_json(const TwinErrors& e) {
+  if (e.axial.n == 0) return nullptr;
+  return {{"stress_error", to_json(e.axial)},
+          {"end_stress_ratio", to_json(e.axial_end)},
+          {"deviator_error", to_json(e.deviator)},
+          {"lateral_ratio_difference", to_json(e.lateral_ratio)},
+          {"coordination_difference", to_json(e.coordination)},
+          {"fabric_difference", to_json(e.fabric)},
+          {"force_mean_ratio", to_json(e.force_mean)},
+          {"force_distance", to_json(e.force_distance)},
+          {"speedup_seconds", number(e.speedup_seconds)},
+          {"speedup_contact_evaluations", number(e.speedup_evaluations)}};
+}
+
+json to_json(const EngineScore& s) {
+  return {{"engine", s.engine},
+          {"samples", s.samples},
+          {"axial_stress", to_json(s.axial)},
+          {"lateral_ratio", to_json(s.lateral_ratio)},
+          {"coordination", to_json(s.coordination)},
+          {"fabric", to_json(s.fabric)},
+          {"force_mean", to_json(s.force_mean)},
+          {"force_variation", to_json(s.force_variation)},
+          {"contact_evaluations", number(s.contact_evaluations)},
+          {"seconds", number(s.seconds)},
+          {"against_shelled", to_json(s.shelled)},
+          {"against_free", to_json(s.free)}};
+}
+
+json to_json(const SceneFacts& f) {
+  return {{"solid", f.solid},
+          {"soft", f.soft},
+          {"inner_grains", f.inner_grains},
+          {"soft_share", f.soft_share},
+          {"body_fraction", f.body_fraction},
+          {"solid_fraction", f.solid_fraction},
+          {"soft_radius", {f.soft_radius_low, f.soft_radius_mean, f.soft_radius_high}},
+          {"exponent", f.exponent.exponent},
+          {"exponent_error", f.exponent.standard_error},
+          {"polydispersity", f.largest_over_smallest}};
+}
+
+/// What a scene left behind.
+struct SceneResult {
+  std::string name;
+  MacroSpec spec;
+  std::string file;  ///< name of its curves in the run directory
+  std::vector<SceneFacts> facts;
+  std::vector<EngineScore> scores;
+  std::vector<NamedLaws> laws;
+  std::vector<std::string> remarks;
+  bool usable = true;
+};
+
+/// The voids between bodies are empty in these scenes: without shells the contents spread into them.
+void remark_spread(SceneResult& r) {
+  for (const EngineScore& s : r.scores)
+    if (s.engine == "free" && s.shelled.axial_end.n > 0 && s.shelled.axial_end.mean < 0.2)
+      r.remarks.push_back(
+          fmt::format("{}: the free twin carries {:.2g} of the stress of the shelled one: without shells the grains "
+                      "spread into the "
+                      "voids between bodies, and these must be strained away before they bear",
+                      r.name, s.shelled.axial_end.mean));
+}
+
+SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,
+                      const std::vector<ShellPacking>& contents, std::uint64_t seed, const TaskStore& store,
+                      const RunContext& context, const Provenance& provenance) {
+  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, true};
+  const auto packings =
+      make_macro_packings(scene.setup, seed, store, context, provenance, "macro_initial_" + scene.name + ".h5");
+  for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
+  r.laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
+  const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, r.laws, store, context,
+                                  provenance, "states_macro_" + scene.name + ".h5");
+  save_macro(curves, context.path(r.file), provenance);
+  r.scores = score_engines(curves);
+  if (!all_carry_stress(curves)) {
+    r.usable = false;
+    r.remarks.push_back(
+        scene.name +
+        ": a run with a law, or a shelled twin, carries no stress at its end: what is relative to it is "
+        "undefined");
+  }
+  for (const MacroCurve& c : curves) {
+    r.usable = r.usable && c.usable;
+    if (!c.note.empty())
+      r.remarks.push_back(fmt::format("{}, {}, sample {}{}: {}", scene.name, c.engine, c.sample,
+                                      c.usable ? "" : " (not usable)", c.note));
+  }
+  remark_spread(r);
+  return r;
+}
+
+json scene_json(const SceneResult& r) {
+  json facts = json::array();
+  for (const SceneFacts& f : r.facts) facts.push_back(to_json(f));
+  json engines = json::array();
+  for (const EngineScore& s : r.scores) engines.push_back(to_json(s));
+  json laws = json::array();
+  for (const NamedLaws& l : r.laws) laws.push_back(identity_json(l.identity));
+  return {{"name", r.name},
+          {"laws", laws},
+          {"test", r.spec.test},
+          {"construction", r.spec.construction},
+          {"soft_share", r.spec.soft_share},
+          {"file", r.file},
+          {"samples", facts},
+          {"engines", engines}};
+}
+
+/// One row per scene and engine, the scene in the first column.
+ScoreTable whole_table(const std::vector<SceneResult>& results) {
+  ScoreTable all;
+  for (const SceneResult& r : results) {
+    ScoreTable part = score_table(r.scores);
+    if (all.header.empty()) {
+      all.header = std::move(part.header);
+      all.header.insert(all.header.begin(), "scene");
+    }
+    for (auto& row : part.rows) {
+      row.insert(row.begin(), r.name);
+      all.rows.push_back(std::move(row));
+    }
+  }
+  return all;
+}
+
+void write_tables(const ScoreTable& scores, const RunContext& context) {
+  const TextTable table{scores.header, scores.rows};
+  write_text_atomic(context.path("table.md"), as_markdown(table));
+  write_text_atomic(context.path("table.csv"), as_csv(table));
+}
+
+std::string people_text(const std::vector<SceneResult>& results, const RunContext& context, double seconds) {
+  std::string text;
+  for (const SceneResult& r : results)
+    for (const EngineScore& s : r.scores) {
+      text +=
+          fmt::format("{}, {}: axial stress {:.4g} Pa, {:.3g} s per sample", r.name, s.engine, s.axial.mean, s.seconds);
+      if (s.shelled.axial.n > 0 && std::isfinite(s.shelled.speedup_evaluations))
+        text += fmt::format("; against shelled: stress error {:.3g} %, {:.3g} times fewer contact evaluations",
+                            100.0 * s.shelled.axial.mean, s.shelled.speedup_evaluations);
+      text += "\n";
+    }
+  return text +
+         fmt::format("{:.0f} s; table: {}; report: {}", seconds, context.path("table.md"), context.path("report.html"));
+}
+
+/// The packings of a comparison should be those that the law was measured on.
+std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
+  if (!setup.laws.card) return {};
+  const SoftParticleSpec& law = setup.laws.card->spec;
+  const SoftParticleSpec& mine = setup.spec;
+  if (!packing_known(law))
+    return {
+        "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "
+        "scene says"};
+  const bool same = law.exponent == mine.exponent && law.polydispersity == mine.polydispersity &&
+                    law.rmax_over_shell == mine.rmax_over_shell && law.beta == mine.beta &&
+                    law.friction == mine.friction && law.poisson_ratio == mine.poisson_ratio;
+  if (same) return {};
+  return {"the law was measured on soft particles of another packing or material than those of the twins"};
+}
+
+json summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>& results, const RunContext& context) {
+  json s;
+  bool usable = true;
+  s["title"] = setup.title;
+  s["remarks"] = law_remarks(setup);
+  s["scenes"] = json::array();
+  for (const SceneResult& r : results) {
+    usable = usable && r.usable;
+    s["scenes"].push_back(scene_json(r));
+    for (const std::string& remark : r.remarks) s["remarks"].push_back(remark);
+    s["files"]["macro_" + r.name] = context.path(r.file);
+  }
+  for (const char* file : {"comparison.json", "table.md", "table.csv", "report.html"})
+    s["files"][file] = context.path(file);
+  s["status"] = usable ? "good" : "not usable";
+  return s;
+}
+
+ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const MacroComparisonSetup setup = read_macro_comparison(scene);
+  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string(), setup.laws.files);
+  const std::uint64_t seed = context.seed(setup.seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  const TaskStore store(context, scene, seed, setup.laws.text);
+  const auto contents = make_contents(setup.spec, setup.contents, seed);
+  std::vector<SceneResult> results;
+  context.guard([&] {
+    for (const ComparisonScene& s : setup.scenes)
+      results.push_back(run_scene(s, setup, contents, seed, store, context, provenance));
+  });
+  json summary = summarise(setup, results, context);
+  summary["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary["provenance"] = provenance_json(provenance);
+  write_text_atomic(context.path("comparison.json"), json{{"scenes", summary["scenes"]}}.dump(2) + "\n");
+  write_tables(whole_table(results), context);
+  context.finish(summary, people_text(results, context, summary["seconds"].get<double>()));
+  write_report(context.directory());
+  store.clear();
+  return summary["status"] == "good" ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace
+
+SceneKind macro_comparison_kind() {
+  return {.name = "macro-comparison",
+          .command = "run",
+          .run = run_macro_comparison,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_macro_comparison(scene, out); },
+          .read = [](const Scene& scene) { (void)read_macro_comparison(scene); }};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro_comparison/scene.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/kinds/soft_particle/scene.h"
+
+namespace softgrain {
+
+namespace {
+
+std::string default_name(const MacroSpec& spec) { return fmt::format("{}-{:g}", spec.test, 100.0 * spec.soft_share); }
+
+bool sound_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-';
+  });
+}
+
+ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const SoftParticleSpec& content,
+                           const std::vector<ComparisonScene>& before) {
+  ComparisonScene scene;
+  scene.setup = read_macro_setup(t, base);
+  require_own_preparation(t, scene.setup);
+  require_macro_memory(t, scene.setup, content);
+  std::string name = default_name(scene.setup.spec);
+  std::replace(name.begin(), name.end(), '.', '-');
+  scene.name = t.text("name", name);
+  if (!sound_name(scene.name)) t.reject("name", "letters, digits and '-' only: it becomes part of file names");
+  for (const ComparisonScene& s : before)
+    if (s.name == scene.name)
+      t.reject("name", "another scene is called '" + s.name + "' already; give this one a name");
+  return scene;
+}
+
+}  // namespace
+
+MacroComparisonSetup read_macro_comparison(const Scene& scene) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"macro-comparison"});
+  MacroComparisonSetup setup;
+  setup.title = root.text("title", "");
+  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.spec = read_soft_particle(root);
+  setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
+  MacroSetup base = read_macro_setup(root.table("macro"), setup.spec);
+  require_own_preparation(root.table("macro"), base);
+  if (!root.table("macro").has("resolved")) base.twins = {"shelled", "free"};
+  base.kept_states = read_kept_states(root);
+  for (const SceneTable& t : root.tables("scene"))
+    setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes));
+  if (setup.scenes.empty()) root.reject("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
+  const SceneTable law = root.table("law");
+  setup.laws = read_law_sources(scene, law);
+  root.finish();
+  return setup;
+}
+
+}  // namespace softgrain

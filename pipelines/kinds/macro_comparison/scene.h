@@ -1,0 +1,30 @@
+// A scene of kind "macro-comparison".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipelines/kinds/macro/scene.h"
+
+namespace softgrain {
+
+struct ComparisonScene {
+  std::string name;  ///< of its files and in tables: letters, digits, '-'
+  MacroSetup setup;
+};
+
+struct MacroComparisonSetup {
+  std::string title;
+  std::uint64_t seed = 1;
+  SoftParticleSpec spec;      ///< contents of the soft particles
+  std::int64_t contents = 7;  ///< number of different ones
+  LawSources laws;
+  std::vector<ComparisonScene> scenes;
+};
+
+/// Reads [material], [packing], [law], [macro] and every [[scene]], whose keys replace those of [macro]. Throws
+/// BadInput, FileTrouble.
+MacroComparisonSetup read_macro_comparison(const Scene& scene);
+
+}  // namespace softgrain

@@ -1,0 +1,90 @@
+#include "pipelines/kinds/particles/run.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "common/io/progress.h"
+#include "common/state/checkpoint.h"
+#include "microsim/particles/particles_run.h"
+#include "microsim/particles/scene_contacts.h"
+#include "microsim/particles/scene_memory.h"
+#include "pipelines/export/xdmf.h"
+#include "pipelines/kinds/particles/check.h"
+#include "pipelines/kinds/particles/summary.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+template <int D>
+ParticlesResultOf<D> run_with_progress(const ParticlesSceneOf<D>& scene, System<D> start, const RunContext& context) {
+  Progress progress("particles", static_cast<double>(scene.time.steps), context.quiet());
+  ParticlesControl control;
+  control.checkpoint = context.path("checkpoint.h5");
+  control.resume = context.resume();
+  control.say = [&](const std::string& line) { context.say(line); };
+  control.progress = [&](std::int64_t step) { progress.set(static_cast<double>(step)); };
+  ParticlesResultOf<D> result = run_particles(scene, std::move(start), control);
+  progress.finish();
+  return result;
+}
+
+template <int D>
+ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
+  const double memory_before = peak_memory();
+  ParticlesSceneOf<D> setup = read_particles_scene<D>(scene);
+  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string(),
+                           contact_law_files(scene));
+  const Provenance provenance = context.provenance(scene, context.seed(0));
+  context.begin(scene, provenance.seed, "");
+  const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), context);
+  json summary = particles_summary(setup, result, memory_before);
+  std::string text = particles_text(result);
+  if (summary.contains("remarks"))
+    for (const json& remark : summary["remarks"]) text += "\nremark: " + remark.get<std::string>();
+  if (setup.record) {
+    save_particles_run(context.path("run.h5"), setup, result, provenance);
+    write_run_xdmf(context.path("run.h5"));
+    summary["files"] = {{"trajectory", context.path("run.h5")},
+                        {"xdmf", context.path("run.xdmf")},
+                        {"xdmf_contacts", context.path("run_contacts.xdmf")}};
+    text += "\ntrajectory: " + context.path("run.h5");
+  }
+  summary["provenance"] = provenance_json(provenance);
+  context.finish(std::move(summary), text);
+  remove_checkpoint(context.path("checkpoint.h5"));
+  return result.usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options) {
+  return particles_dimension(scene) == 2 ? run_scene<2>(scene, options) : run_scene<3>(scene, options);
+}
+
+void check_any_particles(const Scene& scene, Findings& out) {
+  if (particles_dimension(scene) == 2)
+    check_particles(read_particles_scene<2>(scene), out);
+  else
+    check_particles(read_particles_scene<3>(scene), out);
+}
+
+void read_any_particles(const Scene& scene) {
+  if (particles_dimension(scene) == 2)
+    (void)read_particles_scene<2>(scene);
+  else
+    (void)read_particles_scene<3>(scene);
+}
+
+}  // namespace
+
+SceneKind particles_kind() {
+  return {.name = "particles",
+          .command = "microsim",
+          .run = run_particles_scene,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_any_particles(scene, out); },
+          .read = read_any_particles};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,208 @@
+#include "pipelines/kinds/particles/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/dynamics/verlet.h"
+#include "microsim/particles/contact_totals.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr Slot kMostListed = 1000;
+
+template <int D>
+json particles_json(const System<D>& s) {
+  json out = json::array();
+  for (Slot i = 0; i < std::min(s.particles.grains, kMostListed); ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    out.push_back({{"id", i},
+                   {"position", s.particles.sphere[u].x.v},
+                   {"velocity", s.particles.velocity[u].v},
+                   {"spin", s.particles.spin[u].v}});
+  }
+  return out;
+}
+
+template <int D>
+json walls_json(const ParticlesSceneOf<D>& scene, const System<D>& s) {
+  json out = json::array();
+  for (std::size_t w = 0; w < scene.wall_name.size(); ++w) {
+    const std::size_t u = static_cast<std::size_t>(s.particles.grains) + w;
+    out.push_back({{"name", scene.wall_name[w]},
+                   {"position", s.particles.sphere[u].x.v},
+                   {"velocity", s.particles.velocity[u].v}});
+  }
+  return out;
+}
+
+/// Ids of particles, names of walls.
+template <int D>
+json body_json(const ParticlesSceneOf<D>& scene, const System<D>& s, Slot slot) {
+  if (slot < s.particles.grains) return slot;
+  return scene.wall_name[static_cast<std::size_t>(slot - s.particles.grains)];
+}
+
+template <int D>
+json contacts_json(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result) {
+  json out = json::array();
+  for (const ContactHistory& c : result.contacts)
+    out.push_back({{"pair", {body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)}},
+                   {"count", c.count},
+                   {"duration", c.duration},
+                   {"max_force", c.max_force},
+                   {"max_overlap", c.max_overlap}});
+  return out;
+}
+
+json record_json(const GuardRecord& r, const GuardRule& rule, double limit) {
+  json out = {{"action", to_string(rule.action)},
+              {"limit", std::isfinite(limit) ? json(limit) : json(nullptr)},
+              {"worst", r.worst},
+              {"count", r.count}};
+  if (r.count > 0) out["first_time"] = r.first_time;
+  return out;
+}
+
+/// What the guards saw; counts are looks, not events.
+template <int D>
+json guards_json(const GuardSpec& spec, const GuardReport& g, const System<D>& s) {
+  json out = {{"looks", g.looks},
+              {"steps_between_looks", g.every},
+              {"overlap", record_json(g.overlap, spec.overlap, spec.overlap.limit)},
+              {"energy", record_json(g.energy, spec.energy, spec.energy.limit)},
+              {"escape", record_json(g.escape, spec.escape, spec.escape.limit)},
+              {"wall", record_json(g.wall_travel, spec.wall_travel, g.wall_travel_limit)},
+              {"hasty_lists", s.neighbours.hasty}};
+  out["energy"]["watched"] = g.energy_unwatched.empty();
+  if (!g.energy_unwatched.empty()) out["energy"]["unwatched_because"] = g.energy_unwatched;
+  if (g.laws.asked > 0)
+    out["law_range"] = {{"asked", g.laws.asked},
+                        {"beyond", g.laws.beyond},
+                        {"clamped", g.laws.clamped},
+                        {"refused", g.laws.refused},
+                        {"largest_over_end", g.laws.largest}};
+  return out;
+}
+
+/// What was counted, in words.
+template <int D>
+json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System<D>& s) {
+  json out = json::array();
+  const auto counted = [&](const GuardRecord& r, double limit, const char* what) {
+    if (r.count > 0)
+      out.push_back(fmt::format("{} above the limit of {:.3g} at {} of {} looks (first at {:.4g} s, largest {:.3g})",
+                                what, limit, r.count, g.looks, r.first_time, r.worst));
+  };
+  counted(g.overlap, spec.overlap.limit, "overlap over the smaller radius");
+  counted(g.energy, spec.energy.limit, "growth of energy in a scene that nothing drives");
+  counted(g.escape, spec.escape.limit, "grains outside");
+  counted(g.wall_travel, g.wall_travel_limit, "way of a wall that its load moves [m]");
+  if (s.neighbours.hasty > 0)
+    out.push_back(fmt::format("{} of {} neighbour lists lasted one step only: bodies move far in a step",
+                              s.neighbours.hasty, s.neighbours.rebuilds));
+  const std::string laws = law_use_text(g.laws);
+  if (!laws.empty()) out.push_back(laws);
+  return out;
+}
+
+/// Times that do not exist are null.
+json time_json(double seconds) { return std::isfinite(seconds) ? json(seconds) : json(nullptr); }
+
+/// The state of all contacts at the end; see ContactTotals.
+template <int D>
+json contact_state_json(const ContactTotals<D>& totals) {
+  json out = {{"contacts", totals.contacts}, {"coordination_number", totals.coordination_number}};
+  if (!totals.has_stress) return out;
+  out["pressure"] = totals.pressure;
+  out["stress"] = json::array();
+  for (const Vec<D>& row : totals.stress.row) out["stress"].push_back(row.v);
+  return out;
+}
+
+json part_json(const LoopPart& part) {
+  return {{"steps", part.steps},
+          {"seconds", part.seconds},
+          {"cpu_seconds", part.cpu_seconds},
+          {"contact_evaluations", part.contact_evaluations},
+          {"rebuilds", part.rebuilds}};
+}
+
+/// Speed counts the contacts at the end, as other programs can be asked for them too.
+template <int D>
+json measured_json(const LoopPart& part, const System<D>& s, const ContactTotals<D>& totals) {
+  json out = part_json(part);
+  const auto steps = static_cast<double>(part.steps);
+  if (!(part.seconds > 0.0) || part.steps == 0) return out;
+  out["particle_steps_per_second"] = steps * static_cast<double>(s.particles.grains) / part.seconds;
+  if (totals.contacts > 0) out["ns_per_contact"] = 1e9 * part.seconds / (steps * static_cast<double>(totals.contacts));
+  return out;
+}
+
+template <int D>
+json cost_json(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result, const ContactTotals<D>& totals,
+               double memory_before) {
+  const System<D>& s = result.system;
+  json out = {{"loop_passes", s.cost.loop_passes},
+              {"contact_evaluations", s.cost.contact_evaluations},
+              {"rebuilds", s.neighbours.rebuilds},
+              {"listed_pairs", s.contacts.size()},
+              {"seconds", s.cost.seconds},
+              {"peak_memory", result.peak_memory},
+              {"memory_before_scene", memory_before},
+              {"measured", measured_json(result.measured, s, totals)}};
+  if (scene.time.warm_up_steps > 0) out["warm_up"] = part_json(result.warm_up);
+  return out;
+}
+
+}  // namespace
+
+template <int D>
+json particles_summary(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result, double memory_before) {
+  const System<D>& s = result.system;
+  json out = {{"status", result.usable ? "good" : "not usable"},
+              {"kind", "particles"},
+              {"title", scene.title},
+              {"dimension", D},
+              {"particle_count", s.particles.grains},
+              {"time", s.time},
+              {"steps", s.step},
+              {"step", scene.time.step},
+              {"natural_time", time_json(scene.time.natural_time)},
+              {"shortest_impact", time_json(scene.time.contact_time)},
+              {"step_limited_by", scene.time.limited_by},
+              {"kinetic_energy", kinetic_energy(s.particles)},
+              {"frames", result.trajectory.time.size()},
+              {"particles", particles_json(s)},
+              {"walls", walls_json(scene, s)}};
+  const ContactTotals<D> totals = contact_totals(s);
+  out["contact_state"] = contact_state_json(totals);
+  out["cost"] = cost_json(scene, result, totals, memory_before);
+  if (result.watched) out["contacts"] = contacts_json(scene, result);
+  out["guards"] = guards_json(scene.guards, result.guards, s);
+  json remarks = guard_remarks(scene.guards, result.guards, s);
+  for (const std::string& remark : scene.remarks) remarks.push_back(remark);
+  if (!remarks.empty()) out["remarks"] = remarks;
+  if (!result.usable) out["reason"] = result.reason;
+  return out;
+}
+
+template <int D>
+std::string particles_text(const ParticlesResultOf<D>& result) {
+  const System<D>& s = result.system;
+  const std::string end = result.usable ? "" : "NOT USABLE: " + result.reason + "\n";
+  return end + fmt::format("{} particles, {} steps to {:.6g} s in {:.2f} s; kinetic energy {:.6g} J",
+                           s.particles.grains, s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
+}
+
+template json particles_summary<2>(const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&, double);
+template json particles_summary<3>(const ParticlesSceneOf<3>&, const ParticlesResultOf<3>&, double);
+template std::string particles_text<2>(const ParticlesResultOf<2>&);
+template std::string particles_text<3>(const ParticlesResultOf<3>&);
+
+}  // namespace softgrain

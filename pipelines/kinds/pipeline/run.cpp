@@ -1,0 +1,199 @@
+#include "pipelines/kinds/pipeline/run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "calibrate/threshold_fit.h"
+#include "pipelines/compare/compare.h"
+#include "pipelines/law/law_json.h"
+#include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/soft_particle/check.h"
+#include "pipelines/kinds/soft_particle/stage.h"
+#include "pipelines/kinds/pipeline/scene.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_context.h"
+#include "pipelines/run/run_summary.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+std::string law_line(const PairLaw& law) {
+  if (law.status == "no threshold crossing" || law.status == "not run")
+    return fmt::format("{}: {} ({})", to_string(law.kind), law.status, law.reason);
+  return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}",
+                     to_string(law.kind), law.normal.a.value, law.normal.b.value, law.normal.delta.value,
+                     law.normal.b.value, law.delta_max, law.packings, law.status);
+}
+
+json comparison_json(const Comparison& c) {
+  json samples = json::array();
+  for (const SampleComparison& s : c.samples)
+    samples.push_back({{"sample", s.sample},
+                       {"strain_high", s.strain_high},
+                       {"stress_error", s.axial_difference},
+                       {"end_ratio", s.axial_end_ratio}});
+  return {{"stress_error", c.axial_difference.mean},
+          {"stress_error_standard_error", c.axial_difference.error},
+          {"lateral_stress_error", c.lateral_difference.mean},
+          {"end_stress_ratio", c.axial_end_ratio.mean},
+          {"lateral_stress_ratio_law", c.lateral_stress_ratio_candidate.mean},
+          {"lateral_stress_ratio_resolved", c.lateral_stress_ratio_reference.mean},
+          {"speedup_seconds", c.speedup_seconds},
+          {"speedup_contact_evaluations", c.speedup_contact_evaluations},
+          {"samples", samples},
+          {"left_out", c.left_out}};
+}
+
+/// What the stages leave behind, for summary and screen.
+struct PipelineResult {
+  MeasureResult measured;
+  LawCard card;
+  std::vector<MacroCurve> curves;
+  std::optional<Comparison> comparison;
+  std::vector<std::string> remarks;
+  bool usable = true;
+};
+
+void fit(const PipelineSetup& setup, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
+  FitOptions options = setup.fit;
+  options.relaxation = setup.measure.series[0].relaxation;
+  options.seed = context.seed(setup.measure.seed);
+  result.card = calibrate(result.measured.data, options);
+  save_card(result.card, context.path("law.toml"), provenance);
+  for (const PairLaw& law : result.card.pairs) {
+    context.say(law_line(law));
+    if (law.status == "good") continue;
+    result.usable = false;
+    result.remarks.push_back(fmt::format("{} law: {}: {}", to_string(law.kind), law.status, law.reason));
+  }
+}
+
+/// What was measured and fitted is kept and said even when no macro run can follow: false, with a remark.
+bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const RunContext& context,
+                       const Provenance& provenance, PipelineResult& result) {
+  std::string why;
+  try {
+    const NamedLaws law = pair_law_of(result.card, setup.macro->spec, "law");
+    result.curves = run_macro_stage(*setup.macro, law, result.measured.packings, context.seed(setup.measure.seed),
+                                    store, context, provenance);
+    return true;
+  } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
+    why = e.what();
+  } catch (const NotUsable& e) {
+    why = e.what();
+  }
+  result.remarks.push_back("no macro run: " + why);
+  result.usable = false;
+  return false;
+}
+
+void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context,
+               const Provenance& provenance, PipelineResult& result) {
+  if (!setup.macro || !run_macro_samples(setup, store, context, provenance, result)) return;
+  for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
+  for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
+  result.usable = result.usable && all_carry_stress(result.curves);
+  if (!has_twin(*setup.macro, "shelled")) return;
+  try {
+    result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
+    for (const std::string& one : result.comparison->undefined) {
+      result.remarks.push_back("law and twin: " + one);
+      result.usable = false;
+    }
+  } catch (const BadInput& e) {
+    // No sample with two usable curves: said in the summary, what was computed is kept.
+    result.remarks.emplace_back(std::string("macro and twin cannot be compared: ") + e.what());
+    result.usable = false;
+  }
+}
+
+json summarise(const PipelineSetup& setup, const PipelineResult& r, const Provenance& provenance,
+               const RunContext& context, double seconds) {
+  const Measurements& data = r.measured.data;
+  json s;
+  s["status"] = r.usable ? "good" : "not usable";
+  s["title"] = setup.title;
+  s["seconds"] = seconds;
+  s["laws"] = laws_json(r.card);
+  s["packings"] = packings_json(data);
+  s["packings"]["broke_off"] = r.measured.left_out.size();
+  s["packings"]["seconds"] = r.measured.packing_seconds;
+  s["measurement"] = measurement_json(data, setup.measure.series[0].relaxation);
+  s["measurement"]["wall_seconds"] = r.measured.wall_seconds;
+  s["forces"] = forces_json(data, setup.measure.series[0].relaxation);
+  if (setup.measure.series.size() > 1) {
+    s["reference_measurement"] = measurement_json(data, setup.measure.series[1].relaxation);
+    s["relaxations"] = relaxations_json(data, setup.measure.series[1].relaxation, setup.measure.series[0].relaxation);
+  }
+  s["macro"] = macro_json(r.curves, "law");
+  s["resolved"] = macro_json(r.curves, "shelled");
+  if (setup.macro && has_twin(*setup.macro, "free")) s["free"] = macro_json(r.curves, "free");
+  if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
+  s["remarks"] = r.remarks;
+  for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
+    s["files"][file] = context.path(file);
+  s["provenance"] = provenance_json(provenance);
+  return s;
+}
+
+std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : "(undefined)"; }
+
+std::string people_text(const PipelineResult& r, const RunContext& context, double seconds) {
+  std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
+  for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
+  if (r.comparison)
+    text += fmt::format(
+        "macro against its resolved twin: stress differs by {} %, {} times fewer contact evaluations, {} times less "
+        "time\n",
+        rounded(100.0 * r.comparison->axial_difference.mean), rounded(r.comparison->speedup_contact_evaluations),
+        rounded(r.comparison->speedup_seconds));
+  for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
+  return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
+}
+
+ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const PipelineSetup setup = read_pipeline_setup(scene.root());
+  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
+  const std::uint64_t seed = context.seed(setup.measure.seed);
+  const Provenance provenance = context.provenance(scene, seed);
+  const TaskStore store(context, scene, seed);
+  PipelineResult result;
+  context.guard([&] { result.measured = run_measure_stage(setup.measure, store, context, provenance); });
+  for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
+  for (const std::string& r : result.measured.left_out) result.remarks.push_back(r);
+  result.usable = result.measured.enough_left;
+  fit(setup, context, provenance, result);
+  run_macro(setup, store, context, provenance, result);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  context.finish(summarise(setup, result, provenance, context, seconds), people_text(result, context, seconds));
+  write_report(context.directory());
+  store.clear();
+  return result.usable ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
+  const PipelineSetup setup = read_pipeline_setup(scene.root());
+  const MeasureTrial trial = check_measurements(setup.measure, out);
+  if (setup.macro) check_macro(*setup.macro, content_of(trial), nullptr, out);
+}
+
+}  // namespace
+
+SceneKind pipeline_kind() {
+  return {.name = "pipeline",
+          .command = "run",
+          .run = run_pipeline,
+          .check = check_pipeline,
+          .read = [](const Scene& scene) { (void)read_pipeline_setup(scene.root()); }};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,27 @@
+// A whole pipeline scene.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calibrate/threshold_fit.h"
+#include "common/io/scene.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/soft_particle/scene.h"
+
+namespace softgrain {
+
+struct PipelineSetup {
+  std::string title;
+  MeasureSetup measure;
+  FitOptions fit;
+  std::optional<MacroSetup> macro;  ///< without [macro]: measurement and fit only
+};
+
+/// Reads a scene of kind "pipeline" to the last key. Throws BadInput.
+PipelineSetup read_pipeline_setup(const SceneTable& root);
+
+/// Reads [calibrate] (all keys optional).
+FitOptions read_fit_options(const SceneTable& calibrate);
+
+}  // namespace softgrain

@@ -1,0 +1,150 @@
+#include "pipelines/kinds/soft_particle/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/dynamics/time_step.h"
+#include "microsim/particles/scene_memory.h"
+#include "microsim/soft_experiment.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+struct PointCounts {
+  std::int64_t normal = 0;
+  std::int64_t rotated = 0;
+};
+
+PointCounts count_points(const MeasureSeries& series, PairKind kind) {
+  const MeasurementPlan& plan = series.plan(kind);
+  return {series.packings * static_cast<std::int64_t>(plan.deltas.size()),
+          series.packings * static_cast<std::int64_t>(plan.tangential_deltas.size() * plan.angles_deg.size())};
+}
+
+/// Thresholds that the published soft particle has; others lie near, unless they are much looser.
+double expected_threshold(PairKind kind) { return kind == PairKind::soft_solid ? 0.1 : 0.21; }
+
+void warn_of_series(const MeasureSeries& series, PairKind kind, Findings& out) {
+  constexpr std::int64_t kPackings = 5;  // below it a fit is marked, unless [calibrate] min_packings says otherwise
+  constexpr std::int64_t kCrossed = 4;   // three parameters and something to judge them by
+  const MeasurementPlan& plan = series.plan(kind);
+  const std::string name = to_string(kind);
+  if (series.packings < kPackings)
+    out.warn(
+        fmt::format("{}: {} packings are few: laws differ by 10 % and more between packings, and below {} the fit is "
+                    "marked as underdetermined",
+                    name, series.packings, kPackings));
+  const double threshold = expected_threshold(kind);
+  const auto above = std::count_if(plan.deltas.begin(), plan.deltas.end(), [=](double d) { return d > threshold; });
+  if (above < kCrossed)
+    out.warn(
+        fmt::format("{}: {} overlaps lie above Delta = {}, where the published soft particle begins to resist: the "
+                    "law will be underdetermined; record more, or deeper",
+                    name, above, threshold));
+  if (plan.tangential_deltas.empty() || plan.angles_deg.empty())
+    out.warn(name + ": nothing is rotated: the law will have no tangential spring");
+}
+
+void add_overlaps(const MeasureSeries& series, PairKind kind, Findings& out) {
+  constexpr double kLarge = 0.5;
+  const std::vector<double>& deltas = series.plan(kind).deltas;
+  if (deltas.empty()) return;
+  const double overlap = expected_grain_overlap(kind, deltas.back());
+  out.add("overlap " + to_string(kind), overlap,
+          fmt::format("{}: grains overlap by about {:.2g} of the smaller radius at Delta = {}", to_string(kind),
+                      overlap, deltas.back()));
+  if (overlap > kLarge)
+    out.warn(
+        fmt::format("{}: at Delta = {} grains overlap by about {:.2g} of the smaller radius: Hertz' law is one of "
+                    "small overlaps",
+                    to_string(kind), deltas.back(), overlap));
+}
+
+void describe_packing(const MeasureSetup& setup, const ShellPacking& packing, Findings& out) {
+  const SoftExperiment e = make_soft_solid(setup.spec, packing, true);
+  const StepLimit limit = step_limit(e.system);
+  out.add("grains", packing.radius.size(),
+          fmt::format("grains in the first packing: {}, solid fraction {:.3f}", packing.radius.size(),
+                      packing.solid_fraction()));
+  out.facts["solid_fraction"] = packing.solid_fraction();
+  out.add("time_step", setup.published.step_fraction * limit.natural_time,
+          fmt::format("time step of the published protocol: {:.3g} s, set by grain {} (radius {:.3g} m) at a stiffness "
+                      "of {:.3g} N/m",
+                      setup.published.step_fraction * limit.natural_time, limit.body,
+                      e.system.particles.sphere[static_cast<std::size_t>(limit.body)].r, limit.stiffness));
+  const double memory = estimated_memory(static_cast<std::int64_t>(packing.radius.size()),
+                                         kPairsPerGrain * static_cast<double>(packing.radius.size()));
+  out.add("bytes", memory, "memory: about " + bytes_text(memory) + " for each measurement under way");
+  constexpr double kLoose = 0.6;
+  if (packing.solid_fraction() < kLoose)
+    out.warn(
+        fmt::format("the packing is loose (solid fraction {:.3f}; published: 0.70): raise packing.beta or "
+                    "packing.trials",
+                    packing.solid_fraction()));
+  constexpr std::size_t kFew = 50;
+  if (packing.radius.size() < kFew)
+    out.warn(fmt::format("{} grains in the shell are few: single grains make the law, and packings will differ widely",
+                         packing.radius.size()));
+}
+
+/// Core seconds of a series; says what it records.
+double series_seconds(const MeasureSetup& setup, const MeasureSeries& series, double pass_seconds, Findings& out) {
+  double seconds = 0.0;
+  for (const PairKind kind : series.kinds) {
+    const PointCounts points = count_points(series, kind);
+    seconds += static_cast<double>(series.packings) *
+               measuring_seconds(setup, series.relaxation, series.plan(kind), kind, pass_seconds);
+    out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
+            fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind),
+                        series.packings, points.normal, points.rotated));
+  }
+  return seconds;
+}
+
+}  // namespace
+
+double expected_grain_overlap(PairKind kind, double delta) {
+  return kind == PairKind::soft_solid ? 0.81 * delta / 0.3 : 0.26 * delta / 0.4;
+}
+
+void warn_of_soft_particle(const SoftParticleSpec& spec, Findings& out) {
+  constexpr double kSolid = 0.5;
+  if (spec.rmax_over_shell > kSolid)
+    out.warn(
+        fmt::format("the largest grain has {} of the shell's radius: such packings hold one big grain and little "
+                    "else; the published ratio is 0.5",
+                    spec.rmax_over_shell));
+  constexpr double kStiff = 1e12;
+  if (spec.youngs_modulus > kStiff)
+    out.warn(
+        fmt::format("E = {:.3g} Pa is more than any solid has; results scale with E, so that a softer one costs less "
+                    "and says the same",
+                    spec.youngs_modulus));
+}
+
+MeasureTrial check_measurements(const MeasureSetup& setup, Findings& out) {
+  constexpr double kBudget = 0.3;
+  const MeasureTrial trial = try_soft_particle(setup.spec, setup.seed, kBudget);
+  describe_packing(setup, trial.packing, out);
+  double pairs = 0.0;  // packings for second bodies
+  for (const MeasureSeries& series : setup.series) {
+    out.spend(&series == &setup.series.front() ? "measuring" : "reference",
+              series_seconds(setup, series, trial.pass_seconds, out));
+    if (std::count(series.kinds.begin(), series.kinds.end(), PairKind::soft_soft) > 0)
+      pairs = std::max(pairs, static_cast<double>(series.packings));
+  }
+  out.spend("packings", trial.packing_seconds * (static_cast<double>(setup.packings()) + pairs));
+  if (!setup.series.empty())
+    for (const PairKind kind : setup.series.front().kinds) {
+      add_overlaps(setup.series.front(), kind, out);
+      warn_of_series(setup.series.front(), kind, out);
+    }
+  warn_of_soft_particle(setup.spec, out);
+  return trial;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,219 @@
+#include "pipelines/kinds/soft_particle/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+
+namespace softgrain {
+
+namespace {
+
+void read_material(const SceneTable& t, SoftParticleSpec& spec) {
+  spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
+  spec.poisson_ratio = t.number("nu", Unit::none, Range::closed(-0.99, 0.5), spec.poisson_ratio);
+  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
+  spec.density = t.number("density", Unit::density, Range::positive(), spec.density);
+  spec.restitution = t.number("restitution", Unit::none, Range::closed(0.0, 1.0), spec.restitution);
+}
+
+void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
+  spec.shell_radius = t.number("shell_radius", Unit::length, Range::positive(), spec.shell_radius);
+  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+  spec.polydispersity = t.number("polydispersity", Unit::none, Range::above(1.0), spec.polydispersity);
+  if (t.has("rmax")) {
+    const double rmax = t.number("rmax", Unit::length, Range::positive());
+    if (rmax >= spec.shell_radius)
+      t.reject("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
+                           " m) must be larger than the largest grain");
+    spec.rmax_over_shell = rmax / spec.shell_radius;
+  } else {
+    spec.rmax_over_shell = t.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, true}, spec.rmax_over_shell);
+  }
+  spec.beta = t.number("beta", Unit::none, Range::above(1.0), spec.beta);
+  spec.trials = t.count("trials", 1, 1000000000, spec.trials);
+  spec.placement =
+      t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
+  require_drawable(t, spec);
+}
+
+void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
+  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
+  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.tolerance_rotated = t.number("tolerance_rotated", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance_rotated);
+  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+}
+
+constexpr std::int64_t kMostPasses = 1000000;  ///< of one increment by least work
+
+void read_least_work(const SceneTable& t, LeastWorkProtocolOptions& o) {
+  o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
+  o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
+  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+  o.increment_passes = t.count("increment_passes", 0, kMostPasses, o.increment_passes);
+  if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
+  o.step_factor = t.number("step_factor", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor);
+  o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
+  o.path_settle_time = t.number("path_settle_time", Unit::none, Range::not_negative(), o.path_settle_time);
+  o.settle_time_rotated = t.number("settle_time_rotated", Unit::none, Range::not_negative(), o.settle_time_rotated);
+  o.step_factor_rotated =
+      t.number("step_factor_rotated", Unit::none, Range{0.0, 20.0, true, false}, o.step_factor_rotated);
+  o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+}
+
+void read_published(const SceneTable& t, PublishedOptions& o) {
+  if (t.has("approach_speed")) o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive());
+  if (t.has("stop_interval")) o.stop_interval = t.number("stop_interval", Unit::time, Range::positive());
+  o.stops = static_cast<int>(t.count("stops", 0, 1000, o.stops));
+  o.step_fraction = t.number("step_fraction", Unit::none, Range{0.0, 0.6, true, false}, o.step_fraction);
+  o.crowded_fraction = t.number("crowded_fraction", Unit::none, Range{0.0, 1.0, true, false}, o.crowded_fraction);
+  o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
+}
+
+void require_ascending(const SceneTable& t, const std::string& key, const std::vector<double>& values) {
+  if (values.empty()) t.reject(key, "at least one value is needed");
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (values[k] <= values[k - 1]) t.reject(key, "values must ascend");
+}
+
+void require_subset(const SceneTable& t, const std::vector<double>& some, const std::vector<double>& all) {
+  for (const double x : some)
+    if (std::none_of(all.begin(), all.end(), [x](double y) { return std::abs(x - y) < 1e-9; }))
+      t.reject("tangential_deltas", std::to_string(x) + " is not among deltas");
+}
+
+/// Largest overlap that makes sense: at 1 the plane would have reached the centre of the shell.
+const Range kDeltaRange{0.0, 0.9, true, false};
+
+MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
+  MeasurementPlan plan = common;
+  plan.deltas = t.numbers("deltas", Unit::none, kDeltaRange);
+  require_ascending(t, "deltas", plan.deltas);
+  plan.angles_deg = t.numbers("angles_deg", Unit::angle_degree, Range::closed(-90.0, 90.0), {});
+  for (const double a : plan.angles_deg)
+    if (a == 0.0) t.reject("angles_deg", "0 is recorded anyway; leave it out");
+  plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange,
+                                     plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
+  require_subset(t, plan.tangential_deltas, plan.deltas);
+  return plan;
+}
+
+/// Least work that leaves every increment to dynamics is called by what it does.
+std::string read_relaxation(const SceneTable& t, const char* fallback, const LeastWorkProtocolOptions& least_work) {
+  const std::string name =
+      t.choice("relaxation", {kRelaxations[0], kRelaxations[1], kRelaxations[2], kRelaxations[3]}, fallback);
+  return name == "least-work" && least_work.increment_passes == 0 ? "slow-dynamics" : name;
+}
+
+/// Slow dynamics makes no increment by least work, and must not be asked for some.
+void require_increments_used(const SceneTable& measure, const std::string& relaxation, bool least_work_too) {
+  if (relaxation != "slow-dynamics" || least_work_too) return;
+  const SceneTable t = measure.table_or_empty("least_work");
+  if (t.has("increment_passes") && t.count("increment_passes", 0, kMostPasses) > 0)
+    t.reject("increment_passes",
+             "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
+}
+
+MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, std::int64_t packings,
+                          const MeasurementPlan& common) {
+  MeasureSeries series;
+  series.relaxation = relaxation;
+  series.packings = packings;
+  if (t.has("soft_solid")) {
+    series.kinds.push_back(PairKind::soft_solid);
+    series.soft_solid = read_plan(t.table("soft_solid"), common);
+  }
+  if (t.has("soft_soft")) {
+    series.kinds.push_back(PairKind::soft_soft);
+    series.soft_soft = read_plan(t.table("soft_soft"), common);
+  }
+  if (series.kinds.empty()) t.reject("soft_solid", "neither soft_solid nor soft_soft is measured; give at least one");
+  return series;
+}
+
+}  // namespace
+
+void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
+  constexpr double kMost = 1e7;
+  const double b = spec.exponent;
+  const double p = spec.polydispersity;
+  const double third_moment = b == 4.0
+                                  ? 3.0 * std::log(p) / (std::pow(p, 3.0) - 1.0)
+                                  : (b - 1.0) / (b - 4.0) * (std::pow(p, b - 4.0) - 1.0) / (std::pow(p, b - 1.0) - 1.0);
+  const double grains = spec.beta / (third_moment * std::pow(spec.rmax_over_shell, 3.0));
+  if (grains <= kMost) return;
+  std::ostringstream problem;
+  problem << "beta = " << spec.beta << " with rmax_over_shell = " << spec.rmax_over_shell << ", polydispersity = " << p
+          << " and exponent = " << b << " draws about " << grains << " grains per packing, allowed are at most 1e7";
+  t.reject(t.has("polydispersity") ? "polydispersity" : "beta", problem.str());
+}
+
+std::int64_t MeasureSetup::packings() const {
+  std::int64_t most = 0;
+  for (const MeasureSeries& s : series) most = std::max(most, s.packings);
+  return most;
+}
+
+SoftParticleSpec read_soft_particle(const SceneTable& root) {
+  SoftParticleSpec spec;
+  read_material(root.table_or_empty("material"), spec);
+  read_packing(root.table_or_empty("packing"), spec);
+  return spec;
+}
+
+MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxation, MeasurementPlan& plan) {
+  MeasureSetup setup;
+  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  setup.spec = read_soft_particle(root);
+  const SceneTable measure = root.table_or_empty("measure");
+  read_damped(measure.table_or_empty("damped"), setup.damped);
+  read_published(measure.table_or_empty("published"), setup.published);
+  read_least_work(measure.table_or_empty("least_work"), setup.least_work);
+  plan.rotation_step_deg =
+      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), plan.rotation_step_deg);
+  plan.shell_turns = measure.flag("shell_turns", plan.shell_turns);
+  plan.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
+  relaxation = read_relaxation(measure, "least-work", setup.least_work);
+  return setup;
+}
+
+MeasureSetup read_measure_setup(const SceneTable& root) {
+  std::string relaxation;
+  MeasurementPlan common;
+  MeasureSetup setup = read_measure_protocols(root, relaxation, common);
+  const SceneTable measure = root.table("measure");
+  const std::int64_t count = root.table_or_empty("packing").count("count", 1, 100000, 7);
+  setup.series.push_back(read_series(measure, relaxation, count, common));
+  if (root.has("reference")) {
+    const SceneTable reference = root.table("reference");
+    const std::string name = read_relaxation(reference, "published", setup.least_work);
+    if (name == setup.series[0].relaxation)
+      reference.reject("relaxation", "the reference must differ from measure.relaxation");
+    setup.series.push_back(read_series(reference, name, reference.count("count", 1, 100000, count), common));
+  }
+  require_increments_used(measure, setup.series.front().relaxation, setup.series.back().relaxation == "least-work");
+  setup.kept_states = read_kept_states(root);
+  return setup;
+}
+
+SoftParticleScene read_soft_particle_scene(const Scene& scene) {
+  const SceneTable root = scene.root();
+  (void)root.choice("kind", {"soft-particle"});
+  SoftParticleScene out{root.text("title", ""), read_measure_setup(root)};
+  root.finish();
+  return out;
+}
+
+std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name) {
+  if (name == "published") return make_published_protocol(setup.published);
+  if (name == "damped") return make_damped_protocol(setup.damped);
+  LeastWorkProtocolOptions least_work = setup.least_work;
+  if (name == "slow-dynamics") least_work.increment_passes = 0;
+  if (name == "least-work" || name == "slow-dynamics") return make_least_work_protocol(least_work);
+  throw BadInput("unknown relaxation '" + name + "'");
+}
+
+}  // namespace softgrain

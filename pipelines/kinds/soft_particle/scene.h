@@ -1,0 +1,66 @@
+// Tables of a scene that describe the soft particle and how it is measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/measurements.h"
+#include "common/io/scene.h"
+#include "microsim/measure.h"
+#include "microsim/protocol.h"
+
+namespace softgrain {
+
+/// One series of measurements: which relaxation, how many packings, which states of which pair kind.
+struct MeasureSeries {
+  std::string relaxation;  ///< one of kRelaxations
+  std::int64_t packings = 0;
+  std::vector<PairKind> kinds;
+  MeasurementPlan soft_solid;
+  MeasurementPlan soft_soft;
+
+  [[nodiscard]] const MeasurementPlan& plan(PairKind kind) const {
+    return kind == PairKind::soft_solid ? soft_solid : soft_soft;
+  }
+};
+
+struct MeasureSetup {
+  SoftParticleSpec spec;
+  PublishedOptions published;
+  LeastWorkProtocolOptions least_work;
+  DampedProtocolOptions damped;
+  std::vector<MeasureSeries>
+      series;  ///< the first one feeds the fit; a second one is the reference it is compared with
+  std::uint64_t seed = 1;
+  std::int64_t kept_states = 0;  ///< of the first packing of every kind and relaxation, for pictures
+
+  [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
+};
+
+/// Throws BadInput at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or from
+/// a law whose mean volume is no number).
+void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
+
+/// Reads [material] and what [packing] says of the soft particle (not `count`). Throws BadInput.
+SoftParticleSpec read_soft_particle(const SceneTable& root);
+
+/// Reads seed, [material], [packing] and how [measure] relaxes, without what is measured: `plan` gets the rotations'
+/// settings, `relaxation` the name. Throws BadInput.
+MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxation, MeasurementPlan& plan);
+
+/// Reads [material], [packing], [measure], [reference] and [output]. Throws BadInput.
+MeasureSetup read_measure_setup(const SceneTable& root);
+
+/// A scene of kind "soft-particle".
+struct SoftParticleScene {
+  std::string title;
+  MeasureSetup measure;
+};
+
+/// Reads it to the last key. Throws BadInput.
+SoftParticleScene read_soft_particle_scene(const Scene& scene);
+
+/// The protocol of a name.
+std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name);
+
+}  // namespace softgrain

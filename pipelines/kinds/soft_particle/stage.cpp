@@ -1,0 +1,275 @@
+#include "pipelines/kinds/soft_particle/stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <iterator>
+#include <map>
+
+#include "common/io/interrupt.h"
+#include "common/io/progress.h"
+#include "common/state/system_io.h"
+#include "microsim/shell_packing.h"
+#include "microsim/soft_snapshot.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/run/parallel_tasks.h"
+
+namespace softgrain {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// One packing (or pair) under one relaxation.
+struct Task {
+  const MeasureSeries* series = nullptr;
+  PairKind kind = PairKind::soft_solid;
+  std::int64_t packing = 0;
+
+  [[nodiscard]] std::string name() const {
+    return series->relaxation + "-" + to_string(kind) + "-" + std::to_string(packing);
+  }
+  /// Relative cost, for progress and for starting long tasks first.
+  [[nodiscard]] double weight() const {
+    const MeasurementPlan& plan = series->plan(kind);
+    const auto points =
+        static_cast<double>(plan.deltas.size() + plan.tangential_deltas.size() * plan.angles_deg.size());
+    return points * (kind == PairKind::soft_soft ? 2.2 : 1.0) * (series->relaxation == "published" ? 20.0 : 1.0);
+  }
+};
+
+std::vector<Task> list_tasks(const MeasureSetup& setup) {
+  std::vector<Task> tasks;
+  for (const MeasureSeries& series : setup.series)
+    for (const PairKind kind : series.kinds)
+      for (std::int64_t k = 0; k < series.packings; ++k) tasks.push_back({&series, kind, k});
+  return tasks;
+}
+
+std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
+  std::vector<std::size_t> order(tasks.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return tasks[a].weight() > tasks[b].weight(); });
+  return order;
+}
+
+template <class T>
+std::vector<double> columns(const std::vector<T>& points, const std::function<std::vector<double>(const T&)>& row) {
+  std::vector<double> out;
+  for (const T& p : points) {
+    const auto r = row(p);
+    out.insert(out.end(), r.begin(), r.end());
+  }
+  return out;
+}
+
+void write_run(const h5::Group& group, const MeasurementState& state) {
+  const PackingRun& run = state.run;
+  group.write("normal", columns<NormalPoint>(run.normal, [](const NormalPoint& p) {
+                return std::vector<double>{p.delta, p.force, p.residual, p.max_overlap, p.converged ? 1.0 : 0.0};
+              }));
+  group.write("tangential", columns<TangentialPoint>(run.tangential, [](const TangentialPoint& p) {
+                return std::vector<double>{
+                    p.delta, p.angle_deg, p.force_parallel, p.force_perpendicular, p.residual, p.converged ? 1.0 : 0.0};
+              }));
+  group.write("cost", std::vector<double>{static_cast<double>(run.normal_cost.loop_passes),
+                                          static_cast<double>(run.normal_cost.contact_evaluations),
+                                          run.normal_cost.seconds, static_cast<double>(run.tangential_cost.loop_passes),
+                                          static_cast<double>(run.tangential_cost.contact_evaluations),
+                                          run.tangential_cost.seconds});
+  group.attribute("normal_overlap", state.experiment.normal_overlap);
+  std::vector<double> rotating;  // empty: no rotations under way
+  if (const auto& rest = state.rotating)
+    rotating = {rest->force[0], rest->force[1],    rest->force[2],
+                rest->residual, rest->max_overlap, rest->converged ? 1.0 : 0.0};
+  group.write("rotating", rotating);
+  write_system(group.create("system"), state.experiment.system);
+}
+
+void read_run(const h5::Group& group, MeasurementState& state) {
+  PackingRun& run = state.run;
+  const auto normal = group.doubles("normal");
+  for (std::size_t k = 0; k + 5 <= normal.size(); k += 5)
+    run.normal.push_back({normal[k], normal[k + 1], normal[k + 2], normal[k + 3], normal[k + 4] != 0.0});
+  const auto t = group.doubles("tangential");
+  for (std::size_t k = 0; k + 6 <= t.size(); k += 6)
+    run.tangential.push_back({t[k], t[k + 1], t[k + 2], t[k + 3], t[k + 4], t[k + 5] != 0.0});
+  const auto cost = group.doubles("cost");
+  run.normal_cost = {static_cast<std::int64_t>(cost.at(0)), static_cast<std::int64_t>(cost.at(1)), cost.at(2)};
+  run.tangential_cost = {static_cast<std::int64_t>(cost.at(3)), static_cast<std::int64_t>(cost.at(4)), cost.at(5)};
+  state.experiment.normal_overlap = group.number("normal_overlap");
+  if (const auto r = group.doubles("rotating"); r.size() == 6)
+    state.rotating = SettleResult{{{r[0], r[1], r[2]}}, r[3], r[4], r[5] != 0.0};
+  read_system(group.open("system"), state.experiment.system);
+}
+
+/// Packings by index, generated in parallel.
+std::vector<ShellPacking> generate(const MeasureSetup& setup, std::uint64_t seed, std::int64_t count, bool second,
+                                   Progress& progress) {
+  std::vector<ShellPacking> packings(static_cast<std::size_t>(count));
+  parallel_tasks(count, [&](std::int64_t k) {
+    if (interrupt_requested()) throw Interrupted("stopped by a signal while packing");
+    packings[static_cast<std::size_t>(k)] =
+        generate_shell_packing(setup.spec, seed, second ? second_body_index(k) : static_cast<std::uint64_t>(k));
+    progress.advance();
+  });
+  return packings;
+}
+
+std::int64_t packings_of_kind(const MeasureSetup& setup, PairKind kind) {
+  std::int64_t most = 0;
+  for (const MeasureSeries& s : setup.series)
+    if (std::find(s.kinds.begin(), s.kinds.end(), kind) != s.kinds.end()) most = std::max(most, s.packings);
+  return most;
+}
+
+std::vector<Snapshot> joined(std::vector<std::vector<Snapshot>>& parts) {
+  std::vector<Snapshot> all;
+  for (auto& part : parts) std::move(part.begin(), part.end(), std::back_inserter(all));
+  return all;
+}
+
+/// Everything the tasks share.
+struct Stage {
+  const MeasureSetup& setup;
+  const TaskStore& store;
+  const std::vector<ShellPacking>& first;
+  const std::vector<ShellPacking>& second;
+  Progress& progress;
+};
+
+/// What is recorded at this overlap, with the names that people and files give it.
+Snapshot named_state(const SoftExperiment& experiment, const Task& task) {
+  Snapshot s = soft_snapshot(experiment);
+  const std::string kind = to_string(task.kind);
+  s.series = fmt::format("{}-{}-{}", kind, task.series->relaxation, task.packing);
+  s.label = fmt::format("{} by {}, packing {}, Delta {:.4g}", kind, task.series->relaxation, task.packing, s.overlap);
+  return s;
+}
+
+/// A run and the states of it that are kept; or why it broke off.
+struct TaskOutcome {
+  PackingRun run;
+  std::vector<Snapshot> states;
+  std::string broke_off;
+};
+
+std::string break_off_text(const Task& task, const MeasurementState& state, const std::string& why) {
+  const std::vector<double>& deltas = task.series->plan(task.kind).deltas;
+  const std::size_t next = std::min(state.run.normal.size(), deltas.size() - 1);
+  const std::string last =
+      state.run.normal.empty() ? "from rest" : fmt::format("beyond Delta = {:.4g}", state.run.normal.back().delta);
+  return fmt::format(
+      "packing {} of {} by {} is left out: it broke off {} on the way to Delta = {:.4g}: {}; smaller overlaps{} may "
+      "keep it "
+      "whole",
+      task.packing, to_string(task.kind), task.series->relaxation, last, deltas[next], why,
+      task.series->relaxation == "damped" ? "" : " or relaxation = \"damped\"");
+}
+
+TaskOutcome run_task(const Stage& stage, const Task& task) {
+  const auto protocol = make_protocol(stage.setup, task.series->relaxation);
+  const auto k = static_cast<std::size_t>(task.packing);
+  MeasurementState state;
+  state.experiment =
+      task.kind == PairKind::soft_solid
+          ? make_soft_solid(stage.setup.spec, stage.first[k], protocol->damped_contacts())
+          : make_soft_soft(stage.setup.spec, stage.first[k], stage.second[k], protocol->damped_contacts());
+  state.run.packing = task.packing;
+  state.run.kind = task.kind;
+  state.run.relaxation = task.series->relaxation;
+  const MeasurementPlan& plan = task.series->plan(task.kind);
+  KeptStates states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
+                    task.packing == 0 ? stage.setup.kept_states : 0);
+  stage.store.load(task.name(), [&](const h5::Group& g) { read_run(g, state); });
+  double done = static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size());
+  stage.progress.advance(done * task.weight());
+  try {
+    measure(
+        state, plan, *protocol,
+        [&](const MeasurementState& s, double share) {
+          stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
+          stage.progress.advance((share - done) * task.weight());
+          done = share;
+          if (interrupt_requested())
+            throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
+        },
+        stage.store.seconds(),
+        [&](const SoftExperiment& recorded, std::size_t number) {
+          const auto point = static_cast<std::int64_t>(number);
+          if (states.wants(point)) states.add(named_state(recorded, task), point);
+        });
+  } catch (const NotUsable& e) {  // this packing alone; after --resume it breaks off at the same place again
+    stage.progress.advance((1.0 - done) * task.weight());
+    return {{}, states.take(), break_off_text(task, state, e.what())};
+  }
+  return {state.run, states.take(), ""};
+}
+
+/// Puts together what is whole, in the order of tasks, and says what is not.
+void collect(const std::vector<Task>& tasks, std::vector<TaskOutcome>& outcomes, MeasureResult& result) {
+  std::map<std::pair<const MeasureSeries*, PairKind>, std::int64_t> lost;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    if (outcomes[k].broke_off.empty()) {
+      result.data.runs.push_back(std::move(outcomes[k].run));
+      continue;
+    }
+    result.left_out.push_back(std::move(outcomes[k].broke_off));
+    const std::int64_t n = ++lost[{tasks[k].series, tasks[k].kind}];
+    result.enough_left = result.enough_left && 2 * n <= tasks[k].series->packings;
+  }
+}
+
+}  // namespace
+
+std::uint64_t second_body_index(std::int64_t packing) {
+  return (std::uint64_t{1} << 32) + static_cast<std::uint64_t>(packing);
+}
+
+MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context,
+                                const Provenance& provenance) {
+  const auto start = Clock::now();
+  const std::uint64_t seed = context.seed(setup.seed);
+  MeasureResult result;
+  const std::int64_t pairs = packings_of_kind(setup, PairKind::soft_soft);
+  Progress packing_progress("packing", static_cast<double>(setup.packings() + pairs), context.quiet());
+  result.packings = generate(setup, seed, setup.packings(), false, packing_progress);
+  const auto second = generate(setup, seed, pairs, true, packing_progress);
+  packing_progress.finish();
+  result.packing_seconds = seconds_since(start);
+
+  const auto tasks = list_tasks(setup);
+  const auto order = longest_first(tasks);
+  double total = 0.0;
+  for (const Task& t : tasks) total += t.weight();
+  Progress progress("measuring", total, context.quiet());
+  Measurements& data = result.data;
+  data.spec = setup.spec;
+  data.shell_turns = setup.series[0].plan(setup.series[0].kinds[0]).shell_turns;
+  data.approach_speed = setup.published.approach_speed;
+  for (const ShellPacking& p : result.packings) data.packings.push_back(describe(p, setup.spec));
+  const Stage stage{setup, store, result.packings, second, progress};
+  std::vector<TaskOutcome> outcomes(tasks.size());
+  parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
+    const std::size_t t = order[static_cast<std::size_t>(k)];
+    outcomes[t] = run_task(stage, tasks[t]);
+  });
+  progress.finish();
+  std::vector<std::vector<Snapshot>> states;
+  for (TaskOutcome& o : outcomes) states.push_back(std::move(o.states));
+  collect(tasks, outcomes, result);
+  for (const std::string& text : result.left_out) context.say(text);
+  if (data.runs.empty())
+    throw NotUsable(fmt::format("not one of {} measurements came to its end; {}", tasks.size(), result.left_out[0]));
+  save(data, context.path("measurements.h5"), provenance);
+  save_kept_states(joined(states), context.path("states_measurements.h5"), provenance);
+  result.wall_seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace softgrain

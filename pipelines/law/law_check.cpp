@@ -1,0 +1,132 @@
+// softgrain check of law cards and law tables.
+#include "pipelines/law/law_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/data/crowd_replicates.h"
+#include "common/data/law_band.h"
+#include "common/data/law_remarks.h"
+#include "pipelines/kinds/law_table/crowd_law_fit.h"
+#include "pipelines/law/named_laws.h"
+
+namespace softgrain {
+
+namespace {
+
+using nlohmann::json;
+
+void warn_of_card(const LawCard& card, Findings& out) {
+  for (const PairLaw& law : card.pairs) {
+    const std::string name = to_string(law.kind);
+    if (law.status != "good") out.warn(name + ": " + law.status + (law.reason.empty() ? "" : " (" + law.reason + ")"));
+    constexpr int kFew = 5;
+    if (law.packings > 0 && law.packings < kFew)
+      out.warn(fmt::format("{}: fitted on {} packings, which differ by 10 % and more", name, law.packings));
+    constexpr double kLarge = 0.5;
+    if (law.max_overlap > kLarge)
+      out.warn(
+          fmt::format("{}: grains overlap by up to {:.2g} of the smaller radius at the end of the range: Hertz' law is "
+                      "one of small overlaps",
+                      name, law.max_overlap));
+    if (has_part(law, LawPart::normal) && !has_part(law, LawPart::tangential_initial) &&
+        !has_part(law, LawPart::tangential_secant))
+      out.warn(name + ": no tangential law: contacts will have no tangential spring");
+  }
+}
+
+void check_card(const std::string& path, Findings& out) {
+  const LawCard card = load_card(path);
+  out.add("kind", "law card", "law card, " + measured_text(card));
+  if (!packing_known(card.spec))
+    out.add("contents", "not known",
+            "what is inside the soft particle is not known: no resolved twin can be made of it");
+  for (const PairLaw& law : card.pairs)
+    out.add(to_string(law.kind), {{"status", law.status}, {"delta_min", law.delta_min}, {"delta_max", law.delta_max}},
+            fmt::format("{}: {}, fitted for Delta from {:.3f} to {:.3f} on {} packings, largest grain overlap {:.2f} "
+                        "of the smaller radius",
+                        to_string(law.kind), law.status, law.delta_min, law.delta_max, law.packings, law.max_overlap));
+  warn_of_card(card, out);
+  for (const std::string& note : card.notes) out.warn(note);
+}
+
+/// "0.712 to 0.745", or one number.
+std::string fractions_text(const LawTable& table) {
+  const double low = table.entries.front().solid_fraction;
+  const double high = table.entries.back().solid_fraction;
+  return low == high ? fmt::format("{:.3f}", low) : fmt::format("{:.3f} to {:.3f}", low, high);
+}
+
+std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
+  const std::vector<PartnerRow> rows = law.rows(kind);
+  if (rows.empty()) return fmt::format("no {} neighbours", to_string(kind));
+  return fmt::format("{} neighbours of ratio {:.3g} to {:.3g}", to_string(kind), rows.front().ratio, rows.back().ratio);
+}
+
+void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
+  facts["laws"].push_back({{"form", law.form},
+                           {"status", law.status},
+                           {"error_fitted", law.error_fitted},
+                           {"error_held_out", law.error_held_out},
+                           {"error_cross", law.error_cross}});
+  lines += fmt::format("    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n", law.form,
+                       law.form == entry.best ? " (best)" : "", law.status,
+                       law.reason.empty() ? "" : " (" + law.reason + ")", 100.0 * law.error_fitted, held_out_text(law),
+                       cross_text(law), partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
+}
+
+void check_entry(const LawTableEntry& e, Findings& out) {
+  json facts{
+      {"solid_fraction", e.solid_fraction}, {"packings", e.packings},       {"best", e.best},
+      {"volume_max", e.volume_max},         {"overlap_max", e.overlap_max}, {"grain_overlap_max", e.grain_overlap_max}};
+  out.lines += fmt::format(
+      "  solid fraction {:.4f} +- {:.4f}: {} packings, {} relaxation, grains of nu = {}, mu = {}\n"
+      "    valid up to a lost volume of {:.3f} and an overlap of {:.3f} Rs with a plane, where grains overlap by "
+      "{:.2f} of "
+      "the smaller radius\n"
+      "    {}; {}\n",
+      e.solid_fraction, e.solid_fraction_error, e.packings, e.relaxation, e.spec.poisson_ratio, e.spec.friction,
+      e.volume_max, e.overlap_max, e.grain_overlap_max, unloading_text(e), slides_text(e));
+  for (const CrowdLaw& law : e.laws) check_law(e, law, facts, out.lines);
+  out.facts["entries"].push_back(facts);
+}
+
+void warn_of_entry(const LawTableEntry& e, Findings& out) {
+  const CrowdLaw* best = e.find(e.best);
+  constexpr double kFar = 0.15;
+  if (best->status != "good")
+    out.warn(fmt::format("solid fraction {:.3f}: the best law is {}{}", e.solid_fraction, best->status,
+                         best->reason.empty() ? "" : " (" + best->reason + ")"));
+  const double unseen = std::fmax(best->error_cross, best->error_held_out);  // either may be unknown
+  if (unseen > kFar)
+    out.warn(fmt::format("solid fraction {:.3f}: the best law is off by {:.0f} % on loadings that it has not seen",
+                         e.solid_fraction, 100.0 * unseen));
+  for (const PartnerRow& row : best->partners)
+    if (row.error > 2.0 * kFar)
+      out.warn(fmt::format("solid fraction {:.3f}: {} neighbours of ratio {:.3g} are given back only to {:.0f} %",
+                           e.solid_fraction, to_string(row.kind), row.ratio, 100.0 * row.error));
+}
+
+void check_table(const std::string& path, Findings& out) {
+  LawTable table = load_law_table(path);
+  read_replicates(table, path);
+  out.add("kind", "law table",
+          fmt::format("law table: {} entries, solid fraction {}", table.entries.size(), fractions_text(table)));
+  for (const LawTableEntry& e : table.entries) {
+    check_entry(e, out);
+    warn_of_entry(e, out);
+  }
+  for (const std::string& note : table.notes) out.warn(note);
+}
+
+}  // namespace
+
+void check_laws(const std::string& path, Findings& out) {
+  if (law_file_kind(path) == LawFileKind::table)
+    check_table(path, out);
+  else
+    check_card(path, out);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,13 @@
+// softgrain check of law cards and law tables.
+#pragma once
+
+#include <string>
+
+#include "pipelines/run/findings.h"
+
+namespace softgrain {
+
+/// What a card or a table holds, and what to mind when it is used. Throws BadInput, FileTrouble.
+void check_laws(const std::string& path, Findings& out);
+
+}  // namespace softgrain

@@ -1,0 +1,304 @@
+#include "pipelines/law/named_laws.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/contact/crowd_from_table.h"
+#include "common/contact/law_file.h"
+#include "common/contact/soft_contact_from_card.h"
+#include "common/core/error.h"
+#include "common/data/card_text.h"
+#include "common/data/law_remarks.h"
+#include "common/dynamics/force_pass.h"
+#include "common/io/short_hash.h"
+#include "common/io/text_file.h"
+
+namespace softgrain {
+
+namespace {
+
+std::int32_t law_of(const System3& s, const ContactRecord<3>& c) {
+  const auto& material = s.particles.material;
+  return s.laws.index(material[static_cast<std::size_t>(c.i)], material[static_cast<std::size_t>(c.j)]);
+}
+
+/// What the crowd laws of a run meet at its end that was not measured: single overlaps beyond the end of the table,
+/// ratios that no row covers.
+class RangeCheck {
+ public:
+  RangeCheck(const LawTableEntry& entry, const std::string& form) : entry_(entry), law_(*entry.find(form)) {}
+
+  /// Contacts deeper than any row of their kind, or smaller partners than the table has.
+  [[nodiscard]] std::string note(const System3& s) const {
+    std::size_t deep = 0;
+    std::size_t outside = 0;
+    std::size_t all = 0;
+    for (const ContactRecord<3>& c : contact_records(s)) {
+      if (!is_crowd_law(s.laws.law(law_of(s, c)))) continue;
+      ++all;
+      const auto& p = s.particles;
+      const double ri = p.sphere[static_cast<std::size_t>(c.i)].r;
+      const double rj = c.j < p.grains ? p.sphere[static_cast<std::size_t>(c.j)].r : 0.0;
+      const bool i_soft = p.material[static_cast<std::size_t>(c.i)] == kSoftMaterial;
+      const bool j_soft = c.j < p.grains && p.material[static_cast<std::size_t>(c.j)] == kSoftMaterial;
+      if (rj == 0.0) {
+        deep += c.overlap / ri > entry_.overlap_max ? 1 : 0;
+        continue;
+      }
+      const auto rows = law_.rows(i_soft && j_soft ? PartnerKind::soft : PartnerKind::solid);
+      double ratio = i_soft ? rj / ri : ri / rj;
+      if (i_soft && j_soft) ratio = std::max(ratio, 1.0 / ratio);
+      const bool covered =
+          !rows.empty() && ratio >= rows.front().ratio && (!j_soft || !i_soft || ratio <= rows.back().ratio);
+      outside += covered ? 0 : 1;
+      deep += !rows.empty() && c.overlap / std::min(ri, rj) > rows.back().overlap_max ? 1 : 0;
+    }
+    std::string text;
+    if (deep > 0)
+      text = fmt::format("{} of {} soft contacts are deeper at the end than any that was measured", deep, all);
+    if (outside > 0)
+      text += fmt::format("{}{} of {} have a size ratio outside the table; its nearest row was used",
+                          text.empty() ? "" : "; ", outside, all);
+    return text;
+  }
+
+ private:
+  static constexpr std::int32_t kSoftMaterial = 1;  ///< of make_law_system
+  static bool is_crowd_law(const AnyLaw& law) {
+    return std::visit([]<class Law>(const Law&) { return law_serves<Law, 3>() && !law_serves<Law, 2>(); }, law);
+  }
+
+  LawTableEntry entry_;
+  CrowdLaw law_;
+};
+
+/// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
+std::string tag_of(const LawTableEntry& entry, const LawSources& sources, const std::string& form) {
+  return short_hash(fmt::format("{} {} {} {} {:a}", sources.friction.value_or(-1.0), sources.unloading,
+                                numbers_of(entry, form), to_string(sources.beyond.value_or(entry.beyond)),
+                                entry.volume_max));
+}
+
+/// E scales; nu and mu do not.
+void require_same_material(const LawTableEntry& entry, const MacroSpec& spec) {
+  const SoftParticleSpec& measured = entry.spec;
+  if (measured.poisson_ratio != spec.poisson_ratio || measured.friction != spec.friction)
+    throw BadInput(
+        fmt::format("law table: it was measured with nu = {}, mu = {} and serves no grains of nu = {}, mu = {}: "
+                    "measure a table for "
+                    "them",
+                    measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction));
+}
+
+/// Of everything that forces depend on, however it came about.
+std::string hash_of(const SoftLaws& l) {
+  return short_hash(laws_text({{"soft-solid", l.soft_solid},
+                               {"solid-soft", l.solid_soft},
+                               {"soft-wall", l.soft_wall},
+                               {"soft-soft", l.soft_soft}}));
+}
+
+LawIdentity identity_of(const std::string& form, double solid_fraction, const MacroSpec& spec,
+                        const SoftParticleSpec& measured, const SoftLaws& laws) {
+  const auto known = [](double x) { return is_known(x) ? std::optional(x) : std::nullopt; };
+  return {form,         solid_fraction, spec.youngs_modulus, known(measured.poisson_ratio), known(measured.friction),
+          hash_of(laws)};
+}
+
+/// A branch that was not measured is none; what stands in for other numbers that were not is said.
+std::string stand_ins(const LawTableEntry& entry, const LawSources& sources) {
+  if (sources.unloading && !entry.retreat_measured)
+    throw BadInput(
+        fmt::format("unloading = true: unloading was not measured at solid fraction {:.4f} of the law table: "
+                    "measure it (path = \"unload\"), or leave it out",
+                    entry.solid_fraction));
+  if (entry.slide_plane.measured && entry.slide_solid.measured && entry.slide_soft.measured) return "";
+  return slides_text(entry);
+}
+
+/// A card serves grains of another nu or mu at the scene's own risk; what is inside a soft particle of an experiment is
+/// not known.
+std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {
+  const SoftParticleSpec& measured = card.spec;
+  if (card.relaxation == "experiment" ||
+      (measured.poisson_ratio == spec.poisson_ratio && measured.friction == spec.friction))
+    return nullptr;
+  const std::string text = fmt::format(
+      "the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, mu = {:g}",
+      measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction);
+  return [text](const System3&) { return text; };
+}
+
+/// Keys that choose among what a table offers.
+constexpr std::array kTableKeys{"form", "solid_fraction", "range", "mu", "unloading"};
+
+void read_table_choices(const SceneTable& t, LawSources& out) {
+  if (t.has("solid_fraction"))
+    out.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
+  out.beyond = read_beyond(t);
+  out.range = t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
+  if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
+  out.unloading = t.flag("unloading", false);
+}
+
+/// A solid fraction that the scene names is refused where it stands.
+void require_fraction(const SceneTable& t, const LawSources& sources) {
+  if (!sources.solid_fraction || !sources.table) return;
+  std::string ignored;
+  try {
+    (void)law_entry(sources, 0.0, ignored);
+  } catch (const BadInput& e) {
+    t.reject("solid_fraction", e.what());
+  }
+}
+
+}  // namespace
+
+double law_fraction(const LawSources& sources, double contents_fraction) {
+  if (sources.solid_fraction) return *sources.solid_fraction;
+  return contents_fraction > 0.0 ? contents_fraction : main_entry(*sources.table).solid_fraction;
+}
+
+LawTableEntry law_entry(const LawSources& sources, double contents_fraction, std::string& remark) {
+  return entry_at(*sources.table, law_fraction(sources, contents_fraction), sources.range, remark,
+                  sources.solid_fraction ? kReachOfNumbers : kReachOfPackings);
+}
+
+const SoftParticleSpec& measured_spec(const LawSources& sources) {
+  if (sources.card) return sources.card->spec;
+  const double wanted = law_fraction(sources, 0.0);
+  const std::vector<LawTableEntry>& entries = sources.table->entries;
+  return std::min_element(entries.begin(), entries.end(),
+                          [wanted](const auto& a, const auto& b) {
+                            return std::abs(a.solid_fraction - wanted) < std::abs(b.solid_fraction - wanted);
+                          })
+      ->spec;
+}
+
+NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, const MacroSpec& spec,
+                       double contents_fraction) {
+  std::string remark;
+  const LawTableEntry entry = law_entry(sources, contents_fraction, remark);
+  constexpr double kApart = 0.005;
+  if (sources.solid_fraction && contents_fraction > 0.0 && std::abs(contents_fraction - entry.solid_fraction) > kApart)
+    remark += fmt::format("{}the law was taken at solid fraction {:.4f}, the contents of the twins have {:.4f}",
+                          remark.empty() ? "" : "; ", entry.solid_fraction, contents_fraction);
+  require_same_material(entry, spec);
+  const std::string stands_in = stand_ins(entry, sources);
+  remark += (remark.empty() || stands_in.empty() ? "" : "; ") + stands_in;
+  const std::string form = wanted == "best" ? entry.best : wanted;
+  CrowdChoices choices;
+  choices.form = form;
+  choices.modulus = spec.youngs_modulus;
+  choices.friction = sources.friction.value_or(-1.0);
+  choices.unloading = sources.unloading;
+  choices.beyond = sources.beyond;
+  const CrowdLaws laws = make_crowd_laws(entry, choices);
+  choices.friction = spec.wall_friction;
+  const RangeCheck check(entry, form);
+  const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft};
+  return {form,
+          form,
+          soft,
+          identity_of(form, entry.solid_fraction, spec, entry.spec, soft),
+          tag_of(entry, sources, form),
+          [=](const System3& s) {
+            const std::string note = check.note(s);
+            return remark + (remark.empty() || note.empty() ? "" : "; ") + note;
+          }};
+}
+
+NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
+                      std::optional<Beyond> beyond) {
+  const auto contact = [&](PairKind kind) {
+    return make_soft_contact(card, kind, spec.youngs_modulus, spec.friction, 0.0, spec.kt_secant, beyond);
+  };
+  const SoftLaws laws = pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction);
+  return {name,
+          "pair",
+          laws,
+          identity_of("pair", 0.0, spec, card.spec, laws),
+          beyond ? to_string(*beyond) : "",
+          card_note(card, spec)};
+}
+
+LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
+  LawSources out;
+  if (law.has("card")) {
+    out.card = load_card(scene.resolve(law.text("card")));
+    out.files.push_back(scene.resolve(law.text("card")));
+    out.text += read_text(out.files.back());
+  }
+  if (law.has("table")) {
+    out.table = load_law_table(scene.resolve(law.text("table")));
+    out.files.push_back(scene.resolve(law.text("table")));
+    out.text += read_text(out.files.back());
+  }
+  if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
+  if (law.has("forms")) out.forms = law.texts("forms");
+  for (const std::string& form : out.forms) {
+    if (form != "pair" && form != "bag" && form != "directional")
+      law.reject("forms", "\"" + form + "\" is none of pair, bag, directional");
+    if (form != "pair" && !out.table && law.has("forms"))
+      law.reject("forms", "the " + form + " law needs a law table (key table)");
+  }
+  if (!out.table) out.forms = {"pair"};
+  read_table_choices(law, out);
+  for (const char* key : kTableKeys)
+    if (!out.table && law.has(key) && std::string(key) != "form") law.reject(key, "goes with a law table (key table)");
+  require_fraction(law, out);
+  return out;
+}
+
+LawFileKind law_file_kind(const std::string& path) {
+  const Scene file = Scene::load(path);
+  if (file.root().has("pair")) return LawFileKind::card;
+  if (file.root().has("entry")) return LawFileKind::table;
+  throw BadInput(path + ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]])");
+}
+
+void read_law_choices(const SceneTable& root, LawSources& out) {
+  out.forms = {root.choice("form", {"pair", "bag", "directional", "best"}, "best")};
+  read_table_choices(root, out);
+}
+
+LawSources read_scene_law(const SceneTable& root, const std::string& path) {
+  LawSources out;
+  read_law_choices(root, out);
+  out.files = {path};
+  out.text = read_text(path);
+  if (law_file_kind(path) == LawFileKind::table) {
+    out.table = load_law_table(path);
+    require_fraction(root, out);
+    return out;
+  }
+  out.card = load_card(path);
+  for (const char* key : kTableKeys)
+    if (root.has(key) && !(std::string(key) == "form" && out.forms.front() == "pair"))
+      root.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+  return out;
+}
+
+NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
+                    const std::string& name) {
+  if (sources.card) return pair_law_of(*sources.card, spec, name, sources.beyond);
+  NamedLaws law = table_law_of(sources, sources.forms.front(), spec, contents_fraction);
+  law.name = name;
+  return law;
+}
+
+std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction) {
+  std::vector<NamedLaws> laws;
+  for (const std::string& form : sources.forms) {
+    if (form == "pair" && sources.card)
+      laws.push_back(pair_law_of(*sources.card, spec, "pair", sources.beyond));
+    else
+      laws.push_back(table_law_of(sources, form, spec, contents_fraction));
+  }
+  return laws;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,78 @@
+#include "pipelines/run/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kDay = 86400.0;
+
+}  // namespace
+
+void Findings::add(const std::string& key, const nlohmann::json& value, const std::string& line) {
+  facts[key] = value;
+  lines += "  " + line + "\n";
+}
+
+void Findings::add_once(const std::string& key, const nlohmann::json& value, const std::string& line) {
+  const std::string said = "  " + line + "\n";
+  const bool new_line = !lines.starts_with(said) && lines.find("\n" + said) == std::string::npos;
+  if (new_line)
+    add(key, value, line);
+  else
+    facts[key] = value;
+}
+
+void Findings::warn(const std::string& text) {
+  if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(text);
+}
+
+void Findings::spend(const std::string& part, double core_seconds) {
+  const auto known = std::find_if(times_.begin(), times_.end(), [&](const auto& t) { return t.first == part; });
+  if (known == times_.end())
+    times_.emplace_back(part, core_seconds);
+  else
+    known->second += core_seconds;
+}
+
+void Findings::close_times() {
+  if (times_.empty()) return;
+  constexpr double kTrifle = 0.02;  // of the whole: such parts are in the facts alone
+  double total = 0.0;
+  for (const auto& [part, seconds] : times_) total += seconds;
+  std::string parts;
+  for (const auto& [part, seconds] : times_) {
+    facts["core_seconds_parts"][part] = seconds;
+    if (seconds >= kTrifle * total) parts += (parts.empty() ? "" : ", ") + part + " " + time_text(seconds);
+  }
+  add("core_seconds", total, "time: about " + time_text(total) + " of one core (" + parts + ")");
+  if (total > kDay) warn("the run takes about " + time_text(total) + " of one core: see what can be smaller");
+}
+
+void Findings::add_disk(double bytes) {
+  add("disk_bytes", bytes, "on disk: about " + bytes_text(bytes));
+  std::error_code failed;
+  const auto space = std::filesystem::space(".", failed);
+  if (!failed && bytes > static_cast<double>(space.available))
+    warn(fmt::format("the output of about {} does not fit into the {} that are free here", bytes_text(bytes),
+                     bytes_text(static_cast<double>(space.available))));
+}
+
+std::string time_text(double seconds) {
+  if (seconds < 10.0) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 120.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 7200.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  if (seconds < 2.0 * kDay) return fmt::format("{:.1f} h", seconds / 3600.0);
+  return fmt::format("{:.0f} days", seconds / kDay);
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.3g} kB", bytes / 1e3);
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,148 @@
+#include "pipelines/run/run_context.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "common/io/short_hash.h"
+#include "common/io/text_file.h"
+#include "pipelines/run/run_files.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Lines with a time into DIR/log.txt (continued by --resume), plain lines to standard error unless quiet.
+std::shared_ptr<spdlog::logger> make_logger(const std::string& file, const CommonOptions& options) {
+  std::vector<spdlog::sink_ptr> sinks;
+  auto to_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file, !options.resume);
+  to_file->set_pattern("%Y-%m-%d %H:%M:%S %v");
+  sinks.push_back(std::move(to_file));
+  if (!options.quiet) {
+    auto to_terminal = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    // On a terminal a progress bar may stand on the current line: begin by clearing it.
+    to_terminal->set_pattern(::isatty(STDERR_FILENO) == 1 ? "\r\033[K%v" : "%v");
+    sinks.push_back(std::move(to_terminal));
+  }
+  auto logger = std::make_shared<spdlog::logger>("softgrain", sinks.begin(), sinks.end());
+  logger->flush_on(spdlog::level::info);
+  return logger;
+}
+
+constexpr const char* kRunFile = ".run";  ///< of RunContext::begin()
+
+nlohmann::json read_object(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return nlohmann::json::object();
+  nlohmann::json object = nlohmann::json::parse(read_text(file), nullptr, false);
+  return object.is_object() ? object : nlohmann::json::object();
+}
+
+/// What the run in a directory is of; runs of before say it in the summary of a run that has ended.
+nlohmann::json earlier_run(const std::string& run_file, const std::string& summary_file) {
+  const nlohmann::json run = read_object(run_file);
+  if (!run.empty()) return run;
+  const nlohmann::json summary = read_object(summary_file);
+  return summary.value("provenance", nlohmann::json::object());
+}
+
+}  // namespace
+
+std::string default_directory(const std::string& name) {
+  const std::string directory = "results/" + name;
+  std::error_code ignored;
+  return std::filesystem::exists(directory + "/README.md", ignored) ? directory + "_run" : directory;
+}
+
+RunContext::RunContext(const CommonOptions& options, const std::string& command, const std::string& default_name,
+                       const std::vector<std::string>& read)
+    : options_(options),
+      command_(command),
+      directory_(options.out.empty() ? default_directory(default_name) : options.out),
+      threads_(options.threads > 0 ? options.threads : omp_get_max_threads()) {
+  require_writable_directory(directory_);
+  lock_ = std::make_shared<DirectoryLock>(directory_);
+  if (!options_.resume) {
+    std::vector<std::string> inputs = options_.inputs;
+    inputs.insert(inputs.end(), read.begin(), read.end());
+    remove_earlier_run(directory_, command, inputs);
+  }
+  try {
+    logger_ = make_logger(path("log.txt"), options_);
+  } catch (const spdlog::spdlog_ex& e) {
+    throw FileTrouble(path("log.txt") + ": " + e.what());
+  }
+  omp_set_num_threads(threads_);
+  const Provenance build = build_provenance();
+  logger_->sinks().front()->log(
+      {"softgrain", spdlog::level::info,
+       fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
+}
+
+RunContext RunContext::part(const std::string& name) const {
+  CommonOptions options = options_;
+  options.out = path(name);
+  RunContext out(options, command_, name);
+  out.shows_ = false;
+  return out;
+}
+
+void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const {
+  const nlohmann::json now{{"scene", scene.text()}, {"seed", seed}, {"beside", short_hash(beside)}};
+  if (shows_ && resume()) {
+    const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
+    for (const auto& [key, what] : {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}})
+      if (before.contains(key) && before[key] != now[key])
+        throw BadInput(
+            fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "
+                        "choose another --out",
+                        directory_, what));
+  }
+  write_text_atomic(path(kRunFile), now.dump(2) + "\n");
+}
+
+Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {
+  Provenance p = build_provenance();
+  p.threads = threads_;
+  p.seed = used_seed;
+  p.command = options_.command_line;
+  p.scene = scene.text();
+  return p;
+}
+
+void RunContext::say(const std::string& line) const { logger_->info("{}", line); }
+
+void RunContext::finish(nlohmann::json summary, const std::string& people) const {
+  const Provenance build = build_provenance();
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!summary.contains(key)) summary[key] = value;
+  };
+  add("status", "good");
+  add("command", command_);
+  add("version", build.version);
+  add("commit", build.commit);
+  const std::string text = summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  write_text_atomic(path("summary.json"), text);
+  if (!shows_) return;
+  std::string shown = options_.json ? text : people;
+  if (!shown.empty() && shown.back() != '\n') shown += '\n';
+  write_standard_output(shown);
+}
+
+void RunContext::guard(const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const NotUsable& e) {
+    finish({{"status", "not usable"}, {"remarks", {e.what()}}}, "not usable: " + std::string(e.what()));
+    throw;
+  }
+}
+
+}  // namespace softgrain

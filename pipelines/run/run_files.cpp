@@ -1,0 +1,126 @@
+#include "pipelines/run/run_files.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <system_error>
+
+#include "common/core/error.h"
+#include "common/io/hdf5_file.h"
+#include "macrosim/lammps_run/points_file.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names that nobody else gives to a file in a run directory, whatever the kind of run.
+const std::regex& run_file_names() {
+  static const std::regex names(
+      "summary\\.json|report\\.html|comparison\\.json|table\\.(md|csv)|evaluations\\.csv|"
+      "measurements\\.h5|law\\.(toml|h5)|law_table(_level_[0-9]+)?\\.(toml|h5)|crowd(_(variant|level)_[0-9]+)?\\.h5|"
+      "macro(_initial)?\\.h5|states_(macro|measurements)\\.h5|run\\.(h5|xdmf)|run_contacts\\.xdmf|grain_box\\.h5|"
+      "powder\\.h5|"
+      "checkpoint\\.h5(\\.previous)?|work|lammps-[0-9]+|\\.run");
+  return names;
+}
+
+/// Those that hold the name of a scene: the file itself must say that this program wrote it.
+bool is_scene_file(const fs::path& path) {
+  static const std::regex names("(macro|states_macro)_.+\\.h5");
+  if (!std::regex_match(path.filename().string(), names)) return false;
+  try {
+    const h5::Group root = h5::open_file(path);
+    return root.has("provenance") && root.open("provenance").text("program") == "softgrain";
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Of the names, those that say how a run went, and those that a command writes anew in any case.
+bool is_rewritten(const std::string& name, const std::string& command) {
+  static const std::regex always("summary\\.json|report\\.html|work|\\.run|checkpoint\\.h5(\\.previous)?");
+  static const std::regex fits("law\\.(toml|h5)|law_table\\.(toml|h5)|crowd\\.h5");
+  static const std::regex macro("macro(_initial)?\\.h5|states_macro\\.h5|lammps-[0-9]+");
+  return std::regex_match(name, always) || (command == "calibrate" && std::regex_match(name, fits)) ||
+         (command == "macrosim" && std::regex_match(name, macro));
+}
+
+/// The log begins with the name of the program.
+bool was_run_directory(const fs::path& directory) {
+  std::ifstream log(directory / "log.txt");
+  std::string line;
+  return std::getline(log, line) && line.find(" softgrain ") != std::string::npos;
+}
+
+bool same_place(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) && !error;
+}
+
+/// An input itself, or the other half of it.
+bool is_input(const fs::path& file, const std::vector<std::string>& inputs) {
+  return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& input) {
+    const fs::path path(input);
+    return same_place(file, path) ||
+           (path.extension() == ".toml" && same_place(file, fs::path(path).replace_extension(".h5")));
+  });
+}
+
+/// Points that were recorded elsewhere, say, may have cost much: they are not thrown away unless their results are
+/// there.
+void refuse_to_lose_points(const std::string& directory, const std::vector<fs::path>& found) {
+  if (fs::exists(fs::path(directory) / "macro.h5")) return;
+  for (const fs::path& old : found)
+    if (old.filename().string().starts_with("lammps-"))
+      if (const auto points = lammps::count_points(old); points > 0)
+        throw BadInput(
+            fmt::format("{} holds {} recorded points that were not read: --resume goes on with them; to begin "
+                        "anew, remove it or choose another --out",
+                        old.string(), points));
+}
+
+std::string listed(const std::vector<fs::path>& files) {
+  std::string text;
+  for (const fs::path& file : files) text += (text.empty() ? "" : ", ") + file.filename().string();
+  return text;
+}
+
+}  // namespace
+
+void remove_earlier_run(const std::string& directory, const std::string& command,
+                        const std::vector<std::string>& inputs) {
+  std::vector<fs::path> found;
+  std::vector<fs::path> lost;  // of them, what the new run does not replace
+  bool reads_from_here = false;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename();
+    if (is_input(entry.path(), inputs)) {
+      reads_from_here = true;
+    } else if (std::regex_match(name, run_file_names()) || is_scene_file(entry.path())) {
+      found.push_back(entry.path());
+      if (!is_rewritten(name, command)) lost.push_back(entry.path());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::sort(lost.begin(), lost.end());
+  const std::string elsewhere = "; choose another --out, or move or remove them";
+  if (!found.empty() && !was_run_directory(directory))
+    throw BadInput(directory +
+                   ": holds files that no run of this program left there, and that a report would show as " +
+                   "results of this run (" + listed(found) + ")" + elsewhere);
+  if (!lost.empty() && (reads_from_here || command == "compare"))
+    throw BadInput(directory + ": holds results of an earlier run that do not belong to this one (" + listed(lost) +
+                   ")" + elsewhere);
+  refuse_to_lose_points(directory, found);
+  for (const fs::path& file : found) {
+    fs::remove_all(file, error);
+    if (error) throw FileTrouble(file.string() + ": of an earlier run, cannot be removed: " + error.message());
+  }
+}
+
+}  // namespace softgrain

@@ -1,0 +1,64 @@
+#include "pipelines/run/trial_times.h"
+
+#include <omp.h>
+
+#include <chrono>
+#include <ctime>
+
+namespace softgrain {
+
+namespace {
+
+/// One thread as long as it lives.
+class OneThread {
+ public:
+  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+  ~OneThread() { omp_set_num_threads(before_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int before_;
+};
+
+template <typename Timer>
+double mean_of_calls(const Timer& timed, double budget, std::int64_t most) {
+  std::int64_t calls = 0;
+  double spent = 0.0;
+  while (calls == 0 || (calls < most && spent < budget)) {
+    spent += timed();
+    ++calls;
+  }
+  return spent / static_cast<double>(calls);
+}
+
+}  // namespace
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most) {
+  return mean_of_calls([&] { return seconds_of(work); }, budget, most);
+}
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double core_seconds_of(const std::function<void()>& work) {
+  const OneThread one;
+  const double start = thread_seconds();
+  work();
+  return thread_seconds() - start;
+}
+
+double core_seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most) {
+  return mean_of_calls([&] { return core_seconds_of(work); }, budget, most);
+}
+
+}  // namespace softgrain
