@@ -49,7 +49,7 @@ struct TrialOver {};
 /// As far as it comes in a moment.
 PowderState assemble_in_a_moment(const PowderSpec& spec, const std::vector<PowderPhase>& phases,
                                  const PowderSetup& setup, std::uint64_t sample) {
-  constexpr double kBudget = 0.4;
+  constexpr double kBudget = 0.8;
   PowderState state = start_powder(spec, setup.seed, sample);
   const double start = thread_seconds();
   try {
@@ -84,6 +84,8 @@ PowderTrial try_assembly(const PowderSetup& setup) {
   PowderSpec spec = setup.spec;
   spec.disks = std::min(spec.disks, kDisks);
   spec.stiffness = std::min(spec.stiffness, kSoft);
+  // Rolling is as stiff as it will be: soft, it would swing for longer than anything else. Soft aggregates do.
+  if (!(setup.protocol.aggregation_kappa > 0.0)) spec.rolling_stiffness *= setup.spec.stiffness / spec.stiffness;
   PowderProtocol protocol = setup.protocol;
   protocol.aggregation_kappa = 0.0;
   const std::vector<PowderPhase> phases = powder_phases(spec, protocol);

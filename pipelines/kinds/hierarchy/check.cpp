@@ -1,11 +1,46 @@
 // softgrain check of hierarchies.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pipelines/kinds/hierarchy/run.h"
 #include "pipelines/kinds/hierarchy/scene.h"
 #include "pipelines/kinds/law_table/crowd_check.h"
 
 namespace softgrain {
+
+namespace {
+
+/// Levels until the law no longer changes: six in the shipped scene.
+double expected_levels(const HierarchySetup& setup) {
+  constexpr std::int64_t kUsual = 6;
+  return static_cast<double>(std::max(setup.levels, std::min(setup.iterations, kUsual)));
+}
+
+/// Counts and ratios of pipelines/four_decades.toml.
+void spend_on_levels(const HierarchySetup& setup, const MeasureTrial& trial, Findings& out) {
+  constexpr double kInside = 3.5;         // time of a level over that of the finest, which has nothing inside
+  constexpr double kFillingPasses = 8e5;  // filling the voids of one packing takes as long as so many passes over it
+  spend_on_crowd(setup.crowd, trial, 1.0, "level 0", out);
+  const double further = expected_levels(setup) - 1.0;
+  if (further > 0.0) {
+    spend_on_crowd(setup.crowd, trial, further * kInside, "further levels", out);
+    out.spend("filling", kFillingPasses * trial.pass_seconds * static_cast<double>(setup.crowd.packings_max));
+  }
+}
+
+/// Of two decades with all their grains: every inner soft particle holds as many as its parent.
+void spend_on_resolved(const HierarchySetup& setup, const MeasureTrial& trial, Findings& out) {
+  constexpr double kPasses = 460.0;  // per increment
+  constexpr double kInner = 240.0;   // soft particles that the voids take, when all are kept
+  if (setup.check_packings == 0 || setup.check_overlaps.empty()) return;
+  const double inner = setup.check_inner > 0 ? static_cast<double>(setup.check_inner) : kInner;
+  const double increments = setup.check_overlaps.back() / setup.crowd.options.increment;
+  out.spend("resolved check",
+            static_cast<double>(setup.check_packings) * (1.0 + inner) * trial.pass_seconds * increments * kPasses);
+}
+
+}  // namespace
 
 void check_hierarchy(const Scene& scene, Findings& out) {
   const HierarchySetup setup = read_hierarchy_setup(scene.root());
@@ -16,7 +51,9 @@ void check_hierarchy(const Scene& scene, Findings& out) {
   out.lines += fmt::format("  {} levels, up to {} on the way to the fixed point, {} to {} runs each\n", setup.levels,
                            setup.iterations, configurations * setup.crowd.packings_min,
                            configurations * setup.crowd.packings_max);
-  spend_on_crowd(setup.crowd, check_crowd(setup.crowd, out), static_cast<double>(setup.levels), "levels", out);
+  const MeasureTrial trial = check_crowd(setup.crowd, out);
+  spend_on_levels(setup, trial, out);
+  spend_on_resolved(setup, trial, out);
 }
 
 }  // namespace softgrain
