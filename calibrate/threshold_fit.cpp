@@ -245,7 +245,7 @@ LawCard calibrate(const Measurements& data, const FitOptions& options, std::vect
   LawCard card;
   card.spec = data.spec;
   card.relaxation = chosen_relaxation(data, options);
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+  for (const PairKind kind : kPairKinds) {
     if (select_runs(data, kind, card.relaxation).empty()) continue;
     FitReport report = fit_pair_law(data, kind, options);
     card.pairs.push_back(report.law);

@@ -1,7 +1,6 @@
 #include "macrosim/compression.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "common/core/error.h"
 #include "common/dynamics/contact_watch.h"
@@ -12,6 +11,7 @@
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/curve_notes.h"
+#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
@@ -65,13 +65,13 @@ void record(CompressionState& state, const MacroSpec& spec, double strain, const
 
 /// Strains the box and relaxes; what it cost goes to the curve.
 RelaxationResult counted_step(DampedRelaxation<3>& relaxation, CompressionState& state, const Vec3& strain) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Cost before = state.macro.system.cost;
   if (strain != Vec3{}) strain_box(state.macro.system, state.macro.box, strain);
   const RelaxationResult rest = relaxation.relax(state.macro.system);
   const Cost& now = state.macro.system.cost;
   state.curve.cost += {now.loop_passes - before.loop_passes, now.contact_evaluations - before.contact_evaluations,
-                       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+                       watch.seconds()};
   return rest;
 }
 

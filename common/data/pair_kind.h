@@ -10,6 +10,8 @@ enum class PairKind {
   soft_soft    ///< two equal soft particles
 };
 
+inline constexpr PairKind kPairKinds[] = {PairKind::soft_solid, PairKind::soft_soft};
+
 inline std::string to_string(PairKind kind) { return kind == PairKind::soft_solid ? "soft-solid" : "soft-soft"; }
 
 }  // namespace softgrain

@@ -101,7 +101,7 @@ std::optional<double> fraction_of(const LawOptions& o) {
 
 std::vector<PairKind> kinds_of(const LawOptions& o) {
   std::vector<PairKind> kinds;
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft})
+  for (const PairKind kind : kPairKinds)
     if (has(o.kinds, to_string(kind))) kinds.push_back(kind);
   return kinds;
 }
@@ -135,7 +135,7 @@ bool usable(const PairLaw& pair) { return pair.status == "good" || pair.status =
 std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, std::int64_t steps) {
   std::vector<ValueTable> out;
   const std::vector<PairKind> wanted = kinds_of(o);
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+  for (const PairKind kind : kPairKinds) {
     const PairLaw* pair = file.card->find(kind);
     const bool named = has(o.kinds, to_string(kind));
     if (wanted.empty() ? pair == nullptr || !usable(*pair) : !named) continue;

@@ -14,7 +14,7 @@
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
 #include "microsim/grain_box/record.h"
-#include "pipelines/law/law_check.h"
+#include "pipelines/commands/law_check.h"
 #include "pipelines/report/powder_data.h"
 #include "pipelines/snapshots/snapshots.h"
 #include "pipelines/snapshots/snapshots_of_kinds.h"

@@ -9,7 +9,6 @@ namespace softgrain {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr PairKind kKinds[] = {PairKind::soft_solid, PairKind::soft_soft};
 
 CompareSide load_directory(const std::string& path) {
   CompareSide side;
@@ -148,7 +147,7 @@ void compare_relaxed(CompareResult& result, const CompareSide& candidate, const 
 }
 
 void compare_kinds(CompareResult& result, const CompareSide& candidate, const CompareSide& reference) {
-  for (const PairKind kind : kKinds) {
+  for (const PairKind kind : kPairKinds) {
     if (candidate.measurements && reference.measurements) compare_relaxed(result, candidate, reference, kind);
     if (candidate.card && reference.card && candidate.card->find(kind) != nullptr &&
         reference.card->find(kind) != nullptr) {
@@ -215,7 +214,7 @@ CompareResult compare_within(const CompareSide& side) {
       result.differences.insert(result.differences.end(), list->begin(), list->end());
     compare_engines(result, side.macro, side.macro, {{"law", "shelled"}});
   }
-  for (const PairKind kind : kKinds)
+  for (const PairKind kind : kPairKinds)
     if (side.measurements) compare_with_published(result, side, kind);
   require_something(result);
   return result;

@@ -129,7 +129,7 @@ double compared_fraction(const LawFile& file, const LawFile& other) {
 
 std::vector<LawDifference> law_differences(const LawFile& a, const LawFile& b, std::size_t points) {
   std::vector<LawDifference> out;
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+  for (const PairKind kind : kPairKinds) {
     const auto of_a = source(a, kind, b);
     const auto of_b = source(b, kind, a);
     if (of_a && of_b) add(out, kind, *of_a, *of_b, points);

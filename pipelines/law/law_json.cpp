@@ -1,4 +1,5 @@
 #include "pipelines/law/law_json.h"
+#include "common/io/json_number.h"
 
 #include <cmath>
 #include <numbers>
@@ -8,9 +9,6 @@ namespace softgrain {
 namespace {
 
 using nlohmann::json;
-
-/// JSON knows no infinity: what is not known is null.
-json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 
 void put(json& out, const std::string& name, const Estimate& e, double factor) {
   out[name] = number_or_null(factor * e.value);

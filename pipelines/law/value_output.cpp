@@ -7,6 +7,7 @@
 #include <set>
 
 #include "pipelines/law/terminal_plot.h"
+#include "common/io/json_number.h"
 
 namespace softgrain::law {
 
@@ -74,8 +75,6 @@ std::string origin_of(const ValueTable& t) {
     if (p.force.interval && p.where != Where::no_contact) return p.force.interval->origin;
   return "";
 }
-
-json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 
 void put(json& out, const std::string& name, const std::optional<Quantity>& q, double unit) {
   out[name] = q ? number_or_null(q->value * unit) : json(nullptr);

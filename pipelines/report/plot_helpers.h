@@ -11,8 +11,6 @@
 
 namespace softgrain::report {
 
-inline constexpr PairKind kPairKinds[] = {PairKind::soft_solid, PairKind::soft_soft};
-
 /// "soft particle on a plane" or "two soft particles".
 std::string describe(PairKind kind);
 

@@ -123,7 +123,7 @@ json forces_json(const Measurements& data, const std::string& relaxation) {
 
 json relaxations_json(const Measurements& data, const std::string& reference, const std::string& candidate) {
   json out = {{"reference", reference}, {"candidate", candidate}};
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+  for (const PairKind kind : kPairKinds) {
     bool both[2] = {false, false};
     for (const PackingRun& run : data.runs) {
       if (run.kind != kind) continue;

@@ -1,8 +1,8 @@
 #include "pipelines/run/trial_times.h"
+#include "common/core/stopwatch.h"
 
 #include <omp.h>
 
-#include <chrono>
 #include <ctime>
 
 namespace softgrain {
@@ -35,9 +35,9 @@ double mean_of_calls(const Timer& timed, double budget, std::int64_t most) {
 }  // namespace
 
 double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return watch.seconds();
 }
 
 double seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most) {

@@ -57,10 +57,9 @@ class CrowdStage : public ::testing::Test {
     std::filesystem::create_directories(options_.law_cache);
   }
   CrowdMeasurements measure(const CrowdLevel* level) {
-    const RunContext context(options_, "run", "tiny");
-    const TaskStore store(context, scene_, setup_.seed);
-    CrowdMeasurements data = run_crowd_stage(setup_, store, context, {}, left_out_, &contents_, level);
-    store.clear();
+    const softgrain::Run run(scene_, options_, "run", setup_.seed);
+    CrowdMeasurements data = run_crowd_stage(setup_, run, left_out_, &contents_, level);
+    run.store.clear();
     return data;
   }
   [[nodiscard]] long cached() const {

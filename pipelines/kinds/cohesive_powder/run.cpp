@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -20,16 +19,13 @@
 #include "pipelines/run/run_summary.h"
 #include "pipelines/run/sample_statistics.h"
 #include "pipelines/run/task_store.h"
+#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
 namespace {
 
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 struct Sample {
   PowderState state;
   PowderResult result;
@@ -63,10 +59,10 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
     take_state(setup, number, sample.state);
   const auto phases = setup.phases();
   double reported = 0.0;
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   const double seconds_before = sample.state.system.cost.seconds;
   sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {
-    sample.state.system.cost.seconds = seconds_before + seconds_since(start);
+    sample.state.system.cost.seconds = seconds_before + watch.seconds();
     store.save(task, [&](const h5::Group& g) { write_powder_state(g, now); });
     // Nobody knows when a phase comes to rest; most take about kUsual.
     constexpr double kUsual = 150.0;
@@ -77,7 +73,7 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
     reported = std::max(share, reported);
     if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
   });
-  sample.state.system.cost.seconds = seconds_before + seconds_since(start);
+  sample.state.system.cost.seconds = seconds_before + watch.seconds();
   stop_if_interrupted("analysing packs");
   sample.analysis =
       analyse_powder(sample.state.system, setup.spec, imposed_pressure(phases, sample.state), setup.rigidity);

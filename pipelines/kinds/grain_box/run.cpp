@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <mutex>
 
 #include "common/io/progress.h"
@@ -10,51 +9,48 @@
 #include "pipelines/kinds/grain_box/check.h"
 #include "pipelines/kinds/grain_box/scene.h"
 #include "pipelines/kinds/grain_box/summary.h"
-#include "pipelines/report/report.h"
 #include "pipelines/run/parallel_tasks.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
-#include "pipelines/run/task_store.h"
 
 namespace softgrain {
 
 namespace {
 
 /// Runs one pack from its checkpoint, or from the start; keeps its last state for --resume.
-GrainBoxResult run_pack(const GrainBoxSpec& spec, std::uint64_t seed, const TaskStore& store, const RunContext& context,
-                        Progress& progress) {
+GrainBoxResult run_pack(const GrainBoxSpec& spec, const Run& run, Progress& progress) {
   GrainBoxState state;
-  store.load(spec.name, [&](const h5::Group& group) { state = read_state(group); });
+  run.store.load(spec.name, [&](const h5::Group& group) { state = read_state(group); });
   double reported = 0.0;
   GrainBoxControl control;
-  control.checkpoint_seconds = store.seconds();
+  control.checkpoint_seconds = run.store.seconds();
   control.save = [&](const GrainBoxState& now) {
-    store.save(spec.name, [&](const h5::Group& group) { write_state(group, now); });
+    run.store.save(spec.name, [&](const h5::Group& group) { write_state(group, now); });
   };
-  control.say = [&](const std::string& line) { context.say(line); };
+  control.say = [&](const std::string& line) { run.context.say(line); };
   control.progress = [&](const GrainBoxState&, double share) {
     if (share <= reported) return;
     progress.advance(share - reported);
     reported = share;
   };
-  GrainBoxResult result = run_grain_box(spec, seed, std::move(state), control);
+  GrainBoxResult result = run_grain_box(spec, run.seed, std::move(state), control);
   if (result.usable) control.save(result.state);
   progress.advance(1.0 - reported);
   return result;
 }
 
-std::vector<GrainBoxResult> run_packs(const GrainBoxSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                      const RunContext& context) {
+std::vector<GrainBoxResult> run_packs(const GrainBoxSetup& setup, const Run& run) {
   std::vector<GrainBoxResult> results(setup.packs.size());
-  Progress progress("grain boxes", static_cast<double>(setup.packs.size()), context.quiet());
+  Progress progress("grain boxes", static_cast<double>(setup.packs.size()), run.context.quiet());
   parallel_tasks(static_cast<std::int64_t>(setup.packs.size()), [&](std::int64_t k) {
     const auto u = static_cast<std::size_t>(k);
-    results[u] = run_pack(setup.packs[u], seed, store, context, progress);
+    results[u] = run_pack(setup.packs[u], run, progress);
   });
   progress.finish();
   return results;
 }
 
-std::string people_text(const std::vector<GrainBoxResult>& results, const RunContext& context) {
+std::string people_text(const std::vector<GrainBoxResult>& results) {
   std::string text;
   for (const GrainBoxResult& r : results) {
     const auto points = r.points_of(BoxPhase::loading);
@@ -65,17 +61,14 @@ std::string people_text(const std::vector<GrainBoxResult>& results, const RunCon
                           points.back()->bulk * 1e-9, points.back()->shear_modulus * 1e-9);
     text += r.usable ? "\n" : "; NOT USABLE: " + r.reason + "\n";
   }
-  return text + "report: " + context.path("report.html");
+  return text;
 }
 
 ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options) {
   const GrainBoxSetup setup = read_grain_box(scene);
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.seed);
-  const TaskStore store(context, scene, seed);
-  const std::vector<GrainBoxResult> results = run_packs(setup, seed, store, context);
-  const Provenance provenance = context.provenance(scene, seed);
-  save_grain_boxes(context.path("grain_box.h5"), results, provenance);
+  const Run run(scene, options, "microsim", setup.seed);
+  const std::vector<GrainBoxResult> results = run_packs(setup, run);
+  save_grain_boxes(run.path("grain_box.h5"), results, run.provenance);
 
   bool usable = true;
   for (const GrainBoxResult& r : results) usable = usable && r.usable;
@@ -85,12 +78,8 @@ ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options)
   summary["title"] = setup.title;
   summary["packs"] = grain_boxes_json(results);
   summary["remarks"] = grain_box_remarks(results);
-  summary["files"] = {{"record", context.path("grain_box.h5")}, {"report", context.path("report.html")}};
-  summary["provenance"] = provenance_json(provenance);
-  context.finish(summary, people_text(results, context));
-  write_report(context.directory());
-  store.clear();
-  return usable ? ExitStatus::good : ExitStatus::not_usable;
+  summary["files"] = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}};
+  return run.finish(std::move(summary), people_text(results));
 }
 
 }  // namespace

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "common/contact/crowd_from_table.h"
+#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
@@ -159,16 +159,16 @@ double law_distance(const LawTableEntry& law, const LawTableEntry& below, const 
 
 HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
                          const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
-                         const TaskStore& store, const RunContext& context, const Provenance& provenance) {
-  const auto start = std::chrono::steady_clock::now();
+                         const Run& run) {
+  const Stopwatch watch;
   HierarchyLevel level;
   level.number = number;
   std::vector<ShellPacking> pool;
   const CrowdLevel crowd = crowd_level(setup, contents, number, below);
-  data = run_crowd_stage(setup.crowd, store, context, provenance, level.left_out, &pool, &crowd);
+  data = run_crowd_stage(setup.crowd, run, level.left_out, &pool, &crowd);
   if (below != nullptr) describe_inner(contents, pool, level);
   CrowdFitOptions fit;
-  fit.seed = context.seed(setup.crowd.seed);
+  fit.seed = run.seed;
   fit.replicates = 0;
   level.entry = fit_crowd_laws(data, fit);
   double grains = 0.0;
@@ -176,7 +176,7 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   level.grains = grains + (below != nullptr ? level.inner_mean * below->grains : 0.0);
   level.cost = cost_of(data);
   if (below != nullptr) compare_with_below(level, *below, data, *data_below, setup.form);
-  level.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  level.seconds = watch.seconds();
   return level;
 }
 

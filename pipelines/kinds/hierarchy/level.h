@@ -9,6 +9,7 @@
 #include "calibrate/crowd_fit.h"
 #include "pipelines/kinds/hierarchy/scene.h"
 #include "pipelines/kinds/law_table/crowd_stage.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
@@ -57,7 +58,7 @@ InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below);
 /// Measures and fits level `number` on top of `below` (none for the finest).
 HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, std::int64_t number,
                          const HierarchyLevel* below, const CrowdMeasurements* data_below, CrowdMeasurements& data,
-                         const TaskStore& store, const RunContext& context, const Provenance& provenance);
+                         const Run& run);
 
 /// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
 double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form);

@@ -91,22 +91,22 @@ std::vector<CheckRun> check_tasks(std::size_t packings) {
 }
 
 /// Loads the stored run, or measures and stores it.
-void measure(CheckRun& check, const HierarchySetup& setup, std::uint64_t seed, const InnerLaws& laws,
-             const std::vector<ShellPacking>& inner, const CrowdPlan& plan, const TaskStore& store) {
-  const ShellPacking packing = generate_shell_packing(setup.crowd.spec, seed, check.task.packing);
+void measure(CheckRun& check, const HierarchySetup& setup, const InnerLaws& laws,
+             const std::vector<ShellPacking>& inner, const CrowdPlan& plan, const Run& run) {
+  const ShellPacking packing = generate_shell_packing(setup.crowd.spec, run.seed, check.task.packing);
   const SoftContent content = content_of(setup, packing, check.task.engine, inner);
   CrowdExperiment e = make_crowd(setup.crowd.spec, one_plane(setup.check_overlaps), content, {}, &laws);
   check.grains = static_cast<double>(e.system.particles.grains);
   check.inside = static_cast<double>(content.inner.size());
   const std::string name = fmt::format("check-{}-{}", name_of(check.task.engine), check.task.packing);
   bool known = false;
-  store.load(name, [&](const h5::Group& g) {
+  run.store.load(name, [&](const h5::Group& g) {
     check.run = read_crowd_runs(g).at(0);
     known = true;
   });
   if (known) return;
-  check.run = run_kept_crowd(store, name, e, plan, setup.crowd.options, {});
-  store.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {check.run}); });
+  check.run = run_kept_crowd(run.store, name, e, plan, setup.crowd.options, {});
+  run.store.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {check.run}); });
 }
 
 std::vector<CrowdRun> runs_of(const std::vector<CheckRun>& checks, Engine engine) {
@@ -138,19 +138,17 @@ CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup&
 
 }  // namespace
 
-CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const TaskStore& store,
-                              const RunContext& context) {
-  const std::uint64_t seed = context.seed(setup.crowd.seed);
+CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const Run& run) {
   std::vector<ShellPacking> inner;
   for (std::size_t k = 0; k < kDifferentInner; ++k)
-    inner.push_back(generate_shell_packing(setup.crowd.spec, seed, kInnerPackings + k));
+    inner.push_back(generate_shell_packing(setup.crowd.spec, run.seed, kInnerPackings + k));
   const InnerLaws laws = inner_laws(setup, finest);
   CrowdPlan plan(1);
   for (const double x : setup.check_overlaps) plan[0].push_back(x / setup.check_overlaps.back());
   std::vector<CheckRun> checks = check_tasks(static_cast<std::size_t>(setup.check_packings));
-  Progress progress("two decades, resolved", static_cast<double>(checks.size()), context.quiet());
+  Progress progress("two decades, resolved", static_cast<double>(checks.size()), run.context.quiet());
   parallel_tasks(static_cast<std::int64_t>(checks.size()), [&](std::int64_t t) {
-    measure(checks[static_cast<std::size_t>(t)], setup, seed, laws, inner, plan, store);
+    measure(checks[static_cast<std::size_t>(t)], setup, laws, inner, plan, run);
     progress.advance();
   });
   return result_of(checks, setup);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipelines/kinds/hierarchy/level.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
@@ -30,8 +31,7 @@ struct CheckResult {
   bool converged = true;
 };
 
-/// Runs the check with the law of the finest level. Finished runs are kept in the store.
-CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const TaskStore& store,
-                              const RunContext& context);
+/// Runs the check with the law of the finest level. Finished runs are kept in the run.store.
+CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const Run& run);
 
 }  // namespace softgrain

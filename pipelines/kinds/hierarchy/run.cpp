@@ -12,7 +12,7 @@
 #include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/hierarchy/resolved_levels.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
-#include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 
 namespace softgrain {
@@ -34,35 +34,34 @@ bool at_rest(const HierarchySetup& setup, const HierarchyLevel& level) {
   return level.number > 0 && level.distance <= std::max(setup.tolerance, level.distance_noise);
 }
 
-void run_levels(const HierarchySetup& setup, const TaskStore& store, const RunContext& context,
-                const Provenance& provenance, HierarchyRun& run) {
+void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& result) {
   CrowdMeasurements below;
   LevelContents contents(setup);
   for (std::int64_t k = 0; k < setup.iterations; ++k) {
-    if (k >= setup.levels && run.fixed) break;
-    context.say(k == 0 ? "level 0: grains only" : fmt::format("level {}: on top of the law of level {}", k, k - 1));
+    if (k >= setup.levels && result.fixed) break;
+    run.context.say(k == 0 ? "level 0: grains only" : fmt::format("level {}: on top of the law of level {}", k, k - 1));
     CrowdMeasurements data;
-    const HierarchyLevel* last = run.levels.empty() ? nullptr : &run.levels.back();
-    HierarchyLevel level = run_level(setup, contents, k, last, &below, data, store, context, provenance);
+    const HierarchyLevel* last = result.levels.empty() ? nullptr : &result.levels.back();
+    HierarchyLevel level = run_level(setup, contents, k, last, &below, data, run);
     for (const std::string& r : crowd_remarks(data, setup.crowd.target))
-      run.remarks.push_back(fmt::format("level {}: {}", k, r));
-    for (const std::string& text : level.left_out) run.remarks.push_back(fmt::format("level {}: {}", k, text));
+      result.remarks.push_back(fmt::format("level {}: {}", k, r));
+    for (const std::string& text : level.left_out) result.remarks.push_back(fmt::format("level {}: {}", k, text));
     const CrowdLaw& law = *level.entry.find(setup.form);
-    save_law_table({1, {level.entry}}, context.path(fmt::format("law_table_level_{}.toml", k)), provenance);
+    save_law_table({1, {level.entry}}, run.path(fmt::format("law_table_level_{}.toml", k)), run.provenance);
     if (law.status == "no threshold crossing")
       throw NotUsable(fmt::format("level {}: its law never crosses its threshold ({})", k, law.reason));
     if (law.status != "good") {
-      run.usable = false;
-      run.remarks.push_back(fmt::format("level {}: {} law: {}: {}", k, setup.form, law.status, law.reason));
+      result.usable = false;
+      result.remarks.push_back(fmt::format("level {}: {} law: {}: {}", k, setup.form, law.status, law.reason));
     }
-    if (!run.fixed && at_rest(setup, level)) run.fixed = k;
+    if (!result.fixed && at_rest(setup, level)) result.fixed = k;
     if (k > 0)
-      context.say(fmt::format("level {}: the law differs by {:.1f} % from the one below (packings alone: {:.1f} %)", k,
-                              100.0 * level.distance, 100.0 * level.distance_noise));
-    run.levels.push_back(std::move(level));
+      run.context.say(fmt::format("level {}: the law differs by {:.1f} % from the one below (packings alone: {:.1f} %)",
+                                  k, 100.0 * level.distance, 100.0 * level.distance_noise));
+    result.levels.push_back(std::move(level));
     below = std::move(data);
   }
-  save_law_table({1, {run.levels.back().entry}}, context.path("law_table.toml"), provenance);
+  save_law_table({1, {result.levels.back().entry}}, run.path("law_table.toml"), run.provenance);
 }
 
 /// Forces of one plane and of six, per plane, over overlap.
@@ -145,60 +144,57 @@ json check_json(const CheckResult& check) {
 }
 
 /// Radii from the largest grain of the coarsest level down to the smallest of the finest one, largest over smallest.
-double span(const HierarchySetup& setup, const HierarchyRun& run, std::int64_t levels) {
+double span(const HierarchySetup& setup, const HierarchyRun& result, std::int64_t levels) {
   double inner = 0.0;  // mean radius of an inner soft particle over that of its parent
-  for (const HierarchyLevel& l : run.levels)
+  for (const HierarchyLevel& l : result.levels)
     if (l.number > 0) inner = 0.5 * (l.inner_low + l.inner_high);
   return setup.crowd.spec.polydispersity * std::pow(1.0 / inner, static_cast<double>(levels - 1));
 }
 
-std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& run) {
-  const HierarchyLevel& coarsest = run.levels[static_cast<std::size_t>(setup.levels - 1)];
+std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& result) {
+  const HierarchyLevel& coarsest = result.levels[static_cast<std::size_t>(setup.levels - 1)];
   std::string text =
       fmt::format("{} levels: radii 1 to {:.2g}; a soft particle of the coarsest level stands for {:.3g} grains. ",
-                  setup.levels, span(setup, run, setup.levels), coarsest.grains);
-  if (run.fixed)
+                  setup.levels, span(setup, result, setup.levels), coarsest.grains);
+  if (result.fixed)
     return text + fmt::format(
                       "From level {} on the law no longer changes (by {:.2f} %; limit {:.2f} %, or what packings "
                       "alone make of it, {:.2f} %): the fixed point of an unbounded hierarchy.",
-                      *run.fixed, 100.0 * run.levels[static_cast<std::size_t>(*run.fixed)].distance,
-                      100.0 * setup.tolerance, 100.0 * run.levels[static_cast<std::size_t>(*run.fixed)].distance_noise);
-  return text + fmt::format("No fixed point within {} levels: the last two differ by {:.2f} %.", run.levels.size(),
-                            100.0 * run.levels.back().distance);
+                      *result.fixed, 100.0 * result.levels[static_cast<std::size_t>(*result.fixed)].distance,
+                      100.0 * setup.tolerance,
+                      100.0 * result.levels[static_cast<std::size_t>(*result.fixed)].distance_noise);
+  return text + fmt::format("No fixed point within {} levels: the last two differ by {:.2f} %.", result.levels.size(),
+                            100.0 * result.levels.back().distance);
 }
 
-json summarise(const HierarchySetup& setup, const HierarchyRun& run, const RunContext& context,
-               const Provenance& provenance, double seconds) {
+json summarise(const HierarchySetup& setup, const HierarchyRun& result, const Run& run) {
   json s;
-  s["status"] = run.usable ? "good" : "not usable";
+  s["status"] = result.usable ? "good" : "not usable";
   s["title"] = setup.title;
-  s["seconds"] = seconds;
   double evaluations = 0.0;
-  for (const HierarchyLevel& l : run.levels) {
+  for (const HierarchyLevel& l : result.levels) {
     s["levels"].push_back(level_json(l, setup.form));
     evaluations += static_cast<double>(l.cost.contact_evaluations);
   }
-  const HierarchyLevel& finest = run.levels.front();
-  const HierarchyLevel& coarsest = run.levels[static_cast<std::size_t>(setup.levels - 1)];
+  const HierarchyLevel& finest = result.levels.front();
+  const HierarchyLevel& coarsest = result.levels[static_cast<std::size_t>(setup.levels - 1)];
   s["four_decades"] = {{"levels", setup.levels},
-                       {"radius_span", span(setup, run, setup.levels)},
+                       {"radius_span", span(setup, result, setup.levels)},
                        {"resolved_grains", coarsest.grains},
                        {"resolved_contact_evaluations",
                         static_cast<double>(finest.cost.contact_evaluations) * coarsest.grains / finest.grains},
                        {"contact_evaluations", evaluations}};
-  s["fixed_point"] = {{"reached", run.fixed.has_value()}, {"text", fixed_text(setup, run)}};
-  if (run.fixed) s["fixed_point"]["level"] = *run.fixed;
-  if (run.check) s["check"] = check_json(*run.check);
-  s["remarks"] = run.remarks;
-  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s["files"][file] = context.path(file);
-  s["provenance"] = provenance_json(provenance);
+  s["fixed_point"] = {{"reached", result.fixed.has_value()}, {"text", fixed_text(setup, result)}};
+  if (result.fixed) s["fixed_point"]["level"] = *result.fixed;
+  if (result.check) s["check"] = check_json(*result.check);
+  s["remarks"] = result.remarks;
+  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s["files"][file] = run.path(file);
   return s;
 }
 
-std::string people_text(const HierarchySetup& setup, const HierarchyRun& run, const RunContext& context,
-                        double seconds) {
-  std::string text = fixed_text(setup, run) + "\n";
-  for (const HierarchyLevel& l : run.levels) {
+std::string people_text(const HierarchySetup& setup, const HierarchyRun& result) {
+  std::string text = fixed_text(setup, result) + "\n";
+  for (const HierarchyLevel& l : result.levels) {
     if (l.number == 0) continue;
     text += fmt::format("  level {}: {:.0f} soft particles inside ({:.1f} % of the volume), law changes by {:.1f} %",
                         l.number, l.inner_mean, 100.0 * l.inner_volume, 100.0 * l.distance);
@@ -207,50 +203,42 @@ std::string people_text(const HierarchySetup& setup, const HierarchyRun& run, co
                           l.changes[0].error);
     text += "\n";
   }
-  if (run.check) {
-    text += check_json(*run.check)["text"].get<std::string>() + "\n";
-    for (const CheckPoint& p : run.check->points)
+  if (result.check) {
+    text += check_json(*result.check)["text"].get<std::string>() + "\n";
+    for (const CheckPoint& p : result.check->points)
       text += fmt::format("  h/Rs = {:.3f}: law over resolved {:.3f}({:.3f})\n", p.overlap, p.ratio, p.ratio_error);
   }
-  for (const std::string& remark : run.remarks) text += "note: " + remark + "\n";
-  return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
+  for (const std::string& remark : result.remarks) text += "note: " + remark + "\n";
+  return text;
 }
 
-void check_levels(const HierarchySetup& setup, const TaskStore& store, const RunContext& context, HierarchyRun& run) {
+void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& result) {
   if (setup.check_packings == 0) return;
   try {
-    run.check = check_two_decades(setup, run.levels.front().entry, store, context);
+    result.check = check_two_decades(setup, result.levels.front().entry, run);
   } catch (const NotUsable& e) {  // the levels are kept and said
-    run.usable = false;
-    run.remarks.push_back("no resolved check: " + std::string(e.what()));
+    result.usable = false;
+    result.remarks.push_back("no resolved check: " + std::string(e.what()));
     return;
   }
-  if (run.check->converged) return;
-  run.usable = false;
-  run.remarks.emplace_back("the resolved check holds states that did not converge");
+  if (result.check->converged) return;
+  result.usable = false;
+  result.remarks.emplace_back("the resolved check holds states that did not converge");
 }
 
 ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   const HierarchySetup setup = read_hierarchy_setup(scene.root());
-  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.crowd.seed);
-  const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed);
-  HierarchyRun run;
-  context.guard([&] {
-    run_levels(setup, store, context, provenance, run);
-    check_levels(setup, store, context, run);
+  const Run run(scene, options, "run", setup.crowd.seed);
+  HierarchyRun result;
+  run.context.guard([&] {
+    run_levels(setup, run, result);
+    check_levels(setup, run, result);
   });
-  if (!run.fixed) {
-    run.usable = false;
-    run.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
+  if (!result.fixed) {
+    result.usable = false;
+    result.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  context.finish(summarise(setup, run, context, provenance, seconds), people_text(setup, run, context, seconds));
-  write_report(context.directory());
-  store.clear();
-  return run.usable ? ExitStatus::good : ExitStatus::not_usable;
+  return run.finish(summarise(setup, result, run), people_text(setup, result));
 }
 
 }  // namespace

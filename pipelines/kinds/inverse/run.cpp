@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 
 #include "common/io/text_file.h"
 #include "pipelines/kinds/inverse/stage.h"
-#include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
+#include "common/io/json_number.h"
 
 namespace softgrain {
 
@@ -22,8 +21,6 @@ using nlohmann::json;
 constexpr double kReached = 4.0;
 /// Above this correlation two parameters are not told apart.
 constexpr double kAlike = 0.9;
-
-json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 
 /// Mean and standard error over packings at each Delta; NaN where no packing gave a force.
 struct Curve {
@@ -168,40 +165,30 @@ std::string people_text(const InverseSetup& setup, const InverseResult& r, doubl
 }
 
 ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   const InverseSetup setup = read_inverse(scene);
-  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.measure.seed);
-  const Provenance provenance = context.provenance(scene, seed);
   // The target may stand in another file: what was kept for one serves no other.
   std::string target;
   for (std::size_t j = 0; j < setup.target.delta.size(); ++j)
     target += fmt::format("{:a} {:a} {:a}\n", setup.target.delta[j], setup.target.force[j], setup.target.error[j]);
-  const TaskStore store(context, scene, seed, target);
+  const Run run(scene, options, "run", setup.measure.seed, {.text = target});
   InverseResult result;
-  context.guard([&] { result = run_inverse_stage(setup, store, seed, context.quiet()); });
-  save(result.confirmed, context.path("measurements.h5"), provenance);
-  write_text_atomic(context.path("evaluations.csv"), evaluations_table(setup, result));
+  run.context.guard([&] { result = run_inverse_stage(setup, run); });
+  save(result.confirmed, run.path("measurements.h5"), run.provenance);
+  write_text_atomic(run.path("evaluations.csv"), evaluations_table(setup, result));
 
   const double misfit = misfit_of(result.check, setup.target);
-  const bool good = misfit <= kReached;
   const std::vector<std::string> remarks = remarks_of(setup, result, misfit);
   json summary;
-  summary["status"] = good ? "good" : "not usable";
+  summary["status"] = misfit <= kReached ? "good" : "not usable";
   summary["title"] = setup.title;
-  summary["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary["inverse"] = inverse_json(setup, result, misfit);
   summary["packings"] = packings_json(result.confirmed);
   summary["remarks"] = remarks;
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
-    summary["files"][file] = context.path(file);
-  summary["provenance"] = provenance_json(provenance);
+    summary["files"][file] = run.path(file);
   std::string people = people_text(setup, result, misfit);
   for (const std::string& remark : remarks) people += "note: " + remark + "\n";
-  context.finish(std::move(summary), people + "report: " + context.path("report.html"));
-  write_report(context.directory());
-  store.clear();
-  return good ? ExitStatus::good : ExitStatus::not_usable;
+  return run.finish(std::move(summary), people);
 }
 
 }  // namespace

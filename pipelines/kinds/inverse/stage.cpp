@@ -79,8 +79,7 @@ TaskResult measure_one(const InverseSetup& setup, const Task& task, std::uint64_
 /// Shared by all evaluations.
 struct Stage {
   const InverseSetup& setup;
-  const TaskStore& store;
-  std::uint64_t seed;
+  const Run& run;
   Progress& progress;
   InverseResult& out;
 };
@@ -90,10 +89,10 @@ std::vector<TaskResult> run_tasks(const Stage& stage, const std::vector<Task>& t
   parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
     bool known = false;
-    stage.store.load(tasks[i].name, [&](const h5::Group& g) { known = read_result(g, tasks[i], results[i]); });
+    stage.run.store.load(tasks[i].name, [&](const h5::Group& g) { known = read_result(g, tasks[i], results[i]); });
     if (!known) {
-      results[i] = measure_one(stage.setup, tasks[i], stage.seed);
-      stage.store.save(tasks[i].name, [&](const h5::Group& g) { write_result(g, tasks[i], results[i]); });
+      results[i] = measure_one(stage.setup, tasks[i], stage.run.seed);
+      stage.run.store.save(tasks[i].name, [&](const h5::Group& g) { write_result(g, tasks[i], results[i]); });
     }
     stage.progress.advance();
   });
@@ -155,27 +154,28 @@ void confirm(const Stage& stage) {
     run.normal_cost = results[k].cost;
     if (run.normal.empty()) continue;
     data.packings.push_back(describe(
-        generate_shell_packing(data.spec, stage.seed, static_cast<std::uint64_t>(tasks[k].packing)), data.spec));
+        generate_shell_packing(data.spec, stage.run.seed, static_cast<std::uint64_t>(tasks[k].packing)), data.spec));
     data.runs.push_back(std::move(run));
   }
 }
 
 }  // namespace
 
-InverseResult run_inverse_stage(const InverseSetup& setup, const TaskStore& store, std::uint64_t seed, bool quiet) {
+InverseResult run_inverse_stage(const InverseSetup& setup, const Run& run) {
   InverseResult out;
-  Progress progress("searching", static_cast<double>(setup.budget * setup.packings + setup.confirm), quiet);
-  const Stage stage{setup, store, seed, progress, out};
+  Progress progress("searching", static_cast<double>(setup.budget * setup.packings + setup.confirm),
+                    run.context.quiet());
+  const Stage stage{setup, run, progress, out};
   std::vector<std::vector<double>> points;
   for (std::int64_t k = 0; k < setup.design; ++k)
-    points.push_back(spread_point(seed, static_cast<std::size_t>(k), setup.search.size()));
+    points.push_back(spread_point(run.seed, static_cast<std::size_t>(k), setup.search.size()));
   evaluate(stage, points);
   while (static_cast<std::int64_t>(out.evaluations.size()) < setup.budget) {
     const std::int64_t left = setup.budget - static_cast<std::int64_t>(out.evaluations.size());
-    evaluate(stage,
-             next_points(out.evaluations, setup.target, seed, static_cast<std::size_t>(std::min(left, setup.batch))));
+    evaluate(stage, next_points(out.evaluations, setup.target, run.seed,
+                                static_cast<std::size_t>(std::min(left, setup.batch))));
   }
-  out.answer = answer(out.evaluations, setup.target, seed, setup.replicates);
+  out.answer = answer(out.evaluations, setup.target, run.seed, setup.replicates);
   confirm(stage);
   progress.finish();
   return out;

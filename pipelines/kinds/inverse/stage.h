@@ -5,7 +5,7 @@
 
 #include "common/io/progress.h"
 #include "pipelines/kinds/inverse/scene.h"
-#include "pipelines/run/task_store.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
@@ -22,6 +22,6 @@ struct InverseResult {
 
 /// Runs the search. Finished packings are taken from the store; results depend on no thread count. Throws NotUsable,
 /// Interrupted.
-InverseResult run_inverse_stage(const InverseSetup& setup, const TaskStore& store, std::uint64_t seed, bool quiet);
+InverseResult run_inverse_stage(const InverseSetup& setup, const Run& run);
 
 }  // namespace softgrain

@@ -46,15 +46,13 @@ std::vector<std::int64_t> packings_of(const CrowdTask& task, std::int64_t pool) 
 /// What all tasks share, and the memory of what is measured already.
 class CrowdRunner {
  public:
-  CrowdRunner(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
-              const std::vector<SoftContent>& contents, const CrowdLevel* level)
+  CrowdRunner(const CrowdSetup& setup, const Run& run, const std::vector<SoftContent>& contents,
+              const CrowdLevel* level)
       : setup_(setup),
-        store_(store),
-        context_(context),
-        cache_(context.law_cache(), [&context](const std::string& remark) { context.say(remark); }),
+        run_(run),
+        cache_(run.context.law_cache(), [&run](const std::string& remark) { run.context.say(remark); }),
         contents_(contents),
-        level_(level),
-        seed_(context.seed(setup.seed)) {}
+        level_(level) {}
 
   /// Runs tasks in parallel, long ones first; results are in the order of the tasks.
   /// Those that came to their end, in the order of tasks. What broke off (a grain squeezed out of its shell...) is left
@@ -71,7 +69,7 @@ class CrowdRunner {
     std::vector<std::size_t> order(tasks.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
-    Progress progress(what, total, context_.quiet());
+    Progress progress(what, total, run_.context.quiet());
     std::vector<CrowdRun> runs(tasks.size());
     std::vector<std::string> broke_off(tasks.size());
     parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
@@ -98,14 +96,14 @@ class CrowdRunner {
         out.push_back(std::move(runs[k]));
         continue;
       }
-      context_.say(broke_off[k]);
+      run_.context.say(broke_off[k]);
       left_out_.push_back(broke_off[k]);
     }
     return out;
   }
 
   [[nodiscard]] std::string key_of(const CrowdTask& task, const CrowdOptions& options) const {
-    std::string text = fmt::format("seed {} packings", seed_);
+    std::string text = fmt::format("seed {} packings", run_.seed);
     for (const std::int64_t p : packings_of(task, static_cast<std::int64_t>(contents_.size())))
       text += fmt::format(" {}", p);
     if (level_ != nullptr) text += "\nlevel " + level_->tag;
@@ -117,12 +115,12 @@ class CrowdRunner {
     const std::string key = key_of(task, options);
     const std::string name = crowd_run_name(key);
     std::optional<CrowdRun> run = cache_.find(key);
-    if (!run) store_.load(name, [&](const h5::Group& g) { run = read_crowd_runs(g).at(0); });
+    if (!run) run_.store.load(name, [&](const h5::Group& g) { run = read_crowd_runs(g).at(0); });
     if (run) {
       progress.advance(weight);
     } else {
       run = measured(task, name, options, weight, progress);
-      store_.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {*run}); });
+      run_.store.save(name, [&](const h5::Group& g) { write_crowd_runs(g, {*run}); });
       cache_.keep(key, *run);
     }
     run->configuration = task.index;
@@ -141,16 +139,14 @@ class CrowdRunner {
     CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
                                    others, level_ != nullptr ? &level_->laws : nullptr);
     const auto advance = [&](const CrowdPoint&) { progress.advance(weight / static_cast<double>(points)); };
-    return run_kept_crowd(store_, name, e, *task.plan, options, advance);
+    return run_kept_crowd(run_.store, name, e, *task.plan, options, advance);
   }
 
   const CrowdSetup& setup_;
-  const TaskStore& store_;
-  const RunContext& context_;
+  const Run& run_;
   CrowdCache cache_;
   const std::vector<SoftContent>& contents_;
   const CrowdLevel* level_;
-  std::uint64_t seed_;
   std::vector<std::string> left_out_;
 };
 
@@ -161,13 +157,12 @@ void require_enough(const CrowdConfiguration& c, std::size_t left, std::size_t t
                               runner.left_out().empty() ? "" : runner.left_out().back()));
 }
 
-std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const RunContext& context) {
+std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const Run& run) {
   std::vector<ShellPacking> pool(static_cast<std::size_t>(setup.packings_max));
-  Progress progress("packing", static_cast<double>(pool.size()), context.quiet());
+  Progress progress("packing", static_cast<double>(pool.size()), run.context.quiet());
   parallel_tasks(setup.packings_max, [&](std::int64_t k) {
     if (interrupt_requested()) throw Interrupted("stopped by a signal while packing");
-    pool[static_cast<std::size_t>(k)] =
-        generate_shell_packing(setup.spec, context.seed(setup.seed), static_cast<std::uint64_t>(k));
+    pool[static_cast<std::size_t>(k)] = generate_shell_packing(setup.spec, run.seed, static_cast<std::uint64_t>(k));
     progress.advance();
   });
   progress.finish();
@@ -262,14 +257,14 @@ class Batches {
   std::vector<std::int64_t> wanted_;
 };
 
-std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, const RunContext& context) {
+std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, const Run& run) {
   std::vector<CrowdPlan> plans;
   const Pilot pilot(setup, runner);
   for (std::size_t c = 0; c < setup.configurations.size(); ++c) plans.push_back(pilot.plan(c));
   Batches batches(setup, plans);
   std::string what = "measuring";
   for (auto tasks = batches.next(); !tasks.empty(); tasks = batches.next()) {
-    context.say(fmt::format("{}: {} runs", what, tasks.size()));
+    run.context.say(fmt::format("{}: {} runs", what, tasks.size()));
     batches.take(runner.measure(tasks, setup.options, what));
     what = "measuring more packings";
   }
@@ -279,10 +274,9 @@ std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, 
 
 }  // namespace
 
-CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
-                                  const Provenance& provenance, std::vector<std::string>& left_out,
+CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::vector<std::string>& left_out,
                                   std::vector<ShellPacking>* contents, const CrowdLevel* level) {
-  const std::vector<ShellPacking> pool = generate_pool(setup, context);
+  const std::vector<ShellPacking> pool = generate_pool(setup, run);
   std::vector<SoftContent> filled(pool.size());
   parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
     const ShellPacking& packing = pool[static_cast<std::size_t>(k)];
@@ -295,10 +289,10 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& stor
                                 setup.options.tolerance, setup.options.tolerance_between);
   data.configurations = setup.configurations;
   for (const ShellPacking& p : pool) data.packings.push_back(describe(p, setup.spec));
-  CrowdRunner runner(setup, store, context, filled, level);
-  data.runs = measure_all(setup, runner, context);
+  CrowdRunner runner(setup, run, filled, level);
+  data.runs = measure_all(setup, runner, run);
   left_out.insert(left_out.end(), runner.left_out().begin(), runner.left_out().end());
-  save_crowd(data, context.path(level != nullptr ? level->file : "crowd.h5"), provenance);
+  save_crowd(data, run.path(level != nullptr ? level->file : "crowd.h5"), run.provenance);
   if (contents != nullptr) *contents = pool;
   return data;
 }

@@ -8,8 +8,7 @@
 
 #include "common/data/crowd_measurements.h"
 #include "pipelines/kinds/law_table/crowd_scene.h"
-#include "pipelines/run/run_context.h"
-#include "pipelines/run/task_store.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
@@ -29,8 +28,7 @@ struct CrowdLevel {
 /// added to a configuration until its target is met. Results do not depend on the number of threads. `left_out` gets a
 /// sentence for each run that broke off (a grain was squeezed out of its shell...). `contents`: the pool. Throws
 /// NotUsable when more than half of a configuration's packings broke off, Interrupted.
-CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const TaskStore& store, const RunContext& context,
-                                  const Provenance& provenance, std::vector<std::string>& left_out,
+CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::vector<std::string>& left_out,
                                   std::vector<ShellPacking>* contents, const CrowdLevel* level = nullptr);
 
 }  // namespace softgrain

@@ -11,7 +11,7 @@
 #include "pipelines/kinds/law_table/crowd_stage.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/kinds/law_table/scene.h"
-#include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 
 namespace softgrain {
@@ -37,65 +37,52 @@ struct LawTableRun {
   CrowdLawFit fit;
 };
 
-LawTableRun measure_and_fit(const LawTableSetup& setup, const TaskStore& store, const RunContext& context,
-                            const Provenance& provenance) {
-  LawTableRun run;
+LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
+  LawTableRun result;
   CrowdFitOptions fit = setup.fit;
-  fit.seed = context.seed(setup.crowd.seed);
-  run.data = run_crowd_stage(setup.crowd, store, context, provenance, run.fit.remarks, nullptr);
-  add_entry(run.fit, run.data, fit, setup.crowd.target);
-  run.fit.table.entries.front().main = true;
+  fit.seed = run.seed;
+  result.data = run_crowd_stage(setup.crowd, run, result.fit.remarks, nullptr);
+  add_entry(result.fit, result.data, fit, setup.crowd.target);
+  result.fit.table.entries.front().main = true;
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
     const LawTableVariant& v = setup.variants[k];
-    context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
+    run.context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
     CrowdLevel named;  // nothing inside the soft particles, but a file of its own
     named.file = fmt::format("crowd_variant_{}.h5", k + 1);
-    add_entry(run.fit,
-              run_crowd_stage(setup_of(v, setup.crowd), store, context, provenance, run.fit.remarks, nullptr, &named),
-              fit, setup.crowd.target);
+    add_entry(result.fit, run_crowd_stage(setup_of(v, setup.crowd), run, result.fit.remarks, nullptr, &named), fit,
+              setup.crowd.target);
   }
-  save_law_table(run.fit.table, context.path("law_table.toml"), provenance);
-  return run;
+  save_law_table(result.fit.table, run.path("law_table.toml"), run.provenance);
+  return result;
 }
 
-nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& run, const RunContext& context,
-                         const Provenance& provenance, double seconds) {
+nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& result, const Run& run) {
   nlohmann::json summary;
-  summary["status"] = run.fit.usable ? "good" : "not usable";
+  summary["status"] = result.fit.usable ? "good" : "not usable";
   summary["title"] = setup.title;
-  summary["seconds"] = seconds;
-  summary["crowd"] = crowd_json(run.data, setup.crowd.target);
-  summary["entries"] = entries_json(run.fit.table);
-  summary["remarks"] = run.fit.remarks;
+  summary["crowd"] = crowd_json(result.data, setup.crowd.target);
+  summary["entries"] = entries_json(result.fit.table);
+  summary["remarks"] = result.fit.remarks;
   for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5", "report.html"})
-    summary["files"][file] = context.path(file);
-  summary["provenance"] = provenance_json(provenance);
+    summary["files"][file] = run.path(file);
   return summary;
 }
 
-std::string people_text(const LawTableRun& run, const RunContext& context, double seconds) {
-  std::string text = fmt::format("{} configurations, {} runs:\n", run.data.configurations.size(), run.data.runs.size());
-  text += crowd_text(run.data);
-  text += entries_text(run.fit.table);
-  for (const std::string& remark : run.fit.remarks) text += "note: " + remark + "\n";
-  return text + fmt::format("{:.0f} s; law table: {}; report: {}", seconds, context.path("law_table.toml"),
-                            context.path("report.html"));
+std::string people_text(const LawTableRun& result, const Run& run) {
+  std::string text =
+      fmt::format("{} configurations, {} runs:\n", result.data.configurations.size(), result.data.runs.size());
+  text += crowd_text(result.data);
+  text += entries_text(result.fit.table);
+  for (const std::string& remark : result.fit.remarks) text += "note: " + remark + "\n";
+  return text + "law table: " + run.path("law_table.toml") + "\n";
 }
 
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   const LawTableSetup setup = read_law_table(scene);
-  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.crowd.seed);
-  const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed);
-  LawTableRun run;
-  context.guard([&] { run = measure_and_fit(setup, store, context, provenance); });
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  context.finish(summarise(setup, run, context, provenance, seconds), people_text(run, context, seconds));
-  write_report(context.directory());
-  store.clear();
-  return run.fit.usable ? ExitStatus::good : ExitStatus::not_usable;
+  const Run run(scene, options, "run", setup.crowd.seed);
+  LawTableRun result;
+  run.context.guard([&] { result = measure_and_fit(setup, run); });
+  return run.finish(summarise(setup, result, run), people_text(result, run));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ void beyond_range(const std::string& what, double asked, double end, Beyond beyo
 
 void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec& spec, Findings& out) {
   const AffineOverlap overlap = affine_overlap(spec);
-  for (const PairKind kind : {PairKind::soft_solid, PairKind::soft_soft}) {
+  for (const PairKind kind : kPairKinds) {
     const PairLaw* law = card.find(kind);
     if (law == nullptr) continue;
     const Beyond beyond = laws.beyond.value_or(law->beyond);

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
-#include "pipelines/compare/compare.h"
 #include "macrosim/lammps_run/lammps_program.h"
-#include "pipelines/kinds/macro/lammps_stage.h"
+#include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/stage.h"
-#include "pipelines/report/report.h"
-#include "pipelines/run/run_context.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 
 namespace softgrain {
@@ -24,13 +22,13 @@ std::string lateral_ratio(const MacroCurve& c) {
   return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
 }
 
-std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& curves, const RunContext& context) {
+std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& curves) {
   std::string text = "law: " + identity_text(law.identity) + "\n";
   for (const MacroCurve& c : curves)
     text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
                         c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
                         c.usable ? "" : " (" + c.note + ")");
-  return text + "report: " + context.path("report.html");
+  return text;
 }
 
 /// Nothing for our own engine. Throws BadInput.
@@ -104,48 +102,45 @@ LammpsRuns lammps_runs(const MacroScene& scene, const NamedLaws& law, const std:
 constexpr const char* kInitialFile = "macro_initial.h5";
 
 /// Bodies that LAMMPS is still to bring into touch are no starting state.
-void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& packings, const RunContext& context,
-                      const Provenance& provenance) {
-  if (scene.setup.spec.preparation == "softgrain") save_packings(packings, context, provenance, kInitialFile);
+void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& packings, const Run& run) {
+  if (scene.setup.spec.preparation == "softgrain") save_packings(packings, run, kInitialFile);
 }
 
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
 ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
-                      std::uint64_t seed, const TaskStore& store, const RunContext& context,
-                      const Provenance& provenance) {
-  context.guard([&] {
-    const auto packings = prepare_packings(scene.setup, seed, store, context, kInitialFile);
-    save_if_prepared(scene, packings, context, provenance);
-    write_lammps_files(lammps_runs(scene, law, contents, provenance), packings, context);
+                      const Run& run) {
+  run.context.guard([&] {
+    const auto packings = prepare_packings(scene.setup, run, kInitialFile);
+    save_if_prepared(scene, packings, run);
+    write_lammps_files(lammps_runs(scene, law, contents, run.provenance), packings, run.context);
   });
   nlohmann::json summary = {{"status", "written"}, {"title", scene.title}, {"remarks", {"nothing was run"}}};
   summary["law"] = identity_json(law.identity);
   summary["law"]["file"] = scene.law_file;
   for (std::int64_t k = 0; k < scene.setup.samples; ++k)
-    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
-  summary["provenance"] = provenance_json(provenance);
-  context.finish(summary,
-                 fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
-                             "--with-lammps builds); then the same command here with --resume and without --write-only",
-                             lammps_directory(context, 0),
-                             scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
-                             lammps::kProgramName));
+    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(run.context, k);
+  summary["provenance"] = provenance_json(run.provenance);
+  run.context.finish(
+      summary, fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
+                           "--with-lammps builds); then the same command here with --resume and without --write-only",
+                           lammps_directory(run.context, 0),
+                           scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
+                           lammps::kProgramName));
   return ExitStatus::good;
 }
 
-std::vector<MacroCurve> run(const MacroScene& scene, const std::optional<LammpsEngine>& lammps, const NamedLaws& law,
-                            const std::vector<ShellPacking>& contents, std::uint64_t seed, const TaskStore& store,
-                            const RunContext& context, const Provenance& provenance) {
-  if (!lammps) return run_macro_stage(scene.setup, law, contents, seed, store, context, provenance);
-  auto packings = prepare_packings(scene.setup, seed, store, context, kInitialFile);
-  save_if_prepared(scene, packings, context, provenance);
-  const LammpsRuns runs = lammps_runs(scene, law, contents, provenance);
-  write_lammps_files(runs, packings, context);
-  auto outcomes = run_with_lammps(runs, *lammps, packings, context);
-  if (scene.setup.spec.preparation == "lammps") save_packings(packings, context, provenance, kInitialFile);
-  auto curves = run_engines({scene.setup, packings, contents, seed, "macro"}, {}, store, context, provenance,
-                            "states_macro.h5", std::move(outcomes));
-  save_macro(curves, context.path("macro.h5"), provenance);
+std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::optional<LammpsEngine>& lammps,
+                                      const NamedLaws& law, const std::vector<ShellPacking>& contents, const Run& run) {
+  if (!lammps) return run_macro_stage(scene.setup, law, contents, run);
+  auto packings = prepare_packings(scene.setup, run, kInitialFile);
+  save_if_prepared(scene, packings, run);
+  const LammpsRuns runs = lammps_runs(scene, law, contents, run.provenance);
+  write_lammps_files(runs, packings, run.context);
+  auto outcomes = run_with_lammps(runs, *lammps, packings, run.context);
+  if (scene.setup.spec.preparation == "lammps") save_packings(packings, run, kInitialFile);
+  auto curves = run_engines({scene.setup, packings, contents, run.seed, "macro"}, {}, run, "states_macro.h5",
+                            std::move(outcomes));
+  save_macro(curves, run.path("macro.h5"), run.provenance);
   return curves;
 }
 
@@ -164,31 +159,21 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const std::optional<LammpsEngine> lammps = read_engine(options);
   if (macro.setup.spec.preparation == "lammps" && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
-  const RunContext context(options, "macrosim", std::filesystem::path(scene.path()).stem().string(), macro.law.files);
-  const std::uint64_t seed = context.seed(macro.seed);
-  const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed, macro.law.text);
+  const Run run(scene, options, "macrosim", macro.seed, {macro.law.files, macro.law.text});
   const auto contents =
-      macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, seed);
+      macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, run.seed);
   const NamedLaws law = law_of(macro, contents);
-  if (lammps && lammps->write_only)
-    return write_only(macro, law, contents, seed, store, context, provenance);
+  if (lammps && lammps->write_only) return write_only(macro, law, contents, run);
   std::vector<MacroCurve> curves;
-  context.guard([&] { curves = run(macro, lammps, law, contents, seed, store, context, provenance); });
+  run.context.guard([&] { curves = curves_of_run(macro, lammps, law, contents, run); });
 
   const bool usable = all_carry_stress(curves) &&
                       std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
   nlohmann::json summary = summarise(macro, law, curves, usable);
-  summary["files"] = {{"macro", context.path("macro.h5")},
-                      {"initial", context.path("macro_initial.h5")},
-                      {"report", context.path("report.html")}};
-  if (lammps) add_engine(*lammps, macro.setup.samples, context, summary);
-  summary["provenance"] = provenance_json(provenance);
-  const bool good = summary["status"] == "good";
-  context.finish(summary, people_text(law, curves, context));
-  write_report(context.directory());
-  store.clear();
-  return good ? ExitStatus::good : ExitStatus::not_usable;
+  summary["files"] = {
+      {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
+  if (lammps) add_engine(*lammps, macro.setup.samples, run.context, summary);
+  return run.finish(std::move(summary), people_text(law, curves));
 }
 
 }  // namespace

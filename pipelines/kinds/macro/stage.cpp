@@ -165,63 +165,55 @@ std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64
   return contents;
 }
 
-std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                           const RunContext& context, const std::string& file_name) {
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file_name) {
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
-  Progress progress("preparing macro samples", static_cast<double>(setup.samples), context.quiet());
+  Progress progress("preparing macro samples", static_cast<double>(setup.samples), run.context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
-    packings[static_cast<std::size_t>(k)] = kept_packing(setup.spec, seed, k, store, file_name);
+    packings[static_cast<std::size_t>(k)] = kept_packing(setup.spec, run.seed, k, run.store, file_name);
     progress.advance();
   });
   return packings;
 }
 
-void save_packings(const std::vector<MacroPacking>& packings, const RunContext& context, const Provenance& provenance,
-                   const std::string& file_name) {
-  h5::AtomicFile file(context.path(file_name));
-  write_provenance(file.root(), provenance);
+void save_packings(const std::vector<MacroPacking>& packings, const Run& run, const std::string& file_name) {
+  h5::AtomicFile file(run.path(file_name));
+  write_provenance(file.root(), run.provenance);
   for (std::size_t k = 0; k < packings.size(); ++k)
     write_macro_packing(file.root().create("sample_" + std::to_string(k)), packings[k]);
   file.commit();
 }
 
-std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                              const RunContext& context, const Provenance& provenance,
-                                              const std::string& file_name) {
-  auto packings = prepare_packings(setup, seed, store, context, file_name);
-  save_packings(packings, context, provenance, file_name);
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, const Run& run, const std::string& file_name) {
+  auto packings = prepare_packings(setup, run, file_name);
+  save_packings(packings, run, file_name);
   return packings;
 }
 
-std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
-                                    const RunContext& context, const Provenance& provenance,
+std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const Run& run,
                                     const std::string& states_file, std::vector<RunOutcome> before) {
-  const Stage stage{runs, store, mean_solid_fraction(runs.contents)};
+  const Stage stage{runs, run.store, mean_solid_fraction(runs.contents)};
   std::vector<Engine> with_laws;
   std::vector<Engine> twins;
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
   for (const std::string& name : runs.setup.twins) twins.push_back({name});
   std::vector<RunOutcome> outcomes = std::move(before);
-  run_kind(stage, with_laws, " with laws", context, outcomes);
-  run_kind(stage, twins, ": resolved twins", context, outcomes);
+  run_kind(stage, with_laws, " with laws", run.context, outcomes);
+  run_kind(stage, twins, ": resolved twins", run.context, outcomes);
   std::vector<MacroCurve> curves;
   std::vector<Snapshot> states;
   for (RunOutcome& o : outcomes) {
     curves.push_back(std::move(o.curve));
     std::move(o.states.begin(), o.states.end(), std::back_inserter(states));
   }
-  save_kept_states(states, context.path(states_file), provenance);
+  save_kept_states(states, run.path(states_file), run.provenance);
   return curves;
 }
 
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
-                                        const std::vector<ShellPacking>& contents, std::uint64_t seed,
-                                        const TaskStore& store, const RunContext& context,
-                                        const Provenance& provenance) {
-  const auto packings = make_macro_packings(setup, seed, store, context, provenance, "macro_initial.h5");
-  auto curves =
-      run_engines({setup, packings, contents, seed, "macro"}, {law}, store, context, provenance, "states_macro.h5");
-  save_macro(curves, context.path("macro.h5"), provenance);
+                                        const std::vector<ShellPacking>& contents, const Run& run) {
+  const auto packings = make_macro_packings(setup, run, "macro_initial.h5");
+  auto curves = run_engines({setup, packings, contents, run.seed, "macro"}, {law}, run, "states_macro.h5");
+  save_macro(curves, run.path("macro.h5"), run.provenance);
   return curves;
 }
 

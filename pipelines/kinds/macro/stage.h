@@ -10,8 +10,7 @@
 #include "macrosim/macro_packing.h"
 #include "macrosim/macro_system.h"
 #include "pipelines/kinds/macro/scene.h"
-#include "pipelines/run/run_context.h"
-#include "pipelines/run/task_store.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
@@ -20,17 +19,13 @@ std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64
 
 /// The starting states of all samples, the same for all engines (with preparation "lammps": where bodies are placed
 /// before it); they are kept in the store until the run has ended, under the name of `file` without its extension.
-std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                           const RunContext& context, const std::string& file);
+std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file);
 
 /// Writes them to DIR/`file`.
-void save_packings(const std::vector<MacroPacking>& packings, const RunContext& context, const Provenance& provenance,
-                   const std::string& file);
+void save_packings(const std::vector<MacroPacking>& packings, const Run& run, const std::string& file);
 
 /// Both.
-std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                              const RunContext& context, const Provenance& provenance,
-                                              const std::string& file);
+std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, const Run& run, const std::string& file);
 
 /// Of the contents, their mean; 1 without any.
 double mean_solid_fraction(const std::vector<ShellPacking>& contents);
@@ -56,15 +51,12 @@ Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, cons
 
 /// Every law, then every twin, each on all samples; goes on from checkpoints of recorded points. States that are kept
 /// for pictures go to DIR/`states_file`. `before`: runs of another engine, whose curves and states come first.
-std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const TaskStore& store,
-                                    const RunContext& context, const Provenance& provenance,
+std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const Run& run,
                                     const std::string& states_file, std::vector<RunOutcome> before = {});
 
 /// Runs all samples with `law` and the twins asked for, filled with `contents`; saves DIR/macro.h5,
 /// DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5.
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
-                                        const std::vector<ShellPacking>& contents, std::uint64_t seed,
-                                        const TaskStore& store, const RunContext& context,
-                                        const Provenance& provenance);
+                                        const std::vector<ShellPacking>& contents, const Run& run);
 
 }  // namespace softgrain

@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 
 #include "common/io/text_file.h"
 #include "macrosim/constructed_packing.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
-#include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 #include "pipelines/run/text_table.h"
 
@@ -94,16 +92,14 @@ void remark_spread(SceneResult& r) {
 }
 
 SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,
-                      const std::vector<ShellPacking>& contents, std::uint64_t seed, const TaskStore& store,
-                      const RunContext& context, const Provenance& provenance) {
+                      const std::vector<ShellPacking>& contents, const Run& run) {
   SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, true};
-  const auto packings =
-      make_macro_packings(scene.setup, seed, store, context, provenance, "macro_initial_" + scene.name + ".h5");
+  const auto packings = make_macro_packings(scene.setup, run, "macro_initial_" + scene.name + ".h5");
   for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
   r.laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
-  const auto curves = run_engines({scene.setup, packings, contents, seed, scene.name}, r.laws, store, context,
-                                  provenance, "states_macro_" + scene.name + ".h5");
-  save_macro(curves, context.path(r.file), provenance);
+  const auto curves = run_engines({scene.setup, packings, contents, run.seed, scene.name}, r.laws, run,
+                                  "states_macro_" + scene.name + ".h5");
+  save_macro(curves, run.path(r.file), run.provenance);
   r.scores = score_engines(curves);
   if (!all_carry_stress(curves)) {
     r.usable = false;
@@ -156,13 +152,13 @@ ScoreTable whole_table(const std::vector<SceneResult>& results) {
   return all;
 }
 
-void write_tables(const ScoreTable& scores, const RunContext& context) {
+void write_tables(const ScoreTable& scores, const Run& run) {
   const TextTable table{scores.header, scores.rows};
-  write_text_atomic(context.path("table.md"), as_markdown(table));
-  write_text_atomic(context.path("table.csv"), as_csv(table));
+  write_text_atomic(run.path("table.md"), as_markdown(table));
+  write_text_atomic(run.path("table.csv"), as_csv(table));
 }
 
-std::string people_text(const std::vector<SceneResult>& results, const RunContext& context, double seconds) {
+std::string people_text(const std::vector<SceneResult>& results, const Run& run) {
   std::string text;
   for (const SceneResult& r : results)
     for (const EngineScore& s : r.scores) {
@@ -173,8 +169,7 @@ std::string people_text(const std::vector<SceneResult>& results, const RunContex
                             100.0 * s.shelled.axial.mean, s.shelled.speedup_evaluations);
       text += "\n";
     }
-  return text +
-         fmt::format("{:.0f} s; table: {}; report: {}", seconds, context.path("table.md"), context.path("report.html"));
+  return text + "table: " + run.path("table.md") + "\n";
 }
 
 /// The packings of a comparison should be those that the law was measured on.
@@ -193,7 +188,7 @@ std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
   return {"the law was measured on soft particles of another packing or material than those of the twins"};
 }
 
-json summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>& results, const RunContext& context) {
+json summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>& results, const Run& run) {
   json s;
   bool usable = true;
   s["title"] = setup.title;
@@ -203,36 +198,26 @@ json summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>
     usable = usable && r.usable;
     s["scenes"].push_back(scene_json(r));
     for (const std::string& remark : r.remarks) s["remarks"].push_back(remark);
-    s["files"]["macro_" + r.name] = context.path(r.file);
+    s["files"]["macro_" + r.name] = run.path(r.file);
   }
   for (const char* file : {"comparison.json", "table.md", "table.csv", "report.html"})
-    s["files"][file] = context.path(file);
+    s["files"][file] = run.path(file);
   s["status"] = usable ? "good" : "not usable";
   return s;
 }
 
 ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   const MacroComparisonSetup setup = read_macro_comparison(scene);
-  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string(), setup.laws.files);
-  const std::uint64_t seed = context.seed(setup.seed);
-  const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed, setup.laws.text);
-  const auto contents = make_contents(setup.spec, setup.contents, seed);
+  const Run run(scene, options, "run", setup.seed, {setup.laws.files, setup.laws.text});
+  const auto contents = make_contents(setup.spec, setup.contents, run.seed);
   std::vector<SceneResult> results;
-  context.guard([&] {
-    for (const ComparisonScene& s : setup.scenes)
-      results.push_back(run_scene(s, setup, contents, seed, store, context, provenance));
+  run.context.guard([&] {
+    for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));
   });
-  json summary = summarise(setup, results, context);
-  summary["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  summary["provenance"] = provenance_json(provenance);
-  write_text_atomic(context.path("comparison.json"), json{{"scenes", summary["scenes"]}}.dump(2) + "\n");
-  write_tables(whole_table(results), context);
-  context.finish(summary, people_text(results, context, summary["seconds"].get<double>()));
-  write_report(context.directory());
-  store.clear();
-  return summary["status"] == "good" ? ExitStatus::good : ExitStatus::not_usable;
+  json summary = summarise(setup, results, run);
+  write_text_atomic(run.path("comparison.json"), json{{"scenes", summary["scenes"]}}.dump(2) + "\n");
+  write_tables(whole_table(results), run);
+  return run.finish(std::move(summary), people_text(results, run));
 }
 
 }  // namespace

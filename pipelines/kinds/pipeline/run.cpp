@@ -2,21 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
-#include "pipelines/law/law_json.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/pipeline/scene.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/stage.h"
-#include "pipelines/kinds/pipeline/scene.h"
-#include "pipelines/report/report.h"
-#include "pipelines/run/run_context.h"
+#include "pipelines/law/law_json.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 
 namespace softgrain {
@@ -62,14 +59,14 @@ struct PipelineResult {
   bool usable = true;
 };
 
-void fit(const PipelineSetup& setup, const RunContext& context, const Provenance& provenance, PipelineResult& result) {
+void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   FitOptions options = setup.fit;
   options.relaxation = setup.measure.series[0].relaxation;
-  options.seed = context.seed(setup.measure.seed);
+  options.seed = run.seed;
   result.card = calibrate(result.measured.data, options);
-  save_card(result.card, context.path("law.toml"), provenance);
+  save_card(result.card, run.path("law.toml"), run.provenance);
   for (const PairLaw& law : result.card.pairs) {
-    context.say(law_line(law));
+    run.context.say(law_line(law));
     if (law.status == "good") continue;
     result.usable = false;
     result.remarks.push_back(fmt::format("{} law: {}: {}", to_string(law.kind), law.status, law.reason));
@@ -77,13 +74,11 @@ void fit(const PipelineSetup& setup, const RunContext& context, const Provenance
 }
 
 /// What was measured and fitted is kept and said even when no macro run can follow: false, with a remark.
-bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const RunContext& context,
-                       const Provenance& provenance, PipelineResult& result) {
+bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   std::string why;
   try {
     const NamedLaws law = pair_law_of(result.card, setup.macro->spec, "law");
-    result.curves = run_macro_stage(*setup.macro, law, result.measured.packings, context.seed(setup.measure.seed),
-                                    store, context, provenance);
+    result.curves = run_macro_stage(*setup.macro, law, result.measured.packings, run);
     return true;
   } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();
@@ -95,9 +90,8 @@ bool run_macro_samples(const PipelineSetup& setup, const TaskStore& store, const
   return false;
 }
 
-void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunContext& context,
-               const Provenance& provenance, PipelineResult& result) {
-  if (!setup.macro || !run_macro_samples(setup, store, context, provenance, result)) return;
+void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
+  if (!setup.macro || !run_macro_samples(setup, run, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   result.usable = result.usable && all_carry_stress(result.curves);
@@ -115,13 +109,11 @@ void run_macro(const PipelineSetup& setup, const TaskStore& store, const RunCont
   }
 }
 
-json summarise(const PipelineSetup& setup, const PipelineResult& r, const Provenance& provenance,
-               const RunContext& context, double seconds) {
+json summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& run) {
   const Measurements& data = r.measured.data;
   json s;
   s["status"] = r.usable ? "good" : "not usable";
   s["title"] = setup.title;
-  s["seconds"] = seconds;
   s["laws"] = laws_json(r.card);
   s["packings"] = packings_json(data);
   s["packings"]["broke_off"] = r.measured.left_out.size();
@@ -139,14 +131,13 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Proven
   if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
   s["remarks"] = r.remarks;
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
-    s["files"][file] = context.path(file);
-  s["provenance"] = provenance_json(provenance);
+    s["files"][file] = run.path(file);
   return s;
 }
 
 std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : "(undefined)"; }
 
-std::string people_text(const PipelineResult& r, const RunContext& context, double seconds) {
+std::string people_text(const PipelineResult& r) {
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
   if (r.comparison)
@@ -156,28 +147,20 @@ std::string people_text(const PipelineResult& r, const RunContext& context, doub
         rounded(100.0 * r.comparison->axial_difference.mean), rounded(r.comparison->speedup_contact_evaluations),
         rounded(r.comparison->speedup_seconds));
   for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
-  return text + fmt::format("{:.0f} s; report: {}", seconds, context.path("report.html"));
+  return text;
 }
 
 ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   const PipelineSetup setup = read_pipeline_setup(scene.root());
-  const RunContext context(options, "run", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.measure.seed);
-  const Provenance provenance = context.provenance(scene, seed);
-  const TaskStore store(context, scene, seed);
+  const Run run(scene, options, "run", setup.measure.seed);
   PipelineResult result;
-  context.guard([&] { result.measured = run_measure_stage(setup.measure, store, context, provenance); });
+  run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
   for (const std::string& r : result.measured.left_out) result.remarks.push_back(r);
   result.usable = result.measured.enough_left;
-  fit(setup, context, provenance, result);
-  run_macro(setup, store, context, provenance, result);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  context.finish(summarise(setup, result, provenance, context, seconds), people_text(result, context, seconds));
-  write_report(context.directory());
-  store.clear();
-  return result.usable ? ExitStatus::good : ExitStatus::not_usable;
+  fit(setup, run, result);
+  run_macro(setup, run, result);
+  return run.finish(summarise(setup, result, run), people_text(result));
 }
 
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/stage.h"
-#include "pipelines/report/report.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 
 namespace softgrain {
@@ -16,11 +14,9 @@ namespace {
 ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& options) {
   const SoftParticleScene read = read_soft_particle_scene(scene);
   const MeasureSetup& setup = read.measure;
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string());
-  const std::uint64_t seed = context.seed(setup.seed);
-  const TaskStore store(context, scene, seed);
+  const Run run(scene, options, "microsim", setup.seed);
   MeasureResult result;
-  context.guard([&] { result = run_measure_stage(setup, store, context, context.provenance(scene, seed)); });
+  run.context.guard([&] { result = run_measure_stage(setup, run); });
 
   nlohmann::json summary;
   auto remarks = measurement_remarks(result.data);
@@ -37,16 +33,12 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
     summary["relaxations"] = relaxations_json(result.data, setup.series[1].relaxation, setup.series[0].relaxation);
   }
   summary["remarks"] = remarks;
-  summary["files"] = {{"measurements", context.path("measurements.h5")}, {"report", context.path("report.html")}};
-  summary["provenance"] = provenance_json(context.provenance(scene, seed));
+  summary["files"] = {{"measurements", run.path("measurements.h5")}, {"report", run.path("report.html")}};
   std::string people = fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\n",
                                    result.data.packings.size(), summary["packings"]["solid_fraction"].get<double>(),
                                    summary["measurement"]["points"].get<std::int64_t>(), result.wall_seconds);
   for (const std::string& text : result.left_out) people += "note: " + text + "\n";
-  context.finish(summary, people + "report: " + context.path("report.html"));
-  write_report(context.directory());
-  store.clear();
-  return usable ? ExitStatus::good : ExitStatus::not_usable;
+  return run.finish(std::move(summary), people);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -15,14 +14,11 @@
 #include "microsim/soft_snapshot.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/parallel_tasks.h"
+#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// One packing (or pair) under one relaxation.
 struct Task {
@@ -231,29 +227,27 @@ std::uint64_t second_body_index(std::int64_t packing) {
   return (std::uint64_t{1} << 32) + static_cast<std::uint64_t>(packing);
 }
 
-MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context,
-                                const Provenance& provenance) {
-  const auto start = Clock::now();
-  const std::uint64_t seed = context.seed(setup.seed);
+MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run) {
+  const Stopwatch start;
   MeasureResult result;
   const std::int64_t pairs = packings_of_kind(setup, PairKind::soft_soft);
-  Progress packing_progress("packing", static_cast<double>(setup.packings() + pairs), context.quiet());
-  result.packings = generate(setup, seed, setup.packings(), false, packing_progress);
-  const auto second = generate(setup, seed, pairs, true, packing_progress);
+  Progress packing_progress("packing", static_cast<double>(setup.packings() + pairs), run.context.quiet());
+  result.packings = generate(setup, run.seed, setup.packings(), false, packing_progress);
+  const auto second = generate(setup, run.seed, pairs, true, packing_progress);
   packing_progress.finish();
-  result.packing_seconds = seconds_since(start);
+  result.packing_seconds = start.seconds();
 
   const auto tasks = list_tasks(setup);
   const auto order = longest_first(tasks);
   double total = 0.0;
   for (const Task& t : tasks) total += t.weight();
-  Progress progress("measuring", total, context.quiet());
+  Progress progress("measuring", total, run.context.quiet());
   Measurements& data = result.data;
   data.spec = setup.spec;
   data.shell_turns = setup.series[0].plan(setup.series[0].kinds[0]).shell_turns;
   data.approach_speed = setup.published.approach_speed;
   for (const ShellPacking& p : result.packings) data.packings.push_back(describe(p, setup.spec));
-  const Stage stage{setup, store, result.packings, second, progress};
+  const Stage stage{setup, run.store, result.packings, second, progress};
   std::vector<TaskOutcome> outcomes(tasks.size());
   parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
     const std::size_t t = order[static_cast<std::size_t>(k)];
@@ -263,12 +257,12 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& stor
   std::vector<std::vector<Snapshot>> states;
   for (TaskOutcome& o : outcomes) states.push_back(std::move(o.states));
   collect(tasks, outcomes, result);
-  for (const std::string& text : result.left_out) context.say(text);
+  for (const std::string& text : result.left_out) run.context.say(text);
   if (data.runs.empty())
     throw NotUsable(fmt::format("not one of {} measurements came to its end; {}", tasks.size(), result.left_out[0]));
-  save(data, context.path("measurements.h5"), provenance);
-  save_kept_states(joined(states), context.path("states_measurements.h5"), provenance);
-  result.wall_seconds = seconds_since(start);
+  save(data, run.path("measurements.h5"), run.provenance);
+  save_kept_states(joined(states), run.path("states_measurements.h5"), run.provenance);
+  result.wall_seconds = start.seconds();
   return result;
 }
 

@@ -7,8 +7,7 @@
 #include "common/data/measurements.h"
 #include "common/data/shell_packing.h"
 #include "pipelines/kinds/soft_particle/scene.h"
-#include "pipelines/run/run_context.h"
-#include "pipelines/run/task_store.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
@@ -27,7 +26,6 @@ struct MeasureResult {
 std::uint64_t second_body_index(std::int64_t packing);
 
 /// Generates, measures and saves DIR/measurements.h5. Results do not depend on the number of threads.
-MeasureResult run_measure_stage(const MeasureSetup& setup, const TaskStore& store, const RunContext& context,
-                                const Provenance& provenance);
+MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run);
 
 }  // namespace softgrain

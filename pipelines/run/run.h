@@ -1,0 +1,45 @@
+// One run of a scene from its beginning to its end.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/core/stopwatch.h"
+#include "pipelines/run/run_context.h"
+#include "pipelines/run/task_store.h"
+
+namespace softgrain {
+
+/// What a run needs beside its scene.
+struct RunInputs {
+  std::vector<std::string> files{};  ///< that it reads, beside the scene
+  std::string text{};                ///< that determines it, beside scene and seed: of a law file, say
+};
+
+/// Its directory, kept tasks, seed and provenance, and the clock; every part of a run is handed this.
+class Run {
+ public:
+  /// Begins the run, or goes on with it (--resume). Throws FileTrouble, BadInput as RunContext and TaskStore do.
+  Run(const Scene& scene, const CommonOptions& options, const std::string& command, std::uint64_t scene_seed,
+      const RunInputs& inputs = {});
+
+  [[nodiscard]] std::string path(const std::string& file) const { return context.path(file); }
+  /// Wall time since the beginning [s].
+  [[nodiscard]] double seconds() const { return watch_.seconds(); }
+
+  /// Ends the run: writes the summary ("seconds" and "provenance" added) and the report, says `people` and where the
+  /// report is, and removes the kept tasks. Status not_usable unless the summary's "status" is "good".
+  ExitStatus finish(nlohmann::json summary, const std::string& people) const;
+
+ private:
+  Stopwatch watch_;
+
+ public:
+  const RunContext context;
+  const std::uint64_t seed;
+  const Provenance provenance;
+  const TaskStore store;
+};
+
+}  // namespace softgrain
