@@ -1,5 +1,7 @@
 #include "pipelines/run/run.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "pipelines/report/report.h"
@@ -18,7 +20,7 @@ ExitStatus Run::finish(nlohmann::json summary, const std::string& people) const 
   summary["seconds"] = seconds();
   summary["provenance"] = provenance_json(provenance);
   const bool good = summary["status"] == "good";
-  context.finish(std::move(summary), people + "report: " + path("report.html"));
+  context.finish(std::move(summary), people + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
   write_report(context.directory());
   store.clear();
   return good ? ExitStatus::good : ExitStatus::not_usable;

@@ -28,8 +28,8 @@ class Run {
   /// Wall time since the beginning [s].
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
 
-  /// Ends the run: writes the summary ("seconds" and "provenance" added) and the report, says `people` and where the
-  /// report is, and removes the kept tasks. Status not_usable unless the summary's "status" is "good".
+  /// Ends the run: writes the summary ("seconds" and "provenance" added) and the report, says `people`, how long it took and
+  /// where the report is, and removes the kept tasks. Status not_usable unless the summary's "status" is "good".
   ExitStatus finish(nlohmann::json summary, const std::string& people) const;
 
  private:

@@ -54,6 +54,7 @@ class PackingState {
     this.forces = packingArray(raw.forces, Float32Array);
     this.contacts = this.forces.length;
     this.walls = raw.walls;
+    this.flat = this.count > 1 && this.spheres.every((v, k) => k % 4 !== 2 || v === this.spheres[2]);  // disks
     this.findEnds();
     this.gather();
   }

@@ -137,7 +137,9 @@ class PackingView {
 
   lookAtAll() {
     const target = this.box.low.map((v, a) => 0.5 * (v + this.box.high[a]));
-    this.view = { target, azimuth: -1.15, elevation: 0.32, size: 0.88 * this.reach(), reach: 2 * this.reach() };
+    // Disks from above, y upwards.
+    const [azimuth, elevation] = this.series.state(this.series.states - 1).flat ? [-Math.PI / 2, 1.55] : [-1.15, 0.32];
+    this.view = { target, azimuth, elevation, size: 0.88 * this.reach(), reach: 2 * this.reach() };
     this.picked = -1;
     this.tell();
     this.refill();
