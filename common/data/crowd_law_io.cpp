@@ -167,7 +167,7 @@ LawTableEntry read_entry(const SceneTable& t) {
     const SceneTable of_kind = t.table(slide.key);
     (e.*slide.law).kt_ratio = read_estimate_text(of_kind.table("kt_ratio"), Range::closed(0.0, kLargestShare));
     (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::closed(0.0, kLargestShare));
-    // Files of before do not say it: what stands in has no error there.
+    // Where it is not said: what stands in for a measurement has no error.
     (e.*slide.law).measured = of_kind.flag("measured", std::isfinite((e.*slide.law).friction.standard_error));
   }
   e.retreat = read_estimate_text(t.table("retreat"), Range::closed(1.0, kLargestShare));

@@ -32,7 +32,7 @@ constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-1.0, 1.0}}
                                {"coordination", "1", &MacroCurve::coordination, kNotNegative},
                                {"residual", "1", &MacroCurve::residual, kNotNegative}};
 
-/// Later additions: absent in files of before.
+/// May be absent.
 constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x},
                                        {"stress_y", "Pa", &MacroCurve::stress_y},
                                        {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
@@ -101,7 +101,7 @@ void write_origin(const h5::Group& group, const MacroCurve& curve) {
     if (curve.law.*n.value) group.attribute(n.name, *(curve.law.*n.value));
 }
 
-/// Files of before say neither.
+/// Either may be absent.
 void read_origin(const h5::Group& group, MacroCurve& curve) {
   if (group.has_attribute("start")) {
     curve.start.bodies = group.text("start");

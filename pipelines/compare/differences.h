@@ -17,8 +17,8 @@ struct Differences {
 };
 
 /// Of two curves, "what: candidate against reference". Bodies, radii, materials, tests are obstacles; a law with
-/// another law is what is compared, a law with a twin that starts elsewhere is not. Files of before do not say it all:
-/// that is said.
+/// another law is what is compared, a law with a twin that starts elsewhere is not. Where a file does not say
+/// it all, that is said.
 Differences differences(const MacroCurve& candidate, const MacroCurve& reference);
 
 /// Of two kinds of soft particle: E and Rs drop out of dimensionless forces, nu, mu and the way of packing do not.

@@ -45,7 +45,7 @@ nlohmann::json read_object(const std::string& file) {
   return object.is_object() ? object : nlohmann::json::object();
 }
 
-/// What the run in a directory is of; runs of before say it in the summary of a run that has ended.
+/// What the run in a directory is of; where its own file does not say it, the summary of a run that has ended does.
 nlohmann::json earlier_run(const std::string& run_file, const std::string& summary_file) {
   const nlohmann::json run = read_object(run_file);
   if (!run.empty()) return run;
