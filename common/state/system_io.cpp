@@ -120,6 +120,18 @@ void require_places(const Particles<D>& p) {
   }
 }
 
+/// A grain lies in a shell or in none; a shell that lies in itself, by whatever way round, would be followed for ever.
+template <int D>
+void require_shells(const Particles<D>& p) {
+  for (const std::int32_t first : p.shell) {
+    Slot k = first;
+    for (Slot depth = 0; k >= 0; ++depth) {
+      if (k < p.grains || k >= p.first_plane() || depth > p.shells) damaged("shell");
+      k = p.shell[static_cast<std::size_t>(k)];
+    }
+  }
+}
+
 template <int D>
 void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
   constexpr int kTurns = static_cast<int>(sizeof(Rot<D>) / sizeof(double));
@@ -140,6 +152,7 @@ void read_bodies(const h5::Group& g, Particles<D>& p, Count materials) {
   p.inverse_inertia = read_numbers(g, "inverse_inertia", n);
   p.material = read_slots(g, "material", n, 0, materials);
   p.shell = read_slots(g, "shell", n, -1, p.size());
+  require_shells(p);
   p.id = read_ids(g, p.grains);
   p.plane_normal = read_vectors<D>(g, "plane_normal", static_cast<std::size_t>(p.planes));
   p.plane_load = read_numbers(g, "plane_load", static_cast<std::size_t>(p.planes));

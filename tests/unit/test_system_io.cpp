@@ -82,6 +82,19 @@ TEST(SystemIo, AStateOfOtherDimensionOrLengthIsRefused) {
   EXPECT_THROW(read_system(group, flat), FileTrouble);
 }
 
+/// Whatever follows shells outwards would go round for ever.
+TEST(SystemIo, AShellThatLiesInItselfIsDamage) {
+  System3 s = shell_and_plane_system<3>(0.4, 0.7, false);
+  ASSERT_GT(s.particles.shells, 0);
+  const auto shell = static_cast<std::size_t>(s.particles.grains);
+  EXPECT_NO_THROW(saved_and_read(s));
+  s.particles.shell[shell] = s.particles.grains;
+  EXPECT_THROW(saved_and_read(s), FileTrouble);
+  s.particles.shell[shell] = -1;
+  s.particles.shell[0] = 0;
+  EXPECT_THROW(saved_and_read(s), FileTrouble) << "a grain is no shell";
+}
+
 void write_number(const std::string& path, const std::string& scene, double number) {
   write_checkpoint(path, scene,
                    [&](const h5::Group& g) { g.create("a").write("x", std::vector<double>(1000, number)); });
