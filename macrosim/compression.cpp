@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/error.h"
+#include "common/core/stopwatch.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
@@ -11,7 +12,6 @@
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/curve_notes.h"
-#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
@@ -70,8 +70,8 @@ RelaxationResult counted_step(DampedRelaxation<3>& relaxation, CompressionState&
   if (strain != Vec3{}) strain_box(state.macro.system, state.macro.box, strain);
   const RelaxationResult rest = relaxation.relax(state.macro.system);
   const Cost& now = state.macro.system.cost;
-  state.curve.cost += {now.loop_passes - before.loop_passes, now.contact_evaluations - before.contact_evaluations,
-                       watch.seconds()};
+  state.curve.cost +=
+      {now.loop_passes - before.loop_passes, now.contact_evaluations - before.contact_evaluations, watch.seconds()};
   return rest;
 }
 

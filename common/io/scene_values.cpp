@@ -1,8 +1,8 @@
 // Values of a scene: numbers with units and ranges, counts, flags, words, vectors and lists.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <span>
+#include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"

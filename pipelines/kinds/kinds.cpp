@@ -17,32 +17,41 @@
 
 namespace softgrain {
 
+namespace {
+
+/// Null when there is none.
+const SceneKind* find(const std::string& name) {
+  const auto kinds = scene_kinds();
+  const auto at = std::find_if(kinds.begin(), kinds.end(), [&](const SceneKind& k) { return name == k.name; });
+  return at == kinds.end() ? nullptr : &*at;
+}
+
+/// Of the kinds that `command` runs; of all when it is empty.
+std::vector<const char*> names_of(const std::string& command) {
+  std::vector<const char*> names;
+  for (const SceneKind& k : scene_kinds())
+    if (command.empty() || command == k.command) names.push_back(k.name);
+  return names;
+}
+
+}  // namespace
+
 std::span<const SceneKind> scene_kinds() {
-  static const std::array kinds{pipeline_kind(), macro_comparison_kind(), law_table_kind(), hierarchy_kind(), inverse_kind(), soft_particle_kind(), particles_kind(), grain_box_kind(), cohesive_powder_kind(), macro_kind()};
+  static const std::array kinds{
+      pipeline_kind(),      macro_comparison_kind(), law_table_kind(), hierarchy_kind(),       inverse_kind(),
+      soft_particle_kind(), particles_kind(),        grain_box_kind(), cohesive_powder_kind(), macro_kind()};
   return kinds;
 }
 
-const SceneKind& kind_of(const Scene& scene) {
-  std::vector<const char*> names;
-  for (const SceneKind& k : scene_kinds()) names.push_back(k.name);
-  const std::string kind = scene.root().choice("kind", names);
-  return *std::find_if(scene_kinds().begin(), scene_kinds().end(), [&](const SceneKind& k) { return kind == k.name; });
-}
+const SceneKind& kind_of(const Scene& scene) { return *find(scene.root().choice("kind", names_of(""))); }
 
 const SceneKind& kind_of(const Scene& scene, const std::string& command) {
   const SceneTable root = scene.root();
-  std::vector<const char*> names;
-  for (const SceneKind& k : scene_kinds())
-    if (command == k.command) names.push_back(k.name);
-  if (root.is_text("kind")) {
-    const std::string kind = root.text("kind");
-    for (const SceneKind& k : scene_kinds())
-      if (kind == k.name && command != k.command)
-        root.reject("kind",
-                    "scenes of this kind run with softgrain " + std::string(k.command) + ", not with " + command);
-  }
-  const std::string kind = root.choice("kind", names);
-  return *std::find_if(scene_kinds().begin(), scene_kinds().end(), [&](const SceneKind& k) { return kind == k.name; });
+  const SceneKind* named = root.is_text("kind") ? find(root.text("kind")) : nullptr;
+  if (named != nullptr && command != named->command)
+    root.reject("kind",
+                "scenes of this kind run with softgrain " + std::string(named->command) + ", not with " + command);
+  return *find(root.choice("kind", names_of(command)));
 }
 
 }  // namespace softgrain

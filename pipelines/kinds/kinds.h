@@ -13,8 +13,7 @@ std::span<const SceneKind> scene_kinds();
 /// The kind that the scene names. Throws BadInput.
 const SceneKind& kind_of(const Scene& scene);
 
-/// The same when `command` runs it (a scene without `kind` is what macrosim runs). Throws BadInput at `kind`, naming
-/// the command that does.
+/// The same when `command` runs it. Throws BadInput at `kind`, naming the command that does.
 const SceneKind& kind_of(const Scene& scene, const std::string& command);
 
 }  // namespace softgrain

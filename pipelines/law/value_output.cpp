@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "pipelines/law/terminal_plot.h"
 #include "common/io/json_number.h"
+#include "pipelines/law/terminal_plot.h"
 
 namespace softgrain::law {
 

@@ -20,6 +20,11 @@ struct RunInputs {
 /// Its directory, kept tasks, seed and provenance, and the clock; every part of a run is handed this.
 class Run {
  public:
+  const RunContext context;
+  const std::uint64_t seed;
+  const Provenance provenance;
+  const TaskStore store;
+
   /// Begins the run, or goes on with it (--resume). Throws FileTrouble, BadInput as RunContext and TaskStore do.
   Run(const Scene& scene, const CommonOptions& options, const std::string& command, std::uint64_t scene_seed,
       const RunInputs& inputs = {});
@@ -28,18 +33,13 @@ class Run {
   /// Wall time since the beginning [s].
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
 
-  /// Ends the run: writes the summary ("seconds" and "provenance" added) and the report, says `people`, how long it took and
-  /// where the report is, and removes the kept tasks. Status not_usable unless the summary's "status" is "good".
+  /// Ends the run: writes the summary ("seconds" and "provenance" added) and the report, says `people`, how long it
+  /// took and where the report is, and removes the kept tasks. Status not_usable unless the summary's "status" is
+  /// "good".
   ExitStatus finish(nlohmann::json summary, const std::string& people) const;
 
  private:
   Stopwatch watch_;
-
- public:
-  const RunContext context;
-  const std::uint64_t seed;
-  const Provenance provenance;
-  const TaskStore store;
 };
 
 }  // namespace softgrain

@@ -1,25 +1,13 @@
 #include "pipelines/run/trial_times.h"
-#include "common/core/stopwatch.h"
-
-#include <omp.h>
 
 #include <ctime>
+
+#include "common/core/one_thread.h"
+#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
 namespace {
-
-/// One thread as long as it lives.
-class OneThread {
- public:
-  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
-  ~OneThread() { omp_set_num_threads(before_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
- private:
-  int before_;
-};
 
 template <typename Timer>
 double mean_of_calls(const Timer& timed, double budget, std::int64_t most) {

@@ -12,6 +12,9 @@ double seconds_of(const std::function<void()>& work);
 /// Mean wall time of a call [s]: called at least once and at most `most` times, until `budget` seconds have passed.
 double seconds_per_call(const std::function<void()>& work, double budget, std::int64_t most);
 
+/// An observer throws it to end a trial that has taken long enough.
+struct TrialOver {};
+
 /// Processor time of this thread so far [s].
 double thread_seconds();
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/one_thread.h"
 #include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/force_pass.h"
@@ -53,18 +54,6 @@ inline AnyLaw law_of(const Needs& n) {
   const Material m = grain_material();
   return hertz_law(HertzCoefficients::of(m, m, n.friction ? 0.3 : 0.0, n.damping ? 0.5 : 1.0), n.rescaled);
 }
-
-/// Benchmarks measure one thread unless they say otherwise.
-class OneThread {
- public:
-  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
-  ~OneThread() { omp_set_num_threads(before_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
- private:
-  int before_;
-};
 
 template <int D>
 void clear_forces(Particles<D>& p) {

@@ -37,7 +37,8 @@ TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
 }
 
 TEST(Kinds, UnknownOnesAreNamedWithTheNearest) {
-  EXPECT_NE(complaint("pipline", "run").find("nearest is \"pipeline\""), std::string::npos) << complaint("pipline", "run");
+  EXPECT_NE(complaint("pipline", "run").find("nearest is \"pipeline\""), std::string::npos)
+      << complaint("pipline", "run");
   EXPECT_THROW((void)kind_of(Scene::parse("seed = 1\n", "s.toml"), "run"), BadInput);
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "microsim/powder/powder_spec_io.h"
@@ -19,7 +20,6 @@
 #include "pipelines/run/run_summary.h"
 #include "pipelines/run/sample_statistics.h"
 #include "pipelines/run/task_store.h"
-#include "common/core/stopwatch.h"
 
 namespace softgrain {
 

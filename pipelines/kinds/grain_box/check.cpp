@@ -29,6 +29,7 @@ PackTrial try_pack(const GrainBoxSpec& spec, std::uint64_t seed) {
   small.grains = std::min(spec.grains, kGrains);
   small.loading.end_strain = std::min(spec.loading.end_strain, kIncrements * spec.loading.increments.front());
   PackTrial t{.grains = static_cast<double>(small.grains)};
+  constexpr double kBudget = 2.0;
   const double start = thread_seconds();
   double loading = 0.0;  // when it begins
   double done = 0.0;
@@ -38,8 +39,14 @@ PackTrial try_pack(const GrainBoxSpec& spec, std::uint64_t seed) {
       loading = thread_seconds();
     else if (state.phase == BoxPhase::loading)
       done += 1.0;
+    if (thread_seconds() - start > kBudget) throw TrialOver{};
   };
-  const double whole = core_seconds_of([&] { (void)run_grain_box(small, seed, {}, control); });
+  const double whole = core_seconds_of([&] {
+    try {
+      (void)run_grain_box(small, seed, {}, control);
+    } catch (const TrialOver&) {
+    }
+  });
   t.generation = loading > 0.0 ? loading - start : whole;
   t.increment = done > 0.0 ? (whole - t.generation) / done : 0.0;
   return t;

@@ -21,6 +21,7 @@ double expected_levels(const HierarchySetup& setup) {
 void spend_on_levels(const HierarchySetup& setup, const MeasureTrial& trial, Findings& out) {
   constexpr double kInside = 3.5;         // time of a level over that of the finest, which has nothing inside
   constexpr double kFillingPasses = 8e5;  // filling the voids of one packing takes as long as so many passes over it
+  spend_on_packings(setup.crowd, trial, expected_levels(setup), out);
   spend_on_crowd(setup.crowd, trial, 1.0, "level 0", out);
   const double further = expected_levels(setup) - 1.0;
   if (further > 0.0) {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/io/json_number.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/inverse/stage.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
-#include "common/io/json_number.h"
 
 namespace softgrain {
 

@@ -9,11 +9,18 @@ namespace softgrain {
 
 void check_law_table(const Scene& scene, Findings& out) {
   const LawTableSetup setup = read_law_table(scene);
-  spend_on_crowd(setup.crowd, check_crowd(setup.crowd, out), 1.0, "measuring", out);
+  const MeasureTrial trial = check_crowd(setup.crowd, out);
+  spend_on_packings(setup.crowd, trial, 1.0, out);
+  spend_on_crowd(setup.crowd, trial, 1.0, "measuring", out);
   out.facts["variants"] = setup.variants.size();
-  for (const LawTableVariant& v : setup.variants)
+  for (const LawTableVariant& v : setup.variants) {
+    CrowdSetup of_variant = setup.crowd;
+    of_variant.packings_min = of_variant.packings_max = v.packings;
+    spend_on_packings(of_variant, trial, 1.0, out);
+    spend_on_crowd(of_variant, trial, 1.0, "variants", out);
     out.lines += fmt::format("  the same on {} packings with beta = {}, {} trials per grain\n", v.packings, v.spec.beta,
                              v.spec.trials);
+  }
   if (setup.variants.empty())
     out.warn(
         "one kind of packing: the table serves contents within 0.02 of its solid fraction; a [[variant]] widens it");

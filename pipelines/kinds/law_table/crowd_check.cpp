@@ -141,9 +141,12 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
   return trial;
 }
 
+void spend_on_packings(const CrowdSetup& setup, const MeasureTrial& trial, double times, Findings& out) {
+  out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.packings_max));
+}
+
 void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
                     Findings& out) {
-  out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.packings_max));
   out.spend(part, times * expected_packings(setup) * seconds_per_packing(setup, trial.pass_seconds));
 }
 

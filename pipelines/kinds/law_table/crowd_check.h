@@ -12,7 +12,10 @@ namespace softgrain {
 /// Counts, overlaps, memory, and what the table will lack; returns the trial of its first packing.
 MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out);
 
-/// Adds what packings and runs take, `times` over; `part`: their name among the parts of the time.
+/// Adds what the packings take, `times` over.
+void spend_on_packings(const CrowdSetup& setup, const MeasureTrial& trial, double times, Findings& out);
+
+/// Adds what the runs take, `times` over; `part`: their name among the parts of the time.
 void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
                     Findings& out);
 

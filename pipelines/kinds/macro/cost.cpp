@@ -48,8 +48,6 @@ std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, do
   return out;
 }
 
-struct TrialOver {};
-
 /// Core seconds of a whole test by law, from as much of it as is done in a moment; 0 where nothing is.
 double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLaws& law, double solid_fraction) {
   constexpr double kBudget = 0.4;

@@ -1,10 +1,10 @@
+#include "pipelines/kinds/macro/scene.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "common/core/error.h"
-#include "pipelines/kinds/macro/scene.h"
-
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
@@ -14,7 +15,6 @@
 #include "microsim/soft_snapshot.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/parallel_tasks.h"
-#include "common/core/stopwatch.h"
 
 namespace softgrain {
 
