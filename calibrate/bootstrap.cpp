@@ -6,6 +6,7 @@
 
 #include "calibrate/joint_fit.h"
 #include "calibrate/residual_draws.h"
+#include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/io/interrupt.h"
 
@@ -116,7 +117,6 @@ double scatter_of(const std::vector<double>& values) {
 
 std::pair<double, double> interval95(std::vector<double> values) {
   constexpr double kTail = 0.025;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (values.empty()) return {-kInfinity, kInfinity};
   std::sort(values.begin(), values.end());
   const auto quantile = [&](double p) {

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "calibrate/bootstrap.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/io/interrupt.h"
 
@@ -19,20 +18,17 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Streams beside those of the bootstrap over packings (1, 2): of replicates, and of the shift of points.
 constexpr std::uint64_t kReplicateStream = std::uint64_t{3} << 32;
 constexpr std::uint64_t kShiftStream = std::uint64_t{4} << 32;
 
-/// Mean and error of the mean over packings at one Delta.
-struct Mean {
+/// MeanForce and error of the mean over packings at one Delta.
+struct MeanForce {
   double value = kNaN;
   double error = 0.0;
 };
 
-Mean mean_at(const InverseEvaluation& e, std::size_t j, std::size_t deltas, const std::vector<int>& times) {
+MeanForce mean_at(const InverseEvaluation& e, std::size_t j, std::size_t deltas, const std::vector<int>& times) {
   double n = 0.0;
   double sum = 0.0;
   double squares = 0.0;
@@ -208,7 +204,7 @@ double misfit_of(const InverseEvaluation& e, const InverseTarget& t) {
   const double largest = *std::max_element(t.force.begin(), t.force.end());
   double sum = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
-    const Mean m = mean_at(e, j, n, {});
+    const MeanForce m = mean_at(e, j, n, {});
     const double off = t.discrepancy * std::max(std::abs(t.force[j]), 0.02 * largest);
     sum += std::pow(m.value - t.force[j], 2) / (t.error[j] * t.error[j] + m.error * m.error + off * off);
   }
@@ -271,12 +267,6 @@ std::vector<std::vector<double>> next_points(const std::vector<InverseEvaluation
 
 namespace {
 
-/// Box and Muller.
-double normal_number(RandomStream& random) {
-  const double radius = std::sqrt(-2.0 * std::log(random.uniform()));
-  return radius * std::cos(2.0 * std::numbers::pi * random.uniform());
-}
-
 /// One answer from packings, evaluations and target drawn anew.
 std::vector<double> redrawn(const std::vector<InverseEvaluation>& done, const InverseTarget& t, const Place& best,
                             const std::vector<double>& errors, std::uint64_t seed, int replicate) {
@@ -286,10 +276,9 @@ std::vector<double> redrawn(const std::vector<InverseEvaluation>& done, const In
   std::vector<int> times(packings, 0);
   for (std::size_t k = 0; k < packings; ++k) ++times[random.below(packings)];
   // Errors along a measured curve are partly common to it: half of the variance is taken so.
-  const double common = normal_number(random);
+  const double common = random.normal();
   std::vector<double> wanted = t.force;
-  for (std::size_t j = 0; j < wanted.size(); ++j)
-    wanted[j] += t.error[j] * std::sqrt(0.5) * (common + normal_number(random));
+  for (std::size_t j = 0; j < wanted.size(); ++j) wanted[j] += t.error[j] * std::sqrt(0.5) * (common + random.normal());
   const Prepared p = prepare(done, t, times, wanted, errors);
   std::vector<double> weights = best.weights;
   for (double& w : weights)

@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "calibrate/bootstrap.h"
+#include "common/core/limits.h"
 
 namespace softgrain {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 int count_values(const CurveSamples& s) {
   return static_cast<int>(std::count_if(s.value.begin(), s.value.end(), [](double x) { return !std::isnan(x); }));

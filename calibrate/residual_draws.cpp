@@ -2,19 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace softgrain {
-
-namespace {
-
-/// Box and Muller; two uniform numbers each, so that draws do not depend on what was drawn before.
-double normal_number(RandomStream& random) {
-  const double radius = std::sqrt(-2.0 * std::log(random.uniform()));
-  return radius * std::cos(2.0 * std::numbers::pi * random.uniform());
-}
-
-}  // namespace
 
 ResidualDraws::ResidualDraws(const BootstrapInput& input, const std::vector<GivenError>& given) : input_(input) {
   given_[0] = given;
@@ -60,12 +49,12 @@ FitCurves ResidualDraws::draw(RandomStream& random) const {
     for (std::size_t i = 0; i < drawn.packings; ++i) {
       double number = 0.0;
       auto left = static_cast<std::size_t>(random.below(curves_[j].block));  // blocks begin anywhere
-      if (left > 0) number = normal_number(random);
+      if (left > 0) number = random.normal();
       for (std::size_t k = 0; k < n; ++k) {
         const double amplitude = curves_[j].amplitude[i * n + k];
         if (std::isnan(amplitude)) continue;
         if (left == 0) {
-          number = normal_number(random);
+          number = random.normal();
           left = curves_[j].block;
         }
         --left;

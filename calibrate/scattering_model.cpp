@@ -3,14 +3,13 @@
 #include <gsl/gsl_sf_gamma.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "common/core/limits.h"
 
 namespace softgrain {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// 2F1(a, b; c; y) by its series, for 0 <= y <= 1/2 where each term is about half the one before.
 double hypergeometric(double a, double b, double c, double y) {

@@ -12,8 +12,6 @@ namespace softgrain {
 
 namespace {
 
-double cube(double x) { return x * x * x; }
-
 /// Draws bodies one by one, always of the kind that is behind its share of the volume.
 std::vector<MacroBody> draw_bodies(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
   RandomStream random(seed, RandomPurpose::macro_radii, sample);

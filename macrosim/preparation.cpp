@@ -15,8 +15,6 @@ namespace softgrain {
 
 namespace {
 
-double cube(double x) { return x * x * x; }
-
 /// Largest first at random places of a cube; false when one finds none.
 bool place(std::vector<MacroBody>& bodies, double edge, RandomStream& random) {
   constexpr int kTrials = 100000;

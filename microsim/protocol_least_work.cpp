@@ -17,7 +17,7 @@ namespace softgrain {
 namespace {
 
 /// Steps are counted in those of the published protocol.
-constexpr PublishedOptions kPublished{};
+constexpr PublishedOptions kPublishedOptions{};
 /// After an increment without equilibrium the next ones go straight to dynamics, in one stretch: 1, 2, 4... up to
 /// these.
 constexpr int kLongestDetour = 8;
@@ -28,7 +28,7 @@ constexpr int kLongestDetour = 8;
 void run_steps(SoftExperiment& e, double speed, double duration, std::int64_t steps) {
   const double dt = duration / static_cast<double>(steps);
   {
-    const ScaledMasses<3> raised(e.system, dt, kPublished.crowded_fraction);
+    const ScaledMasses<3> raised(e.system, dt, kPublishedOptions.crowded_fraction);
     e.set_damping(true);
     e.add_approach_speed(speed);
     VelocityVerlet<3> integrator(dt);
@@ -44,7 +44,7 @@ void run_steps(SoftExperiment& e, double speed, double duration, std::int64_t st
 }
 
 void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
-  const double nominal = step_factor * kPublished.step_fraction * step_limit(e.system).natural_time;
+  const double nominal = step_factor * kPublishedOptions.step_fraction * step_limit(e.system).natural_time;
   const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
   with_steps_short_enough(e, [&](int halves) { run_steps(e, speed, duration, steps * halves); });
 }

@@ -43,6 +43,7 @@ struct Particles {
 };
 
 using Slot = std::int32_t;
+inline std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
 
 /// A body to be added. Mass and inertia zero mean "not moved by forces".
 template <int D>

@@ -4,7 +4,9 @@
 
 #include <Random123/philox.h>
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace softgrain {
 
@@ -40,6 +42,12 @@ class RandomStream {
   static double open_unit(std::uint64_t bits) {
     const double u = (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;
     return u < 1.0 ? u : 1.0 - 0x1p-53;
+  }
+
+  /// Normal, mean 0, deviation 1 (Box and Muller; the second of the pair is not used).
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
   /// Uniform integer in [0, n), n > 0, by rejection (unbiased).

@@ -10,6 +10,8 @@ namespace softgrain {
 /// Volume of a sphere of radius 1.
 inline constexpr double kSphereVolume = 4.0 / 3.0 * std::numbers::pi;
 
+inline double cube(double x) { return x * x * x; }
+
 /// A body with mass 4/3 pi r^3 rho and inertia 2/5 m r^2. SI units.
 inline NewBody<3> solid_sphere(const Vec3& x, double r, double density, std::int32_t material) {
   NewBody<3> body;

@@ -1,4 +1,5 @@
 #include "common/data/card_text.h"
+#include "common/core/limits.h"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,16 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+std::string read_words(const SceneTable& root, std::initializer_list<const char*> definitions) {
+  const SceneTable provenance = root.table_or_empty("provenance");
+  const std::string table_id = provenance.text("table", "");
+  for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
+  (void)provenance.count("threads", 1, std::numeric_limits<int>::max(), 1);
+  const SceneTable known = root.table_or_empty("definitions");
+  for (const char* key : definitions) (void)known.text(key, "");
+  return table_id;
+}
+
 std::optional<Beyond> read_beyond(const SceneTable& table) {
   if (!table.has("beyond")) return std::nullopt;
   const std::string word = table.choice("beyond", {"error", "clamp", "extrapolate"});
@@ -49,7 +60,6 @@ struct SpecLine {
 
 const std::vector<SpecLine>& spec_lines() {
   using S = SoftParticleSpec;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static const std::vector<SpecLine> lines{
       {"shell_radius", &S::shell_radius, Unit::length, Range::positive(), "Rs [m]", true},
       {"youngs_modulus", &S::youngs_modulus, Unit::pressure, Range::positive(), "E [Pa]", true},

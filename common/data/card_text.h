@@ -2,6 +2,7 @@
 // estimates.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,13 @@ std::string real(double value);
 std::string quoted(const std::string& text);
 /// A number, or what was not known at the time of writing: "nan", "inf", "-inf".
 double read_real(const SceneTable& table, const std::string& key, const Range& range);
+
+/// Of a force or stiffness over overlap; fits end far below.
+inline constexpr double kLargestExponent = 50.0;
+
+/// Takes the words for people, which nothing depends on (of the definitions: those keys), and returns which .h5 belongs
+/// to the card.
+std::string read_words(const SceneTable& root, std::initializer_list<const char*> definitions);
 
 /// Key `beyond`, of cards and of scenes that overrule them; empty when it is not there.
 std::optional<Beyond> read_beyond(const SceneTable& table);

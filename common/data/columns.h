@@ -36,6 +36,15 @@ struct Limits {
   static Limits flag() { return {0.0, 1.0}; }
 };
 
+/// Of overlaps over the radius of the shell: beyond, two bodies have passed each other.
+inline constexpr Limits kOverlaps{0.0, 2.0};
+
+/// An index of a list that long. Throws FileTrouble: "`what` out of range".
+inline std::int64_t below(std::int64_t value, std::size_t length, const char* what) {
+  if (value < 0 || static_cast<std::uint64_t>(value) >= length) throw FileTrouble(std::string(what) + " out of range");
+  return value;
+}
+
 /// What a data set must be to be taken for what its name says. All throw FileTrouble that names it and what is there.
 void require_unit(const h5::Group& group, const std::string& name, const std::string& unit);
 void require_shape(const h5::Group& group, const std::string& name, const h5::Shape& shape);

@@ -99,9 +99,8 @@ void write_entry(Out out, const LawTableEntry& e) {
   for (const CrowdLaw& law : e.laws) write_law(out, law);
 }
 
-constexpr double kLargestExponent = 50.0;  ///< fits end far below
-constexpr double kLargestOverlap = 2.0;    ///< beyond, two bodies have passed each other
-constexpr double kLargestShare = 100.0;    ///< of friction, kt/kn and how much stiffer unloading is
+constexpr double kLargestOverlap = 2.0;  ///< beyond, two bodies have passed each other
+constexpr double kLargestShare = 100.0;  ///< of friction, kt/kn and how much stiffer unloading is
 
 /// Numbers of a law of planes; the coupling is of the order of one, and fits end within 3.
 Range range_of(const CrowdParameterName& p) {
@@ -178,16 +177,6 @@ LawTableEntry read_entry(const SceneTable& t) {
   return e;
 }
 
-void skip_words(const SceneTable& root, std::string& table_id) {
-  const SceneTable provenance = root.table_or_empty("provenance");
-  table_id = provenance.text("table", "");
-  for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
-  (void)provenance.count("threads", 1, 1000000000, 1);
-  const SceneTable definitions = root.table_or_empty("definitions");
-  for (const char* key : {"lost_volume", "equivalent_volume", "pressure", "force", "ratio"})
-    (void)definitions.text(key, "");
-}
-
 }  // namespace
 
 std::string law_table_text(const LawTable& table, const Provenance& provenance, const std::string& table_id) {
@@ -203,7 +192,7 @@ LawTable load_law_table(const std::string& toml_path) {
   const SceneTable root = scene.root();
   LawTable table;
   table.schema = static_cast<int>(root.count("schema", 1, 1));
-  skip_words(root, table.table_id);
+  table.table_id = read_words(root, {"lost_volume", "equivalent_volume", "pressure", "force", "ratio"});
   for (const SceneTable& e : root.tables("entry")) {
     const LawTableEntry entry = read_entry(e);
     if (!table.entries.empty() && !(table.entries.back().solid_fraction < entry.solid_fraction))

@@ -12,14 +12,8 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kFormat = "crowd-measurements";
-constexpr Limits kOverlaps{0.0, 2.0};  ///< h/Rs: beyond, the bodies have passed each other
-constexpr Limits kTouch{-2.0, 2.0};    ///< of states: a shell that moves may leave a neighbour
-
-std::int64_t below(std::int64_t value, std::size_t limit, const char* what) {
-  if (value < 0 || static_cast<std::uint64_t>(value) >= limit) throw FileTrouble(std::string(what) + " out of range");
-  return value;
-}
+constexpr const char* kCrowdFormat = "crowd-measurements";
+constexpr Limits kTouch{-2.0, 2.0};  ///< of states: a shell that moves may leave a neighbour
 
 template <class Record, class Field>
 void write_vector(const h5::Group& group, const std::string& name, const std::string& unit,
@@ -254,7 +248,7 @@ std::vector<CrowdRun> read_crowd_runs(const h5::Group& group) {
 void save_crowd(const CrowdMeasurements& data, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
-  write_format(root, kFormat);
+  write_format(root, kCrowdFormat);
   root.attribute("relaxation", data.relaxation);
   write_spec(root, data.spec);
   write_packings(root, data.packings);
@@ -266,7 +260,7 @@ void save_crowd(const CrowdMeasurements& data, const std::string& path, const Pr
 
 CrowdMeasurements load_crowd(const std::string& path) {
   const h5::Group root = h5::open_file(path);
-  require_format(root, kFormat, path);
+  require_format(root, kCrowdFormat, path);
   CrowdMeasurements data;
   try {
     data.relaxation = root.text("relaxation");

@@ -12,9 +12,8 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::size_t kLeastPoints = 5;  ///< a, b and delta, and something to judge them by
-constexpr double kLargestDelta = 0.9;    ///< of a scene; beyond, unit or radius are wrong
-constexpr std::size_t kNone = CurveLayout::none;
+constexpr std::size_t kLeastPoints = 5;     ///< a, b and delta, and something to judge them by
+constexpr double kLargestSceneDelta = 0.9;  ///< of a scene; beyond, unit or radius are wrong
 
 }  // namespace
 
@@ -47,17 +46,17 @@ double CurveRows::required(const CsvRow& row, std::size_t column, Unit unit) con
 }
 
 double CurveRows::overlap(const CsvRow& row) const {
-  const double delta = at_.delta != kNone ? required(row, at_.delta, Unit::none)
-                                          : required(row, at_.hn, Unit::length) / out_.spec.shell_radius;
-  if (delta > kLargestDelta)
+  const double delta = at_.delta != CurveLayout::none ? required(row, at_.delta, Unit::none)
+                                                      : required(row, at_.hn, Unit::length) / out_.spec.shell_radius;
+  if (delta > kLargestSceneDelta)
     throw BadInput(
         fmt::format("{}: overlap of {:.4g} Rs (Rs = {:.4g} m): allowed are at most {}; check unit and radius",
-                    file_.where(row.line), delta, out_.spec.shell_radius, kLargestDelta));
+                    file_.where(row.line), delta, out_.spec.shell_radius, kLargestSceneDelta));
   return delta;
 }
 
 bool CurveRows::is_rotated(const CsvRow& row) const {
-  if (at_.ft == kNone) return false;
+  if (at_.ft == CurveLayout::none) return false;
   return file_.number(row, at_.ft, Unit::force).has_value() && file_.number(row, at_.ht, Unit::length).has_value();
 }
 
@@ -72,7 +71,7 @@ TangentialPoint CurveRows::tangential(const CsvRow& row, double delta) const {
 
 std::size_t CurveRows::sample_of(const CsvRow& row) {
   const std::string name =
-      at_.sample == kNone ? std::filesystem::path(file_.path()).stem().string() : row.cells[at_.sample];
+      at_.sample == CurveLayout::none ? std::filesystem::path(file_.path()).stem().string() : row.cells[at_.sample];
   if (name.empty())
     throw BadInput(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
                                file_.columns()[at_.sample].title));
@@ -89,7 +88,7 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
   ForcePoint p;
   p.delta = delta;
   p.force = required(row, at_.fn, Unit::force);
-  if (at_.error != kNone) {
+  if (at_.error != CurveLayout::none) {
     p.error = required(row, at_.error, Unit::force);
     if (p.error < 0.0)
       throw BadInput(fmt::format("{}: column \"{}\": {} must not be negative", file_.where(row.line),
@@ -112,7 +111,7 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
 
 /// kt as given: the two rotations whose slope it is.
 void CurveRows::add_stiffness(const CsvRow& row, double delta, ForceCurve& sample) const {
-  if (at_.kt == kNone) return;
+  if (at_.kt == CurveLayout::none) return;
   const auto kt = file_.number(row, at_.kt, Unit::stiffness);
   if (!kt) return;
   for (const double angle : {-options_.initial_angle_deg, options_.initial_angle_deg}) {

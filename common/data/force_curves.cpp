@@ -14,8 +14,6 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::size_t kNone = CurveLayout::none;
-
 /// Names under which a quantity may stand in the header (lower case).
 struct ColumnName {
   const char* quantity;
@@ -64,7 +62,7 @@ CurveLayout layout_of(const CsvFile& file, std::vector<std::string>& remarks) {
       const auto& names = column_names()[q].names;
       if (std::find(names.begin(), names.end(), file.columns()[c].name) == names.end()) continue;
       known = true;
-      if (place(layout, q) != kNone)
+      if (place(layout, q) != CurveLayout::none)
         throw BadInput(fmt::format("{}: columns \"{}\" and \"{}\" both name {}", file.where(file.header_line()),
                                    file.columns()[place(layout, q)].title, file.columns()[c].title,
                                    column_names()[q].quantity));
@@ -77,15 +75,17 @@ CurveLayout layout_of(const CsvFile& file, std::vector<std::string>& remarks) {
 }
 
 void require_columns(const CsvFile& file, const CurveLayout& at) {
-  if (at.hn == kNone && at.delta == kNone) no_column(file, "of the overlap, e.g. hn [mm] or Delta");
-  if (at.hn != kNone && at.delta != kNone)
+  if (at.hn == CurveLayout::none && at.delta == CurveLayout::none)
+    no_column(file, "of the overlap, e.g. hn [mm] or Delta");
+  if (at.hn != CurveLayout::none && at.delta != CurveLayout::none)
     throw BadInput(file.where(file.header_line()) + ": give the overlap once, as hn or as Delta");
-  if (at.fn == kNone) no_column(file, "of the force, e.g. Fn [N]");
-  if ((at.ht == kNone) != (at.ft == kNone)) no_column(file, at.ht == kNone ? "ht beside Ft" : "Ft beside ht");
-  if (at.kt != kNone && at.ft != kNone)
+  if (at.fn == CurveLayout::none) no_column(file, "of the force, e.g. Fn [N]");
+  if ((at.ht == CurveLayout::none) != (at.ft == CurveLayout::none))
+    no_column(file, at.ht == CurveLayout::none ? "ht beside Ft" : "Ft beside ht");
+  if (at.kt != CurveLayout::none && at.ft != CurveLayout::none)
     throw BadInput(file.where(file.header_line()) + ": give the tangential law once, as kt or as ht and Ft");
   const auto unit = [&](std::size_t column, Unit u, const char* example) {
-    if (column != kNone) file.require_unit(column, u, example);
+    if (column != CurveLayout::none) file.require_unit(column, u, example);
   };
   unit(at.hn, Unit::length, "hn [mm]");
   unit(at.delta, Unit::none, "Delta");
@@ -205,10 +205,10 @@ ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& 
   require_columns(file, at);
   out.kind = kind_of(file, options);
   out.spec = spec_of(file, options);
-  out.has_errors = at.error != kNone;
+  out.has_errors = at.error != CurveLayout::none;
   CurveRows(file, at, options, out).read();
   for (ForceCurve& s : out.samples)
-    if (at.ft != kNone) add_secant_points(s, options.secant_angle_deg);
+    if (at.ft != CurveLayout::none) add_secant_points(s, options.secant_angle_deg);
   return out;
 }
 

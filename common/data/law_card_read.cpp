@@ -15,8 +15,6 @@ namespace {
 
 /// c may differ from -a delta^b by rounding only.
 constexpr double kContinuityTolerance = 1e-6;
-/// Of a force or stiffness over overlap; fits end far below.
-constexpr double kLargestExponent = 50.0;
 /// Delta: beyond, two bodies have passed each other.
 constexpr double kLargestDelta = 2.0;
 
@@ -102,16 +100,6 @@ PairLaw read_pair(const SceneTable& table) {
   return law;
 }
 
-/// Words for people: known, but nothing depends on them; and which .h5 belongs to the card.
-void skip_words(const SceneTable& root, std::string& table_id) {
-  const SceneTable provenance = root.table_or_empty("provenance");
-  table_id = provenance.text("table", "");
-  for (const char* key : {"version", "commit", "compiler", "command", "seed"}) (void)provenance.text(key, "");
-  (void)provenance.count("threads", 1, std::numeric_limits<int>::max(), 1);
-  const SceneTable definitions = root.table_or_empty("definitions");
-  for (const char* key : {"form", "Delta", "normal", "tangential", "interval_95"}) (void)definitions.text(key, "");
-}
-
 }  // namespace
 
 LawCard read_card_text(const std::string& toml_path) {
@@ -119,7 +107,7 @@ LawCard read_card_text(const std::string& toml_path) {
   const SceneTable root = scene.root();
   LawCard card;
   card.schema = static_cast<int>(root.count("schema", kSchemaVersion, kSchemaVersion));
-  skip_words(root, card.table_id);
+  card.table_id = read_words(root, {"form", "Delta", "normal", "tangential", "interval_95"});
   card.intervals = root.table_or_empty("definitions").text("interval_95", card.intervals);
   const SceneTable measurement = root.table("measurement");
   card.relaxation = measurement.text("relaxation");

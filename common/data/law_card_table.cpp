@@ -14,7 +14,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kFormat = "soft contact law";
+constexpr const char* kLawFormat = "soft contact law";
 constexpr std::string_view kBandInterval = "95 %, ";  ///< before PairLaw::band_origin
 
 void write_parameters(const h5::Group& group, const PairLaw& pair) {
@@ -141,7 +141,7 @@ void write_table(const LawCard& card, const std::string& path, const Provenance&
                  const std::string& table_id) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
-  write_format(root, kFormat);
+  write_format(root, kLawFormat);
   if (!table_id.empty()) root.attribute(kTableId, table_id);
   root.attribute("relaxation", card.relaxation);
   write_spec(root, card.spec);
@@ -153,7 +153,7 @@ void write_table(const LawCard& card, const std::string& path, const Provenance&
 
 void read_table(LawCard& card, const std::string& path) {
   const h5::Group root = h5::open_file(path);
-  require_format(root, kFormat, path);
+  require_format(root, kLawFormat, path);
   require_own_table(root, card.table_id, path);
   std::vector<std::string> edited;
   for (PairLaw& pair : card.pairs) {

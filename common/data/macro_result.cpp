@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/data/columns.h"
 #include "common/data/spec_io.h"
 
@@ -13,7 +12,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kFormat = "macro curves";
+constexpr const char* kMacroFormat = "macro curves";
 
 struct Column {
   const char* name;
@@ -22,7 +21,6 @@ struct Column {
   Limits limits{};
 };
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Limits kNotNegative{0.0, kInfinity};
 
 constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-1.0, 1.0}},
@@ -177,7 +175,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
 void save_macro(const std::vector<MacroCurve>& curves, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
-  write_format(root, kFormat);
+  write_format(root, kMacroFormat);
   const h5::Group group = root.create("curves");
   for (std::size_t k = 0; k < curves.size(); ++k)
     write_macro_curve(group.create(fmt::format("curve_{:06}", k)), curves[k]);
@@ -187,7 +185,7 @@ void save_macro(const std::vector<MacroCurve>& curves, const std::string& path, 
 
 std::vector<MacroCurve> load_macro(const std::string& path) {
   const h5::Group root = h5::open_file(path);
-  require_format(root, kFormat, path);
+  require_format(root, kMacroFormat, path);
   const h5::Group group = root.open("curves");
   std::vector<MacroCurve> curves;
   for (const std::string& name : group.children()) {

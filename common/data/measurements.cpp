@@ -12,8 +12,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kFormat = "soft-particle measurements";
-constexpr Limits kOverlaps{0.0, 2.0};  ///< Delta: beyond, the bodies have passed each other
+constexpr const char* kMeasurementsFormat = "soft-particle measurements";
 
 void write_normal(const h5::Group& root, const std::vector<NormalPoint>& points) {
   const h5::Group group = root.create("normal");
@@ -121,11 +120,6 @@ std::vector<std::string> read_relaxations(const h5::Group& group) {
   return names;
 }
 
-std::int64_t below(std::int64_t value, std::size_t limit, const char* what) {
-  if (value < 0 || static_cast<std::uint64_t>(value) >= limit) throw FileTrouble(std::string(what) + " out of range");
-  return value;
-}
-
 std::vector<PackingRun> read_runs(const h5::Group& root, std::size_t packings) {
   const h5::Group group = root.open("runs");
   std::vector<PackingRun> runs(column_length(group, "packing"));
@@ -170,7 +164,7 @@ SoftParticleSpec unknown_soft_particle(double shell_radius, double youngs_modulu
 void save(const Measurements& data, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
   const h5::Group root = file.root();
-  write_format(root, kFormat);
+  write_format(root, kMeasurementsFormat);
   root.attribute("shell_turns", static_cast<std::int64_t>(data.shell_turns));
   root.attribute("approach_speed", data.approach_speed);
   root.attribute("approach_speed_unit", "m/s");
@@ -183,7 +177,7 @@ void save(const Measurements& data, const std::string& path, const Provenance& p
 
 Measurements load_measurements(const std::string& path) {
   const h5::Group root = h5::open_file(path);
-  require_format(root, kFormat, path);
+  require_format(root, kMeasurementsFormat, path);
   Measurements data;
   data.shell_turns = root.integer("shell_turns") != 0;
   data.approach_speed = root.number("approach_speed");

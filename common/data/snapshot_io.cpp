@@ -13,7 +13,7 @@ namespace softgrain {
 
 namespace {
 
-constexpr const char* kFormat = "states";
+constexpr const char* kStatesFormat = "states";
 
 template <class Record, class Field>
 void write_vectors(const h5::Group& g, const std::string& name, const std::string& unit,
@@ -250,7 +250,7 @@ std::vector<Snapshot> read_snapshot_list(const h5::Group& group) {
 
 void save_snapshots(const std::vector<Snapshot>& snapshots, const std::string& path, const Provenance& provenance) {
   h5::AtomicFile file(path);
-  write_format(file.root(), kFormat);
+  write_format(file.root(), kStatesFormat);
   write_snapshot_list(file.root(), snapshots);
   write_provenance(file.root(), provenance);
   file.commit();
@@ -258,7 +258,7 @@ void save_snapshots(const std::vector<Snapshot>& snapshots, const std::string& p
 
 h5::Group open_snapshots(const std::string& path) {
   h5::Group root = h5::open_file(path);
-  require_format(root, kFormat, path);
+  require_format(root, kStatesFormat, path);
   return root;
 }
 

@@ -20,11 +20,6 @@ std::vector<std::string> split(const std::string& path) {
   return parts;
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 /// A table with the one key "value". What is not TOML and does not begin like a TOML container or string is a bare
 /// word.
 toml::table parse_value(const std::string& value, const std::string& setting) {

@@ -98,6 +98,12 @@ void require_readable_file(const std::string& path) {
   if (!good) throw FileTrouble(path + ": cannot be read: " + reason);
 }
 
+std::string trimmed(const std::string& text) {
+  constexpr const char* kSpace = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kSpace);
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
 void write_text_atomic(const std::string& path, const std::string& text) {
   try {
     write_file(temporary_name(path), text);

@@ -6,6 +6,9 @@
 
 namespace softgrain {
 
+/// Without the blanks at both ends.
+std::string trimmed(const std::string& text);
+
 /// Writes to `path + ".tmp"`, flushes to disk and renames. Throws FileTrouble.
 void write_text_atomic(const std::string& path, const std::string& text);
 

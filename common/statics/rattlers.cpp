@@ -9,13 +9,13 @@ namespace softgrain::statics {
 
 namespace {
 
-constexpr double kLight = 10.0;     // times `least_force`: what counts as a rattler
-constexpr double kOutlier = 3.0;    // of the root mean square force: grains that hold up all others
-constexpr double kReduction = 0.1;  // of the force on an outlier: its neighbours change too
-constexpr int kSteps = 40;          // per grain and call
-constexpr int kSearchPasses = 6;    // per step
-constexpr double kMaxMove = 0.02;   // of the radius, per step
-constexpr double kFloor = 1e-3;     // of the grain's stiffness: holds what no contact holds
+constexpr double kLight = 10.0;        // times `least_force`: what counts as a rattler
+constexpr double kOutlier = 3.0;       // of the root mean square force: grains that hold up all others
+constexpr double kReduction = 0.1;     // of the force on an outlier: its neighbours change too
+constexpr int kSteps = 40;             // per grain and call
+constexpr int kRattlerPasses = 6;      // per step
+constexpr double kRattlerMove = 0.02;  // of the radius, per step
+constexpr double kFloor = 1e-3;        // of the grain's stiffness: holds what no contact holds
 
 double size_of(const Unknowns& force) {
   double most2 = 0.0;
@@ -39,7 +39,7 @@ class Rattler {
   bool step() {
     own_step(problem_, grain_, state_, kFloor, direction_);
     const double most = size_of(direction_);
-    const double limit = kMaxMove * problem_.pack().radius[grain_];
+    const double limit = kRattlerMove * problem_.pack().radius[grain_];
     if (most > limit)
       for (double& d : direction_) d *= limit / most;
     const double first = dot(state_.force, direction_);
@@ -47,7 +47,7 @@ class Rattler {
     start_.assign(theta_.begin() + static_cast<std::ptrdiff_t>(at_),
                   theta_.begin() + static_cast<std::ptrdiff_t>(at_ + direction_.size()));
     double part = 1.0;
-    for (int k = 0; k < kSearchPasses; ++k) {
+    for (int k = 0; k < kRattlerPasses; ++k) {
       for (std::size_t d = 0; d < direction_.size(); ++d) theta_[at_ + d] = start_[d] + part * direction_[d];
       problem_.evaluate_grain(theta_, grain_, state_);
       const double along = dot(state_.force, direction_);

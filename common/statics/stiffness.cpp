@@ -7,7 +7,7 @@ namespace softgrain::statics {
 namespace {
 
 /// Below this many links one thread is faster than two.
-constexpr std::int32_t kParallelLinks = 8000;
+constexpr std::int32_t kParallelBlocks = 8000;
 
 /// What a link answers to a displacement of its grains: minus the change of the force on i, and of the moments.
 struct LinkAnswer {
@@ -102,7 +102,7 @@ void gather(const PackProblem& problem, const std::vector<LinkTangent>& tangents
 
 template <int kStride, Sliding kSliding>
 void apply_as(const PackProblem& problem, const std::vector<LinkTangent>& tangents, const Unknowns& in, Unknowns& out) {
-  if (problem.links().size() >= kParallelLinks && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
+  if (problem.links().size() >= kParallelBlocks && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
     gather<kStride, kSliding>(problem, tangents, in, out);
   } else {
     scatter<kStride, kSliding>(problem, tangents, in, out);

@@ -5,13 +5,13 @@
 #include <limits>
 #include <numbers>
 
+#include "common/core/limits.h"
 #include "common/core/solid_sphere.h"
 
 namespace softgrain {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNear = 0.1;
 constexpr double kJammed = 0.63;
 constexpr double kContacts = 6.0;

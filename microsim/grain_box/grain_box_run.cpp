@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/io/interrupt.h"
 #include "common/state/checkpoint.h"
 #include "microsim/grain_box/arrangement.h"
@@ -19,7 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int32_t kEnoughContacts = 4;
 /// Isotropic strain per step on the way to the pressure of (a), and the growth of sigma^(2/3) per step.
 constexpr double kPressureStep = 2e-3;
@@ -27,8 +26,6 @@ constexpr double kPressureGrowth = 8.0;
 constexpr std::int64_t kPressureSteps = 300;
 /// Growth of sigma_c with strain, for the estimate of progress: strain ~ sigma^(2/3).
 constexpr double kStrainPower = 2.0 / 3.0;
-
-double largest(const Vec3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }
 
 class GrainBoxRun {
  public:

@@ -1,16 +1,15 @@
 #include "microsim/grain_box/moduli.h"
+#include "common/core/limits.h"
 
 #include <gsl/gsl_fit.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace softgrain {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUndefinedBelow = 1e-3;
 
 Vec3 deviator(const Vec3& a) {

@@ -18,10 +18,10 @@ constexpr int kServoTries = 15;
 /// A servo that wants an axis to move more than this many times the increment has lost its way.
 constexpr double kServoReach = 50.0;
 
-using Matrix = std::array<std::array<double, 3>, 3>;
+using ServoMatrix = std::array<std::array<double, 3>, 3>;
 
 /// Solution of a 3 x 3 system by Cramer's rule; not finite when it is singular.
-Vec3 solve(const Matrix& m, const Vec3& b) {
+Vec3 solve(const ServoMatrix& m, const Vec3& b) {
   const Vec3 c0{{m[0][0], m[1][0], m[2][0]}};
   const Vec3 c1{{m[0][1], m[1][1], m[2][1]}};
   const Vec3 c2{{m[0][2], m[1][2], m[2][2]}};
@@ -31,11 +31,9 @@ Vec3 solve(const Matrix& m, const Vec3& b) {
 
 bool finite(const Vec3& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
 
-double largest(const Vec3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }
-
 /// Rows: of strained axes the unit vector, of servo axes the stress per strain.
-Matrix servo_matrix(const BoxMove& move, const ElasticResponse& elastic) {
-  Matrix m{};
+ServoMatrix servo_matrix(const BoxMove& move, const ElasticResponse& elastic) {
+  ServoMatrix m{};
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < 3; ++b)
       m[a][b] = move.control[a] == AxisControl::stress ? elastic.stiffness[a][b] : (a == b ? 1.0 : 0.0);
@@ -43,7 +41,7 @@ Matrix servo_matrix(const BoxMove& move, const ElasticResponse& elastic) {
 }
 
 /// Broyden: J += (df - J dx) dx^T / |dx|^2, in the rows of servo axes.
-void update(Matrix& m, const BoxMove& move, const Vec3& dx, const Vec3& df) {
+void update(ServoMatrix& m, const BoxMove& move, const Vec3& dx, const Vec3& df) {
   const double length2 = norm2(dx);
   if (!(length2 > 0.0)) return;
   for (int a = 0; a < 3; ++a) {
@@ -93,7 +91,7 @@ bool BoxStepper::attempt(GrainPack& pack, const Vec3& strain) {
 bool BoxStepper::servo(GrainPack& pack, const BoxMove& move, Vec3& taken) {
   const ElasticResponse elastic = elastic_probe(pack, options_);
   effort_.factorisations += elastic.factorisations;
-  Matrix m = servo_matrix(move, elastic);
+  ServoMatrix m = servo_matrix(move, elastic);
   const GrainPack reference = pack;
   const double reach = kServoReach * std::max(largest(move.strain), 1e-6);
   // Residual of axis a: the strain or the stress that is still wanted.

@@ -1,7 +1,9 @@
 // Increments of the box: by strain, or by stress through a servo; what does not converge is halved and tried again.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include "microsim/grain_box/spec.h"
 
 namespace softgrain {
+
+inline double largest(const Vec3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }
 
 /// One increment of the box as it is asked for.
 struct BoxMove {

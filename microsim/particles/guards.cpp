@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "common/core/error.h"
 #include "common/core/in_space.h"
 #include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/scene_vector.h"
 
@@ -15,12 +15,8 @@ namespace softgrain {
 
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 /// Grains up to which every 64th step is looked at, above it every 512th.
 constexpr Slot kFewGrains = 1000;
-
-std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
 
 GuardAction read_action(const SceneTable& t, GuardAction fallback) {
   const std::string word = t.choice("action", {"ignore", "count", "stop"}, to_string(fallback));
@@ -66,7 +62,7 @@ double default_travel(const System<D>& s) {
       longest =
           std::max(longest, std::abs(dot(p.sphere[at(i)].x - p.sphere[at(w)].x, p.normal_of(w))) + p.sphere[at(i)].r);
   }
-  return longest > 0.0 ? 2.0 * longest : kInfinite;
+  return longest > 0.0 ? 2.0 * longest : kInfinity;
 }
 
 /// Whether some law was measured over a range that it can leave.
@@ -146,7 +142,7 @@ Guards<D>::Guards(const GuardSpec& spec, const System<D>& start) : spec_(spec) {
   watches_ = active(spec.overlap) || active(spec.energy) || active(spec.escape) || active(spec.wall_travel) ||
              has_measured_law(start.laws);
   for (Slot w = p.first_plane(); w < p.size(); ++w) wall_start_.push_back(p.sphere[at(w)].x);
-  least_ = kInfinite;
+  least_ = kInfinity;
 }
 
 template <int D>

@@ -22,8 +22,6 @@ namespace {
 
 constexpr double kMostFrameBytes = 8.0 * 1024 * 1024 * 1024;
 
-std::size_t at(Slot slot) { return static_cast<std::size_t>(slot); }
-
 /// Walls have no periodic images.
 template <int D>
 void require_walls_fit_cell(const SceneTable& root, const Cell<D>& cell) {

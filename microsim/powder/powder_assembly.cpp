@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
@@ -13,8 +13,6 @@
 namespace softgrain {
 
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double total_mass(const System<2>& s) {
   double mass = 0.0;
@@ -46,10 +44,10 @@ StressControl<2> control_of(const PowderState& state, const PowderPhase& phase, 
   StressControl<2> control;
   control.imposed = {{phase.pressure, phase.pressure}};
   control.reference_length = state.phase_edge;
-  control.cell_mass = phase.fixed_cell ? kInfinite
+  control.cell_mass = phase.fixed_cell ? kInfinity
                                        : options.cell_mass * total_mass(state.system) /
                                              std::sqrt(state.phase_edge[0] * state.phase_edge[1]);
-  control.strain_rate_cap = phase.strain_rate_cap > 0.0 ? phase.strain_rate_cap : kInfinite;
+  control.strain_rate_cap = phase.strain_rate_cap > 0.0 ? phase.strain_rate_cap : kInfinity;
   return control;
 }
 

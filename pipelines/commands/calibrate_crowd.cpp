@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Settings {
+struct CrowdSettings {
   CrowdFitOptions fit;
   double target = CrowdSetup{}.target;
 };
 
-Settings read_settings(const SceneTable& t) {
-  Settings s;
+CrowdSettings read_settings(const SceneTable& t) {
+  CrowdSettings s;
   s.fit = read_crowd_fit(t);
   s.target = t.number("target", Unit::none, Range{0.0, 1.0, true, false}, s.target);
   t.finish();
@@ -38,8 +38,9 @@ void keep_for_report(const CrowdMeasurements& data, const std::string& source, c
   if (!fs::exists(path) || !fs::equivalent(path, source)) save_crowd(data, path, provenance);
 }
 
-nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurements>& data, const Settings& settings,
-                         const CommonOptions& options, const RunContext& context, const Provenance& provenance) {
+nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurements>& data,
+                         const CrowdSettings& settings, const CommonOptions& options, const RunContext& context,
+                         const Provenance& provenance) {
   nlohmann::json summary;
   summary["status"] = fit.usable ? "good" : "not usable";
   summary["inputs"] = options.inputs;
@@ -77,7 +78,7 @@ bool are_crowd_files(const std::vector<std::string>& files) {
 
 ExitStatus calibrate_crowd(const CommonOptions& options) {
   const Scene scene = Scene::parse("", "calibrate", options.overrides);
-  Settings settings = read_settings(scene.root());
+  CrowdSettings settings = read_settings(scene.root());
   std::vector<CrowdMeasurements> data;
   for (const std::string& file : options.inputs) data.push_back(load_crowd(file));
   const RunContext context(options, "calibrate", fs::path(options.inputs.front()).stem().string());

@@ -23,7 +23,7 @@ bool is_curve_file(const std::string& path) {
   return end == ".csv" || end == ".tsv" || end == ".txt" || end == ".dat";
 }
 
-struct Settings {
+struct CurveSettings {
   FitOptions fit;
   ForceCurveOptions curves;
   bool mirror = false;
@@ -42,8 +42,8 @@ std::optional<double> quantity(const char* option, const std::string& text, Unit
   return value;
 }
 
-Settings read_settings(const SceneTable& t, const CommonOptions& options) {
-  Settings s;
+CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
+  CurveSettings s;
   s.fit = read_fit_settings(t);
   s.curves.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
   s.mirror = t.flag("mirror", false);
@@ -179,7 +179,7 @@ bool are_curve_files(const CommonOptions& options) {
 
 ExitStatus calibrate_curves(const CommonOptions& options) {
   const Scene scene = Scene::parse("", "calibrate", options.overrides);
-  Settings settings = read_settings(scene.root(), options);
+  CurveSettings settings = read_settings(scene.root(), options);
   const std::vector<ForceCurves> curves = read_force_curve_files(options.inputs, settings.curves);
   const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
   settings.fit.seed = run.seed(settings.fit.seed);

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 
 namespace softgrain {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Key = std::pair<std::string, std::int64_t>;
 
 void require_curve(const std::vector<double>& x, const std::vector<double>& y, const char* side) {

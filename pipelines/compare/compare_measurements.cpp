@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 
 namespace softgrain {
 namespace {
@@ -211,7 +212,6 @@ std::vector<LawRow> compare_laws(const LawCard& candidate, const LawCard& refere
   if (a.has_tangential_secant && b.has_tangential_secant)
     add_law(rows, "tangential secant", a.tangential_secant, b.tangential_secant);
   const double high = std::min(a.delta_max, b.delta_max);
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (int k = 1; k * 0.05 <= high + 1e-9; ++k) {
     const double delta = k * 0.05;
     rows.push_back({fmt::format("Fn/(E Rs^2) at Delta = {:.2f}", delta), a.normal.value(delta), kNaN,

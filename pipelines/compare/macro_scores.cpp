@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "pipelines/compare/compare.h"
 
 namespace softgrain {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double last(const std::vector<double>& values) { return values.empty() ? kNaN : values.back(); }
 

@@ -1,15 +1,13 @@
 #include "pipelines/compare/statistics.h"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 
 namespace softgrain {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double sum(std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 

@@ -12,26 +12,26 @@ std::string axes(const char* name, const std::string& unit) {
   return fmt::format("{0}x [{1}],{0}y [{1}],{0}z [{1}]", name, unit);
 }
 
-void append(std::string& text, const Vec3& a) {
+void append_csv(std::string& text, const Vec3& a) {
   fmt::format_to(std::back_inserter(text), ",{},{},{}", a[0], a[1], a[2]);
 }
 
-std::string particles_text(const Snapshot& s) {
+std::string particles_csv(const Snapshot& s) {
   std::string text = fmt::format("id,role,body,material,{},radius [{}]", axes("", s.length_unit), s.length_unit);
   if (s.has_velocity) text += "," + axes("v", s.length_unit + "/" + s.time_unit);
   text += '\n';
   for (const SnapshotParticle& p : s.particles) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{}", p.id, to_string(p.role), p.body, p.material);
-    append(text, p.position);
+    append_csv(text, p.position);
     fmt::format_to(std::back_inserter(text), ",{}", p.radius);
-    if (s.has_velocity) append(text, p.velocity);
+    if (s.has_velocity) append_csv(text, p.velocity);
     text += '\n';
   }
   return text;
 }
 
 /// `second` is the id of a particle, or empty beside the number of a wall.
-std::string contacts_text(const Snapshot& s) {
+std::string contacts_csv(const Snapshot& s) {
   const std::string& length = s.length_unit;
   std::string text =
       fmt::format("first,second,wall,normal_force [{}],{},{},{},{},{}\n", s.force_unit, axes("f", s.force_unit),
@@ -41,21 +41,21 @@ std::string contacts_text(const Snapshot& s) {
     const auto j = static_cast<std::size_t>(c.j);
     fmt::format_to(std::back_inserter(text), "{},{},{},{}", s.particles[static_cast<std::size_t>(c.i)].id,
                    j < n ? std::to_string(s.particles[j].id) : "", j < n ? "" : std::to_string(j - n), c.normal_force);
-    for (const Vec3& a : {c.force, c.point, c.from, c.to, c.shift}) append(text, a);
+    for (const Vec3& a : {c.force, c.point, c.from, c.to, c.shift}) append_csv(text, a);
     text += '\n';
   }
   return text;
 }
 
-std::string walls_text(const Snapshot& s) {
+std::string walls_csv(const Snapshot& s) {
   std::string text =
       fmt::format("wall,shape,body,{},{},radius [{}]\n", axes("", s.length_unit), axes("normal_", "1"), s.length_unit);
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const SnapshotWall& w = s.walls[k];
     fmt::format_to(std::back_inserter(text), "{},{},{}", k, w.shape == WallShape::plane ? "plane" : "sphere-inside",
                    w.body);
-    append(text, w.point);
-    append(text, w.normal);
+    append_csv(text, w.point);
+    append_csv(text, w.normal);
     fmt::format_to(std::back_inserter(text), ",{}\n", w.radius);
   }
   return text;
@@ -64,9 +64,9 @@ std::string walls_text(const Snapshot& s) {
 }  // namespace
 
 std::vector<ExportFile> csv_files(const Snapshot& s, std::int64_t number) {
-  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "csv"), particles_text(s)}};
-  if (s.has_contacts) files.push_back({"contacts", state_file_name(s, "contacts", number, "csv"), contacts_text(s)});
-  if (!s.walls.empty()) files.push_back({"walls", state_file_name(s, "walls", number, "csv"), walls_text(s)});
+  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "csv"), particles_csv(s)}};
+  if (s.has_contacts) files.push_back({"contacts", state_file_name(s, "contacts", number, "csv"), contacts_csv(s)});
+  if (!s.walls.empty()) files.push_back({"walls", state_file_name(s, "walls", number, "csv"), walls_csv(s)});
   return files;
 }
 

@@ -62,7 +62,7 @@ std::string head(const Snapshot& s, const char* what, std::size_t number) {
 }
 
 /// Positions are not folded into the cell: of periodic ones LAMMPS says "unwrapped".
-std::string particles_text(const Snapshot& s) {
+std::string particles_dump(const Snapshot& s) {
   const bool periodic = s.periodic[0] || s.periodic[1] || s.periodic[2];
   std::string text = head(s, "ATOMS", s.particles.size());
   text += fmt::format("ITEM: ATOMS id type mol {} radius{}\n", periodic ? "xu yu zu" : "x y z",
@@ -77,7 +77,7 @@ std::string particles_text(const Snapshot& s) {
   return text;
 }
 
-std::string contacts_text(const Snapshot& s, bool with_walls) {
+std::string contacts_dump(const Snapshot& s, bool with_walls) {
   const auto n = static_cast<std::int32_t>(s.particles.size());
   std::string rows;
   std::size_t number = 0;
@@ -98,11 +98,11 @@ std::string contacts_text(const Snapshot& s, bool with_walls) {
 }  // namespace
 
 std::vector<ExportFile> dump_files(const Snapshot& s, std::int64_t number) {
-  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "dump"), particles_text(s)}};
+  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "dump"), particles_dump(s)}};
   if (!s.has_contacts) return files;
-  files.push_back({"contacts", state_file_name(s, "contacts", number, "dump"), contacts_text(s, false)});
+  files.push_back({"contacts", state_file_name(s, "contacts", number, "dump"), contacts_dump(s, false)});
   if (!s.walls.empty())
-    files.push_back({"wall_contacts", state_file_name(s, "wall_contacts", number, "dump"), contacts_text(s, true)});
+    files.push_back({"wall_contacts", state_file_name(s, "wall_contacts", number, "dump"), contacts_dump(s, true)});
   return files;
 }
 

@@ -71,7 +71,7 @@ std::string units_of(const Snapshot& s) {
   return fmt::format("{}; lengths in {}, forces in {}", in_comment(s.label), s.length_unit, s.force_unit);
 }
 
-std::string particles_text(const Snapshot& s) {
+std::string particles_vtp(const Snapshot& s) {
   const auto& p = s.particles;
   std::string data = counts("id", p.size(), [&](std::size_t k) { return p[k].id; }) +
                      numbers("radius", p.size(), [&](std::size_t k) { return p[k].radius; }) +
@@ -92,7 +92,7 @@ std::int64_t partner_id(const Snapshot& s, std::int32_t j) {
   return -1 - static_cast<std::int64_t>(u - s.particles.size());
 }
 
-std::string contacts_text(const Snapshot& s) {
+std::string contacts_vtp(const Snapshot& s) {
   const auto& c = s.contacts;
   const auto tangential = [&](std::size_t k) {
     return std::sqrt(std::max(0.0, norm2(c[k].force) - c[k].normal_force * c[k].normal_force));
@@ -116,8 +116,8 @@ std::string contacts_text(const Snapshot& s) {
 }  // namespace
 
 std::vector<ExportFile> vtp_files(const Snapshot& s, std::int64_t number) {
-  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "vtp"), particles_text(s)}};
-  if (s.has_contacts) files.push_back({"contacts", state_file_name(s, "contacts", number, "vtp"), contacts_text(s)});
+  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "vtp"), particles_vtp(s)}};
+  if (s.has_contacts) files.push_back({"contacts", state_file_name(s, "contacts", number, "vtp"), contacts_vtp(s)});
   return files;
 }
 

@@ -11,8 +11,6 @@ namespace softgrain::law {
 
 namespace {
 
-std::string number(double x) { return fmt::format("{:.4g}", x); }
-
 std::string interval(const Quantity& q) {
   return q.interval ? fmt::format("{:.3g} .. {:.3g}", q.interval->low, q.interval->high) : "-";
 }

@@ -18,14 +18,14 @@ struct Source {
   std::function<std::vector<LawPoint>(const std::vector<double>&)> values;
 };
 
-bool usable(const PairLaw& law) {
+bool comparable(const PairLaw& law) {
   return (law.status == "good" || law.status == "underdetermined") && has_part(law, LawPart::normal) &&
          law.delta_max > 0.0;
 }
 
 std::optional<Source> card_source(const LawCard& card, PairKind kind) {
   const PairLaw* law = card.find(kind);
-  if (law == nullptr || !usable(*law)) return std::nullopt;
+  if (law == nullptr || !comparable(*law)) return std::nullopt;
   return Source{law->delta_min, law->delta_max, [&card, kind](const std::vector<double>& deltas) {
                   return card_values(card, kind, deltas, Beyond::extrapolate);
                 }};
@@ -39,7 +39,7 @@ std::optional<Source> table_source(const LawTable& table, PairKind kind, double 
   const auto ask = [&table, q](const std::vector<double>& deltas) { return crowd_values(table, q, deltas); };
   try {
     return Source{0.0, ask({}).overlap_max, [ask](const std::vector<double>& deltas) { return ask(deltas).points; }};
-  } catch (const BadInput&) {  // no usable law, or none for soft neighbours
+  } catch (const BadInput&) {  // no comparable law, or none for soft neighbours
     return std::nullopt;
   }
 }

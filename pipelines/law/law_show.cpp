@@ -15,8 +15,6 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string number(double x, int digits = 4) { return fmt::format("{:.{}g}", x, digits); }
-
 std::string interval(const Estimate& e) {
   return std::isfinite(e.low) && std::isfinite(e.high) && e.low < e.high ? number(e.low) + " .. " + number(e.high)
                                                                          : "-";
@@ -112,6 +110,8 @@ std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf
 }
 
 }  // namespace
+
+std::string number(double x, int digits) { return fmt::format("{:.{}g}", x, digits); }
 
 std::string origin_text(const LawOrigin& o) {
   if (o.version.empty() && o.command.empty()) return "";

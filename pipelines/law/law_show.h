@@ -16,6 +16,8 @@ std::string table_text_for_people(const LawFile& file, bool utf8);
 /// One of the two.
 std::string law_text(const LawFile& file, bool utf8);
 
+/// With so many digits that count.
+std::string number(double x, int digits = 4);
 /// "softgrain 0.1.0 (8b5b7b7fb7b0), seed 1: softgrain run ..."; empty when the file says nothing.
 std::string origin_text(const LawOrigin& origin);
 /// "Rs = 0.016 m, E = 5e+05 Pa, ..." of the soft particle that was measured.

@@ -13,8 +13,6 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string number(double x, int digits = 4) { return fmt::format("{:.{}g}", x, digits); }
-
 /// "0.733 +- 0.19"; parameters that a form does not have are fixed.
 std::string with_error(const Estimate& e) {
   if (!std::isfinite(e.standard_error)) return number(e.value, 3) + " (?)";

@@ -16,14 +16,14 @@ namespace {
 using namespace softgrain;
 using namespace softgrain::test;
 
-constexpr double kMu = 0.3;
+constexpr double kFriction = 0.3;
 
 /// Stiffness 1 and limit 1; the reference force is at the limit, along x.
 statics::FrictionConstants unit_contact() {
   statics::FrictionConstants c;
   c.shear = 1.0;
   c.contact_radius0 = 1.0;
-  c.friction = kMu;
+  c.friction = kFriction;
   c.limit0 = 1.0;
   c.tangential0 = {{1.0, 0.0, 0.0}};
   return c;
@@ -40,7 +40,7 @@ TEST(LeastWorkReferenceRule, TheForceTurnsSmoothlyWithTheDirectionOfSlip) {
     for (int k = 0; k <= kTurns; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / kTurns;
       const Vec3 slid = Vec3{{std::cos(angle), std::sin(angle), 0.0}} * slip;
-      const Vec3 force = statics::tangential_by_reference(c, 1.0 / kMu, c.tangential0, slid).force;
+      const Vec3 force = statics::tangential_by_reference(c, 1.0 / kFriction, c.tangential0, slid).force;
       EXPECT_LE(norm(force), 1.0 + 1e-12);
       if (k > 0) worst = std::max(worst, norm(force - before));
       before = force;
@@ -52,7 +52,7 @@ TEST(LeastWorkReferenceRule, TheForceTurnsSmoothlyWithTheDirectionOfSlip) {
 TEST(LeastWorkReferenceRule, TheForceFadesWhereAContactOpensAndOnlyThere) {
   const statics::FrictionConstants c = unit_contact();
   const Vec3 slid{{-1.0, 0.5, 0.0}};
-  const double p0 = c.limit0 / kMu;
+  const double p0 = c.limit0 / kFriction;
   const double full = norm(statics::tangential_by_reference(c, p0, c.tangential0, slid).force);
   EXPECT_NEAR(full, c.limit0, 1e-12);
   for (const double part : {0.0, 1e-6, 0.3, 0.99, 1.0, 1.01, 10.0}) {
@@ -64,7 +64,7 @@ TEST(LeastWorkReferenceRule, TheForceFadesWhereAContactOpensAndOnlyThere) {
 }
 
 TEST(LeastWorkReferenceRule, APackWithSlidingAndOpeningContactsRunsThrough) {
-  GrainPack pack = random_pack(7, kMu);
+  GrainPack pack = random_pack(7, kFriction);
   LeastWorkOptions options;
   options.coulomb = CoulombRule::reference;
   options.max_iterations = 1000;  // with the rule as published the 11th increment used up any number
@@ -96,7 +96,7 @@ double largest_difference(const std::vector<PackContact>& a, const std::vector<P
 }
 
 TEST(LeastWorkReferenceRule, PublishedAndFastAgreeWhileContactsSlide) {
-  GrainPack fast = random_pack(7, kMu);
+  GrainPack fast = random_pack(7, kFriction);
   LeastWorkOptions options;
   options.coulomb = CoulombRule::reference;
   for (int k = 0; k < 10; ++k) ASSERT_TRUE(advance(fast, squeeze(fast, {{0.0, 0.0, 1e-4}}), options).converged);

@@ -21,7 +21,7 @@ using test::glass;
 using test::hertz_system;
 using test::solid_sphere;
 
-constexpr double kRadius = 0.01;
+constexpr double kGrainRadius = 0.01;
 
 LeastWorkStepOptions tight(double tolerance = 1e-10) {
   LeastWorkStepOptions options;
@@ -31,12 +31,12 @@ LeastWorkStepOptions tight(double tolerance = 1e-10) {
 }
 
 double hertz_force(double overlap) {
-  return std::sqrt(kRadius) * std::pow(overlap, 1.5) / (1.5 * glass().normal_compliance());
+  return std::sqrt(kGrainRadius) * std::pow(overlap, 1.5) / (1.5 * glass().normal_compliance());
 }
 
 /// Dt sqrt(R h): tangential stiffness of a grain on a plane of its own material.
 double mindlin_stiffness(double overlap) {
-  return std::sqrt(kRadius * overlap) / (2.0 * glass().tangential_compliance());
+  return std::sqrt(kGrainRadius * overlap) / (2.0 * glass().tangential_compliance());
 }
 
 void add_planes(System3& s, double gap) {
@@ -49,7 +49,7 @@ void add_planes(System3& s, double gap) {
 /// A grain between two planes, overlapping each by 1e-4 m.
 System3 squeezed_grain(double friction) {
   System3 s = hertz_system<3>(friction, 1.0, false);
-  add_grain(s.particles, solid_sphere<3>({{0.0, 0.0, 0.0099}}, kRadius, 2500.0));
+  add_grain(s.particles, solid_sphere<3>({{0.0, 0.0, 0.0099}}, kGrainRadius, 2500.0));
   add_planes(s, 0.0198);
   std::vector<Vec3> none;
   EXPECT_EQ(LeastWorkStep(tight()).advance(s, none).end, RelaxationEnd::converged);
@@ -83,7 +83,7 @@ TEST(LeastWorkStep, TheCoulombLimitIsThatOfTheCurrentNormalForce) {
   const double friction = 0.3;
   for (const double slide : {1e-6, 1e-4}) {
     System3 s = hertz_system<3>(friction, 1.0, false);
-    NewBody<3> driven = solid_sphere<3>({{0.0, 0.0, 0.0099}}, kRadius, 0.0);
+    NewBody<3> driven = solid_sphere<3>({{0.0, 0.0, 0.0099}}, kGrainRadius, 0.0);
     driven.mass = 0.0;
     driven.inertia = 0.0;
     add_grain(s.particles, driven);

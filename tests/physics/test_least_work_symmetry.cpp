@@ -12,9 +12,9 @@ namespace {
 using namespace softgrain;
 using namespace softgrain::test;
 
-constexpr double kRadius = 1e-3;
-constexpr double kModulus = 70e9;
-constexpr double kPoisson = 0.2;
+constexpr double kRadiusOfGrains = 1e-3;
+constexpr double kModulusOfGrains = 70e9;
+constexpr double kPoissonOfGrains = 0.2;
 
 enum class Lattice { body_centred, face_centred };
 
@@ -23,7 +23,9 @@ bool is_site(Lattice lattice, int i, int j, int k) {
 }
 
 /// Half a cell edge of spheres whose next neighbours just touch.
-double touching(Lattice lattice) { return 2.0 * kRadius / std::sqrt(lattice == Lattice::face_centred ? 2.0 : 3.0); }
+double touching(Lattice lattice) {
+  return 2.0 * kRadiusOfGrains / std::sqrt(lattice == Lattice::face_centred ? 2.0 : 3.0);
+}
 
 /// cells^3 cells with half edge `half`, all outer grains on symmetry planes.
 GrainPack make_lattice(Lattice lattice, int cells, double half) {
@@ -33,7 +35,7 @@ GrainPack make_lattice(Lattice lattice, int cells, double half) {
     for (int j = 0; j <= end; ++j)
       for (int k = 0; k <= end; ++k)
         if (is_site(lattice, i, j, k))
-          add_grain(pack, Vec3{{half * i, half * j, half * k}}, kRadius, kModulus, kPoisson);
+          add_grain(pack, Vec3{{half * i, half * j, half * k}}, kRadiusOfGrains, kModulusOfGrains, kPoissonOfGrains);
   add_box(pack, Vec3{{1.0, 1.0, 1.0}} * (end * half), 0.0);
   for (PackWall& w : pack.walls) w.symmetry = true;
   refresh_contacts(pack);
@@ -45,7 +47,7 @@ void shake(GrainPack& pack, double size) {
   RandomStream random(3, RandomPurpose::test, 0);
   for (Vec3& x : pack.position)
     for (int a = 0; a < 3; ++a) {
-      const double by = size * kRadius * (random.uniform() - 0.5);
+      const double by = size * kRadiusOfGrains * (random.uniform() - 0.5);
       const double width = pack.walls[1].point[0];
       if (x[a] > 1e-6 * width && x[a] < (1.0 - 1e-6) * width) x[a] += by;
     }
@@ -61,18 +63,18 @@ std::vector<Vec3> deformed(const std::vector<Vec3>& from, double width, const Ve
 }
 
 double hertz(double distance) {
-  const double modulus = kModulus / (2.0 * (1.0 - kPoisson * kPoisson));
-  const double h = 2.0 * kRadius - distance;
-  return h > 0.0 ? 4.0 / 3.0 * modulus * std::sqrt(0.5 * kRadius) * std::pow(h, 1.5) : 0.0;
+  const double modulus = kModulusOfGrains / (2.0 * (1.0 - kPoissonOfGrains * kPoissonOfGrains));
+  const double h = 2.0 * kRadiusOfGrains - distance;
+  return h > 0.0 ? 4.0 / 3.0 * modulus * std::sqrt(0.5 * kRadiusOfGrains) * std::pow(h, 1.5) : 0.0;
 }
 
 /// -k* u_s of a pair that never slides, k* of its distance before [QS 2.1].
 Vec3 sticking(const Vec3& before, const Vec3& after) {
-  const double shear = kModulus / (2.0 * (1.0 + kPoisson));
-  const double radius = std::sqrt(0.5 * kRadius * (2.0 * kRadius - norm(before)));
+  const double shear = kModulusOfGrains / (2.0 * (1.0 + kPoissonOfGrains));
+  const double radius = std::sqrt(0.5 * kRadiusOfGrains * (2.0 * kRadiusOfGrains - norm(before)));
   const Vec3 n = after * (1.0 / norm(after));
   const Vec3 moved = after - before;
-  return (moved - n * dot(n, moved)) * (-4.0 * shear * radius / (2.0 - kPoisson));
+  return (moved - n * dot(n, moved)) * (-4.0 * shear * radius / (2.0 - kPoissonOfGrains));
 }
 
 /// Largest relative error of positions (in R), contact forces (in the largest), and wall forces.
@@ -102,7 +104,7 @@ double pressed(const PackContact& c, const Vec3& force, const GrainPack& pack, s
   const PackWall& wall = pack.walls[w];
   const auto held = [&](std::int32_t g) {
     return g < pack.grains() &&
-           std::abs(dot(pack.position[static_cast<std::size_t>(g)] - wall.point, wall.normal)) < 1e-6 * kRadius;
+           std::abs(dot(pack.position[static_cast<std::size_t>(g)] - wall.point, wall.normal)) < 1e-6 * kRadiusOfGrains;
   };
   const double along = dot(force, wall.normal);
   const bool partner = c.j == pack.grains() + static_cast<std::int32_t>(w);
@@ -112,7 +114,7 @@ double pressed(const PackContact& c, const Vec3& force, const GrainPack& pack, s
 Errors compare(const GrainPack& pack, const std::vector<Vec3>& before, const std::vector<Vec3>& after, bool stick) {
   Errors out;
   for (std::size_t g = 0; g < after.size(); ++g)
-    out.position = std::max(out.position, norm(pack.position[g] - after[g]) / kRadius);
+    out.position = std::max(out.position, norm(pack.position[g] - after[g]) / kRadiusOfGrains);
   std::vector<double> on_wall(6, 0.0);
   double largest = 0.0;
   for (const PackContact& c : pack.contacts) {

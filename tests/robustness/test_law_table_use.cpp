@@ -313,7 +313,7 @@ TEST_F(LawTableUse, CalibrateFitsOneEntryPerFile) {
   const std::string out = " --quiet --set replicates=0 --out '" + file("out") + "'";
   const std::string both = "calibrate '" + file("dense.h5") + "' '" + file("loose.h5") + "'";
   expect(run_the_program(both + out), 0, {"laws at solid fraction 0.65", "laws at solid fraction 0.70", "(best)"});
-  const LawTable table = load_law_table(file("out") + "/law_table.toml");
+  const softgrain::LawTable table = load_law_table(file("out") + "/law_table.toml");
   ASSERT_EQ(table.entries.size(), 2U);
   EXPECT_NEAR(table.entries[0].solid_fraction, 0.6525, 1e-12);
   EXPECT_NEAR(table.entries[1].find("directional")->a.value, 0.7, 0.05);

@@ -15,8 +15,6 @@ using namespace softgrain;
 using namespace softgrain::test;
 using nlohmann::json;
 
-json summary_of(const std::string& directory) { return json::parse(read_text(directory + "/summary.json")); }
-
 TEST(OutputChangesNothing, ParticlesWithAndWithoutATrajectory) {
   const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
   const std::vector<std::vector<std::string>> ways{

@@ -14,7 +14,7 @@ using namespace softgrain;
 using namespace softgrain::test;
 using nlohmann::json;
 
-constexpr const char* kScene = R"(kind = "soft-particle"
+constexpr const char* kBreaking = R"(kind = "soft-particle"
 seed = 1
 [material]
 E = "0.5 MPa"
@@ -39,7 +39,7 @@ deltas = [0.3, 0.6, 0.9]
 
 class PackingsThatBreak : public ::testing::Test {
  protected:
-  void SetUp() override { write_text_atomic(directory_.file("scene.toml"), kScene); }
+  void SetUp() override { write_text_atomic(directory_.file("scene.toml"), kBreaking); }
   [[nodiscard]] ProgramOutcome run(const std::string& more) const {
     return run_the_program("microsim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("out") +
                            "' " + more);

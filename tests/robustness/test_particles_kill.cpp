@@ -88,10 +88,6 @@ nlohmann::json without_circumstances(nlohmann::json summary) {
   return summary;
 }
 
-nlohmann::json summary_of(const std::string& directory) {
-  return nlohmann::json::parse(read_text(directory + "/summary.json"));
-}
-
 class ParticlesKill : public ::testing::Test {
  protected:
   void SetUp() override {

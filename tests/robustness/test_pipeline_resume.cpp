@@ -212,10 +212,6 @@ TEST_F(PipelineResume, ARunOfAnotherSceneIsNotGoneOnWith) {
   EXPECT_NE(outcome.output.find("another scene"), std::string::npos) << outcome.output;
 }
 
-nlohmann::json summary_of(const std::string& directory) {
-  return nlohmann::json::parse(read_text(directory + "/summary.json"));
-}
-
 std::string remarks_of(const nlohmann::json& summary) {
   std::string text;
   for (const auto& r : summary["remarks"]) text += r.get<std::string>() + "\n";

@@ -19,7 +19,7 @@ using namespace softgrain::test;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr const char* kScene = R"(kind = "cohesive-powder"
+constexpr const char* kVariants = R"(kind = "cohesive-powder"
 samples = 2
 [disks]
 count = 80
@@ -41,12 +41,12 @@ samples = 3
 contact = { mu = 0.0 }
 )";
 
-/// Line of the last key of kScene.
+/// Line of the last key of kVariants.
 constexpr int kLastLine = 20;
 
 class PowderVariants : public ::testing::Test {
  protected:
-  PowderVariants() { write(kScene); }
+  PowderVariants() { write(kVariants); }
   void write(const std::string& text) const { write_text_atomic(scene(), text); }
   [[nodiscard]] std::string scene() const { return directory_.file("scene.toml"); }
   [[nodiscard]] std::string out(const std::string& name) const { return directory_.file("out/" + name); }
@@ -61,7 +61,7 @@ class PowderVariants : public ::testing::Test {
   }
   /// `added` stands below the scene; refused with all words, and nothing was run.
   void expect_refused(const std::string& added, const std::vector<std::string>& words, const std::string& more = "") {
-    write(kScene + added);
+    write(kVariants + added);
     const std::string output = run(more, 2);
     for (const std::string& word : words) EXPECT_NE(output.find(word), std::string::npos) << word << " in " << output;
     EXPECT_FALSE(fs::exists(out("rough"))) << added;
@@ -158,7 +158,7 @@ TEST_F(PowderVariants, SomeOfThem) {
 }
 
 TEST_F(PowderVariants, OneThatDoesNotRestDoesNotStopTheOthers) {
-  write(std::string(kScene) + "[[variant]]\nname = \"hasty\"\nassembly = { time_max = 3 }\n");
+  write(std::string(kVariants) + "[[variant]]\nname = \"hasty\"\nassembly = { time_max = 3 }\n");
   run("--set variant.0.assembly.time_max=3", 3);
   const json s = summary();
   EXPECT_EQ(s["status"], "not usable");

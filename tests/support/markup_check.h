@@ -7,6 +7,8 @@
 
 namespace softgrain {
 
+inline bool has_text(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 /// Empty when balanced, else the first tag that is not. Knows void elements (meta) and "<!DOCTYPE".
 inline std::string unbalanced_tags(const std::string& markup) {
   static const std::set<std::string> voids{"meta", "br", "link", "!DOCTYPE"};

@@ -31,13 +31,18 @@ inline ProgramOutcome run_the_program(const std::string& arguments) {
   return outcome;
 }
 
+/// summary.json of a run.
+inline nlohmann::json summary_of(const std::string& directory) {
+  return nlohmann::json::parse(read_text(directory + "/summary.json"));
+}
+
 /// Runs `microsim SCENE --out DIRECTORY more`; expects success and returns the summary.
 inline nlohmann::json run_scene(const std::string& scene, const std::string& directory, const std::string& more = "") {
   const ProgramOutcome outcome =
       run_the_program("microsim '" + scene + "' --out '" + directory + "' --quiet --threads 1 " + more);
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   if (outcome.status != 0) return nlohmann::json::object();
-  return nlohmann::json::parse(read_text(directory + "/summary.json"));
+  return summary_of(directory);
 }
 
 }  // namespace softgrain::test

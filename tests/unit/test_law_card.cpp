@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The published soft-solid law [SP 1.5] in units of E Rs^2 = 128 N, made continuous.
-ThresholdPowerLaw published() {
+ThresholdPowerLaw published_law() {
   ThresholdPowerLaw law;
   law.a = {73.669 / 128.0, 0.01, 0.55, 0.6};
   law.b = {2.799, 0.05, 2.7, 2.9};
@@ -29,7 +29,7 @@ PairLaw sample_pair(PairKind kind) {
   pair.kind = kind;
   pair.status = "good";
   pair.reason = "words with \"quotes\", a \\ and a\nline";
-  pair.normal = pair.tangential_initial = pair.tangential_secant = published();
+  pair.normal = pair.tangential_initial = pair.tangential_secant = published_law();
   pair.has_tangential_secant = true;
   pair.secant_angle_deg = 1.0;
   pair.covariance.resize(49);
@@ -94,7 +94,7 @@ void expect_equal(const ThresholdPowerLaw& a, const ThresholdPowerLaw& b) {
 }
 
 TEST(ThresholdPowerLaw, IsZeroBelowAndContinuousAtTheThreshold) {
-  const ThresholdPowerLaw law = published();
+  const ThresholdPowerLaw law = published_law();
   EXPECT_EQ(law.value(0.0), 0.0);
   EXPECT_EQ(law.value(0.0649999), 0.0);
   EXPECT_NEAR(law.value(0.065), 0.0, 1e-16);
@@ -103,7 +103,7 @@ TEST(ThresholdPowerLaw, IsZeroBelowAndContinuousAtTheThreshold) {
 }
 
 TEST(ThresholdPowerLaw, DerivativeIsThatOfTheValue) {
-  const ThresholdPowerLaw law = published();
+  const ThresholdPowerLaw law = published_law();
   for (const double d : {0.07, 0.1, 0.25, 0.5}) {
     const double h = 1e-6;
     EXPECT_NEAR(law.derivative(d), (law.value(d + h) - law.value(d - h)) / (2.0 * h), 1e-8) << d;
@@ -185,7 +185,7 @@ TEST_F(LawCardFile, ALawThatJumpsIsRefused) {
 /// Numbers that fit each other and still are those of no contact.
 TEST_F(LawCardFile, AbsurdLawsAreRefused) {
   const auto with = [&](double a, double b, double delta) {
-    card_.pairs[0].normal = published();
+    card_.pairs[0].normal = published_law();
     card_.pairs[0].normal.a.value = a;
     card_.pairs[0].normal.b.value = b;
     card_.pairs[0].normal.delta.value = delta;

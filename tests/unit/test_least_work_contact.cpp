@@ -65,7 +65,7 @@ TEST(LeastWorkContact, RollingAboutACommonAxisDoesNotSlide) {
 TEST(LeastWorkContact, SticksWithinTheLimit) {
   const Sample s(0.3);
   const Vec3 moved{{0.0, 0.1 * s.friction.limit0 / s.stick(), -0.2 * s.friction.limit0 / s.stick()}};
-  const ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved, {}, {});
+  const statics::ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved, {}, {});
   EXPECT_EQ(r.tangential.stiffness, r.tangential.stick);
   EXPECT_LT(norm(r.tangential.force - (s.friction.tangential0 - moved * s.stick())), 1e-12 * s.friction.limit0);
 }
@@ -74,7 +74,7 @@ TEST(LeastWorkContact, PublishedSlipLowersTheStiffnessUntilTheForceIsTheLimit) {
   const Sample s(0.3);
   for (const double y : {-3.0, -0.5, 0.4, 5.0}) {
     const Vec3 moved{{0.0, y * s.friction.limit0 / s.stick(), 2.0 * s.friction.limit0 / s.stick()}};
-    const ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved, {}, {});
+    const statics::ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved, {}, {});
     ASSERT_LT(r.tangential.stiffness, r.tangential.stick);
     EXPECT_NEAR(norm(r.tangential.force) / s.friction.limit0, 1.0, 1e-13);
     // On the line Qp - k' u, 0 <= k' <= k*.
@@ -95,7 +95,7 @@ TEST(LeastWorkContact, ReturnMappingTakesTheCurrentNormalForce) {
   Sample s(0.3);
   const Vec3 moved{{0.0, 4.0 * s.friction.limit0 / s.stick(), 0.0}};
   s.place = place_of_spheres({{1.995e-3, 0.0, 0.0}}, 1.995e-3, 1e-3, 1e-3);  // half the overlap
-  const ContactResponse r = respond<Current>(s.normal, &s.friction, s.place, moved, {}, {});
+  const statics::ContactResponse r = respond<Current>(s.normal, &s.friction, s.place, moved, {}, {});
   const double p = hertz_force(s.normal, 5e-6).force;
   EXPECT_NEAR(norm(r.tangential.force) / (0.3 * p), 1.0, 1e-9);
   EXPECT_LT(r.tangential.force[1], 0.0);
@@ -109,7 +109,7 @@ TEST(LeastWorkContact, AContactMadeInTheIncrementHasFrictionOnlyUnderTheCurrentR
   s.friction.tangential0 = {};
   const Vec3 moved{{0.0, 1e-8, 0.0}};
   EXPECT_EQ(norm(respond<Published>(s.normal, &s.friction, s.place, moved, {}, {}).tangential.force), 0.0);
-  const ContactResponse r = respond<Current>(s.normal, &s.friction, s.place, moved, {}, {});
+  const statics::ContactResponse r = respond<Current>(s.normal, &s.friction, s.place, moved, {}, {});
   // It has slid over half of the path, with the stiffness of its contact radius now.
   EXPECT_NEAR(norm(r.tangential.force) / (s.friction.shear * std::sqrt(0.5e-3 * 1e-5) * 0.5e-8), 1.0, 1e-9);
 }
@@ -120,7 +120,7 @@ TEST(LeastWorkContact, WithoutALimitTheForceFadesWhereTheContactOpens) {
   s.friction.torsion0 = 0.0;
   const double d = 2e-3 - 1e-5 * 1e-4;  // a hundredth of the contact radius
   const ContactPlace nearly_open = place_of_spheres({{d, 0.0, 0.0}}, d, 1e-3, 1e-3);
-  const ContactResponse r = respond<Current>(s.normal, &s.friction, nearly_open, {}, {}, {});
+  const statics::ContactResponse r = respond<Current>(s.normal, &s.friction, nearly_open, {}, {}, {});
   EXPECT_NEAR(norm(r.tangential.force), 0.01, 1e-6);
 }
 
@@ -129,9 +129,9 @@ TEST(LeastWorkContact, TorsionSticksAndSlipsTheSameWay) {
   const double limit = 3.0 * std::numbers::pi / 16.0 * s.friction.contact_radius0 * s.friction.limit0;
   const double stiffness = s.friction.twist * std::pow(s.friction.contact_radius0, 3);
   const Vec3 small{{0.3 * limit / stiffness, 0.0, 0.0}};
-  const ContactResponse stuck = respond<Published>(s.normal, &s.friction, s.place, {}, small, {});
+  const statics::ContactResponse stuck = respond<Published>(s.normal, &s.friction, s.place, {}, small, {});
   EXPECT_NEAR(stuck.torsion.moment / (s.friction.torsion0 - 0.3 * limit), 1.0, 1e-12);
-  const ContactResponse slid = respond<Published>(s.normal, &s.friction, s.place, {}, small * 10.0, {});
+  const statics::ContactResponse slid = respond<Published>(s.normal, &s.friction, s.place, {}, small * 10.0, {});
   EXPECT_NEAR(slid.torsion.moment / -limit, 1.0, 1e-12);
 }
 
@@ -144,10 +144,11 @@ TEST(LeastWorkContact, FrozenGeometryGivesTheExactGradientInStick) {
   const Vec3 direction{{0.0, 0.6, -0.8}};
   const double step = 1e-2 * scale;
   const auto work = [&](double t) {
-    const ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved + direction * t, turn, {});
+    const statics::ContactResponse r =
+        respond<Published>(s.normal, &s.friction, s.place, moved + direction * t, turn, {});
     return r.tangential.work + r.torsion.work;
   };
-  const ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved, turn, {});
+  const statics::ContactResponse r = respond<Published>(s.normal, &s.friction, s.place, moved, turn, {});
   ASSERT_EQ(r.tangential.stiffness, r.tangential.stick);
   const double slope = (work(step) - work(-step)) / (2.0 * step);
   EXPECT_NEAR(slope / -dot(r.tangential.force, direction), 1.0, 1e-11);

@@ -52,15 +52,15 @@ std::string disk(double x, double y, double vx = 0.0, double vy = 0.0, double sp
          "]\nvelocity = [" + number(vx) + ", " + number(vy) + "]\nspin = " + number(spin) + "\n";
 }
 
-Scene2 read(const std::string& text, const std::string& name = "scene.toml") {
+Scene2 read_disks(const std::string& text, const std::string& name = "scene.toml") {
   return read_particles_scene<2>(Scene::parse(text, name));
 }
 
-ParticlesResultOf<2> run(const std::string& text) { return run_particles(read(text), {}); }
+ParticlesResultOf<2> run(const std::string& text) { return run_particles(read_disks(text), {}); }
 
 TEST(ParticlesDisks, APairAttractsAtADistanceAndInContact) {
   for (const double overlap : {-1.2 * kReach, -0.75 * kReach, -0.25 * kReach, 0.2e-4, 1e-4, 5e-4}) {
-    Scene2 scene = read(head() + disk(0.0, 0.0) + disk(1.0 - overlap, 0.0) + "[time]\nsteps = 1\n");
+    Scene2 scene = read_disks(head() + disk(0.0, 0.0) + disk(1.0 - overlap, 0.0) + "[time]\nsteps = 1\n");
     force_pass(scene.system, 0.0);
     const double h = 1.0 - (1.0 - overlap);
     const double closed = h > 0.0 ? kStiffness * h - 1.0 : -h < kReach ? -(1.0 + h / kReach) : 0.0;
@@ -124,13 +124,13 @@ TEST(ParticlesDisks, RollingIsLimitedByTheElasticRepulsion) {
 }
 
 /// Disks with overlaps up to a few 1e-3, some of them within reach of each other only, in a periodic cell.
-struct Crowd {
+struct CrowdOfDisks {
   std::vector<HandDisk> disks;
   double edge = 0.0;
 };
 
-Crowd crowd(int side) {
-  Crowd out{{}, 0.99 * side};
+CrowdOfDisks crowd(int side) {
+  CrowdOfDisks out{{}, 0.99 * side};
   RandomStream random(11, RandomPurpose::test, 0);
   for (int n = 0; n < side * side; ++n)
     out.disks.push_back({{{0.99 * (n % side) + 0.008 * random.uniform(), 0.99 * (n / side) + 0.008 * random.uniform()}},
@@ -138,7 +138,8 @@ Crowd crowd(int side) {
   return out;
 }
 
-std::string scene_of(const Crowd& c, const TemporaryDirectory& directory, const std::string& more, double zeta = 0.8) {
+std::string scene_of(const CrowdOfDisks& c, const TemporaryDirectory& directory, const std::string& more,
+                     double zeta = 0.8) {
   std::string many = std::to_string(c.disks.size()) + " " + number(c.edge) + " " + number(c.edge) + " 0\n";
   for (const HandDisk& d : c.disks) many += number(d.x[0]) + " " + number(d.x[1]) + " 0 " + number(d.r) + "\n";
   write_text_atomic(directory.file("many.xyzr"), many);
@@ -148,8 +149,8 @@ std::string scene_of(const Crowd& c, const TemporaryDirectory& directory, const 
 
 TEST(ParticlesDisks, ThePackHasTheForcesOfThePowderAndOfAllPairs) {
   const TemporaryDirectory directory;
-  const Crowd c = crowd(14);
-  Scene2 scene = read(scene_of(c, directory, "[time]\nsteps = 400\n"), directory.file("scene.toml"));
+  const CrowdOfDisks c = crowd(14);
+  Scene2 scene = read_disks(scene_of(c, directory, "[time]\nsteps = 400\n"), directory.file("scene.toml"));
   PowderSpec spec;
   spec.stiffness = kStiffness;
   spec.friction = kFriction;
@@ -195,7 +196,7 @@ TEST(ParticlesDisks, ThePackHasTheForcesOfThePowderAndOfAllPairs) {
 TEST(ParticlesDisks, ThreadsAndRestartsKeepTheBits) {
   const TemporaryDirectory directory;
   const std::string text = scene_of(crowd(66), directory, "[time]\nsteps = 300\n[checkpoint]\nevery_steps = 100\n");
-  const Scene2 scene = read(text, directory.file("scene.toml"));
+  const Scene2 scene = read_disks(text, directory.file("scene.toml"));
   ASSERT_GE(scene.system.particles.grains, 2000);
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
@@ -243,14 +244,14 @@ TEST(ParticlesDisks, TheStepFollowsTheStiffestSpringAndTheAttraction) {
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = head() + pair;
     text.replace(text.find(from), from.size(), to);
-    return read(text).time;
+    return read_disks(text).time;
   };
-  const double plain = read(head() + pair).time.natural_time;
+  const double plain = read_disks(head() + pair).time.natural_time;
   EXPECT_NEAR(plain, 1.0 / std::sqrt(kStiffness), 1e-12);
   EXPECT_NEAR(with("range = " + number(kReach), "range = 1e-6").natural_time, 1e-3, 1e-9) << "slope F0/D0 = 1e6";
   EXPECT_NEAR(with("rolling_stiffness = 1", "rolling_stiffness = 1e5").natural_time, 1.0 / std::sqrt(8e5), 1e-9);
   EXPECT_NEAR(with("tangential_stiffness = 10000", "tangential_stiffness = 90000").natural_time, plain / 3.0, 1e-9);
-  const SceneTime moving = read(head() + disk(0.0, 0.0, 1.0) + disk(1.1, 0.0) + "[time]\nend = 1.0\n").time;
+  const SceneTime moving = read_disks(head() + disk(0.0, 0.0, 1.0) + disk(1.1, 0.0) + "[time]\nend = 1.0\n").time;
   EXPECT_THROW((void)with("end = 1.0", "end = 1.0\nstep = 2.1e-3"), BadInput);
   EXPECT_NO_THROW((void)with("end = 1.0", "end = 1.0\nstep = 1.9e-3"));
   EXPECT_NEAR(moving.contact_time, std::numbers::pi * std::sqrt(0.5 / kStiffness), 1e-9);

@@ -220,7 +220,7 @@ TEST_F(ParticlesLawTable, UseBeyondTheMeasurementIsCountedOrRefused) {
 }
 
 /// A lattice of soft and solid particles, so many that they are put into spatial order.
-std::string lattice() {
+std::string crowded_lattice() {
   std::string text;
   for (int n = 0; n < 3375; ++n) {
     const Vec3 x{{static_cast<double>(n % 15), static_cast<double>(n / 15 % 15), static_cast<double>(n / 225)}};
@@ -234,7 +234,7 @@ std::string lattice() {
 
 TEST_F(ParticlesLawTable, ThreadsAndRestartsKeepTheBits) {
   const ParticlesScene scene =
-      read(contacts("file = \"one.toml\"\nform = \"directional\"\nunloading = true\n") + lattice());
+      read(contacts("file = \"one.toml\"\nform = \"directional\"\nunloading = true\n") + crowded_lattice());
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
   const ParticlesResult whole = run_particles(scene, {});

@@ -34,7 +34,7 @@ std::string particle(double x, double y, double z, double r, const std::string& 
          ", " + std::to_string(y) + ", " + std::to_string(z) + "]\n" + more;
 }
 
-ParticlesScene read(const std::string& text) { return read_particles_scene(Scene::parse(text, "scene.toml")); }
+ParticlesScene scene_of_text(const std::string& text) { return read_particles_scene(Scene::parse(text, "scene.toml")); }
 
 ParticlesResult run(const ParticlesScene& scene) { return run_particles(scene, {}); }
 
@@ -51,7 +51,7 @@ std::string crowd() {
 }
 
 TEST(ParticlesScene, ReadsWhatIsWritten) {
-  const ParticlesScene scene = read(crowd() + "[time]\nend = 0.1\nstep = 1e-4\n[output]\nevery = 1e-3\n");
+  const ParticlesScene scene = scene_of_text(crowd() + "[time]\nend = 0.1\nstep = 1e-4\n[output]\nevery = 1e-3\n");
   const auto& p = scene.system.particles;
   EXPECT_EQ(p.grains, 27);
   EXPECT_EQ(p.shells, 1);
@@ -71,7 +71,7 @@ TEST(ParticlesScene, ParticlesBelongToTheSphereThatIsNamed) {
       "\"glass\"\n"
       "[[wall]]\nname = \"b\"\nshape = \"sphere-inside\"\ncenter = [0.05, 0.0, 0.0]\nradius = 0.1\nmaterial = "
       "\"glass\"\n";
-  const ParticlesScene scene = read(
+  const ParticlesScene scene = scene_of_text(
       kHead + walls + particle(0.04, 0.0, 0.0, 0.01) + particle(0.03, 0.0, 0.0, 0.01, "inside = \"b\"\n") +
       particle(0.02, 0.0, 0.0, 0.01, "inside = \"none\"\n") + particle(0.5, 0.0, 0.0, 0.01) + "[time]\nend = 1e-3\n");
   EXPECT_EQ(scene.system.particles.shell, (std::vector<std::int32_t>{4, 5, -1, -1, -1, -1}));
@@ -79,8 +79,8 @@ TEST(ParticlesScene, ParticlesBelongToTheSphereThatIsNamed) {
 
 TEST(ParticlesScene, AutomaticStepResolvesImpactsAndDividesTheEnd) {
   const ParticlesScene scene =
-      read(kHead + particle(-0.02, 0.0, 0.0, 0.01, "velocity = [3.0, 0.0, 0.0]\n") +
-           particle(0.02, 0.0, 0.0, 0.01, "velocity = [-3.0, 0.0, 0.0]\n") + "[time]\nend = 0.01\n");
+      scene_of_text(kHead + particle(-0.02, 0.0, 0.0, 0.01, "velocity = [3.0, 0.0, 0.0]\n") +
+                    particle(0.02, 0.0, 0.0, 0.01, "velocity = [-3.0, 0.0, 0.0]\n") + "[time]\nend = 0.01\n");
   EXPECT_LE(scene.time.step, scene.time.contact_time / 200.0);
   EXPECT_LE(scene.time.step, 0.05 * scene.time.natural_time);
   EXPECT_DOUBLE_EQ(scene.time.step * static_cast<double>(scene.time.steps), 0.01);
@@ -111,8 +111,8 @@ TEST(ParticlesScene, FilesOfManySpheresPlainAndPacked) {
 
 TEST(ParticlesRun, OutputWatchingAndCheckpointsDoNotChangeTheTrajectory) {
   const TemporaryDirectory directory;
-  ParticlesScene scene =
-      read(crowd() + "[time]\nend = 0.15\nstep = 5e-5\n[output]\nevery = 1e-3\n[checkpoint]\nevery_steps = 700\n");
+  ParticlesScene scene = scene_of_text(
+      crowd() + "[time]\nend = 0.15\nstep = 5e-5\n[output]\nevery = 1e-3\n[checkpoint]\nevery_steps = 700\n");
   ParticlesControl control;
   control.checkpoint = directory.file("checkpoint.h5");
   const ParticlesResult watched = run_particles(scene, control);
@@ -129,7 +129,7 @@ TEST(ParticlesRun, OutputWatchingAndCheckpointsDoNotChangeTheTrajectory) {
 
 TEST(ParticlesRun, AnInterruptSavesAndResumeGivesTheSameBits) {
   const TemporaryDirectory directory;
-  const ParticlesScene scene = read(crowd() + "[time]\nend = 0.1\nstep = 5e-5\n[output]\nevery = 1e-3\n");
+  const ParticlesScene scene = scene_of_text(crowd() + "[time]\nend = 0.1\nstep = 5e-5\n[output]\nevery = 1e-3\n");
   const ParticlesResult whole = run(scene);
   ParticlesControl control;
   control.checkpoint = directory.file("checkpoint.h5");
@@ -153,12 +153,12 @@ TEST(ParticlesRun, AnInterruptSavesAndResumeGivesTheSameBits) {
 }
 
 TEST(ParticlesRun, ALostParticleEndsTheRunAndIsNamed) {
-  ParticlesScene scene = read(crowd() + "[time]\nend = 0.1\nstep = 5e-5\n");
+  ParticlesScene scene = scene_of_text(crowd() + "[time]\nend = 0.1\nstep = 5e-5\n");
   scene.system.particles.velocity[7] = {{0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}};
   const ParticlesResult nan = run(scene);
   EXPECT_FALSE(nan.usable);
   EXPECT_NE(nan.reason.find(" 7 "), std::string::npos) << nan.reason;
-  scene = read(crowd() + "[time]\nend = 0.1\nstep = 5e-5\n");
+  scene = scene_of_text(crowd() + "[time]\nend = 0.1\nstep = 5e-5\n");
   scene.system.particles.velocity[9] = {{400.0, 0.0, 0.0}};  // twice its radius in a step
   const ParticlesResult fast = run(scene);
   EXPECT_FALSE(fast.usable);
@@ -176,7 +176,7 @@ TEST(ParticlesRun, AWallUnderAForceComesToRestOnIt) {
       "[[wall]]\nname = \"plate\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0401]\nnormal = [0.0, 0.0, -1.0]\nmaterial "
       "= \"glass\"\n"
       "motion = \"force\"\nforce = 0.5\nmass = 0.02\n[time]\nend = 1.5\n";
-  const ParticlesResult out = run(read(text));
+  const ParticlesResult out = run(scene_of_text(text));
   ASSERT_TRUE(out.usable) << out.reason;
   const auto& p = out.system.particles;
   EXPECT_LT(norm(p.velocity[3]), 1e-5);
@@ -193,7 +193,7 @@ TEST(ParticlesRun, AMovingWallCarriesItsParticles) {
       kHead + particle(0.0, 0.0, 0.0, 0.02) +
       "[[wall]]\nshape = \"sphere-inside\"\ncenter = [0.0, 0.0, 0.0]\nradius = 0.021\nmaterial = \"glass\"\n"
       "motion = \"velocity\"\nvelocity = [0.1, 0.0, 0.0]\n[time]\nend = 2.0\n";
-  const ParticlesResult out = run(read(text));
+  const ParticlesResult out = run(scene_of_text(text));
   ASSERT_TRUE(out.usable) << out.reason;
   EXPECT_NEAR(out.system.particles.sphere[1].x[0], 0.2, 1e-12);
   EXPECT_NEAR(out.system.particles.sphere[0].x[0], 0.2, 0.002);
@@ -205,7 +205,7 @@ TEST(ParticlesRun, AShearedCellGivesImagesTheirVelocity) {
                            particle(0.1, 0.1, 0.1, 0.01) +
                            "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true, true]\nshear_rate = "
                            "0.5\n[time]\nend = 0.3\nstep = 1e-4\n";
-  const ParticlesResult out = run(read(text));
+  const ParticlesResult out = run(scene_of_text(text));
   ASSERT_TRUE(out.usable) << out.reason;
   EXPECT_NEAR(out.system.particles.velocity[0][0], -0.5, 1e-12);
   EXPECT_NEAR(out.system.cell.edges[0][1], 0.15, 1e-9);
@@ -217,7 +217,7 @@ TEST(ParticlesRun, ContactsThatLastAndComeBackAreCounted) {
                            particle(1.0, 0.0, 0.00995, 0.01) +
                            "[[wall]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, "
                            "0.0, 1.0]\nmaterial = \"glass\"\n[time]\nend = 0.02\n";
-  const ParticlesResult out = run(read(text));
+  const ParticlesResult out = run(scene_of_text(text));
   ASSERT_EQ(out.contacts.size(), 2U);
   EXPECT_GE(out.contacts[0].count, 1);
   EXPECT_GT(out.contacts[0].duration, 0.0);
@@ -227,7 +227,7 @@ TEST(ParticlesRun, ContactsThatLastAndComeBackAreCounted) {
 
 TEST(ParticlesRun, TheFileHoldsEverything) {
   const TemporaryDirectory directory;
-  const ParticlesScene scene = read(crowd() + "[time]\nend = 0.02\nstep = 5e-5\n[output]\nevery = 1e-3\n");
+  const ParticlesScene scene = scene_of_text(crowd() + "[time]\nend = 0.02\nstep = 5e-5\n[output]\nevery = 1e-3\n");
   const ParticlesResult out = run(scene);
   save_particles_run(directory.file("run.h5"), scene, out, build_provenance());
   const h5::Group root = h5::open_file(directory.file("run.h5"));

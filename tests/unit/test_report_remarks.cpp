@@ -9,13 +9,12 @@
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/run/run_summary.h"
+#include "tests/support/markup_check.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"
 
 namespace softgrain {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string all_of(const std::vector<std::string>& lines) {
   std::string text;
@@ -41,16 +40,16 @@ TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
   }
   EXPECT_NEAR(least, kPairLawMissesLeast, 0.05);
   EXPECT_NEAR(most, kPairLawMissesMost, 0.5);
-  EXPECT_TRUE(contains(pair_law_remark(), "1.2 to 9 times")) << pair_law_remark();
+  EXPECT_TRUE(has_text(pair_law_remark(), "1.2 to 9 times")) << pair_law_remark();
 }
 
 TEST(MacroRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
-  EXPECT_TRUE(contains(all_of(macro_remarks(curves_with("pair"))), pair_law_remark()));
-  EXPECT_TRUE(contains(all_of(macro_remarks(curves_with("pair"))), "stands in for the friction limit"));
+  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with("pair"))), pair_law_remark()));
+  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with("pair"))), "stands in for the friction limit"));
   for (const char* form : {"bag", "directional"}) {
     const std::string said = all_of(macro_remarks(curves_with(form)));
-    EXPECT_FALSE(contains(said, "one contact")) << form << ": " << said;
-    EXPECT_FALSE(contains(said, "against a plane")) << form << ": " << said;
+    EXPECT_FALSE(has_text(said, "one contact")) << form << ": " << said;
+    EXPECT_FALSE(has_text(said, "against a plane")) << form << ": " << said;
   }
 }
 
@@ -58,7 +57,7 @@ TEST(ReportRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
   report::RunData run;
   run.summary = nlohmann::json::object();
   run.macro = curves_with("pair");
-  EXPECT_TRUE(contains(report::remarks_section(run), "1.2 to 9 times"));
+  EXPECT_TRUE(has_text(report::remarks_section(run), "1.2 to 9 times"));
   run.macro = curves_with("directional");
   EXPECT_EQ(report::remarks_section(run), "");
 }
@@ -66,18 +65,18 @@ TEST(ReportRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
 TEST(ReportMacro, NamesTheLawOfItsCurves) {
   report::RunData run;
   run.macro = curves_with("directional");
-  EXPECT_TRUE(contains(report::macro_section(run), "directional law at solid fraction 0.7000"));
-  EXPECT_TRUE(contains(report::macro_section(run), "mu = 0.3, taken with E = 500000 Pa; numbers numbers"));
+  EXPECT_TRUE(has_text(report::macro_section(run), "directional law at solid fraction 0.7000"));
+  EXPECT_TRUE(has_text(report::macro_section(run), "mu = 0.3, taken with E = 500000 Pa; numbers numbers"));
   run.macro = synthetic::macro();
-  EXPECT_TRUE(contains(report::macro_section(run), "not recorded"));
+  EXPECT_TRUE(has_text(report::macro_section(run), "not recorded"));
 }
 
 TEST(ReportNormal, ThePublishedLawIsOfThePublishedSoftParticle) {
   report::RunData run;
   run.measurements = synthetic::measurements();
   const std::string same = report::normal_section(run);
-  EXPECT_TRUE(contains(same, "which are those of this run."));
-  EXPECT_FALSE(contains(same, "another soft particle"));
+  EXPECT_TRUE(has_text(same, "which are those of this run."));
+  EXPECT_FALSE(has_text(same, "another soft particle"));
   run.measurements->spec.beta = 2.0;  // not published
   EXPECT_EQ(report::normal_section(run), same);
   const std::vector<std::pair<const char*, std::function<void(SoftParticleSpec&)>>> changes{
@@ -89,8 +88,8 @@ TEST(ReportNormal, ThePublishedLawIsOfThePublishedSoftParticle) {
     run.measurements = synthetic::measurements();
     change(run.measurements->spec);
     const std::string other = report::normal_section(run);
-    EXPECT_TRUE(contains(other, "published law (another soft particle)")) << says;
-    EXPECT_TRUE(contains(other, says)) << says;
+    EXPECT_TRUE(has_text(other, "published law (another soft particle)")) << says;
+    EXPECT_TRUE(has_text(other, says)) << says;
   }
 }
 
@@ -98,15 +97,15 @@ TEST(ReportLawTable, SaysWhatWasNotMeasured) {
   report::RunData run;
   run.law_table = LawTable{1, {synthetic::law_entry(0.7)}};
   const std::string measured = report::law_table_section(run);
-  EXPECT_TRUE(contains(measured, "unloading is 1.50 times as steep as loading"));
-  EXPECT_FALSE(contains(measured, "not measured"));
+  EXPECT_TRUE(has_text(measured, "unloading is 1.50 times as steep as loading"));
+  EXPECT_FALSE(has_text(measured, "not measured"));
   LawTableEntry& entry = run.law_table->entries[0];
   entry.retreat_measured = false;
   entry.slide_solid = {synthetic::unknown(0.25), synthetic::unknown(0.35), false};
   const std::string missing = report::law_table_section(run);
-  EXPECT_TRUE(contains(missing, "unloading was not measured"));
-  EXPECT_FALSE(contains(missing, "as steep as loading"));
-  EXPECT_TRUE(contains(missing, "not measured against solid spheres (0.35, 0.25 stand in)"));
+  EXPECT_TRUE(has_text(missing, "unloading was not measured"));
+  EXPECT_FALSE(has_text(missing, "as steep as loading"));
+  EXPECT_TRUE(has_text(missing, "not measured against solid spheres (0.35, 0.25 stand in)"));
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ std::string cost_table(const RelaxationComparison& c) {
 }
 
 /// The reference is the published relaxation when it is there; the candidate is the first other one.
-std::string kind_body(const RunData& run, PairKind kind) {
+std::string relaxations_of(const RunData& run, PairKind kind) {
   const auto names = relaxations_of(*run.measurements, kind);
   if (names.size() < 2) return "";
   const bool published = std::find(names.begin(), names.end(), "published") != names.end();
@@ -127,7 +127,7 @@ std::string kind_body(const RunData& run, PairKind kind) {
 std::string relaxations_section(const RunData& run) {
   if (!run.measurements) return "";
   std::string body;
-  for (const PairKind kind : kPairKinds) body += kind_body(run, kind);
+  for (const PairKind kind : kPairKinds) body += relaxations_of(run, kind);
   return section("relaxations", "Two ways to relax", body);
 }
 
