@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "calibrate/numeric_jacobian.h"
+#include "calibrate/trust_region.h"
 
 namespace softgrain {
 
@@ -27,9 +27,7 @@ bool all_finite(const Vector& values) {
 }
 
 bool evaluate_jacobian(const LeastSquaresProblem& problem, const Vector& p, Vector& jacobian) {
-  const bool defined = problem.jacobian ? problem.jacobian(p, jacobian)
-                                        : ridders_jacobian(problem.evaluate, problem.residuals, p, jacobian);
-  return defined && all_finite(jacobian);
+  return jacobian_at(problem, p, jacobian) && all_finite(jacobian);
 }
 
 /// On a bound (to rounding) with the descent direction pointing out of it.

@@ -27,7 +27,7 @@ struct ParameterBounds {
 struct LeastSquaresProblem {
   std::size_t residuals = 0;
   ResidualFunction evaluate;
-  JacobianFunction jacobian;            ///< empty: Ridders' extrapolated central differences
+  JacobianFunction jacobian;            ///< empty: central differences
   std::vector<ParameterBounds> bounds;  ///< empty, or one per parameter
 };
 

@@ -1,12 +1,13 @@
 #include "calibrate/trust_region.h"
 
 #include <ceres/ceres.h>
+#include <ceres/dynamic_numeric_diff_cost_function.h>
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "calibrate/numeric_jacobian.h"
+#include <limits>
+#include <tuple>
 
 namespace softgrain {
 
@@ -29,8 +30,7 @@ class ScaledCost final : public ceres::CostFunction {
     if (!problem_.evaluate(p_, {residuals, problem_.residuals})) return false;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     const std::span<double> jacobian(jacobians[0], problem_.residuals * n);
-    const bool defined = problem_.jacobian ? problem_.jacobian(p_, jacobian)
-                                           : ridders_jacobian(problem_.evaluate, problem_.residuals, p_, jacobian);
+    const bool defined = jacobian_at(problem_, p_, jacobian);
     for (std::size_t k = 0; k < jacobian.size(); ++k) jacobian[k] *= scale_[k % n];
     return defined;
   }
@@ -40,6 +40,38 @@ class ScaledCost final : public ceres::CostFunction {
   const Vector& scale_;
   mutable Vector p_;
 };
+
+/// Residuals over parameters in units of `size`, as Ceres's differences take them.
+struct SizedResiduals {
+  const LeastSquaresProblem& problem;
+  const Vector& size;
+
+  bool operator()(double const* const* q, double* residuals) const {
+    Vector p(size);
+    for (std::size_t j = 0; j < p.size(); ++j) p[j] *= q[0][j];
+    return problem.evaluate(p, {residuals, problem.residuals});
+  }
+};
+
+/// Central differences of one small step: a larger one meets the kinks of models with thresholds.
+bool differences_at(const LeastSquaresProblem& problem, std::span<const double> p, std::span<double> jacobian) {
+  Vector size(p.begin(), p.end());
+  Vector q(p.size(), 1.0);
+  for (std::size_t j = 0; j < p.size(); ++j)
+    if (p[j] == 0.0) std::tie(size[j], q[j]) = std::pair{1.0, 0.0};
+  const SizedResiduals sized{problem, size};
+  ceres::NumericDiffOptions options;
+  options.relative_step_size = std::cbrt(std::numeric_limits<double>::epsilon());
+  ceres::DynamicNumericDiffCostFunction<SizedResiduals> cost(&sized, ceres::DO_NOT_TAKE_OWNERSHIP, options);
+  cost.AddParameterBlock(static_cast<int>(p.size()));
+  cost.SetNumResiduals(static_cast<int>(problem.residuals));
+  Vector residuals(problem.residuals);
+  const double* block = q.data();
+  double* slopes = jacobian.data();
+  const bool defined = cost.Evaluate(&block, residuals.data(), &slopes);
+  for (std::size_t k = 0; k < jacobian.size(); ++k) jacobian[k] /= size[k % size.size()];
+  return defined;
+}
 
 ceres::Solver::Options solver_options(const TrustRegionStrategy& strategy, const LeastSquaresOptions& options) {
   ceres::Solver::Options o;
@@ -100,6 +132,10 @@ void silence_glog() {
 }
 
 }  // namespace
+
+bool jacobian_at(const LeastSquaresProblem& problem, std::span<const double> p, std::span<double> jacobian) {
+  return problem.jacobian ? problem.jacobian(p, jacobian) : differences_at(problem, p, jacobian);
+}
 
 const std::vector<TrustRegionStrategy>& trust_region_strategies() {
   static const std::vector<TrustRegionStrategy> all{

@@ -11,8 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "calibrate/curve_problem.h"
 #include "calibrate/least_squares.h"
+#include "tests/support/curve_problem.h"
 
 namespace {
 
@@ -160,7 +160,7 @@ void sort_exponentials(LeastSquaresFit& fit) {
   }
 }
 
-template <std::size_t N, class Model>
+template <int N, class Model>
 void expect_certified(const std::string& name, Model model, bool logarithm = false) {
   NistSet set = read_set(name);
   ASSERT_EQ(set.certified.size(), N) << name;

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "calibrate/curve_problem.h"
-#include "calibrate/numeric_jacobian.h"
+#include "calibrate/trust_region.h"
 #include "common/core/error.h"
+#include "tests/support/curve_problem.h"
 
 namespace {
 
@@ -48,13 +48,28 @@ TEST(LeastSquares, UnitsOfParametersDoNotMatter) {
   EXPECT_NEAR(scaled.standard_deviations[1] * 1e-8 / plain.standard_deviations[1], 1.0, 1e-7);
 }
 
-TEST(LeastSquares, RiddersAgreesWithExactDerivatives) {
-  const auto problem = curve_problem<2>(decay_data(3.0, 0.7), kDecay);
-  const std::vector<double> p{2.5, 0.4};
-  std::vector<double> exact(24), numeric(24);
-  ASSERT_TRUE(problem.jacobian(p, exact));
-  ASSERT_TRUE(ridders_jacobian(problem.evaluate, problem.residuals, p, numeric));
-  for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(numeric[k], exact[k], 1e-10 * (1.0 + std::abs(exact[k])));
+TEST(LeastSquares, DifferencesAgreeWithExactDerivatives) {
+  auto problem = curve_problem<2>(decay_data(3.0, 0.7), kDecay);
+  for (const std::vector<double>& p : {std::vector{2.5, 0.4}, {-2.5e6, 0.4}, {0.0, 0.4}}) {
+    std::vector<double> exact(24), numeric(24);
+    ASSERT_TRUE(jacobian_at(problem, p, exact));
+    ASSERT_TRUE(jacobian_at({problem.residuals, problem.evaluate, nullptr, {}}, p, numeric));
+    for (std::size_t k = 0; k < exact.size(); ++k)
+      EXPECT_NEAR(numeric[k], exact[k], (p[0] == 0.0 ? 1e-8 : 1e-9) * (1.0 + std::abs(exact[k]))) << p[0];
+  }
+}
+
+TEST(LeastSquares, DifferencesStayWithinTheDomainOrSaySo) {
+  LeastSquaresProblem problem;
+  problem.residuals = 1;
+  problem.evaluate = [](std::span<const double> p, std::span<double> r) {
+    r[0] = p[0] * p[0];
+    return p[0] < 2.001;
+  };
+  std::vector<double> slope(1);
+  ASSERT_TRUE(jacobian_at(problem, std::vector{2.0}, slope));
+  EXPECT_NEAR(slope[0], 4.0, 1e-9);
+  EXPECT_FALSE(jacobian_at(problem, std::vector{2.1}, slope));
 }
 
 TEST(LeastSquares, FitsWithoutAJacobian) {

@@ -1,12 +1,14 @@
 // Turns "observations y at points x, model f(x; p)" into a least-squares problem with an exact Jacobian.
 #pragma once
 
+#include <ceres/jet.h>
+
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "calibrate/dual.h"
 #include "calibrate/least_squares.h"
 
 namespace softgrain {
@@ -18,9 +20,9 @@ struct Observations {
   std::size_t predictors = 1;
 };
 
-/// Residuals f(x_i; p) - y_i. `model(p, x)` is generic in the type of p (double or Dual<N>): `[](const auto* p, const
-/// double* x)`.
-template <std::size_t N, class Model>
+/// Residuals f(x_i; p) - y_i. `model(p, x)` is generic in the type of p (double or ceres::Jet<double, N>): `[](const
+/// auto* p, const double* x)`.
+template <int N, class Model>
 LeastSquaresProblem curve_problem(Observations data, Model model) {
   const auto shared = std::make_shared<const Observations>(std::move(data));
   LeastSquaresProblem problem;
@@ -34,14 +36,15 @@ LeastSquaresProblem curve_problem(Observations data, Model model) {
     return finite;
   };
   problem.jacobian = [shared, model](std::span<const double> p, std::span<double> jacobian) {
-    std::array<Dual<N>, N> q;
-    for (std::size_t j = 0; j < N; ++j) q[j] = Dual<N>::variable(p[j], j);
+    using Jet = ceres::Jet<double, N>;
+    std::array<Jet, N> q;
+    for (int j = 0; j < N; ++j) q[j] = Jet(p[j], j);
     bool finite = true;
     for (std::size_t i = 0; i < shared->y.size(); ++i) {
-      const Dual<N> f = model(q.data(), shared->x.data() + i * shared->predictors);
-      for (std::size_t j = 0; j < N; ++j) {
-        jacobian[i * N + j] = f.d[j];
-        finite = finite && std::isfinite(f.d[j]);
+      const Jet f = model(q.data(), shared->x.data() + i * shared->predictors);
+      for (int j = 0; j < N; ++j) {
+        jacobian[i * N + j] = f.v[j];
+        finite = finite && std::isfinite(f.v[j]);
       }
     }
     return finite;
