@@ -18,12 +18,10 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::array kForms{"pair", "bag", "directional"};
-
 /// Where the fit of the planes starts: near what the published soft particle gives.
-CrowdModel starting_model(const std::string& form) {
+CrowdModel starting_model(Crowd form) {
   CrowdModel model;
-  model.crowd = crowd_of(form);
+  model.crowd = form;
   model.form.pressure = {0.7, 2.9, 0.08};
   model.form.coupling = model.crowd == Crowd::directional ? CrowdCoupling{0.6, 0.9, 0.4} : CrowdCoupling{1.0, 0.0, 0.0};
   return model;
@@ -145,8 +143,8 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   int counts[2] = {0, 0};
   for (const CrowdStates& c : states) {
     if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
-    const ConfigurationError e{c.configuration->name, to_string(c.use), crowd_error(fit.model, c),
-                               end_ratio(fit.model, c), noise(c)};
+    const ConfigurationError e{c.configuration->name, c.use, crowd_error(fit.model, c), end_ratio(fit.model, c),
+                               noise(c)};
     law.errors.push_back(e);
     if (c.use == CrowdUse::repeated) continue;
     const bool out = c.use == CrowdUse::predicted;
@@ -194,10 +192,10 @@ void set_status(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates
       for (const CrowdState& s : c.states)
         deepest = std::max(deepest, *std::max_element(s.overlap.begin(), s.overlap.end()));
   if (!(p.delta < deepest)) {
-    law.status = "no threshold crossing";
+    law.status = LawStatus::no_threshold_crossing;
     law.reason = fmt::format("the threshold {:.3f} lies beyond the largest overlap {:.3f}", p.delta, deepest);
   } else if (const std::string trouble = fit.trouble(); !trouble.empty()) {
-    law.status = "underdetermined";
+    law.status = LawStatus::underdetermined;
     law.reason = trouble;
   }
 }
@@ -208,7 +206,7 @@ struct FittedLaw {
   std::vector<int> draws;
 };
 
-FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>& states, const std::string& form,
+FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>& states, Crowd form,
                    const CrowdFitOptions& options) {
   const FormFit fit = fit_form(form, states, options.discrepancy, true, starting_model(form));
   FittedLaw out;
@@ -242,10 +240,10 @@ std::vector<SideValues> drawn_sides(const CrowdMeasurements& data, const FittedL
 /// What is far off on loadings that it has not seen is no law to use, however well it was fitted. Said after the choice
 /// of form, in which held-out loadings have no part.
 void judge_accuracy(CrowdLaw& law, double largest) {
-  if (law.status != "good") return;
+  if (law.status != LawStatus::good) return;
   const bool held_out = law.error_held_out > largest;
   if (!held_out && !(law.error_cross > largest)) return;
-  law.status = "inaccurate";
+  law.status = LawStatus::inaccurate;
   law.reason = fmt::format(
       "off by {:.0f} % on {}; at most {:.0f} % are allowed", 100.0 * (held_out ? law.error_held_out : law.error_cross),
       held_out ? "loadings that were held out" : "fitted loadings when each is left out", 100.0 * largest);
@@ -300,11 +298,12 @@ LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOption
   entry.relaxation = data.relaxation;
   describe_packings(data, entry);
   std::vector<FittedLaw> laws;
-  for (const char* form : kForms) laws.push_back(make_law(data, states, form, options));
+  for (const Word<Crowd>& form : words<Crowd>) laws.push_back(make_law(data, states, form.value, options));
   // What the data do not determine is not preferred, however well it follows them.
   const auto rank = [](const FittedLaw& f) {
     const CrowdLaw& law = f.law;
-    return std::tuple{law.status != "good", std::isnan(law.error_cross) ? HUGE_VAL : law.error_cross, law.parameters};
+    return std::tuple{law.status != LawStatus::good, std::isnan(law.error_cross) ? HUGE_VAL : law.error_cross,
+                      law.parameters};
   };
   const auto best = std::min_element(laws.begin(), laws.end(),
                                      [&](const FittedLaw& a, const FittedLaw& b) { return rank(a) < rank(b); });

@@ -65,11 +65,11 @@ std::string FormFit::trouble() const {
   return "";
 }
 
-FormFit fit_form(const std::string& form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
+FormFit fit_form(Crowd form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
                  const CrowdModel& start) {
   FormFit out;
   out.model = start;
-  out.model.crowd = crowd_of(form);
+  out.model.crowd = form;
   const StateSelection planes = plane_selection(states, out.model.crowd, nullptr);
   out.planes = fit_planes(out.model, planes, discrepancy, thorough);
   const StateSelection solid = partner_selection(states, PartnerKind::solid, out.model.crowd);
@@ -90,8 +90,7 @@ std::vector<double> packing_weights(std::size_t packings, std::uint64_t seed, in
   return weight;
 }
 
-FormRefits refit_form(const CrowdMeasurements& data, const std::string& form, const FormFit& full,
-                      const CrowdFitOptions& options) {
+FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options) {
   FormRefits out;
   out.columns.resize(full.parameters().size());
   for (int r = 0; r < options.replicates; ++r) {

@@ -33,7 +33,7 @@ struct FormFit {
 };
 
 /// `thorough`: every strategy for the planes, and for the neighbours when the first one does not come to a minimum.
-FormFit fit_form(const std::string& form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
+FormFit fit_form(Crowd form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
                  const CrowdModel& start);
 
 /// How often each packing counts in replicate `r`.
@@ -47,7 +47,6 @@ struct FormRefits {
 };
 
 /// Refits to packings drawn with replacement, from the fit to all of them.
-FormRefits refit_form(const CrowdMeasurements& data, const std::string& form, const FormFit& full,
-                      const CrowdFitOptions& options);
+FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options);
 
 }  // namespace softgrain

@@ -124,7 +124,7 @@ std::vector<const CrowdState*> retreat_states(const CrowdStates& c, const CrowdS
     if (deepest == nullptr || s.overlap[0] >= deepest->overlap[0]) {
       if (!out.empty()) break;  // reloaded
       deepest = &s;
-    } else if (c.configuration->stages[static_cast<std::size_t>(s.stage)].name == "unload") {
+    } else if (c.configuration->stages[static_cast<std::size_t>(s.stage)].move == CrowdMove::unload) {
       out.push_back(&s);
     }
   }

@@ -142,11 +142,6 @@ void assign_uses(std::vector<CrowdStates>& all) {
 
 }  // namespace
 
-std::string to_string(CrowdUse use) {
-  if (use == CrowdUse::fitted) return "fitted";
-  return use == CrowdUse::predicted ? "predicted" : "repeated";
-}
-
 bool CrowdStates::all_of(PartnerKind kind) const {
   return std::all_of(configuration->partners.begin(), configuration->partners.end(),
                      [kind](const CrowdPartner& p) { return p.kind == kind; });

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/data/crowd_measurements.h"
+#include "common/data/crowd_law.h"
 
 namespace softgrain {
 
@@ -20,15 +20,6 @@ struct CrowdState {
   std::int64_t stage = 0;
   std::int64_t packings = 0;  ///< converged ones
 };
-
-/// What a fit of forces does with a configuration.
-enum class CrowdUse {
-  fitted,
-  predicted,  ///< held out, with every other path that begins with the same loading
-  repeated    ///< the same loading of the same packings as one that is fitted or predicted: says nothing new
-};
-
-std::string to_string(CrowdUse use);
 
 /// The states of one configuration, in the order of the path.
 struct CrowdStates {

@@ -168,7 +168,7 @@ PackingRun run_of(const ForceCurve& sample, std::size_t index, PairKind kind) {
   PackingRun run;
   run.packing = static_cast<std::int64_t>(index);
   run.kind = kind;
-  run.relaxation = "experiment";
+  run.relaxation = kExperiment;
   for (const ForcePoint& p : sample.normal) run.normal.push_back({p.delta, p.force, 0.0, 0.0, true});
   run.tangential = sample.tangential;
   return run;
@@ -191,7 +191,7 @@ FitReport mirrored(const FitReport& measured) {
   for (auto& r : out.replicates) r = turned(r);
   PairLaw& law = out.law;
   law.kind = to_pair ? PairKind::soft_soft : PairKind::soft_solid;
-  law.status = "underdetermined";
+  law.status = LawStatus::underdetermined;
   law.reason = fmt::format("Not measured: follows from {} by symmetry, each particle taking half of the overlap.",
                            to_string(measured.law.kind));
   law.delta_min *= stretch;
@@ -282,7 +282,7 @@ CurveMeans mean_curve(const ForceCurves& curves) {
 ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror) {
   ExperimentFit out;
   out.card.spec = curves.front().spec;
-  out.card.relaxation = "experiment";
+  out.card.relaxation = kExperiment;
   out.card.intervals.clear();
   for (const ForceCurves& one : curves) {
     const PreparedCurves prepared = prepare_curves(one);

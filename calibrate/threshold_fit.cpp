@@ -168,7 +168,7 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   if (law.packings >= 2 || options.experiment) fill_goodness(w.curves, w.joint.parameters, options.noise_floor, law);
 }
 
-void conclude(PairLaw& law, const std::string& status, const std::vector<std::string>& reasons) {
+void conclude(PairLaw& law, LawStatus status, const std::vector<std::string>& reasons) {
   law.status = status;
   law.reason.clear();
   for (const std::string& r : reasons) law.reason += (law.reason.empty() ? "" : "; ") + r;
@@ -203,12 +203,12 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
   Work w = collect(runs, data.spec, options);
   describe_data(runs, options, w.samples, w.means, report);
   if (w.samples[0].empty()) {
-    conclude(report.law, "underdetermined", {"no converged normal point in the fitted range"});
+    conclude(report.law, LawStatus::underdetermined, {"no converged normal point in the fitted range"});
     return report;
   }
   if (w.clear[0].empty()) {
     const double largest = *std::max_element(w.means[0].mean.begin(), w.means[0].mean.end());
-    conclude(report.law, "no threshold crossing",
+    conclude(report.law, LawStatus::no_threshold_crossing,
              {fmt::format(
                  "no mean force clearly above the noise floor {:.1e} E Rs^2 up to Delta = {:.4g} (largest mean {:.1e})",
                  options.noise_floor, report.law.delta_max, largest)});
@@ -220,7 +220,7 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
   report.fit_message = w.joint.fit.message;
   judge_fit(w);
   fill_law(options, w, report);
-  conclude(report.law, w.reasons.empty() ? "good" : "underdetermined", w.reasons);
+  conclude(report.law, w.reasons.empty() ? LawStatus::good : LawStatus::underdetermined, w.reasons);
   return report;
 }
 

@@ -83,8 +83,8 @@ MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed,
 }
 
 MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  return spec.construction == "voids" ? make_constructed_packing(spec, seed, sample)
-                                      : make_macro_packing(spec, seed, sample);
+  return spec.construction == Construction::voids ? make_constructed_packing(spec, seed, sample)
+                                                  : make_macro_packing(spec, seed, sample);
 }
 
 SceneFacts describe(const MacroPacking& packing, const std::vector<ShellPacking>& contents) {

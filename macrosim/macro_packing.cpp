@@ -61,7 +61,7 @@ std::int64_t MacroPacking::soft_count() const {
 
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
   MacroPacking packing = place_loosely(draw_bodies(spec, seed, sample), seed, sample);
-  if (spec.preparation == "softgrain") bring_into_touch(spec, packing);
+  if (spec.preparation == MacroEngine::softgrain) bring_into_touch(spec, packing);
   return packing;
 }
 

@@ -17,7 +17,7 @@ double nominal_step(double end, std::int64_t k, std::int64_t total) {
 std::int64_t recorded_points(const MacroSpec& spec) { return preload_points(spec) + spec.steps + 1; }
 
 std::int64_t preload_points(const MacroSpec& spec) {
-  return spec.test == "shear" && spec.preload > 0.0 ? spec.preload_steps : 0;
+  return spec.test == MacroTest::shear && spec.preload > 0.0 ? spec.preload_steps : 0;
 }
 
 double strain_at(const MacroSpec& spec, std::int64_t point) {
@@ -30,7 +30,7 @@ Vec3 strain_increment(const MacroSpec& spec, std::int64_t point, std::int64_t k)
   const std::int64_t n = (point - 1) * spec.increments_per_step + k;
   const std::int64_t preloading = preload_points(spec) * spec.increments_per_step;
   const std::int64_t total = spec.steps * spec.increments_per_step;
-  if (spec.test == "shear") {
+  if (spec.test == MacroTest::shear) {
     if (n <= preloading) {
       const double factor = nominal_step(spec.preload, n, preloading);
       return {{factor, factor, factor}};
@@ -39,7 +39,7 @@ Vec3 strain_increment(const MacroSpec& spec, std::int64_t point, std::int64_t k)
     return {{-std::expm1(logarithmic), 0.0, -std::expm1(-logarithmic)}};
   }
   const double factor = nominal_step(spec.strain_end, n, total);
-  if (spec.test == "isotropic") return {{factor, factor, factor}};
+  if (spec.test == MacroTest::isotropic) return {{factor, factor, factor}};
   return {{0.0, 0.0, factor}};
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/core/error.h"
 #include "common/core/random.h"
 
 namespace softgrain {
@@ -74,22 +73,32 @@ std::vector<Vec3> random_directions(int count) {
 
 }  // namespace
 
-std::vector<Vec3> arrangement(const std::string& name) {
-  if (name == "one") return {kX};
-  if (name == "opposite") return {kX, Vec3{{-1.0, 0.0, 0.0}}};
-  if (name == "orthogonal") return {kX, kY};
-  if (name == "sixty") return {kX, Vec3{{0.5, std::sqrt(0.75), 0.0}}};
-  if (name == "octant") return {kX, kY, kZ};
-  if (name == "tetrahedron") return tetrahedron();
-  if (name == "cube" || name == "beside-five") return cube();
-  if (name == "icosahedron") return icosahedron();
-  if (name == "random-8") return random_directions(8);
-  throw BadInput("unknown arrangement '" + name + "'");
+std::vector<Vec3> directions_of(Arrangement arrangement) {
+  switch (arrangement) {
+    case Arrangement::one:
+      return {kX};
+    case Arrangement::opposite:
+      return {kX, Vec3{{-1.0, 0.0, 0.0}}};
+    case Arrangement::orthogonal:
+      return {kX, kY};
+    case Arrangement::sixty:
+      return {kX, Vec3{{0.5, std::sqrt(0.75), 0.0}}};
+    case Arrangement::octant:
+      return {kX, kY, kZ};
+    case Arrangement::tetrahedron:
+      return tetrahedron();
+    case Arrangement::icosahedron:
+      return icosahedron();
+    case Arrangement::random_8:
+      return random_directions(8);
+    default:
+      return cube();
+  }
 }
 
-std::vector<double> depth_shares(const std::string& name, double shallow) {
-  std::vector<double> shares(arrangement(name).size(), 1.0);
-  if (name == "beside-five") shares[0] = shallow;
+std::vector<double> depth_shares(Arrangement arrangement, double shallow) {
+  std::vector<double> shares(directions_of(arrangement).size(), 1.0);
+  if (arrangement == Arrangement::beside_five) shares[0] = shallow;
   return shares;
 }
 

@@ -1,7 +1,6 @@
 // How a measurement comes to rest: the published protocol (the reference) and faster ones, behind one small interface.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -11,9 +10,15 @@
 
 namespace softgrain {
 
-/// The names a scene may give as `relaxation`, and under which series are recorded. "slow-dynamics" is the least-work
+/// The names a scene may give as `relaxation`, and under which series are recorded. Slow dynamics is the least-work
 /// protocol without a single increment by least work (increment_passes = 0), which no result may pass off as that.
-inline constexpr std::array kRelaxations{"least-work", "slow-dynamics", "damped", "published"};
+enum class Relaxation { least_work, slow_dynamics, damped, published };
+
+template <>
+inline constexpr auto words<Relaxation> = word_list<Relaxation>({{Relaxation::least_work, "least-work"},
+                                                                 {Relaxation::slow_dynamics, "slow-dynamics"},
+                                                                 {Relaxation::damped, "damped"},
+                                                                 {Relaxation::published, "published"}});
 
 struct PublishedOptions {
   double approach_speed = 0.0;  ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise

@@ -49,7 +49,7 @@ NO_SCENES = {
 }
 
 READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"
-CALL = re.compile(r'(?:\.|->)\s*(?:%s)\(\s*"([A-Za-z_]\w*)"' % READERS)
+CALL = re.compile(r'(?:\.|->)\s*(?:%s)(?:<\w+>)?\(\s*"([A-Za-z_]\w*)"' % READERS)
 # A table and a key handed to a helper: read_friction(t, "wall_mu", ...).
 HANDED = re.compile(r'\b(?:t|root|table|scene|macro|law|walls|material|loading|escape)\s*,\s*"([A-Za-z_]\w*)"')
 KEY = re.compile(r"`\[{0,2}([A-Za-z_][\w.]*)\]{0,2}`")

@@ -8,13 +8,14 @@ namespace softgrain {
 
 namespace {
 
-const CrowdLaw& usable(const LawTableEntry& entry, const std::string& form) {
+const CrowdLaw& usable(const LawTableEntry& entry, Crowd form) {
   const CrowdLaw* law = entry.find(form);
-  if (law == nullptr) throw BadInput("law table: no law of the form \"" + form + "\"");
-  if (law->status == "no threshold crossing")
-    throw BadInput("law table: the " + form + " law is not usable: " + law->status + " (" + law->reason + ")");
+  if (law == nullptr) throw BadInput("law table: no law of the form \"" + to_string(form) + "\"");
+  if (law->status == LawStatus::no_threshold_crossing)
+    throw BadInput("law table: the " + to_string(form) + " law is not usable: " + to_string(law->status) + " (" +
+                   law->reason + ")");
   if (law->rows(PartnerKind::solid).empty() || law->rows(PartnerKind::soft).empty())
-    throw BadInput("law table: the " + form + " law knows no " +
+    throw BadInput("law table: the " + to_string(form) + " law knows no " +
                    (law->rows(PartnerKind::soft).empty() ? std::string("soft") : std::string("solid")) +
                    " neighbours: measure at least one configuration with them");
   return *law;
@@ -54,14 +55,9 @@ CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const Cro
 
 }  // namespace
 
-Crowd crowd_of(const std::string& form) {
-  if (form == "pair") return Crowd::pair;
-  return form == "bag" ? Crowd::bag : Crowd::directional;
-}
-
 CrowdModel crowd_model(const CrowdLaw& law) {
   CrowdModel model;
-  model.crowd = crowd_of(law.form);
+  model.crowd = law.form;
   model.form.pressure = {law.a.value, law.b.value, law.delta.value};
   model.form.coupling = {law.m0.value, law.m1.value, law.m2.value};
   for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {

@@ -10,15 +10,12 @@
 
 namespace softgrain {
 
-/// "pair", "bag" or "directional".
-Crowd crowd_of(const std::string& form);
-
 /// A law of the table as the model that predicts with it.
 CrowdModel crowd_model(const CrowdLaw& law);
 
 /// What is not in the table.
 struct CrowdChoices {
-  std::string form = "directional";
+  Crowd form = Crowd::directional;
   double modulus = 0.0;            ///< E of what the soft particles hold [Pa]
   double friction = -1.0;          ///< mu_soft; negative: as measured
   bool unloading = false;          ///< with the measured unloading branch

@@ -69,10 +69,10 @@ void write_table_file(const LawTable& table, const std::string& path, const Prov
     const LawTableEntry& e = table.entries[k];
     const h5::Group group = file.root().create(fmt::format("entry_{}", k));
     group.attribute("solid_fraction", e.solid_fraction);
-    group.attribute("best", e.best);
+    group.attribute("best", to_string(e.best));
     write_spec(group, e.spec);
     for (const CrowdLaw& law : e.laws) {
-      const h5::Group of_law = group.create(law.form);
+      const h5::Group of_law = group.create(to_string(law.form));
       for (const CrowdParameterName& p : kCrowdParameters) {
         const Estimate& v = law.*p.estimate;
         of_law.write(p.key, std::array<double, 4>{v.value, v.standard_error, v.low, v.high});

@@ -10,6 +10,20 @@
 
 namespace softgrain {
 
+enum class LawType { hertz, linear, soft, crowd, cohesive };
+
+template <>
+inline constexpr auto words<LawType> = word_list<LawType>({{LawType::hertz, "hertz"},
+                                                           {LawType::linear, "linear"},
+                                                           {LawType::soft, "soft"},
+                                                           {LawType::crowd, "crowd"},
+                                                           {LawType::cohesive, "cohesive"}});
+
+template <>
+inline constexpr auto words<Tangential> = word_list<Tangential>({{Tangential::none, "none"},
+                                                                 {Tangential::mindlin, "mindlin"},
+                                                                 {Tangential::rescaled, "rescaled"}});
+
 using NamedLaw = std::pair<std::string, AnyLaw>;
 
 /// TOML with one [[law]] per law. Every number is written so that it reads back to the same bits.

@@ -60,13 +60,13 @@ class Reader {
     LawRange out;
     out.end = number("range_end");
     if (!(out.end > 0.0)) fail("range_end", "must be above 0");
-    const std::string policy = text("beyond");
-    for (const Beyond b : {Beyond::error, Beyond::clamp, Beyond::extrapolate})
-      if (policy == to_string(b)) {
-        out.beyond = b;
-        return out;
-      }
-    fail("beyond", "must be error, clamp or extrapolate");
+    out.beyond = word<Beyond>("beyond", "error, clamp or extrapolate");
+    return out;
+  }
+  template <Worded Enum>
+  Enum word(const char* key, const std::string& known) {
+    if (const auto value = from_word<Enum>(text(key))) return *value;
+    fail(key, "must be " + known);
   }
   MonotoneCurve curve(const char* points, const char* key) {
     const auto x = values(points);
@@ -121,11 +121,9 @@ AnyLaw read_hertz(Reader& r) {
   k.shear = r.not_negative("shear");
   k.friction = r.not_negative("friction");
   k.damping = r.not_negative("damping");
-  const std::string kind = r.text("tangential");
-  if (kind == "none") return hertz<Tangential::none>(k);
-  if (kind == "mindlin") return hertz<Tangential::mindlin>(k);
-  if (kind != "rescaled") r.fail("tangential", "must be none, mindlin or rescaled");
-  return hertz<Tangential::rescaled>(k);
+  const auto kind = r.word<Tangential>("tangential", "none, mindlin or rescaled");
+  if (kind == Tangential::none) return hertz<Tangential::none>(k);
+  return kind == Tangential::mindlin ? hertz<Tangential::mindlin>(k) : hertz<Tangential::rescaled>(k);
 }
 
 AnyLaw read_linear(Reader& r) {
@@ -179,11 +177,9 @@ AnyLaw read_crowd_form(Reader& r) {
 }
 
 AnyLaw read_crowd(Reader& r) {
-  const std::string form = r.text("form");
-  if (form == "pair") return read_crowd_form<Crowd::pair>(r);
-  if (form == "bag") return read_crowd_form<Crowd::bag>(r);
-  if (form != "directional") r.fail("form", "must be pair, bag or directional");
-  return read_crowd_form<Crowd::directional>(r);
+  const auto form = r.word<Crowd>("form", "pair, bag or directional");
+  if (form == Crowd::pair) return read_crowd_form<Crowd::pair>(r);
+  return form == Crowd::bag ? read_crowd_form<Crowd::bag>(r) : read_crowd_form<Crowd::directional>(r);
 }
 
 template <bool kFriction, bool kRolling>
@@ -211,13 +207,18 @@ AnyLaw read_cohesive(Reader& r) {
 }
 
 AnyLaw read_law(Reader& r) {
-  const std::string type = r.text("type");
-  if (type == "hertz") return read_hertz(r);
-  if (type == "linear") return read_linear(r);
-  if (type == "soft") return read_soft(r);
-  if (type == "cohesive") return read_cohesive(r);
-  if (type != "crowd") r.fail("type", "must be hertz, linear, soft, crowd or cohesive");
-  return read_crowd(r);
+  switch (r.word<LawType>("type", "hertz, linear, soft, crowd or cohesive")) {
+    case LawType::hertz:
+      return read_hertz(r);
+    case LawType::linear:
+      return read_linear(r);
+    case LawType::soft:
+      return read_soft(r);
+    case LawType::cohesive:
+      return read_cohesive(r);
+    default:
+      return read_crowd(r);
+  }
 }
 
 }  // namespace

@@ -28,10 +28,10 @@ std::string list(const std::vector<double>& values) {
 /// One [[law]], line by line.
 class Writer {
  public:
-  Writer(std::string& out, const std::string& name, const std::string& type) : out_(out) {
+  Writer(std::string& out, const std::string& name, LawType type) : out_(out) {
     out_ += "\n[[law]]\n";
     text("name", name);
-    text("type", type);
+    text("type", to_string(type));
   }
 
   void text(const char* key, const std::string& value) { line(key, '"' + value + '"'); }
@@ -51,10 +51,8 @@ class Writer {
 
 template <Tangential kTangential, bool kDamped>
 void write(std::string& out, const std::string& name, const HertzMindlin<kTangential, kDamped>& law) {
-  Writer w(out, name, "hertz");
-  w.text("tangential", kTangential == Tangential::none      ? "none"
-                       : kTangential == Tangential::mindlin ? "mindlin"
-                                                            : "rescaled");
+  Writer w(out, name, LawType::hertz);
+  w.text("tangential", to_string(kTangential));
   w.value("inverse_d", law.k.inverse_d);
   w.value("shear", law.k.shear);
   w.value("friction", law.k.friction);
@@ -62,7 +60,7 @@ void write(std::string& out, const std::string& name, const HertzMindlin<kTangen
 }
 
 void write(std::string& out, const std::string& name, const LinearSpring& law) {
-  Writer w(out, name, "linear");
+  Writer w(out, name, LawType::linear);
   w.value("normal", law.normal);
   w.value("tangential", law.tangential);
   w.value("friction", law.friction);
@@ -70,7 +68,7 @@ void write(std::string& out, const std::string& name, const LinearSpring& law) {
 }
 
 void write(std::string& out, const std::string& name, const SoftContact& law) {
-  Writer w(out, name, "soft");
+  Writer w(out, name, LawType::soft);
   w.values("normal", {law.normal.a, law.normal.b, law.normal.c});
   w.values("tangential", {law.tangential.a, law.tangential.b, law.tangential.c});
   w.value("delta", law.delta);
@@ -84,8 +82,8 @@ void write(std::string& out, const std::string& name, const SoftContact& law) {
 
 template <Crowd kCrowd, bool kUnloading>
 void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kUnloading>& law) {
-  Writer w(out, name, "crowd");
-  w.text("form", kCrowd == Crowd::pair ? "pair" : kCrowd == Crowd::bag ? "bag" : "directional");
+  Writer w(out, name, LawType::crowd);
+  w.text("form", to_string(kCrowd));
   w.flag("unloading", kUnloading);
   w.values("pressure", {law.form.pressure.a, law.form.pressure.b, law.form.pressure.delta});
   w.values("coupling", {law.form.coupling.m0, law.form.coupling.m1, law.form.coupling.m2});
@@ -105,7 +103,7 @@ void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kU
 
 template <bool kFriction, bool kRolling>
 void write(std::string& out, const std::string& name, const CohesiveDisk<kFriction, kRolling>& law) {
-  Writer w(out, name, "cohesive");
+  Writer w(out, name, LawType::cohesive);
   w.flag("slides", kFriction);
   w.flag("rolls", kRolling);
   w.value("normal", law.normal);

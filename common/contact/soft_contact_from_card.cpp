@@ -25,8 +25,9 @@ void require_sound(const ThresholdPowerLaw& law, PairKind kind, const char* part
 const PairLaw& usable_law(const LawCard& card, PairKind kind) {
   const PairLaw* law = card.find(kind);
   if (law == nullptr) unusable(kind, "the card has none");
-  if (law->status != "good" && law->status != "underdetermined")
-    unusable(kind, "its status is \"" + law->status + "\"" + (law->reason.empty() ? "" : " (" + law->reason + ")"));
+  if (!has_numbers(law->status))
+    unusable(kind, "its status is \"" + to_string(law->status) + "\"" +
+                       (law->reason.empty() ? "" : " (" + law->reason + ")"));
   require_sound(law->normal, kind, "normal");
   return *law;
 }

@@ -10,16 +10,10 @@
 #include "common/contact/contact_state.h"
 #include "common/contact/coulomb_spring.h"
 #include "common/contact/crowd_form.h"
+#include "common/core/law_range.h"
 #include "common/core/monotone_curve.h"
 
 namespace softgrain {
-
-/// How contacts of one soft particle know of each other.
-enum class Crowd {
-  pair,        ///< not at all: no sums, no pass over particles
-  bag,         ///< one pressure: M = 1
-  directional  ///< M(c) = m0 - m1 c - m2 c^2
-};
 
 /// Constants w and m of nu = w v^m against the logarithm of R'/R; planes and the insides of shells have w = m = 1.
 struct LostVolumeTable {

@@ -41,9 +41,7 @@ std::string read_words(const SceneTable& root, std::initializer_list<const char*
 
 std::optional<Beyond> read_beyond(const SceneTable& table) {
   if (!table.has("beyond")) return std::nullopt;
-  const std::string word = table.choice("beyond", {"error", "clamp", "extrapolate"});
-  if (word == "error") return Beyond::error;
-  return word == "clamp" ? Beyond::clamp : Beyond::extrapolate;
+  return table.choice<Beyond>("beyond");
 }
 
 namespace {
@@ -86,7 +84,7 @@ std::string spec_text(const SoftParticleSpec& s) {
   if (s.trials == 0) return text;
   fmt::format_to(out, "trials = {}  # random positions tried per grain\n", s.trials);
   fmt::format_to(out, "placement = {}  # blind trials, or the same law by looking only where there is room\n",
-                 quoted(s.placement == Placement::voids ? "voids" : "trials"));
+                 quoted(to_string(s.placement)));
   return text;
 }
 
@@ -97,8 +95,7 @@ SoftParticleSpec read_spec_text(const SceneTable& table, bool may_be_unknown) {
       s.*line.value = table.number(line.key, line.unit, line.range);
   if (!may_be_unknown || table.has("trials"))
     s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());
-  s.placement =
-      table.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
+  s.placement = table.choice<Placement>("placement", Placement::trials);
   return s;
 }
 

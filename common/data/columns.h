@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/core/words.h"
 #include "common/io/hdf5_file.h"
 
 namespace softgrain {
@@ -56,6 +57,14 @@ std::vector<double> read_numbers(const h5::Group& group, const std::string& name
 
 /// A finite number within limits that is an attribute of the group. Throws FileTrouble.
 double read_attribute(const h5::Group& group, const std::string& name, const Limits& limits = {});
+
+/// A word of an enum that is an attribute of the group. Throws FileTrouble for any other.
+template <Worded Enum>
+Enum read_word(const h5::Group& group, const std::string& name) {
+  const std::string text = group.text(name);
+  if (const auto value = from_word<Enum>(text)) return *value;
+  throw FileTrouble("attribute '" + name + "' is '" + text + "', which is not known");
+}
 
 /// Number of records of a group: the length of its data set `name`.
 std::size_t column_length(const h5::Group& group, const std::string& name);

@@ -73,7 +73,7 @@ void require_alike(const LawTable& table) {
 
 /// A law between entries is as good as the worst of them.
 void take_worst_status(const LawTable& table, std::size_t k, CrowdLaw& law) {
-  const auto bad = [&](const char* status) {
+  const auto bad = [&](LawStatus status) {
     const auto at = std::find_if(table.entries.begin(), table.entries.end(),
                                  [&](const LawTableEntry& e) { return e.laws[k].status == status; });
     if (at == table.entries.end()) return false;
@@ -81,7 +81,7 @@ void take_worst_status(const LawTable& table, std::size_t k, CrowdLaw& law) {
     law.reason = at->laws[k].reason;
     return true;
   };
-  for (const char* status : {"no threshold crossing", "underdetermined", "inaccurate"})
+  for (const LawStatus status : {LawStatus::no_threshold_crossing, LawStatus::underdetermined, LawStatus::inaccurate})
     if (bad(status)) return;
 }
 
@@ -157,7 +157,7 @@ std::string off_the_entries(const LawTableEntry& at, const LawTableEntry& below,
           "the {} law at solid fraction {:.4f} is not between those of the entries at {:.4f} and {:.4f} (force on a "
           "plane "
           "at h/Rs = {:.3g}: {:.3g} E Rs^2, theirs {:.3g} and {:.3g}): take one of them",
-          at.laws[k].form, at.solid_fraction, below.solid_fraction, above.solid_fraction, d, force,
+          to_string(at.laws[k].form), at.solid_fraction, below.solid_fraction, above.solid_fraction, d, force,
           force_on_plane(below.laws[k], d), force_on_plane(above.laws[k], d));
     }
   return "";
@@ -173,7 +173,8 @@ std::string interpolation_remark(const LawTable& table, const LawTableEntry& at)
     text += fmt::format(
         "{}the entries at solid fraction {:.4f} and {:.4f} prefer different forms ({} and {}); best is that "
         "of the nearest",
-        text.empty() ? "" : "; ", below->solid_fraction, above->solid_fraction, below->best, above->best);
+        text.empty() ? "" : "; ", below->solid_fraction, above->solid_fraction, to_string(below->best),
+        to_string(above->best));
   return text;
 }
 
@@ -195,14 +196,14 @@ std::vector<PartnerRow> CrowdLaw::rows(PartnerKind kind) const {
   return out;
 }
 
-const CrowdLaw* LawTableEntry::find(const std::string& form) const {
+const CrowdLaw* LawTableEntry::find(Crowd form) const {
   const auto at = std::find_if(laws.begin(), laws.end(), [&](const CrowdLaw& l) { return l.form == form; });
   return at == laws.end() ? nullptr : &*at;
 }
 
-std::string numbers_of(const LawTableEntry& entry, const std::string& form) {
+std::string numbers_of(const LawTableEntry& entry, Crowd form) {
   const CrowdLaw& law = *entry.find(form);
-  std::string text = form;
+  std::string text = to_string(form);
   for (const auto& parameter : kCrowdParameters) text += fmt::format(" {:a}", (law.*parameter.estimate).value);
   for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
     text += fmt::format(" {:a} {:a}", (entry.*slide).kt_ratio.value, (entry.*slide).friction.value);

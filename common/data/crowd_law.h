@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,19 +23,34 @@ struct PartnerRow {
   double error = 0.0;        ///< root mean square of (law - mean) over that of the mean
 };
 
+/// What a fit of forces does with a configuration.
+enum class CrowdUse {
+  fitted,
+  predicted,  ///< held out, with every other path that begins with the same loading
+  repeated    ///< the same loading of the same packings as one that is fitted or predicted: says nothing new
+};
+
+template <>
+inline constexpr auto words<CrowdUse> = word_list<CrowdUse>({{CrowdUse::fitted, "fitted"},
+                                                             {CrowdUse::predicted, "predicted"},
+                                                             {CrowdUse::repeated, "repeated"}});
+
+/// What somebody may ask for: a form, or (empty) the best of an entry.
+using WantedForm = std::optional<Crowd>;
+
 /// How well a law gives back one configuration.
 struct ConfigurationError {
   std::string name;
-  std::string use = "fitted";  ///< "predicted": not used in the fit; "repeated": the loading of another one
-  double error = 0.0;          ///< root mean square of (law - mean) over that of the mean, all recorded states
-  double end_ratio = 0.0;      ///< law over mean at the largest overlap, sums over the neighbours
-  double noise = 0.0;          ///< root mean square standard error of the mean over that of the mean
+  CrowdUse use = CrowdUse::fitted;
+  double error = 0.0;      ///< root mean square of (law - mean) over that of the mean, all recorded states
+  double end_ratio = 0.0;  ///< law over mean at the largest overlap, sums over the neighbours
+  double noise = 0.0;      ///< root mean square standard error of the mean over that of the mean
 };
 
 /// One form of law with its parameters.
 struct CrowdLaw {
-  std::string form;             ///< "pair", "bag" or "directional"
-  std::string status = "good";  ///< "good", "no threshold crossing", "underdetermined", "inaccurate"
+  Crowd form = Crowd::pair;
+  LawStatus status = LawStatus::good;
   std::string reason;
   Estimate a;  ///< pressure: F/(E Rs^2) of one plane is a (D^b - delta^b)
   Estimate b;
@@ -95,16 +111,13 @@ struct LawTableEntry {
   Estimate retreat;  ///< s of the unloading branch
   bool retreat_measured = true;
   std::vector<CrowdLaw> laws;
-  std::string best;  ///< the form that cross-validation prefers among good ones; what is held out has no say
+  Crowd best = Crowd::pair;  ///< the form that cross-validation prefers among good ones; what is held out has no say
 
-  [[nodiscard]] const CrowdLaw* find(const std::string& form) const;
+  [[nodiscard]] const CrowdLaw* find(Crowd form) const;
 };
 
 /// Every number of one law that forces depend on, exactly, as text: the same text, the same forces.
-std::string numbers_of(const LawTableEntry& entry, const std::string& form);
-
-/// What to do when a law is asked outside what was measured.
-enum class RangePolicy { reject, clamp };
+std::string numbers_of(const LawTableEntry& entry, Crowd form);
 
 struct LawTable {
   int schema = 1;

@@ -55,8 +55,8 @@ void write_partner(Out out, const PartnerRow& row) {
 }
 
 void write_law(Out out, const CrowdLaw& law) {
-  fmt::format_to(out, "\n[[entry.law]]\nform = {}\nstatus = {}\nreason = {}\n", quoted(law.form), quoted(law.status),
-                 quoted(law.reason));
+  fmt::format_to(out, "\n[[entry.law]]\nform = {}\nstatus = {}\nreason = {}\n", quoted(to_string(law.form)),
+                 quoted(to_string(law.status)), quoted(law.reason));
   for (const CrowdParameterName& p : kCrowdParameters)
     fmt::format_to(out, "{} = {}\n", p.key, estimate_text(law.*p.estimate));
   fmt::format_to(out, "parameters = {}\n", law.parameters);
@@ -70,7 +70,8 @@ void write_law(Out out, const CrowdLaw& law) {
                  law.replicates_failed);
   for (const PartnerRow& row : law.partners) write_partner(out, row);
   for (const ConfigurationError& e : law.errors) {
-    fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nuse = {}\n", quoted(e.name), quoted(e.use));
+    fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nuse = {}\n", quoted(e.name),
+                   quoted(to_string(e.use)));
     fmt::format_to(out, "error = {}\nend_ratio = {}\nnoise = {}\n", real(e.error), real(e.end_ratio), real(e.noise));
   }
 }
@@ -79,7 +80,8 @@ void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "\n[[entry]]\nsolid_fraction = {}\nsolid_fraction_error = {}\npackings = {}\n",
                  real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
   if (e.main) fmt::format_to(out, "main = true  # the packing that the table was made for\n");
-  fmt::format_to(out, "relaxation = {}\nbest = {}  # by cross-validation\n", quoted(e.relaxation), quoted(e.best));
+  fmt::format_to(out, "relaxation = {}\nbest = {}  # by cross-validation\n", quoted(e.relaxation),
+                 quoted(to_string(e.best)));
   fmt::format_to(out, "volume_max = {}  # validity: equivalent volume S\n", real(e.volume_max));
   fmt::format_to(out,
                  "beyond = \"{}\"  # above volume_max: \"error\", \"clamp\" or \"extrapolate\"; counted either way\n",
@@ -112,7 +114,7 @@ Range range_of(const CrowdParameterName& p) {
 
 PartnerRow read_partner(const SceneTable& t) {
   PartnerRow row;
-  row.kind = t.choice("kind", {"solid", "soft"}) == "soft" ? PartnerKind::soft : PartnerKind::solid;
+  row.kind = t.choice("kind", {PartnerKind::solid, PartnerKind::soft});
   row.ratio = t.number("ratio", Unit::none, Range::positive());
   row.weight = read_estimate_text(t.table("weight"), Range{0.0, 1e3, true, false});
   row.exponent = read_estimate_text(t.table("exponent"), Range{0.0, kLargestExponent, true, false});
@@ -123,8 +125,9 @@ PartnerRow read_partner(const SceneTable& t) {
 
 CrowdLaw read_law(const SceneTable& t) {
   CrowdLaw law;
-  law.form = t.choice("form", {"pair", "bag", "directional"});
-  law.status = t.choice("status", {"good", "no threshold crossing", "underdetermined", "inaccurate"});
+  law.form = t.choice<Crowd>("form");
+  law.status = t.choice(
+      "status", {LawStatus::good, LawStatus::no_threshold_crossing, LawStatus::underdetermined, LawStatus::inaccurate});
   law.reason = t.text("reason", "");
   for (const CrowdParameterName& p : kCrowdParameters) {
     law.*p.estimate = read_estimate_text(t.table(p.key), range_of(p));
@@ -137,7 +140,7 @@ CrowdLaw read_law(const SceneTable& t) {
   law.replicates_failed = static_cast<int>(t.count("replicates_failed", 0, 1000000000, 0));
   for (const SceneTable& p : t.tables("partner")) law.partners.push_back(read_partner(p));
   for (const SceneTable& e : t.tables("error"))
-    law.errors.push_back({e.text("configuration"), e.choice("use", {"fitted", "predicted", "repeated"}),
+    law.errors.push_back({e.text("configuration"), e.choice<CrowdUse>("use"),
                           e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
                           e.number("noise", Unit::none, Range::not_negative())});
   for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {
@@ -157,7 +160,7 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.packings = static_cast<int>(t.count("packings", 1, 1000000000));
   e.main = t.flag("main", false);
   e.relaxation = t.text("relaxation");
-  e.best = t.choice("best", {"pair", "bag", "directional"});
+  e.best = t.choice<Crowd>("best");
   e.volume_max = t.number("volume_max", Unit::none, Range::not_negative());
   e.beyond = read_beyond(t).value_or(Beyond::extrapolate);
   e.overlap_max = t.number("overlap_max", Unit::none, Range::closed(0.0, kLargestOverlap));

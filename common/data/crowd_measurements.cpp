@@ -62,7 +62,7 @@ void write_stages(const h5::Group& group, const std::vector<CrowdConfiguration>&
   std::vector<CrowdStage> all;
   for (const auto& c : configurations) all.insert(all.end(), c.stages.begin(), c.stages.end());
   const h5::Group g = group.create("stages");
-  for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
+  for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), to_string(all[k].move));
   write_column(g, "slide", "Rs", all, [](const auto& s) { return s.slide; });
   write_column(g, "overlaps", "1", all, [](const auto& s) { return s.overlap.size(); });
   std::vector<double> overlaps;
@@ -74,10 +74,12 @@ void write_stages(const h5::Group& group, const std::vector<CrowdConfiguration>&
 std::vector<CrowdStage> read_stages(const h5::Group& group) {
   const h5::Group g = group.open("stages");
   std::vector<CrowdStage> all(column_length(g, "overlaps"));
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
-  for (const CrowdStage& s : all)
-    if (s.name != "load" && s.name != "unload" && s.name != "reload" && s.name != "slide")
-      throw FileTrouble("a stage is called '" + s.name + "'; known are load, unload, reload and slide");
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::string name = g.text("name_" + std::to_string(k));
+    const auto move = from_word<CrowdMove>(name);
+    if (!move) throw FileTrouble("a stage is called '" + name + "'; known are load, unload, reload and slide");
+    all[k].move = *move;
+  }
   read_finite(g, "slide", "Rs", all, [](auto& s, double v) { s.slide = v; });
   const std::vector<double> overlaps = read_numbers(g, "overlap", "Rs", {g.doubles("overlap").size()}, kOverlaps);
   Slices slices(overlaps.size());
@@ -209,11 +211,6 @@ void require_consistent(const CrowdMeasurements& data) {
 }
 
 }  // namespace
-
-std::string to_string(PartnerKind kind) {
-  if (kind == PartnerKind::plane) return "plane";
-  return kind == PartnerKind::solid ? "solid" : "soft";
-}
 
 void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs) {
   write_column(group, "configuration", "1", runs, [](const auto& r) { return r.configuration; });

@@ -15,7 +15,9 @@ namespace softgrain {
 /// What presses on the soft particle that is measured.
 enum class PartnerKind { plane, solid, soft };
 
-std::string to_string(PartnerKind kind);  ///< "plane", "solid", "soft"
+template <>
+inline constexpr auto words<PartnerKind> =
+    word_list<PartnerKind>({{PartnerKind::plane, "plane"}, {PartnerKind::solid, "solid"}, {PartnerKind::soft, "soft"}});
 
 /// One neighbour; it is moved towards the centre and never by forces.
 struct CrowdPartner {
@@ -24,10 +26,18 @@ struct CrowdPartner {
   Vec3 direction{};    ///< unit vector from the centre of the soft particle to the neighbour
 };
 
+enum class CrowdMove { load, unload, reload, slide };
+
+template <>
+inline constexpr auto words<CrowdMove> = word_list<CrowdMove>({{CrowdMove::load, "load"},
+                                                               {CrowdMove::unload, "unload"},
+                                                               {CrowdMove::reload, "reload"},
+                                                               {CrowdMove::slide, "slide"}});
+
 /// A stretch of the path: all overlaps go in straight lines from where they are to `overlap`, one value per neighbour
 /// [Rs].
 struct CrowdStage {
-  std::string name;             ///< "load", "unload", "reload" or "slide"
+  CrowdMove move = CrowdMove::load;
   std::vector<double> overlap;  ///< h/Rs of each neighbour at the end
   double slide = 0.0;           ///< stage "slide": how far the first neighbour moves across its normal [Rs]
 };

@@ -28,9 +28,10 @@ bool read_law(const h5::Group& group, CrowdLaw& law, const std::string& path) {
   const h5::Shape shape = group.shape("replicates");
   const std::vector<double> all = group.doubles("replicates");
   if (shape.size() != 2 || shape[1] != numbers.size())
-    throw FileTrouble(path + ": the replicates of the " + law.form + " law have a wrong length");
+    throw FileTrouble(path + ": the replicates of the " + to_string(law.form) + " law have a wrong length");
   if (!std::all_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); }))
-    throw FileTrouble(path + ": the replicates of the " + law.form + " law hold a number that is not finite");
+    throw FileTrouble(path + ": the replicates of the " + to_string(law.form) +
+                      " law hold a number that is not finite");
   for (std::size_t r = 0; r < shape[0]; ++r) {
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * shape[1]);
     law.replicates.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(shape[1]));
@@ -73,15 +74,15 @@ void read_replicates(LawTable& table, const std::string& toml_path) {
     if (!root.has(name)) continue;
     const h5::Group entry = root.open(name);
     for (CrowdLaw& law : table.entries[k].laws)
-      if (entry.has(law.form) && !read_law(entry.open(law.form), law, path))
+      if (entry.has(to_string(law.form)) && !read_law(entry.open(to_string(law.form)), law, path))
         table.notes.push_back(fmt::format(
             "solid fraction {:.3f}, {} law: its numbers are not those that {} was written with: the refits there, and "
             "intervals from them, are not used",
-            table.entries[k].solid_fraction, law.form, path));
+            table.entries[k].solid_fraction, to_string(law.form), path));
   }
 }
 
-LawTable replicate_of(const LawTable& table, const std::string& form, std::size_t r) {
+LawTable replicate_of(const LawTable& table, Crowd form, std::size_t r) {
   LawTable out = table;
   for (LawTableEntry& e : out.entries)
     for (CrowdLaw& law : e.laws)
@@ -89,7 +90,7 @@ LawTable replicate_of(const LawTable& table, const std::string& form, std::size_
   return out;
 }
 
-std::size_t replicate_count(const LawTable& table, const std::string& form) {
+std::size_t replicate_count(const LawTable& table, Crowd form) {
   std::size_t least = table.entries.empty() ? 0 : static_cast<std::size_t>(-1);
   for (const LawTableEntry& e : table.entries) {
     const CrowdLaw* law = e.find(form);

@@ -23,9 +23,9 @@ void read_replicates(LawTable& table, const std::string& toml_path);
 
 /// The table as replicate `r` of each entry's law of this form; entries draw their packings independently, so any
 /// pairing of their replicates is one draw of the whole table.
-LawTable replicate_of(const LawTable& table, const std::string& form, std::size_t r);
+LawTable replicate_of(const LawTable& table, Crowd form, std::size_t r);
 
 /// Replicates that every entry has of this form.
-std::size_t replicate_count(const LawTable& table, const std::string& form);
+std::size_t replicate_count(const LawTable& table, Crowd form);
 
 }  // namespace softgrain

@@ -95,7 +95,7 @@ void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {
                                  file_.columns()[at_.error].title, row.cells[at_.error]));
   }
   if (!sample.normal.empty() && delta <= sample.normal.back().delta) {
-    if (options_.drop_unloading) {
+    if (options_.unloading == Unloading::drop) {
       ++dropped_;
       return;
     }

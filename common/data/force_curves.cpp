@@ -123,9 +123,8 @@ PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
     throw BadInput(file.path() +
                    ": which contact was measured? Give --kind soft-solid or soft-soft, or a comment \"# kind = "
                    "soft-solid\"");
-  if (said->value != "soft-solid" && said->value != "soft-soft")
-    throw BadInput(fmt::format("{}: kind = {}: must be soft-solid or soft-soft", file.where(said->line), said->value));
-  return said->value == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+  if (const auto kind = from_word<PairKind>(said->value)) return *kind;
+  throw BadInput(fmt::format("{}: kind = {}: must be soft-solid or soft-soft", file.where(said->line), said->value));
 }
 
 SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) {

@@ -34,11 +34,18 @@ struct ForceCurves {
 };
 
 /// What the command line says beside the file; it wins over comments in the file.
+/// What to do with points behind the largest overlap so far.
+enum class Unloading { refuse, drop };
+
+template <>
+inline constexpr auto words<Unloading> = word_list<Unloading>({{Unloading::refuse, "refuse"},
+                                                               {Unloading::drop, "drop"}});
+
 struct ForceCurveOptions {
   std::optional<PairKind> kind;
   std::optional<double> shell_radius;    ///< Rs [m]
   std::optional<double> youngs_modulus;  ///< E [Pa]
-  bool drop_unloading = false;      ///< leave out points behind the largest overlap so far, instead of refusing them
+  Unloading unloading = Unloading::refuse;
   double initial_angle_deg = 0.05;  ///< a column kt is taken as the slope over +- this angle
   double secant_angle_deg = 1.0;    ///< Ft is interpolated at this angle
 };

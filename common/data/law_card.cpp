@@ -26,7 +26,7 @@ const PairLaw* LawCard::find(PairKind kind) const {
 }
 
 std::string measured_text(const LawCard& card) {
-  if (card.relaxation == "experiment") return "from an experiment";
+  if (card.from_experiment()) return "from an experiment";
   return "measured with the " + card.relaxation + " relaxation";
 }
 

@@ -61,11 +61,18 @@ struct LawBandRows {
 inline constexpr std::array<const char*, 7> kLawParameterNames{"a_n",         "b_n",        "delta",     "a_t_initial",
                                                                "b_t_initial", "a_t_secant", "b_t_secant"};
 
+/// Which of the two tangential stiffnesses somebody wants.
+enum class TangentialSlope { initial, secant };
+
+template <>
+inline constexpr auto words<TangentialSlope> = word_list<TangentialSlope>({{TangentialSlope::initial, "initial"},
+                                                                           {TangentialSlope::secant, "secant"}});
+
 /// What was found for one pair kind.
 struct PairLaw {
   PairKind kind = PairKind::soft_solid;
-  std::string status = "not run";  ///< "good", "no threshold crossing", "underdetermined", "not run"
-  std::string reason;              ///< one sentence when status is not "good"
+  LawStatus status = LawStatus::not_run;
+  std::string reason;  ///< one sentence when it is not good
   ThresholdPowerLaw normal;
   ThresholdPowerLaw tangential_initial;  ///< slope at ht = 0, from angles up to initial_angle_deg
   ThresholdPowerLaw tangential_secant;   ///< secant at secant_angle_deg
@@ -88,16 +95,20 @@ struct PairLaw {
   std::string band_origin = kFromPackings;  ///< where bands and 95 % intervals of this pair come from
 };
 
+inline constexpr const char* kExperiment = "experiment";  ///< in the place of a relaxation
+
 struct LawCard {
   int schema = 1;
   SoftParticleSpec spec;                  ///< of the measurement behind the law
-  std::string relaxation;                 ///< which relaxation measured it; "experiment": none of ours
+  std::string relaxation;                 ///< which relaxation measured it, or kExperiment
   std::string intervals = kFromPackings;  ///< where the 95 % intervals come from, of all pairs together
   std::vector<PairLaw> pairs;
   std::string table_id{};            ///< of the .h5 that belongs to the card; empty in files of before
   std::vector<std::string> notes{};  ///< of reading: what of the .h5 does not go with an edited card
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;
+  /// Whether none of our relaxations measured it, but somebody's experiment.
+  [[nodiscard]] bool from_experiment() const { return relaxation == kExperiment; }
 };
 
 /// "measured with the damped relaxation", "from an experiment".

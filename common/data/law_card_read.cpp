@@ -74,9 +74,9 @@ void read_tangential(const SceneTable& table, ThresholdPowerLaw& law, double& an
 PairLaw read_pair(const SceneTable& table) {
   constexpr std::int64_t kMany = std::numeric_limits<int>::max();
   PairLaw law;
-  law.kind =
-      table.choice("kind", {"soft-solid", "soft-soft"}) == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
-  law.status = table.choice("status", {"good", "no threshold crossing", "underdetermined", "not run"});
+  law.kind = table.choice<PairKind>("kind");
+  law.status = table.choice(
+      "status", {LawStatus::good, LawStatus::no_threshold_crossing, LawStatus::underdetermined, LawStatus::not_run});
   law.reason = table.text("reason", "");
   law.packings = static_cast<int>(table.count("packings", 0, kMany));
   law.points = static_cast<int>(table.count("points", 0, kMany));
@@ -84,11 +84,11 @@ PairLaw read_pair(const SceneTable& table) {
   law.quality = read_real(table, "quality", Range::closed(0.0, 1.0));
   read_validity(table.table("validity"), law);
   // Of an underdetermined law there may be no numbers at all, written as zeros.
-  const bool none =
-      law.status == "underdetermined" && read_real(table.table("normal").table("b"), "value", Range::any()) == 0.0;
-  const bool good = law.status == "good" || (law.status == "underdetermined" && !none);
+  const bool none = law.status == LawStatus::underdetermined &&
+                    read_real(table.table("normal").table("b"), "value", Range::any()) == 0.0;
+  const bool good = law.status == LawStatus::good || (law.status == LawStatus::underdetermined && !none);
   law.normal = read_law(table.table("normal"), good);
-  if (law.status == "good" && !(law.normal.delta.value < law.delta_max))
+  if (law.status == LawStatus::good && !(law.normal.delta.value < law.delta_max))
     table.table("normal").table("delta").reject(
         "value", fmt::format("must be below delta_max = {}: a good law has a force in the range it was fitted to",
                              law.delta_max));
@@ -111,7 +111,7 @@ LawCard read_card_text(const std::string& toml_path) {
   card.intervals = root.table_or_empty("definitions").text("interval_95", card.intervals);
   const SceneTable measurement = root.table("measurement");
   card.relaxation = measurement.text("relaxation");
-  card.spec = read_spec_text(measurement, card.relaxation == "experiment");
+  card.spec = read_spec_text(measurement, card.from_experiment());
   for (const SceneTable& pair : root.tables("pair")) {
     const PairLaw law = read_pair(pair);
     if (card.find(law.kind) != nullptr) pair.reject("kind", "this pair kind was given before");

@@ -38,7 +38,7 @@ void write_curve(const h5::Group& group, const LawTableRows& rows) {
 
 void write_pair(const h5::Group& root, const PairLaw& pair) {
   const h5::Group group = root.create(to_string(pair.kind));
-  group.attribute("status", pair.status);
+  group.attribute("status", to_string(pair.status));
   group.attribute("reason", pair.reason);
   group.attribute("initial_angle_deg", pair.initial_angle_deg);
   group.attribute("secant_angle_deg", pair.secant_angle_deg);

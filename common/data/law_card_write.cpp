@@ -53,7 +53,7 @@ void write_head(Out out, const LawCard& card, const Provenance& provenance, cons
 
 void write_measurement(Out out, const LawCard& card) {
   fmt::format_to(out, "\n# The soft particle that was measured.\n");
-  if (card.relaxation == "experiment")
+  if (card.from_experiment())
     fmt::format_to(
         out,
         "# An experiment: shell_radius and youngs_modulus make the law dimensionless. What the data did not\n"
@@ -99,7 +99,7 @@ void write_covariance(Out out, const PairLaw& pair) {
 
 void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
   fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind),
-                 quoted(pair.status), quoted(pair.reason));
+                 quoted(to_string(pair.status)), quoted(pair.reason));
   fmt::format_to(out, "packings = {}\npoints = {}\n", pair.packings, pair.points);
   fmt::format_to(out, "chi2_per_dof = {}\n", real(pair.chi2_per_dof));
   fmt::format_to(out, "quality = {}  # probability of a larger chi^2\n", real(pair.quality));

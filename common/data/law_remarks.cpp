@@ -32,7 +32,7 @@ std::string pair_law_remark() {
 }
 
 bool use_pair_law(const std::vector<MacroCurve>& curves) {
-  return std::any_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.law.form == "pair"; });
+  return std::any_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.law.form == Crowd::pair; });
 }
 
 }  // namespace softgrain

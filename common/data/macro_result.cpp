@@ -91,8 +91,8 @@ void write_origin(const h5::Group& group, const MacroCurve& curve) {
     group.attribute("start", curve.start.bodies);
     for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
   }
-  if (curve.law.form.empty()) return;
-  group.attribute("law_form", curve.law.form);
+  if (!curve.law.form) return;
+  group.attribute("law_form", to_string(*curve.law.form));
   group.attribute("law_hash", curve.law.hash);
   for (const auto& n : kLawNumbers) group.attribute(n.name, curve.law.*n.value);
   for (const KnownNumber& n : kLawKnown)
@@ -106,7 +106,7 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
     for (const auto& n : kStartNumbers) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
   }
   if (!group.has_attribute("law_form")) return;
-  curve.law.form = group.text("law_form");
+  curve.law.form = read_word<Crowd>(group, "law_form");
   curve.law.hash = group.text("law_hash");
   for (const auto& n : kLawNumbers) curve.law.*n.value = read_attribute(group, n.name, kNotNegative);
   for (const KnownNumber& n : kLawKnown)
@@ -126,16 +126,17 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
 }  // namespace
 
 std::string identity_text(const LawIdentity& law) {
-  if (law.form.empty()) return "not recorded";
+  if (!law.form) return "not recorded";
   const auto told = [](const std::optional<double>& x) { return x ? fmt::format("{:g}", *x) : "(not known)"; };
-  return fmt::format("{} law{}, measured with nu = {}, mu = {}, taken with E = {:g} Pa; numbers {}", law.form,
+  return fmt::format("{} law{}, measured with nu = {}, mu = {}, taken with E = {:g} Pa; numbers {}",
+                     to_string(*law.form),
                      law.solid_fraction > 0.0 ? fmt::format(" at solid fraction {:.4f}", law.solid_fraction) : "",
                      told(law.poisson_ratio), told(law.friction), law.youngs_modulus, law.hash);
 }
 
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("engine", curve.engine);
-  group.attribute("test", curve.test);
+  group.attribute("test", to_string(curve.test));
   group.attribute("note", curve.note);
   group.attribute("usable", static_cast<std::int64_t>(curve.usable));
   for (const Count& c : kCounts) group.attribute(c.name, curve.*c.value);
@@ -154,7 +155,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
 MacroCurve read_macro_curve(const h5::Group& group) {
   MacroCurve curve;
   curve.engine = group.text("engine");
-  curve.test = group.text("test");
+  curve.test = read_word<MacroTest>(group, "test");
   curve.note = group.text("note");
   curve.usable = group.integer("usable") != 0;
   for (const Count& c : kCounts) curve.*c.value = read_count(group, c.name);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/core/cost.h"
+#include "common/core/law_range.h"
 #include "common/io/hdf5_file.h"
 #include "common/io/provenance.h"
 
@@ -14,7 +15,7 @@ namespace softgrain {
 
 /// The law that a curve was made with: two runs with the same hash had the same forces.
 struct LawIdentity {
-  std::string form;                       ///< "pair", "bag" or "directional"; empty: a twin, or a file of before
+  std::optional<Crowd> form{};            ///< empty: a twin, or not recorded
   double solid_fraction = 0.0;            ///< at which a table was taken; 0: a law card
   double youngs_modulus = 0.0;            ///< that scales its forces [Pa]
   std::optional<double> poisson_ratio{};  ///< of the grains that it was measured with; empty: not known (experiments)
@@ -27,6 +28,26 @@ struct LawIdentity {
 /// "directional law at solid fraction 0.7048, measured with nu = 0.3, mu = 0.3, taken with E = 5e+05 Pa; numbers
 /// 0123456789abcdef".
 std::string identity_text(const LawIdentity& law);
+
+/// Resolved twins of a law, which are engines of curves too.
+enum class Twin {
+  shelled,  ///< contents in moving shells
+  free      ///< the same grains without shells
+};
+
+template <>
+inline constexpr auto words<Twin> = word_list<Twin>({{Twin::shelled, "shelled"}, {Twin::free, "free"}});
+
+enum class MacroTest {
+  isotropic,
+  oedometric,
+  shear  ///< z shortens, x lengthens, y stands, at constant volume
+};
+
+template <>
+inline constexpr auto words<MacroTest> = word_list<MacroTest>({{MacroTest::oedometric, "oedometric"},
+                                                               {MacroTest::isotropic, "isotropic"},
+                                                               {MacroTest::shear, "shear"}});
 
 /// What a curve starts from; runs that are set side by side should agree in it. Zeros: a file of before.
 struct MacroStart {
@@ -43,10 +64,9 @@ struct MacroStart {
 
 /// One macro run of one sample. Stresses are compressive positive [Pa]; strain is from the start of the test.
 struct MacroCurve {
-  /// "law" (soft particles with the pair law of a card), "pair" (the same), or another law's name; or a resolved twin:
-  /// "shelled" (contents in moving shells), "free" (the same grains without shells)
+  /// "law" (soft particles with the pair law of a card), "pair" (the same), or another law's name; or that of a twin
   std::string engine;
-  std::string test;  ///< "oedometric", "isotropic" or "shear"
+  MacroTest test = MacroTest::oedometric;
   std::int64_t sample = 0;
   std::int64_t bodies = 0;  ///< solid grains + soft particles
   std::int64_t soft = 0;
@@ -76,6 +96,8 @@ struct MacroCurve {
   bool usable = true;
   std::string note;
   Cost cost;
+
+  [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }  ///< empty: made by a law
 };
 
 /// One curve as a group of a file, for checkpoints.

@@ -15,6 +15,10 @@ namespace softgrain {
 /// How grains are placed in a shell: the published trials, or the same law without the trials that must fail.
 enum class Placement { trials, voids };
 
+template <>
+inline constexpr auto words<Placement> = word_list<Placement>({{Placement::trials, "trials"},
+                                                               {Placement::voids, "voids"}});
+
 /// The soft particle that was measured [SP 1.1-1.3]. SI units. Of an experiment only Rs and E are always known: numbers
 /// that nobody gave are NaN, trials 0.
 struct SoftParticleSpec {

@@ -1,7 +1,7 @@
 // The two published cases of a contact with a soft particle.
 #pragma once
 
-#include <string>
+#include "common/core/words.h"
 
 namespace softgrain {
 
@@ -12,6 +12,8 @@ enum class PairKind {
 
 inline constexpr PairKind kPairKinds[] = {PairKind::soft_solid, PairKind::soft_soft};
 
-inline std::string to_string(PairKind kind) { return kind == PairKind::soft_solid ? "soft-solid" : "soft-soft"; }
+template <>
+inline constexpr auto words<PairKind> = word_list<PairKind>({{PairKind::soft_solid, "soft-solid"},
+                                                             {PairKind::soft_soft, "soft-soft"}});
 
 }  // namespace softgrain

@@ -4,46 +4,16 @@
 
 namespace softgrain {
 
-std::string to_string(SnapshotKind kind) {
-  switch (kind) {
-    case SnapshotKind::particles:
-      return "particles";
-    case SnapshotKind::soft_particle:
-      return "soft-particle";
-    case SnapshotKind::macro:
-      return "macro";
-    case SnapshotKind::twin:
-      return "twin";
-    case SnapshotKind::powder:
-      return "powder";
-    case SnapshotKind::grain_box:
-      return "grain-box";
-  }
-  return "";
-}
-
-std::string to_string(ParticleRole role) {
-  switch (role) {
-    case ParticleRole::solid:
-      return "solid";
-    case ParticleRole::soft:
-      return "soft";
-    case ParticleRole::inner:
-      return "inner";
-  }
-  return "";
-}
-
 double Snapshot::moment() const {
   for (const double x : {time, strain, overlap})
     if (!std::isnan(x)) return x;
   return 0.0;
 }
 
-std::string Snapshot::moment_name() const {
-  if (!std::isnan(time)) return "time";
-  if (!std::isnan(strain)) return "strain";
-  return std::isnan(overlap) ? "frame" : "Delta";
+Moment Snapshot::moment_name() const {
+  if (!std::isnan(time)) return Moment::time;
+  if (!std::isnan(strain)) return Moment::strain;
+  return std::isnan(overlap) ? Moment::frame : Moment::overlap;
 }
 
 bool is_snapshot(std::int64_t point, std::int64_t points, std::int64_t wanted) {

@@ -9,17 +9,29 @@
 #include <vector>
 
 #include "common/core/vec.h"
+#include "common/core/words.h"
 
 namespace softgrain {
 
 /// What a state was taken from.
 enum class SnapshotKind : std::int64_t { particles, soft_particle, macro, twin, powder, grain_box };
-std::string to_string(SnapshotKind kind);
+
+template <>
+inline constexpr auto words<SnapshotKind> = word_list<SnapshotKind>({{SnapshotKind::particles, "particles"},
+                                                                     {SnapshotKind::soft_particle, "soft-particle"},
+                                                                     {SnapshotKind::macro, "macro"},
+                                                                     {SnapshotKind::twin, "twin"},
+                                                                     {SnapshotKind::powder, "powder"},
+                                                                     {SnapshotKind::grain_box, "grain-box"}});
 
 /// What a particle is: a solid grain that is a body by itself, a soft particle taken as one sphere (it acts by a fitted
 /// law), or a grain inside a soft particle.
 enum class ParticleRole : std::int64_t { solid, soft, inner };
-std::string to_string(ParticleRole role);
+
+template <>
+inline constexpr auto words<ParticleRole> = word_list<ParticleRole>({{ParticleRole::solid, "solid"},
+                                                                     {ParticleRole::soft, "soft"},
+                                                                     {ParticleRole::inner, "inner"}});
 
 struct SnapshotParticle {
   Vec3 position{};  ///< of the centre; periodic cells: as it is, not folded into the cell
@@ -33,6 +45,10 @@ struct SnapshotParticle {
 
 enum class WallShape : std::int64_t { plane, sphere_inside };
 
+template <>
+inline constexpr auto words<WallShape> = word_list<WallShape>({{WallShape::plane, "plane"},
+                                                               {WallShape::sphere_inside, "sphere-inside"}});
+
 struct SnapshotWall {
   WallShape shape = WallShape::plane;
   Vec3 point{};            ///< of the plane, or centre of the sphere
@@ -40,6 +56,13 @@ struct SnapshotWall {
   double radius = 0.0;     ///< of the sphere: a shell, or a container
   std::int64_t body = -1;  ///< the soft particle whose shell it is; -1: none
 };
+
+/// What tells states of a series apart.
+enum class Moment { time, strain, overlap, frame };
+
+template <>
+inline constexpr auto words<Moment> = word_list<Moment>(
+    {{Moment::time, "time"}, {Moment::strain, "strain"}, {Moment::overlap, "Delta"}, {Moment::frame, "frame"}});
 
 struct SnapshotContact {
   std::int32_t i = 0;         ///< index into Snapshot::particles
@@ -81,7 +104,7 @@ struct Snapshot {
   /// The number that orders the series: time, strain or overlap, whichever there is; 0 when none.
   [[nodiscard]] double moment() const;
   /// Its name for files and axes: "time", "strain", "Delta"; "frame" when none.
-  [[nodiscard]] std::string moment_name() const;
+  [[nodiscard]] Moment moment_name() const;
 };
 
 /// Whether recorded point number `point` of `points` is one of `wanted` evenly spread ones, the last among them.

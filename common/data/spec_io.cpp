@@ -40,7 +40,7 @@ void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
     if (is_known(spec.*field.value)) group.attribute(field.name, spec.*field.value);
   if (!packing_known(spec)) return;
   group.attribute("trials", spec.trials);
-  group.attribute("placement", std::string(spec.placement == Placement::voids ? "voids" : "trials"));
+  group.attribute("placement", to_string(spec.placement));
 }
 
 SoftParticleSpec read_spec(const h5::Group& root) {
@@ -52,9 +52,9 @@ SoftParticleSpec read_spec(const h5::Group& root) {
   if (spec.trials < 1)
     throw FileTrouble("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");
   if (!group.has_attribute("placement")) return spec;
-  const std::string placement = group.text("placement");
-  if (placement != "voids" && placement != "trials") throw FileTrouble("spec: unknown placement '" + placement + "'");
-  if (placement == "voids") spec.placement = Placement::voids;
+  const auto placement = from_word<Placement>(group.text("placement"));
+  if (!placement) throw FileTrouble("spec: unknown placement '" + group.text("placement") + "'");
+  spec.placement = *placement;
   return spec;
 }
 

@@ -1,6 +1,7 @@
 #include "common/io/csv_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -33,8 +34,8 @@ std::vector<std::string> split(const std::string& line, char separator) {
 }
 
 bool is_missing(const std::string& cell) {
-  const std::string word = lower(cell);
-  return word.empty() || word == "-" || word == "nan" || word == "na" || word == "n/a";
+  constexpr std::array kMissing{"", "-", "nan", "na", "n/a"};
+  return std::find(kMissing.begin(), kMissing.end(), lower(cell)) != kMissing.end();
 }
 
 /// "hn [mm]" or "hn (mm)" into its parts.

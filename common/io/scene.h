@@ -2,6 +2,7 @@
 // that names the file, the line and the nearest known key. Numbers are SI, or strings with a unit ("16 mm", "0.5 MPa").
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "common/core/vec.h"
+#include "common/core/words.h"
 
 namespace softgrain {
 
@@ -70,6 +72,22 @@ class SceneTable {
   [[nodiscard]] std::string choice(const std::string& key, const std::vector<const char*>& words) const;
   [[nodiscard]] std::string choice(const std::string& key, std::initializer_list<const char*> words,
                                    const std::string& fallback) const;
+  /// The value behind one of the words of an enum, of some of its values, and with a value for an absent key.
+  template <Worded Enum>
+  [[nodiscard]] Enum choice(const std::string& key) const {
+    return *from_word<Enum>(choice(key, all_words<Enum>()));
+  }
+  template <Worded Enum>
+  [[nodiscard]] Enum choice(const std::string& key, std::initializer_list<Enum> allowed) const {
+    std::vector<const char*> some;
+    for (const Word<Enum>& w : words<Enum>)
+      if (std::find(allowed.begin(), allowed.end(), w.value) != allowed.end()) some.push_back(w.text);
+    return *from_word<Enum>(choice(key, some));
+  }
+  template <Worded Enum>
+  [[nodiscard]] Enum choice(const std::string& key, std::type_identity_t<Enum> fallback) const {
+    return has(key) ? choice<Enum>(key) : fallback;
+  }
   [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit) const;
   [[nodiscard]] Vec3 vector3(const std::string& key, Unit unit, const Vec3& fallback) const;
   [[nodiscard]] std::vector<double> numbers(const std::string& key, Unit unit, const Range& range = Range::any()) const;

@@ -1,13 +1,34 @@
 // Whole small text files, written atomically.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "common/core/words.h"
 
 namespace softgrain {
 
 /// Without the blanks at both ends.
 std::string trimmed(const std::string& text);
+
+/// Forms of files by their endings.
+enum class FileForm { hdf5, json, toml, csv, tsv, txt, dat };
+
+template <>
+inline constexpr auto words<FileForm> = word_list<FileForm>({{FileForm::hdf5, ".h5"},
+                                                             {FileForm::json, ".json"},
+                                                             {FileForm::toml, ".toml"},
+                                                             {FileForm::csv, ".csv"},
+                                                             {FileForm::tsv, ".tsv"},
+                                                             {FileForm::txt, ".txt"},
+                                                             {FileForm::dat, ".dat"}});
+
+/// By the ending of its name; empty for any other.
+inline std::optional<FileForm> file_form(const std::string& path) {
+  return from_word<FileForm>(std::filesystem::path(path).extension().string());
+}
 
 /// Writes to `path + ".tmp"`, flushes to disk and renames. Throws FileTrouble.
 void write_text_atomic(const std::string& path, const std::string& text);

@@ -252,7 +252,6 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
   problem.set_walls(1.0);
   theta = affine_guess(problem, 1.0);
   Stepper stepper(problem, theta);
-  result.stopped_by = "cap";
   for (;; ++result.iterations) {
     stop_if_interrupted("looking for equilibrium");
     const PackForces& forces = stepper.forces();
@@ -260,17 +259,17 @@ LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const Least
       stepper.relax_rattlers(residual_floor(scales, forces), options.residual_tolerance);
     result.worst_residual = worst_residual(forces, problem.pack(), problem.stride(), residual_floor(scales, forces));
     if (!std::isfinite(result.worst_residual)) {
-      result.stopped_by = "not finite";
+      result.stopped_by = LeastWorkEnd::not_finite;
       break;
     }
     if (result.worst_residual <= options.residual_tolerance) {
-      result.stopped_by = "residual";
+      result.stopped_by = LeastWorkEnd::residual;
       result.converged = true;
       break;
     }
     if (result.iterations >= options.max_iterations) break;
     if (!stepper.step(result.worst_residual < kMixBelow)) {
-      result.stopped_by = "no descent";
+      result.stopped_by = LeastWorkEnd::no_descent;
       break;
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/words.h"
 #include "common/statics/grain_pack.h"
 
 namespace softgrain {
@@ -48,9 +49,21 @@ struct LeastWorkOptions {
   std::int64_t max_iterations = 20000;
 };
 
+/// What ended a minimisation: a criterion of the published method (work, force), that of the fast one (residual), or a
+/// failure.
+enum class LeastWorkEnd { work, force, residual, cap, no_descent, not_finite };
+
+template <>
+inline constexpr auto words<LeastWorkEnd> = word_list<LeastWorkEnd>({{LeastWorkEnd::work, "work"},
+                                                                     {LeastWorkEnd::force, "force"},
+                                                                     {LeastWorkEnd::residual, "residual"},
+                                                                     {LeastWorkEnd::cap, "cap"},
+                                                                     {LeastWorkEnd::no_descent, "no descent"},
+                                                                     {LeastWorkEnd::not_finite, "not finite"}});
+
 struct LeastWorkResult {
   bool converged = false;
-  std::string stopped_by;  ///< "work", "force", "residual", "cap", "no descent", "not finite"
+  LeastWorkEnd stopped_by = LeastWorkEnd::cap;
   std::int64_t iterations = 0;
   std::int64_t loop_passes = 0;  ///< evaluations of all contacts
   std::int64_t contact_evaluations = 0;

@@ -97,7 +97,6 @@ LeastWorkResult minimise_published(PackProblem& problem, Unknowns& theta, const 
   int applied = 0;
   double work = 0.0;
   bool walls_moved = false;
-  result.stopped_by = "cap";
   for (;; ++result.iterations) {
     stop_if_interrupted("looking for equilibrium");
     walls_moved = applied < parts && result.iterations % options.sub_increment_interval == 0;
@@ -107,14 +106,14 @@ LeastWorkResult minimise_published(PackProblem& problem, Unknowns& theta, const 
     }
     result.residual_energy = dot(descent.forces().force, descent.forces().force);
     if (!std::isfinite(result.residual_energy)) {
-      result.stopped_by = "not finite";
+      result.stopped_by = LeastWorkEnd::not_finite;
       break;
     }
     const double now = descent.forces().work - problem.reference_work();
     if (applied == parts && !walls_moved) {
-      if (std::abs(work - now) < options.work_tolerance * std::abs(now)) result.stopped_by = "work";
-      if (result.residual_energy < force_stop) result.stopped_by = "force";
-      result.converged = result.stopped_by != "cap";
+      if (std::abs(work - now) < options.work_tolerance * std::abs(now)) result.stopped_by = LeastWorkEnd::work;
+      if (result.residual_energy < force_stop) result.stopped_by = LeastWorkEnd::force;
+      result.converged = result.stopped_by != LeastWorkEnd::cap;
       if (result.converged) break;
     }
     work = now;

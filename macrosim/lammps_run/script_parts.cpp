@@ -105,7 +105,7 @@ std::string test_variables(const ScriptScene& s) {
   const std::string total = "(v_steps*v_increments)";
   std::string text = section("The test: strain of the box in increment n of all");
   text += variable("n", "(v_point-1)*v_increments + v_k");
-  if (s.spec.test == "shear") {
+  if (s.spec.test == MacroTest::shear) {
     const std::string grow = "exp(v_strain_end/" + total + ")";
     const std::string shrink = "exp(-v_strain_end/" + total + ")";
     if (preload_points(s.spec) > 0) {
@@ -124,7 +124,7 @@ std::string test_variables(const ScriptScene& s) {
     text += "# z shortens, x lengthens by equal logarithmic strains\n";
     text += variable("fx", grow) + variable("fy", "1") + variable("fz", shrink);
   } else {
-    const bool all = s.spec.test == "isotropic";
+    const bool all = s.spec.test == MacroTest::isotropic;
     text += all ? "# all axes shorten\n" : "# z shortens, x and y stand\n";
     text += variable("fz", nominal_factor("v_strain_end", total));
     text += variable("fx", all ? "v_fz" : "1") + variable("fy", all ? "v_fz" : "1");

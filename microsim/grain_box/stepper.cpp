@@ -79,7 +79,7 @@ bool BoxStepper::attempt(GrainPack& pack, const Vec3& strain) {
   effort_.linear_iterations += r.linear_iterations;
   if (!r.converged) {
     fail(strain, r.worst_residual,
-         fmt::format("no equilibrium ({} after {} iterations, residual {:.3g})", r.stopped_by, r.iterations,
+         fmt::format("no equilibrium ({} after {} iterations, residual {:.3g})", to_string(r.stopped_by), r.iterations,
                      r.worst_residual));
     return false;
   }

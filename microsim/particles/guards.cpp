@@ -18,11 +18,6 @@ namespace {
 /// Grains up to which every 64th step is looked at, above it every 512th.
 constexpr Slot kFewGrains = 1000;
 
-GuardAction read_action(const SceneTable& t, GuardAction fallback) {
-  const std::string word = t.choice("action", {"ignore", "count", "stop"}, to_string(fallback));
-  return word == "stop" ? GuardAction::stop : word == "count" ? GuardAction::count : GuardAction::ignore;
-}
-
 /// Why the mechanical energy of a scene may grow; empty when it may not.
 template <int D>
 std::string driven_by(const System<D>& s) {
@@ -97,11 +92,6 @@ GuardRecord read_record(const h5::Group& g, const std::string& name) {
 
 }  // namespace
 
-const char* to_string(GuardAction action) {
-  if (action == GuardAction::stop) return "stop";
-  return action == GuardAction::count ? "count" : "ignore";
-}
-
 namespace {
 
 /// Of as many components as the scene has dimensions; the others are zero and never looked at.
@@ -115,19 +105,19 @@ GuardSpec read_guards(const SceneTable& t, int dimension) {
   GuardSpec out;
   const SceneTable overlap = t.table_or_empty("overlap");
   out.overlap.limit = overlap.number("limit", Unit::none, Range::positive(), out.overlap.limit);
-  out.overlap.action = read_action(overlap, out.overlap.action);
+  out.overlap.action = overlap.choice<GuardAction>("action", out.overlap.action);
   const SceneTable energy = t.table_or_empty("energy");
   out.energy.limit = energy.number("limit", Unit::none, Range::positive(), out.energy.limit);
-  out.energy.action = read_action(energy, out.energy.action);
+  out.energy.action = energy.choice<GuardAction>("action", out.energy.action);
   const SceneTable escape = t.table_or_empty("escape");
   if (escape.has("low")) out.low = read_corner(escape, "low", dimension);
   if (escape.has("high")) out.high = read_corner(escape, "high", dimension);
   for (int k = 0; out.low && out.high && k < dimension; ++k)
     if (!((*out.low)[k] < (*out.high)[k])) escape.reject("high", "must be above low along every axis");
-  out.escape.action = read_action(escape, out.escape.action);
+  out.escape.action = escape.choice<GuardAction>("action", out.escape.action);
   const SceneTable wall = t.table_or_empty("wall");
   out.wall_travel.limit = wall.number("travel", Unit::length, Range::positive(), 0.0);
-  out.wall_travel.action = read_action(wall, out.wall_travel.action);
+  out.wall_travel.action = wall.choice<GuardAction>("action", out.wall_travel.action);
   return out;
 }
 

@@ -19,7 +19,10 @@ enum class GuardAction {
   stop     ///< the run ends, not usable, with the state as it is
 };
 
-const char* to_string(GuardAction action);
+template <>
+inline constexpr auto words<GuardAction> = word_list<GuardAction>({{GuardAction::ignore, "ignore"},
+                                                                   {GuardAction::count, "count"},
+                                                                   {GuardAction::stop, "stop"}});
 
 /// One guard: the run is looked at every so many steps, and what exceeds `limit` is answered by `action`.
 struct GuardRule {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/core/error.h"
+#include "common/data/snapshot.h"
 #include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/scene_bodies.h"
 #include "microsim/particles/scene_cell.h"
@@ -27,7 +28,8 @@ template <int D>
 void require_walls_fit_cell(const SceneTable& root, const Cell<D>& cell) {
   if (!cell.any_periodic()) return;
   for (const SceneTable& t : root.tables("wall")) {
-    if (t.text("shape") != "plane") t.reject("shape", "the inside of a sphere cannot be combined with a periodic cell");
+    if (t.choice<WallShape>("shape") != WallShape::plane)
+      t.reject("shape", "the inside of a sphere cannot be combined with a periodic cell");
     const Vec<D> normal = read_vector<D>(t, "normal", Unit::none);
     for (int k = 0; k < D; ++k)
       if (cell.periodic[static_cast<std::size_t>(k)] && normal[k] != 0.0)

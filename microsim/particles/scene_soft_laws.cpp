@@ -26,7 +26,7 @@ SoftContact card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
   const double modulus = read_modulus(t);
   const double friction = t.number("mu", Unit::none, Range::not_negative());
   const double damping = t.number("damping", Unit::none, Range::closed(0.0, 1.0));
-  const bool secant = t.choice("kt", {"initial", "secant"}) == "secant";
+  const bool secant = t.choice<TangentialSlope>("kt") == TangentialSlope::secant;
   const std::optional<Beyond> beyond = read_beyond(t);
   try {
     return make_soft_contact(card, kind, modulus, friction, damping, secant, beyond);
@@ -36,8 +36,7 @@ SoftContact card_law(const SceneTable& t, const LawCard& card, PairKind kind) {
 }
 
 LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string& remark) {
-  const RangePolicy range =
-      t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
+  const auto range = t.choice<RangePolicy>("range", RangePolicy::reject);
   if (!t.has("solid_fraction")) {
     if (table.entries.size() == 1) return table.entries.front();
     std::ostringstream text;
@@ -56,8 +55,8 @@ LawTableEntry read_entry(const SceneTable& t, const LawTable& table, std::string
 
 CrowdChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
   CrowdChoices choices;
-  choices.form = t.choice("form", {"pair", "bag", "directional", "best"}, "best");
-  if (choices.form == "best") choices.form = entry.best;
+  choices.form =
+      from_word<Crowd>(t.choice("form", {"pair", "bag", "directional", "best"}, "best")).value_or(entry.best);
   choices.modulus = read_modulus(t);
   if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
   choices.unloading = t.flag("unloading", false);
@@ -69,8 +68,9 @@ CrowdChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
 std::string choice_text(const std::string& path, const LawTableEntry& entry, const CrowdChoices& c) {
   std::ostringstream text;
   text.precision(17);
-  text << path << ", form " << c.form << ", E = " << c.modulus << " Pa, solid fraction " << entry.solid_fraction
-       << (c.unloading ? ", with" : ", without") << " unloading, beyond " << to_string(c.beyond.value_or(entry.beyond));
+  text << path << ", form " << to_string(c.form) << ", E = " << c.modulus << " Pa, solid fraction "
+       << entry.solid_fraction << (c.unloading ? ", with" : ", without") << " unloading, beyond "
+       << to_string(c.beyond.value_or(entry.beyond));
   return text.str();
 }
 
@@ -95,9 +95,9 @@ std::int32_t SoftLawReader::soft_of(const SceneTable& t, const PairOfMaterials& 
 void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
   for (const char* key : {"form", "solid_fraction", "range", "unloading"})
     if (t.has(key)) t.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
-  const std::string kind = t.choice("kind", {"soft-solid", "soft-soft"});
+  const auto kind = t.choice<PairKind>("kind");
   const LawCard card = load_card(path);
-  if (kind == "soft-soft") {
+  if (kind == PairKind::soft_soft) {
     out_.laws.set(pair.first, pair.second, card_law(t, card, PairKind::soft_soft));
     return;
   }

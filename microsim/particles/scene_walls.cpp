@@ -9,6 +9,17 @@ namespace softgrain {
 
 namespace {
 
+enum class WallMotion { fixed, velocity, force };
+
+}  // namespace
+
+template <>
+inline constexpr auto words<WallMotion> = word_list<WallMotion>({{WallMotion::fixed, "fixed"},
+                                                                 {WallMotion::velocity, "velocity"},
+                                                                 {WallMotion::force, "force"}});
+
+namespace {
+
 template <int D>
 Vec<D> read_normal(const SceneTable& t) {
   const Vec<D> n = read_vector<D>(t, "normal", Unit::none);
@@ -19,7 +30,7 @@ Vec<D> read_normal(const SceneTable& t) {
 
 template <int D>
 void read_shape(const SceneTable& t, SceneWall<D>& wall) {
-  wall.plane = t.choice("shape", {"plane", "sphere-inside"}) == "plane";
+  wall.plane = t.choice<WallShape>("shape") == WallShape::plane;
   if (wall.plane) {
     wall.body.x = read_vector<D>(t, "point", Unit::length);
     wall.normal = read_normal<D>(t);
@@ -31,9 +42,9 @@ void read_shape(const SceneTable& t, SceneWall<D>& wall) {
 
 template <int D>
 void read_motion(const SceneTable& t, SceneWall<D>& wall) {
-  const std::string motion = t.choice("motion", {"fixed", "velocity", "force"}, "fixed");
-  if (motion == "velocity") wall.body.velocity = read_vector<D>(t, "velocity", Unit::velocity);
-  if (motion != "force") return;
+  const auto motion = t.choice<WallMotion>("motion", WallMotion::fixed);
+  if (motion == WallMotion::velocity) wall.body.velocity = read_vector<D>(t, "velocity", Unit::velocity);
+  if (motion != WallMotion::force) return;
   if (!wall.plane)
     t.reject("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
   wall.load = t.number("force", Unit::force);

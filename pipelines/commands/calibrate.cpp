@@ -63,7 +63,7 @@ json options_json(const FitOptions& o) {
 
 std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
   const PairLaw& law = report.law;
-  std::string line = fmt::format("{}: {}", to_string(law.kind), law.status);
+  std::string line = fmt::format("{}: {}", to_string(law.kind), to_string(law.status));
   if (!law.reason.empty()) line += " - " + law.reason;
   if (law.normal.b.value <= 0.0) return line + "\n";
   const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
@@ -96,8 +96,8 @@ ExitStatus command_calibrate(const CommonOptions& options) {
   const LawCard card = calibrate(data, fit, &reports);
   save_card(card, run.path("law.toml"), run.provenance(settings, fit.seed));
 
-  const bool good =
-      std::all_of(card.pairs.begin(), card.pairs.end(), [](const PairLaw& law) { return law.status == "good"; });
+  const bool good = std::all_of(card.pairs.begin(), card.pairs.end(),
+                                [](const PairLaw& law) { return law.status == LawStatus::good; });
   std::string people;
   for (const FitReport& report : reports) people += people_line(report, card.spec);
   people += "law card: " + run.path("law.toml") + "\n";

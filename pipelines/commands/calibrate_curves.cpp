@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "calibrate/experiment_fit.h"
+#include "common/io/text_file.h"
 #include "pipelines/law/fit_settings.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/report/report.h"
@@ -19,8 +20,8 @@ namespace {
 using nlohmann::json;
 
 bool is_curve_file(const std::string& path) {
-  const std::string end = std::filesystem::path(path).extension().string();
-  return end == ".csv" || end == ".tsv" || end == ".txt" || end == ".dat";
+  const auto form = file_form(path);
+  return form == FileForm::csv || form == FileForm::tsv || form == FileForm::txt || form == FileForm::dat;
 }
 
 struct CurveSettings {
@@ -45,15 +46,14 @@ std::optional<double> quantity(const char* option, const std::string& text, Unit
 CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   CurveSettings s;
   s.fit = read_fit_settings(t);
-  s.curves.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
+  s.curves.unloading = t.choice<Unloading>("unloading", Unloading::refuse);
   s.mirror = t.flag("mirror", false);
   s.curves.initial_angle_deg = s.fit.initial_angle_deg;
   s.curves.secant_angle_deg = s.fit.secant_angle_deg;
   t.finish();
   if (!options.kind.empty()) {
-    if (options.kind != "soft-solid" && options.kind != "soft-soft")
-      throw BadInput("--kind " + options.kind + ": must be soft-solid or soft-soft");
-    s.curves.kind = options.kind == "soft-solid" ? PairKind::soft_solid : PairKind::soft_soft;
+    s.curves.kind = from_word<PairKind>(options.kind);
+    if (!s.curves.kind) throw BadInput("--kind " + options.kind + ": must be soft-solid or soft-soft");
   }
   s.curves.shell_radius = quantity("--radius", options.radius, Unit::length);
   s.curves.youngs_modulus = quantity("--modulus", options.modulus, Unit::pressure);
@@ -136,7 +136,7 @@ void note_thinned(const std::vector<ForceCurves>& curves, const json& drawn, std
 
 std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
   const PairLaw& law = report.law;
-  std::string line = fmt::format("{}: {}", to_string(law.kind), law.status);
+  std::string line = fmt::format("{}: {}", to_string(law.kind), to_string(law.status));
   if (!law.reason.empty()) line += " - " + law.reason;
   if (law.normal.b.value <= 0.0) return line + "\n";
   const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
@@ -192,9 +192,10 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   bool good = true;  // of what was measured; a law by symmetry says itself that it was not
   std::string people;
   for (const FitReport& r : fit.reports) {
-    good = good && (r.law.status == "good" || r.law.points == 0);
-    if (r.law.status != "good" && r.law.points > 0)
-      remarks.insert(remarks.begin(), fmt::format("{} law: {}: {}", to_string(r.law.kind), r.law.status, r.law.reason));
+    good = good && (r.law.status == LawStatus::good || r.law.points == 0);
+    if (r.law.status != LawStatus::good && r.law.points > 0)
+      remarks.insert(remarks.begin(),
+                     fmt::format("{} law: {}: {}", to_string(r.law.kind), to_string(r.law.status), r.law.reason));
     people += force_line(r, fit.card.spec);
   }
   json samples = samples_json(curves);

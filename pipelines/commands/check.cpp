@@ -27,12 +27,12 @@ bool holds_laws(const std::string& path) { return Scene::load(path).root().has("
 
 void check_file(const std::string& path, const CommonOptions& options, Findings& out) {
   std::error_code ignored;
-  const std::string extension = std::filesystem::path(path).extension();
+  const auto form = file_form(path);
   if (std::filesystem::is_directory(path, ignored))
     check_directory(path, out);
-  else if (extension == ".h5")
+  else if (form == FileForm::hdf5)
     check_data(path, out);
-  else if (extension == ".json")
+  else if (form == FileForm::json)
     check_summary(path, out);
   else if (holds_laws(path))
     check_laws(path, out);

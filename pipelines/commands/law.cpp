@@ -33,12 +33,12 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 void refuse(const LawOptions& o, std::initializer_list<const char*> names, const std::string& why) {
   for (const char* name : names)
-    if (has(o.given, name)) throw BadInput("law " + o.action + ": " + name + " " + why);
+    if (has(o.given, name)) throw BadInput("law " + to_string(*o.action) + ": " + name + " " + why);
 }
 
 /// What goes with cards does not go with tables, and the reverse.
 void require_fitting_options(const LawOptions& o, const LawFile& file) {
-  const bool pairs = o.format == "lammps-table";
+  const bool pairs = o.format == LawFormat::lammps_table;
   if (file.card)
     refuse(o, {"--form", "--arrangement", "--partner", "--ratio", "--shallow", "--solid-fraction", "--range"},
            "goes with a law table; " + file.path + " is a law card, which knows pairs alone");
@@ -51,30 +51,31 @@ void require_fitting_options(const LawOptions& o, const LawFile& file) {
            "does not go with --to lammps-table, which has --kind, --ratios, --rows and --delta-max");
   else
     refuse(o, {"--ratios", "--rows", "--delta-max"}, "goes with --to lammps-table");
-  if (o.arrangement != "beside-five") refuse(o, {"--shallow"}, "goes with --arrangement beside-five");
-  if (file.table && o.partner == "plane")
+  if (o.arrangement != Arrangement::beside_five) refuse(o, {"--shallow"}, "goes with --arrangement beside-five");
+  if (file.table && o.partner == PartnerKind::plane)
     refuse(o, {"--ratio"}, "goes with --partner solid or soft: a plane has no radius");
 }
 
 double positive(const LawOptions& o, const char* name, double value, double high) {
   if (std::isfinite(value) && value > 0.0 && value <= high) return value;
-  throw BadInput(fmt::format("law {}: {} {}: must be above 0 and at most {}", o.action, name, value, high));
+  throw BadInput(fmt::format("law {}: {} {}: must be above 0 and at most {}", to_string(*o.action), name, value, high));
 }
 
 double overlap(const LawOptions& o, const char* name, double value) {
   if (std::isfinite(value) && value >= 0.0 && value < 2.0) return value;
-  throw BadInput(fmt::format("law {}: {} {}: must be at least 0 and below 2", o.action, name, value));
+  throw BadInput(fmt::format("law {}: {} {}: must be at least 0 and below 2", to_string(*o.action), name, value));
 }
 
 std::size_t whole(const LawOptions& o, const char* name, std::int64_t value, std::int64_t low) {
   constexpr std::int64_t kMost = 1000000;
   if (value >= low && value <= kMost) return static_cast<std::size_t>(value);
-  throw BadInput(fmt::format("law {}: {} {}: must be a whole number from {} to {}", o.action, name, value, low, kMost));
+  throw BadInput(fmt::format("law {}: {} {}: must be a whole number from {} to {}", to_string(*o.action), name, value,
+                             low, kMost));
 }
 
 /// Delta of every value: those given, or evenly spread up to the end of the measured range.
 std::vector<double> overlaps(const LawOptions& o, double end, std::int64_t steps) {
-  const char* last = o.action == "eval" ? "--to" : "--to-delta";
+  const char* last = o.action == LawAction::eval ? "--to" : "--to-delta";
   if (has(o.given, "--delta")) {
     refuse(o, {"--from", last, "--steps"}, "does not go with --delta");
     for (const double d : o.deltas) (void)overlap(o, "--delta", d);
@@ -82,27 +83,21 @@ std::vector<double> overlaps(const LawOptions& o, double end, std::int64_t steps
   }
   const double low = overlap(o, "--from", o.from);
   const double high = has(o.given, last) ? overlap(o, last, o.to_delta) : end;
-  if (!(low < high)) throw BadInput(fmt::format("law {}: --from {} must be below {} {}", o.action, low, last, high));
+  if (!(low < high))
+    throw BadInput(fmt::format("law {}: --from {} must be below {} {}", to_string(*o.action), low, last, high));
   return law::even(low, high, whole(o, "--steps", has(o.given, "--steps") ? o.steps : steps, 2));
 }
-
-std::optional<Beyond> beyond_of(const LawOptions& o) {
-  if (o.beyond.empty()) return std::nullopt;
-  if (o.beyond == "error") return Beyond::error;
-  return o.beyond == "clamp" ? Beyond::clamp : Beyond::extrapolate;
-}
-
-RangePolicy range_of(const LawOptions& o) { return o.range == "clamp" ? RangePolicy::clamp : RangePolicy::reject; }
 
 std::optional<double> fraction_of(const LawOptions& o) {
   if (!has(o.given, "--solid-fraction")) return std::nullopt;
   return positive(o, "--solid-fraction", o.solid_fraction, 1.0);
 }
 
+/// Those that were named, in the order of the file.
 std::vector<PairKind> kinds_of(const LawOptions& o) {
   std::vector<PairKind> kinds;
   for (const PairKind kind : kPairKinds)
-    if (has(o.kinds, to_string(kind))) kinds.push_back(kind);
+    if (std::find(o.kinds.begin(), o.kinds.end(), kind) != o.kinds.end()) kinds.push_back(kind);
   return kinds;
 }
 
@@ -115,14 +110,14 @@ double quantity(const LawOptions& o, const char* name, const std::string& text, 
     const double value = parse_quantity(text, unit);
     if (std::isfinite(value) && value > 0.0) return value;
   } catch (const BadInput& e) {
-    throw BadInput(fmt::format("law {}: {} \"{}\": {}", o.action, name, text, e.what()));
+    throw BadInput(fmt::format("law {}: {} \"{}\": {}", to_string(*o.action), name, text, e.what()));
   }
-  throw BadInput(fmt::format("law {}: {} \"{}\": must be above 0", o.action, name, text));
+  throw BadInput(fmt::format("law {}: {} \"{}\": must be above 0", to_string(*o.action), name, text));
 }
 
 ValueUnits units_of(const LawOptions& o, const LawFile& file) {
   ValueUnits units;
-  units.si = !o.modulus.empty() || !o.radius.empty() || o.format == "lammps-table";
+  units.si = !o.modulus.empty() || !o.radius.empty() || o.format == LawFormat::lammps_table;
   units.modulus = spec_of(file).youngs_modulus;
   units.radius = spec_of(file).shell_radius;
   if (!o.modulus.empty()) units.modulus = quantity(o, "--E", o.modulus, Unit::pressure);
@@ -130,25 +125,21 @@ ValueUnits units_of(const LawOptions& o, const LawFile& file) {
   return units;
 }
 
-bool usable(const PairLaw& pair) { return pair.status == "good" || pair.status == "underdetermined"; }
-
 std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, std::int64_t steps) {
   std::vector<ValueTable> out;
   const std::vector<PairKind> wanted = kinds_of(o);
   for (const PairKind kind : kPairKinds) {
     const PairLaw* pair = file.card->find(kind);
-    const bool named = has(o.kinds, to_string(kind));
-    if (wanted.empty() ? pair == nullptr || !usable(*pair) : !named) continue;
-    const auto values = [&](const std::vector<double>& at) {
-      return law::card_values(*file.card, kind, at, beyond_of(o));
-    };
+    const bool named = std::find(wanted.begin(), wanted.end(), kind) != wanted.end();
+    if (wanted.empty() ? pair == nullptr || !has_numbers(pair->status) : !named) continue;
+    const auto values = [&](const std::vector<double>& at) { return law::card_values(*file.card, kind, at, o.beyond); };
     if (pair == nullptr) (void)values({});  // says what is wrong
     ValueTable t;
     t.law = to_string(kind);
     t.status = pair->status;
     t.remark = pair->reason;
-    t.beyond = beyond_of(o).value_or(pair->beyond);
-    t.use_secant = o.tangential == "secant";
+    t.beyond = o.beyond.value_or(pair->beyond);
+    t.use_secant = o.tangential == TangentialSlope::secant;
     t.points = values(overlaps(o, pair->delta_max, steps));
     out.push_back(std::move(t));
   }
@@ -156,15 +147,10 @@ std::vector<ValueTable> card_tables(const LawOptions& o, const LawFile& file, st
   return out;
 }
 
-PartnerKind partner_of(const LawOptions& o) {
-  if (o.partner == "plane") return PartnerKind::plane;
-  return o.partner == "solid" ? PartnerKind::solid : PartnerKind::soft;
-}
-
 std::string question_text(const law::CrowdQuestion& q, const law::CrowdAnswer& a) {
   const std::string size = q.partner == PartnerKind::plane ? "" : fmt::format(" of ratio {:g}", q.ratio);
-  return fmt::format("{} {}{}, {} law at solid fraction {:.4f}", q.arrangement, to_string(q.partner), size, a.form,
-                     a.entry.solid_fraction);
+  return fmt::format("{} {}{}, {} law at solid fraction {:.4f}", to_string(q.arrangement), to_string(q.partner), size,
+                     to_string(a.form), a.entry.solid_fraction);
 }
 
 /// What a colleague would add to numbers of a table: how far off the law is, and where it was not measured.
@@ -181,15 +167,15 @@ law::CrowdQuestion fraction_question(const LawOptions& o) {
   law::CrowdQuestion q;
   q.form = o.form;
   q.solid_fraction = fraction_of(o);
-  q.range = range_of(o);
-  q.beyond = beyond_of(o);
+  q.range = o.range;
+  q.beyond = o.beyond;
   return q;
 }
 
 ValueTable table_values(const LawOptions& o, const LawFile& file, std::int64_t steps) {
   law::CrowdQuestion q = fraction_question(o);
   q.arrangement = o.arrangement;
-  q.partner = partner_of(o);
+  q.partner = o.partner;
   q.ratio = positive(o, "--ratio", o.ratio, 1e6);
   q.shallow = positive(o, "--shallow", o.shallow, 1.0);
   const double end = law::crowd_values(*file.table, q, {}).overlap_max;
@@ -208,7 +194,7 @@ std::vector<ValueTable> value_tables(const LawOptions& o, const LawFile& file, s
 }
 
 json head_json(const LawOptions& o, const LawFile& file) {
-  return {{"command", "law " + o.action},
+  return {{"command", "law " + to_string(*o.action)},
           {"status", "good"},
           {"file", file.path},
           {"kind", file.card ? "law card" : "law table"},
@@ -276,10 +262,10 @@ law::PairTableChoice pair_choice(const LawOptions& o, const ValueUnits& units) {
     c.delta_max = overlap(o, "--delta-max", o.delta_max);
     (void)positive(o, "--delta-max", o.delta_max, 2.0);
   }
-  c.beyond = beyond_of(o);
+  c.beyond = o.beyond;
   c.form = o.form;
   c.solid_fraction = fraction_of(o);
-  c.range = range_of(o);
+  c.range = o.range;
   return c;
 }
 
@@ -292,8 +278,8 @@ std::string lammps_file(const LawOptions& o, const LawFile& file, const ValueUni
                                 "a soft particle with several neighbours is stiffer than a pair potential can say"};
   if (file.table) {
     const law::CrowdAnswer a = law::crowd_values(*file.table, fraction_question(o), {});
-    head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", a.form, a.entry.solid_fraction,
-                               a.remark.empty() ? "" : " (" + a.remark + ")"));
+    head.push_back(fmt::format("the {} law at solid fraction {:.4f} of the table{}", to_string(a.form),
+                               a.entry.solid_fraction, a.remark.empty() ? "" : " (" + a.remark + ")"));
   }
   const std::string origin = law::origin_text(file.origin);
   if (!origin.empty()) head.insert(head.begin() + 1, origin);
@@ -313,19 +299,19 @@ json full_json(const LawOptions& o, const LawFile& file, const std::vector<Value
 }
 
 ExitStatus export_law(const LawOptions& o) {
-  if (o.format.empty()) throw BadInput("law export: give --to lammps-table, csv or json");
+  if (!o.format) throw BadInput("law export: give --to lammps-table, csv or json");
   const LawFile file = law::load_law_file(o.files.front());
   require_fitting_options(o, file);
   const ValueUnits units = units_of(o, file);
   constexpr std::int64_t kSteps = 101;
   ExitStatus status = ExitStatus::good;
   std::string text;
-  if (o.format == "lammps-table") {
+  if (o.format == LawFormat::lammps_table) {
     text = lammps_file(o, file, units);
   } else {
     const std::vector<ValueTable> tables = value_tables(o, file, kSteps);
     status = status_of(tables);
-    text = o.format == "csv"
+    text = o.format == LawFormat::csv
                ? law::values_csv(tables, units)
                : full_json(o, file, tables, units).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   }
@@ -333,7 +319,7 @@ ExitStatus export_law(const LawOptions& o) {
   if (o.json) {
     json summary = head_json(o, file);
     summary["status"] = status_word(status);
-    summary["format"] = o.format;
+    summary["format"] = to_string(*o.format);
     summary[o.out.empty() ? "text" : "written"] = o.out.empty() ? text : o.out;
     print(summary);
   } else {
@@ -391,17 +377,18 @@ ExitStatus show(const LawOptions& o) {
 
 void require_files(const LawOptions& o, std::size_t most) {
   if (!o.files.empty() && o.files.size() <= most) return;
-  throw BadInput(fmt::format("law {} needs {} LAW, {} given (see softgrain law {} --help)", o.action,
-                             most == 1 ? "1" : "1 or 2", o.files.size(), o.action));
+  throw BadInput(fmt::format("law {} needs {} LAW, {} given (see softgrain law {} --help)", to_string(*o.action),
+                             most == 1 ? "1" : "1 or 2", o.files.size(), to_string(*o.action)));
 }
 
 }  // namespace
 
 ExitStatus command_law(const LawOptions& options) {
-  if (options.action == "none") throw BadInput("law: give show, eval or export and a law (see softgrain law --help)");
-  require_files(options, options.action == "show" ? 2 : 1);
-  if (options.action == "show") return show(options);
-  return options.action == "eval" ? eval(options) : export_law(options);
+  if (options.action == LawAction::none)
+    throw BadInput("law: give show, eval or export and a law (see softgrain law --help)");
+  require_files(options, options.action == LawAction::show ? 2 : 1);
+  if (options.action == LawAction::show) return show(options);
+  return options.action == LawAction::eval ? eval(options) : export_law(options);
 }
 
 }  // namespace softgrain

@@ -20,7 +20,8 @@ using nlohmann::json;
 void warn_of_card(const LawCard& card, Findings& out) {
   for (const PairLaw& law : card.pairs) {
     const std::string name = to_string(law.kind);
-    if (law.status != "good") out.warn(name + ": " + law.status + (law.reason.empty() ? "" : " (" + law.reason + ")"));
+    if (law.status != LawStatus::good)
+      out.warn(name + ": " + to_string(law.status) + (law.reason.empty() ? "" : " (" + law.reason + ")"));
     constexpr int kFew = 5;
     if (law.packings > 0 && law.packings < kFew)
       out.warn(fmt::format("{}: fitted on {} packings, which differ by 10 % and more", name, law.packings));
@@ -43,10 +44,12 @@ void check_card(const std::string& path, Findings& out) {
     out.add("contents", "not known",
             "what is inside the soft particle is not known: no resolved twin can be made of it");
   for (const PairLaw& law : card.pairs)
-    out.add(to_string(law.kind), {{"status", law.status}, {"delta_min", law.delta_min}, {"delta_max", law.delta_max}},
+    out.add(to_string(law.kind),
+            {{"status", to_string(law.status)}, {"delta_min", law.delta_min}, {"delta_max", law.delta_max}},
             fmt::format("{}: {}, fitted for Delta from {:.3f} to {:.3f} on {} packings, largest grain overlap {:.2f} "
                         "of the smaller radius",
-                        to_string(law.kind), law.status, law.delta_min, law.delta_max, law.packings, law.max_overlap));
+                        to_string(law.kind), to_string(law.status), law.delta_min, law.delta_max, law.packings,
+                        law.max_overlap));
   warn_of_card(card, out);
   for (const std::string& note : card.notes) out.warn(note);
 }
@@ -65,21 +68,21 @@ std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
 }
 
 void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
-  facts["laws"].push_back({{"form", law.form},
-                           {"status", law.status},
+  facts["laws"].push_back({{"form", to_string(law.form)},
+                           {"status", to_string(law.status)},
                            {"error_fitted", law.error_fitted},
                            {"error_held_out", law.error_held_out},
                            {"error_cross", law.error_cross}});
-  lines += fmt::format("    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n", law.form,
-                       law.form == entry.best ? " (best)" : "", law.status,
+  lines += fmt::format("    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n",
+                       to_string(law.form), law.form == entry.best ? " (best)" : "", to_string(law.status),
                        law.reason.empty() ? "" : " (" + law.reason + ")", 100.0 * law.error_fitted, held_out_text(law),
                        cross_text(law), partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
 }
 
 void check_entry(const LawTableEntry& e, Findings& out) {
-  json facts{
-      {"solid_fraction", e.solid_fraction}, {"packings", e.packings},       {"best", e.best},
-      {"volume_max", e.volume_max},         {"overlap_max", e.overlap_max}, {"grain_overlap_max", e.grain_overlap_max}};
+  json facts{{"solid_fraction", e.solid_fraction}, {"packings", e.packings},
+             {"best", to_string(e.best)},          {"volume_max", e.volume_max},
+             {"overlap_max", e.overlap_max},       {"grain_overlap_max", e.grain_overlap_max}};
   out.lines += fmt::format(
       "  solid fraction {:.4f} +- {:.4f}: {} packings, {} relaxation, grains of nu = {}, mu = {}\n"
       "    valid up to a lost volume of {:.3f} and an overlap of {:.3f} Rs with a plane, where grains overlap by "
@@ -95,8 +98,8 @@ void check_entry(const LawTableEntry& e, Findings& out) {
 void warn_of_entry(const LawTableEntry& e, Findings& out) {
   const CrowdLaw* best = e.find(e.best);
   constexpr double kFar = 0.15;
-  if (best->status != "good")
-    out.warn(fmt::format("solid fraction {:.3f}: the best law is {}{}", e.solid_fraction, best->status,
+  if (best->status != LawStatus::good)
+    out.warn(fmt::format("solid fraction {:.3f}: the best law is {}{}", e.solid_fraction, to_string(best->status),
                          best->reason.empty() ? "" : " (" + best->reason + ")"));
   const double unseen = std::fmax(best->error_cross, best->error_held_out);  // either may be unknown
   if (unseen > kFar)

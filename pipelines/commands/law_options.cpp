@@ -2,11 +2,27 @@
 
 #include <CLI/CLI.hpp>
 
-#include "microsim/crowd_arrangements.h"
-
 namespace softgrain {
 
 namespace {
+
+/// "error|clamp|extrapolate"
+template <Worded Enum>
+std::string alternatives() {
+  std::string text;
+  for (const Word<Enum>& w : words<Enum>) text += (text.empty() ? "" : "|") + std::string(w.text);
+  return text;
+}
+
+/// An option that takes the words of an enum.
+template <Worded Enum, class Target>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name, [&target](const std::string& word) { target = *from_word<Enum>(word); }, help)
+      ->option_text(alternatives<Enum>())
+      ->check(CLI::IsMember(all_words<Enum>()).description(""));
+}
 
 void add_files(CLI::App& app, LawOptions& o, const char* help) {
   app.add_option("LAW", o.files, help)->option_text(" ");
@@ -21,46 +37,39 @@ void add_overlaps(CLI::App& app, LawOptions& o, const std::string& to) {
 }
 
 void add_law_choices(CLI::App& app, LawOptions& o) {
-  app.add_option("--kind", o.kinds, "Cards and pair tables: kind of pair; default all")
-      ->option_text("soft-solid|soft-soft")
-      ->check(CLI::IsMember({"soft-solid", "soft-soft"}).description(""));
-  app.add_option("--beyond", o.beyond, "Beyond the measured range, instead of what the law says")
-      ->option_text("error|clamp|extrapolate")
-      ->check(CLI::IsMember({"error", "clamp", "extrapolate"}).description(""));
+  app.add_option_function<std::vector<std::string>>(
+         "--kind",
+         [&o](const std::vector<std::string>& kinds) {
+           for (const std::string& word : kinds) o.kinds.push_back(*from_word<PairKind>(word));
+         },
+         "Cards and pair tables: kind of pair; default all")
+      ->option_text(alternatives<PairKind>())
+      ->check(CLI::IsMember(all_words<PairKind>()).description(""));
+  add_choice<Beyond>(app, "--beyond", o.beyond, "Beyond the measured range, instead of what the law says");
   app.add_option("--E", o.modulus, "Young's modulus, \"0.5 MPa\" or in Pa; default as measured. Asks for SI units")
       ->option_text("E");
   app.add_option("--radius", o.radius, "Radius of the soft particle, \"16 mm\" or in m; as measured. Asks for SI units")
       ->option_text("R");
-  app.add_option("--form", o.form, "Tables: form of the law; default the best")
-      ->option_text("pair|bag|directional")
-      ->check(CLI::IsMember({"pair", "bag", "directional"}).description(""));
+  add_choice<Crowd>(app, "--form", o.form, "Tables: form of the law; default the best");
   app.add_option("--solid-fraction", o.solid_fraction, "Tables: of the soft particle; default that of the main entry")
       ->option_text("PHI");
-  app.add_option("--range", o.range, "Tables: what to do with solid fractions that were not measured")
-      ->option_text("reject|clamp")
-      ->check(CLI::IsMember({"reject", "clamp"}).description(""));
+  add_choice<RangePolicy>(app, "--range", o.range, "Tables: what to do with solid fractions that were not measured");
 }
 
 void add_neighbours(CLI::App& app, LawOptions& o) {
-  app.add_option("--arrangement", o.arrangement, "Tables: neighbours; all are pressed in by Delta")
-      ->option_text("NAME")
-      ->check(CLI::IsMember(std::vector<std::string>(kArrangements.begin(), kArrangements.end())).description(""));
-  app.add_option("--partner", o.partner, "Tables: kind of neighbours; default plane")
-      ->option_text("plane|solid|soft")
-      ->check(CLI::IsMember({"plane", "solid", "soft"}).description(""));
+  add_choice<Arrangement>(app, "--arrangement", o.arrangement, "Tables: neighbours; all are pressed in by Delta")
+      ->option_text("NAME");
+  add_choice<PartnerKind>(app, "--partner", o.partner, "Tables: kind of neighbours; default plane");
   app.add_option("--ratio", o.ratio, "Tables: radius of the neighbours over that of the soft particle; default 1")
       ->option_text("Q");
   app.add_option("--shallow", o.shallow, "Tables: overlap of the first of beside-five over that of the others")
       ->option_text("S");
-  app.add_option("--kt", o.tangential, "Tangential stiffness in the terminal's table; default initial")
-      ->option_text("initial|secant")
-      ->check(CLI::IsMember({"initial", "secant"}).description(""));
+  add_choice<TangentialSlope>(app, "--kt", o.tangential,
+                              "Tangential stiffness in the terminal's table; default initial");
 }
 
 void add_export(CLI::App& app, LawOptions& o) {
-  app.add_option("--to", o.format, "Format")
-      ->option_text("lammps-table|csv|json")
-      ->check(CLI::IsMember({"lammps-table", "csv", "json"}).description(""));
+  add_choice<LawFormat>(app, "--to", o.format, "Format");
   app.add_option("--out", o.out, "File to write; default standard output")->option_text("FILE");
   app.add_option("--ratios", o.ratios, "lammps-table: radii of the other body over that of the soft one; default 1")
       ->option_text("Q1 Q2 ...");
@@ -83,24 +92,24 @@ void add_law_command(CLI::App& app, LawOptions& options) {
   CLI::App* law = app.add_subcommand("law", "Shows, evaluates and converts law cards and law tables");
   law->require_subcommand(0, 1);
   law->parse_complete_callback([law, &options] {
-    if (law->get_subcommands().empty()) options.action = "none";
+    if (law->get_subcommands().empty()) options.action = LawAction::none;
   });
-  const auto add = [&](const char* name, const char* does) {
-    CLI::App* sub = law->add_subcommand(name, does);
-    sub->parse_complete_callback([sub, name, &options] {
-      options.action = name;
+  const auto add = [&](LawAction action, const char* does) {
+    CLI::App* sub = law->add_subcommand(to_string(action), does);
+    sub->parse_complete_callback([sub, action, &options] {
+      options.action = action;
       options.given = given_options(*sub);
     });
     return sub;
   };
-  CLI::App* show = add("show", "Parameters, intervals, range and a plot; of two laws: how they differ");
+  CLI::App* show = add(LawAction::show, "Parameters, intervals, range and a plot; of two laws: how they differ");
   add_files(*show, options, "card (law.toml), table (law_table.toml) or run directory; two: A and B");
-  CLI::App* eval = add("eval", "Forces and stiffnesses at given overlaps, with 95 % intervals");
+  CLI::App* eval = add(LawAction::eval, "Forces and stiffnesses at given overlaps, with 95 % intervals");
   add_files(*eval, options, "card, table or run directory");
   add_overlaps(*eval, options, "--to");
   add_law_choices(*eval, options);
   add_neighbours(*eval, options);
-  CLI::App* converted = add("export", "A pair table of LAMMPS, CSV or JSON");
+  CLI::App* converted = add(LawAction::export_law, "A pair table of LAMMPS, CSV or JSON");
   add_files(*converted, options, "card, table or run directory");
   add_overlaps(*converted, options, "--to-delta");
   add_law_choices(*converted, options);

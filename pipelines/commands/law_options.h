@@ -1,10 +1,13 @@
 // Command line of softgrain law: show, eval and export.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/data/crowd_law.h"
+#include "microsim/crowd_arrangements.h"
 
 namespace CLI {
 class App;
@@ -12,31 +15,46 @@ class App;
 
 namespace softgrain {
 
+enum class LawAction { none, show, eval, export_law };
+
+template <>
+inline constexpr auto words<LawAction> = word_list<LawAction>({{LawAction::none, "none"},
+                                                               {LawAction::show, "show"},
+                                                               {LawAction::eval, "eval"},
+                                                               {LawAction::export_law, "export"}});
+
+enum class LawFormat { lammps_table, csv, json };
+
+template <>
+inline constexpr auto words<LawFormat> = word_list<LawFormat>({{LawFormat::lammps_table, "lammps-table"},
+                                                               {LawFormat::csv, "csv"},
+                                                               {LawFormat::json, "json"}});
+
 struct LawOptions {
-  std::string action;              ///< "show", "eval" or "export"; empty: another command
-  std::vector<std::string> files;  ///< card or table, or a run directory; show: one or two
+  std::optional<LawAction> action;  ///< empty: another command; none: no action is given
+  std::vector<std::string> files;   ///< card or table, or a run directory; show: one or two
   bool json = false;
 
   std::vector<double> deltas;  ///< --delta
   double from = 0.0;
   double to_delta = -1.0;  ///< --to of eval, negative: the end of the range
   std::int64_t steps = 11;
-  std::vector<std::string> kinds;  ///< --kind
-  std::string tangential = "initial";
-  std::string beyond;   ///< empty: what the law says
-  std::string modulus;  ///< --E, with or without unit; with --radius: SI units
+  std::vector<PairKind> kinds;  ///< --kind
+  TangentialSlope tangential = TangentialSlope::initial;
+  std::optional<Beyond> beyond;  ///< empty: what the law says
+  std::string modulus;           ///< --E, with or without unit; with --radius: SI units
   std::string radius;
 
-  std::string form;
-  std::string arrangement = "one";
-  std::string partner = "plane";
+  WantedForm form;
+  Arrangement arrangement = Arrangement::one;
+  PartnerKind partner = PartnerKind::plane;
   double ratio = 1.0;
   double shallow = 0.5;
   double solid_fraction = -1.0;  ///< negative: the main entry
-  std::string range = "reject";
+  RangePolicy range = RangePolicy::reject;
 
-  std::string format;  ///< --to of export
-  std::string out;     ///< --out FILE; empty: standard output
+  std::optional<LawFormat> format;  ///< --to of export
+  std::string out;                  ///< --out FILE; empty: standard output
   std::vector<double> ratios{1.0};
   std::int64_t rows = 1001;
   double delta_max = -1.0;  ///< negative: the end of the range

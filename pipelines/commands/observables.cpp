@@ -78,7 +78,7 @@ Columns force_columns(const Measurements& data) {
 Columns macro_columns(const std::vector<MacroCurve>& curves) {
   std::string law;
   for (const MacroCurve& c : curves)
-    if (law.empty() && c.engine != "shelled" && c.engine != "free") law = c.engine;
+    if (law.empty() && !c.twin()) law = c.engine;
   Columns out{{"strain", {}}, {"stress", {}}, {"lateral_stress", {}}, {"coordination", {}}};
   double samples = 0.0;
   for (const MacroCurve& c : curves) {

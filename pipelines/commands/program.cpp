@@ -194,7 +194,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
   std::signal(SIGXFSZ, SIG_IGN);
   end_at_once_on_signals();
-  if (!law.action.empty()) return command_law(law);
+  if (law.action) return command_law(law);
   if (chosen == nullptr) {
     std::fputs(app.help().c_str(), stderr);
     return ExitStatus::bad_input;

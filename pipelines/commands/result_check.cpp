@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 
 #include "common/core/error.h"
 #include "common/data/crowd_measurements.h"
@@ -16,6 +17,7 @@
 #include "microsim/grain_box/record.h"
 #include "pipelines/commands/law_check.h"
 #include "pipelines/report/powder_data.h"
+#include "pipelines/run/run_context.h"
 #include "pipelines/snapshots/snapshots.h"
 #include "pipelines/snapshots/snapshots_of_kinds.h"
 
@@ -167,7 +169,7 @@ void check_summary(const std::string& path, Findings& out) {
           fmt::format("summary of softgrain {} ({} {}): {}", text("command"), text("version"), text("commit"), status));
   out.facts["run_status"] = status;
   out.facts["command"] = text("command");
-  if (status != "good") out.warn("the run says of itself: " + status);
+  if (!has_status(summary, RunStatus::good)) out.warn("the run says of itself: " + status);
   if (!summary.contains("remarks") || !summary["remarks"].is_array()) return;
   for (const json& remark : summary["remarks"])
     if (remark.is_string()) out.warn(remark.get<std::string>());
@@ -178,14 +180,16 @@ void check_directory(const std::string& path, Findings& out) {
   for (const fs::directory_entry& entry : fs::directory_iterator(path)) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   out.add("kind", "run directory", "run directory");
+  static const std::map<std::string, void (*)(const std::string&, Findings&)> kNamed{
+      {"law.toml", check_laws}, {"law_table.toml", check_laws}, {"summary.json", check_summary}};
   bool any = false;
   const auto has = [&](const std::string& name) { return std::binary_search(names.begin(), names.end(), name); };
   for (const std::string& name : names) {
     if (is_scratch(name)) continue;
-    const bool laws = name == "law.toml" || name == "law_table.toml";
-    if (!laws && name != "summary.json" && !name.ends_with(".h5")) continue;
+    const auto known = kNamed.find(name);
+    if (known == kNamed.end() && file_form(name) != FileForm::hdf5) continue;
     any = true;
-    check_one(path, name, laws ? check_laws : (name == "summary.json" ? check_summary : check_data), out);
+    check_one(path, name, known == kNamed.end() ? check_data : known->second, out);
   }
   if (!any) throw BadInput(path + ": no run directory: neither summary.json nor a file of results is in it");
   if (!has("summary.json"))

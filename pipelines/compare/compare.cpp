@@ -13,7 +13,7 @@
 namespace softgrain {
 namespace {
 
-using Key = std::pair<std::string, std::int64_t>;
+using Key = std::pair<MacroTest, std::int64_t>;
 
 void require_curve(const std::vector<double>& x, const std::vector<double>& y, const char* side) {
   if (x.size() != y.size())
@@ -89,15 +89,15 @@ std::map<Key, const MacroCurve*> by_key(const std::vector<MacroCurve>& curves, c
   std::map<Key, const MacroCurve*> result;
   for (const MacroCurve& c : curves) {
     if (result.emplace(Key{c.test, c.sample}, &c).second) continue;
-    throw BadInput(
-        fmt::format("compare: the {} holds test \"{}\", sample {} twice; choose one engine", side, c.test, c.sample));
+    throw BadInput(fmt::format("compare: the {} holds test \"{}\", sample {} twice; choose one engine", side,
+                               to_string(c.test), c.sample));
   }
   return result;
 }
 
 /// Why a pair cannot be compared; empty when it can.
 std::string obstacle(const MacroCurve& candidate, const MacroCurve* reference) {
-  const std::string name = fmt::format("{} sample {}: ", candidate.test, candidate.sample);
+  const std::string name = fmt::format("{} sample {}: ", to_string(candidate.test), candidate.sample);
   if (reference == nullptr) return name + "the reference has no such sample";
   if (!candidate.usable) return name + "the candidate is marked unusable (" + candidate.note + ")";
   if (!reference->usable) return name + "the reference is marked unusable (" + reference->note + ")";
@@ -117,7 +117,7 @@ void note_undefined(const SampleComparison& s, Comparison& result) {
     if (!std::isfinite(ratio))
       result.undefined.push_back(
           fmt::format("{} sample {}: the {} carries no axial stress at strain {:.4g}: ratios to it are undefined",
-                      s.test, s.sample, side, s.strain_high));
+                      to_string(s.test), s.sample, side, s.strain_high));
   };
   note(s.axial_end_ratio, "reference");
   if (std::isfinite(s.axial_end_ratio) && s.axial_end_ratio == 0.0) note(kNaN, "candidate");
@@ -129,7 +129,7 @@ void add_sample(const MacroCurve& candidate, const MacroCurve& reference, Compar
     result.samples.push_back(compare_sample(candidate, reference));
     note_undefined(result.samples.back(), result);
   } catch (const ZeroReference& e) {
-    result.undefined.push_back(fmt::format("{} sample {}: {}", candidate.test, candidate.sample, e.what()));
+    result.undefined.push_back(fmt::format("{} sample {}: {}", to_string(candidate.test), candidate.sample, e.what()));
   }
 }
 
@@ -208,7 +208,8 @@ Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::v
   }
   for (const auto& [key, curve] : references)
     if (!candidates.contains(key))
-      result.left_out.push_back(fmt::format("{} sample {}: the candidate has no such sample", key.first, key.second));
+      result.left_out.push_back(
+          fmt::format("{} sample {}: the candidate has no such sample", to_string(key.first), key.second));
   if (result.samples.empty() && !result.undefined.empty())
     throw ZeroReference("compare: no sample can be compared: " + result.undefined.front());
   if (result.samples.empty()) throw BadInput("compare: no sample can be compared: " + result.left_out.front());

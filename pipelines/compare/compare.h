@@ -29,7 +29,7 @@ double interpolate_linear(const std::vector<double>& x, const std::vector<double
 /// One sample seen by both sides.
 struct SampleComparison {
   std::int64_t sample = 0;
-  std::string test;         ///< "oedometric" or "isotropic"
+  MacroTest test{};
   double strain_low = 0.0;  ///< common range of strain
   double strain_high = 0.0;
   double axial_difference = 0.0;    ///< relative L2 difference of the axial stress

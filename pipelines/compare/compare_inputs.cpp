@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "microsim/protocol.h"
 
 namespace softgrain {
 namespace {
@@ -22,12 +24,12 @@ CompareSide load_directory(const std::string& path) {
 CompareSide load_one_file(const std::string& path) {
   CompareSide side;
   const std::string file = fs::path(path).filename().string();
-  const std::string ending = fs::path(path).extension().string();
-  if (ending == ".toml") {
+  const auto form = file_form(path);
+  if (form == FileForm::toml) {
     side.card = load_card(path);
-  } else if (ending == ".h5" && file.find("macro") != std::string::npos) {
+  } else if (form == FileForm::hdf5 && file.find("macro") != std::string::npos) {
     side.macro = load_macro(path);
-  } else if (ending == ".h5") {
+  } else if (form == FileForm::hdf5) {
     side.measurements = load_measurements(path);
   } else {
     throw BadInput(path + ": expected a run directory, macro.h5, measurements.h5 or law.toml");
@@ -159,12 +161,13 @@ void compare_kinds(CompareResult& result, const CompareSide& candidate, const Co
 /// Every other relaxation of the same measurements against the published protocol, where that was run.
 void compare_with_published(CompareResult& result, const CompareSide& side, PairKind kind) {
   const auto names = relaxations_of(*side.measurements, kind);
-  if (std::find(names.begin(), names.end(), "published") == names.end()) return;
+  const std::string published = to_string(Relaxation::published);
+  if (std::find(names.begin(), names.end(), published) == names.end()) return;
   for (const std::string& name : names) {
-    if (name == "published") continue;
+    if (name == published) continue;
     attempt(result, "relaxations, " + to_string(kind), [&] {
       result.relaxations.push_back(
-          compare_relaxations(*side.measurements, "published", name, kind, angles_of(side, kind)));
+          compare_relaxations(*side.measurements, published, name, kind, angles_of(side, kind)));
     });
   }
 }

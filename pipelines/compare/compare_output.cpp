@@ -16,7 +16,7 @@ json number(double value) { return std::isfinite(value) ? json(value) : json(nul
 json to_json(const MeanError& m) { return {{"mean", number(m.mean)}, {"standard_error", number(m.error)}, {"n", m.n}}; }
 
 json to_json(const SampleComparison& s) {
-  return {{"test", s.test},
+  return {{"test", to_string(s.test)},
           {"sample", s.sample},
           {"strain_range", {s.strain_low, s.strain_high}},
           {"axial_difference", number(s.axial_difference)},

@@ -22,8 +22,6 @@ void note_known(List& obstacles, List& said, const char* what, double candidate,
     said.push_back(fmt::format("{}: not known of the {}", what, is_known(candidate) ? "reference" : "candidate"));
 }
 
-bool is_twin(const MacroCurve& c) { return c.engine == "shelled" || c.engine == "free"; }
-
 std::string radii(const MacroStart& s) { return fmt::format("{:.6g} to {:.6g} m", s.radius_min, s.radius_max); }
 
 void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {
@@ -38,7 +36,7 @@ void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differ
   }
   if (a.bodies != b.bodies) {
     note(out.obstacles, "radii of bodies", radii(a), radii(b));
-    (is_twin(candidate) == is_twin(reference) ? out.said : out.obstacles)
+    (candidate.twin().has_value() == reference.twin().has_value() ? out.said : out.obstacles)
         .emplace_back("bodies start elsewhere: another seed, sample or preparation");
   }
   note(out.obstacles, "E of the grains [Pa]", a.youngs_modulus, b.youngs_modulus);
@@ -49,7 +47,7 @@ void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differ
 
 /// The law of one side is compared with the grains that the other side resolves.
 void note_law_and_grains(const LawIdentity& law, const MacroStart& grains, Differences& out) {
-  if (law.form.empty() || grains.bodies.empty()) return;
+  if (!law.form || grains.bodies.empty()) return;
   const auto compare = [&](const char* what, const std::optional<double>& measured, double twin) {
     if (!measured)
       out.said.push_back(fmt::format("{} of the grains that the law was measured with is not known", what));
@@ -62,12 +60,12 @@ void note_law_and_grains(const LawIdentity& law, const MacroStart& grains, Diffe
 }
 
 void note_laws(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {
-  if (is_twin(candidate) != is_twin(reference)) {
-    note_law_and_grains(is_twin(candidate) ? reference.law : candidate.law,
-                        is_twin(candidate) ? candidate.start : reference.start, out);
+  if (candidate.twin().has_value() != reference.twin().has_value()) {
+    note_law_and_grains(candidate.twin() ? reference.law : candidate.law,
+                        candidate.twin() ? candidate.start : reference.start, out);
     return;
   }
-  if (is_twin(candidate) || candidate.law == reference.law) return;
+  if (candidate.twin() || candidate.law == reference.law) return;
   out.said.push_back("law: " + identity_text(candidate.law) + "; against " + identity_text(reference.law));
 }
 
@@ -84,7 +82,7 @@ void Differences::add(const Differences& more) {
 
 Differences differences(const MacroCurve& candidate, const MacroCurve& reference) {
   Differences out;
-  note(out.obstacles, "test", candidate.test, reference.test);
+  note(out.obstacles, "test", to_string(candidate.test), to_string(reference.test));
   note(out.obstacles, "preload of the test", candidate.preload, reference.preload);
   note(out.obstacles, "bodies", candidate.bodies, reference.bodies);
   note(out.obstacles, "soft particles", candidate.soft, reference.soft);
@@ -105,8 +103,7 @@ Differences differences(const SoftParticleSpec& candidate, const SoftParticleSpe
   note_known(out.obstacles, out.said, "packing, beta", candidate.beta, reference.beta);
   if (candidate.trials == 0 || reference.trials == 0) return out;  // how one was packed is not known
   note(out.obstacles, "packing, trials", candidate.trials, reference.trials);
-  const auto placement = [](const SoftParticleSpec& s) { return s.placement == Placement::voids ? "voids" : "trials"; };
-  note(out.said, "packing, placement", std::string(placement(candidate)), std::string(placement(reference)));
+  note(out.said, "packing, placement", to_string(candidate.placement), to_string(reference.placement));
   return out;
 }
 

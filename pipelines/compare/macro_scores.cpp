@@ -42,7 +42,7 @@ double difference(const std::vector<double>& xa, const std::vector<double>& a, c
 }
 
 double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
-  if (c.test != "shear") return kNaN;
+  if (c.test != MacroTest::shear) return kNaN;
   const auto [xa, a] = sheared(c);
   const auto [xb, b] = sheared(twin);
   return difference(xa, a, xb, b);
@@ -131,8 +131,11 @@ EngineScore score_of(const std::vector<MacroCurve>& curves, const std::string& e
   s.force_variation = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).second; });
   s.contact_evaluations = mean_of(mine, [](C c) { return static_cast<double>(c.cost.contact_evaluations); }).mean;
   s.seconds = mean_of(mine, [](C c) { return c.cost.seconds; }).mean;
-  if (engine != "shelled") s.shelled = errors_against(pair_up(mine, usable_of(curves, "shelled")));
-  if (engine != "free") s.free = errors_against(pair_up(mine, usable_of(curves, "free")));
+  const auto against = [&](Twin twin) {
+    return s.twin() == twin ? TwinErrors{} : errors_against(pair_up(mine, usable_of(curves, to_string(twin))));
+  };
+  s.shelled = against(Twin::shelled);
+  s.free = against(Twin::free);
   return s;
 }
 
@@ -192,7 +195,7 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
   ScoreTable table;
   table.header = {"engine", "samples",        "axial stress [Pa]", "lateral/axial",       "coordination",
                   "fabric", "mean force [N]", "force variation",   "contact evaluations", "seconds"};
-  for (const char* twin : {"shelled", "free"})
+  for (const auto& [ignored, twin] : words<Twin>)
     for (const char* what :
          {"stress error", "end stress ratio", "deviator error", "lateral/axial difference", "coordination difference",
           "fabric difference", "mean force ratio", "force KS distance", "fewer evaluations", "faster"})

@@ -37,6 +37,8 @@ struct EngineScore {
   double seconds = 0.0;              ///< per sample
   TwinErrors shelled;                ///< against the shelled twin; empty means (n = 0) when there is none
   TwinErrors free;
+
+  [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }
 };
 
 /// One score per engine, in the order in which engines first appear. Unusable curves count nowhere; differences that

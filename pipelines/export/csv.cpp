@@ -52,8 +52,7 @@ std::string walls_csv(const Snapshot& s) {
       fmt::format("wall,shape,body,{},{},radius [{}]\n", axes("", s.length_unit), axes("normal_", "1"), s.length_unit);
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const SnapshotWall& w = s.walls[k];
-    fmt::format_to(std::back_inserter(text), "{},{},{}", k, w.shape == WallShape::plane ? "plane" : "sphere-inside",
-                   w.body);
+    fmt::format_to(std::back_inserter(text), "{},{},{}", k, to_string(w.shape), w.body);
     append_csv(text, w.point);
     append_csv(text, w.normal);
     fmt::format_to(std::back_inserter(text), ",{}\n", w.radius);
@@ -64,9 +63,11 @@ std::string walls_csv(const Snapshot& s) {
 }  // namespace
 
 std::vector<ExportFile> csv_files(const Snapshot& s, std::int64_t number) {
-  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "csv"), particles_csv(s)}};
-  if (s.has_contacts) files.push_back({"contacts", state_file_name(s, "contacts", number, "csv"), contacts_csv(s)});
-  if (!s.walls.empty()) files.push_back({"walls", state_file_name(s, "walls", number, "csv"), walls_csv(s)});
+  std::vector<ExportFile> files{
+      {Holds::particles, state_file_name(s, Holds::particles, number, "csv"), particles_csv(s)}};
+  if (s.has_contacts)
+    files.push_back({Holds::contacts, state_file_name(s, Holds::contacts, number, "csv"), contacts_csv(s)});
+  if (!s.walls.empty()) files.push_back({Holds::walls, state_file_name(s, Holds::walls, number, "csv"), walls_csv(s)});
   return files;
 }
 

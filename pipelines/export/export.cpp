@@ -61,9 +61,9 @@ class Exporter {
     const auto number = static_cast<std::int64_t>(series.entries.size());
     Entry entry{s.moment(), s.frame, s.particles.size(), s.contacts.size(), "", ""};
     for (const ExportFile& file : files_of(s, number)) {
-      write(file);
-      if (file.holds == "particles") entry.particles_file = file.name;
-      if (file.holds == "contacts") entry.contacts_file = file.name;
+      write(file.name, file.text);
+      if (file.holds == Holds::particles) entry.particles_file = file.name;
+      if (file.holds == Holds::contacts) entry.contacts_file = file.name;
     }
     series.entries.push_back(entry);
     ++series.facts.states;
@@ -83,7 +83,7 @@ class Exporter {
   Series& series_of(const Snapshot& s) {
     for (Series& known : all_)
       if (known.facts.name == s.series) return known;
-    all_.push_back({{s.series, s.kind, 0, 0, {}}, s.moment_name(), {}});
+    all_.push_back({{s.series, s.kind, 0, 0, {}}, to_string(s.moment_name()), {}});
     // An index of an earlier export would name states of this one, should it not come to its end.
     for (const std::string& old : index_files(all_.back())) {
       std::error_code nothing_there;
@@ -104,19 +104,21 @@ class Exporter {
     return format_ == ExportFormat::csv ? csv_files(s, number) : dump_files(s, number);
   }
 
-  void write(const ExportFile& file) const { write_text_atomic(directory_ + "/" + file.name, file.text); }
+  void write(const std::string& name, const std::string& text) const {
+    write_text_atomic(directory_ + "/" + name, text);
+  }
 
   void write_index(Series& s) const {
     const std::vector<std::string> names = index_files(s);
     if (format_ == ExportFormat::vtp) {
       s.facts.files = {names[0]};
-      write({"index", names[0], collection(s.entries, &Entry::particles_file)});
+      write(names[0], collection(s.entries, &Entry::particles_file));
       if (s.facts.with_contacts == 0) return;
       s.facts.files.push_back(names[1]);
-      write({"index", names[1], collection(s.entries, &Entry::contacts_file)});
+      write(names[1], collection(s.entries, &Entry::contacts_file));
     } else if (format_ == ExportFormat::csv) {
       s.facts.files = names;
-      write({"index", names[0], table(s)});
+      write(names[0], table(s));
     } else {
       s.facts.files = {s.entries.front().particles_file};
     }
@@ -130,11 +132,9 @@ class Exporter {
 }  // namespace
 
 ExportFormat export_format(const std::string& name) {
-  const std::vector<std::string> known{"vtp", "lammps-dump", "csv"};
-  for (std::size_t k = 0; k < known.size(); ++k)
-    if (known[k] == name) return static_cast<ExportFormat>(k);
+  if (const auto format = from_word<ExportFormat>(name)) return *format;
   if (name.empty()) throw BadInput("export: which form? give --to vtp, --to lammps-dump or --to csv");
-  const std::string near = nearest_word(name, known);
+  const std::string near = nearest_word(name, {"vtp", "lammps-dump", "csv"});
   throw BadInput(fmt::format("export: --to {}: unknown form; {}allowed are vtp, lammps-dump, csv", name,
                              near.empty() ? "" : "nearest is " + near + "; "));
 }
@@ -146,9 +146,8 @@ std::string file_name_of(const std::string& series) {
   return name;
 }
 
-std::string state_file_name(const Snapshot& snapshot, const std::string& holds, std::int64_t number,
-                            const std::string& extension) {
-  return fmt::format("{}_{}_{:06}.{}", file_name_of(snapshot.series), holds, number, extension);
+std::string state_file_name(const Snapshot& snapshot, Holds holds, std::int64_t number, const std::string& extension) {
+  return fmt::format("{}_{}_{:06}.{}", file_name_of(snapshot.series), to_string(holds), number, extension);
 }
 
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory) {

@@ -11,13 +11,27 @@ namespace softgrain {
 
 enum class ExportFormat { vtp, lammps_dump, csv };
 
-/// "vtp", "lammps-dump", "csv". Throws BadInput that names the nearest for anything else.
+template <>
+inline constexpr auto words<ExportFormat> = word_list<ExportFormat>({{ExportFormat::vtp, "vtp"},
+                                                                     {ExportFormat::lammps_dump, "lammps-dump"},
+                                                                     {ExportFormat::csv, "csv"}});
+
+/// Throws BadInput that names the nearest for a word that is none of them.
 ExportFormat export_format(const std::string& name);
+
+/// What a file of a state is of.
+enum class Holds { particles, contacts, wall_contacts, walls };
+
+template <>
+inline constexpr auto words<Holds> = word_list<Holds>({{Holds::particles, "particles"},
+                                                       {Holds::contacts, "contacts"},
+                                                       {Holds::wall_contacts, "wall_contacts"},
+                                                       {Holds::walls, "walls"}});
 
 /// One file of a state.
 struct ExportFile {
-  std::string holds;  ///< "particles", "contacts", "wall_contacts", "walls"
-  std::string name;   ///< relative to the directory of the export
+  Holds holds = Holds::particles;
+  std::string name;  ///< relative to the directory of the export
   std::string text;
 };
 
@@ -28,8 +42,7 @@ std::vector<ExportFile> dump_files(const Snapshot& snapshot, std::int64_t number
 std::vector<ExportFile> csv_files(const Snapshot& snapshot, std::int64_t number);
 
 /// SERIES_KIND_NUMBER.extension
-std::string state_file_name(const Snapshot& snapshot, const std::string& holds, std::int64_t number,
-                            const std::string& extension);
+std::string state_file_name(const Snapshot& snapshot, Holds holds, std::int64_t number, const std::string& extension);
 std::string file_name_of(const std::string& series);
 
 /// What a series became.

@@ -98,11 +98,13 @@ std::string contacts_dump(const Snapshot& s, bool with_walls) {
 }  // namespace
 
 std::vector<ExportFile> dump_files(const Snapshot& s, std::int64_t number) {
-  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "dump"), particles_dump(s)}};
+  std::vector<ExportFile> files{
+      {Holds::particles, state_file_name(s, Holds::particles, number, "dump"), particles_dump(s)}};
   if (!s.has_contacts) return files;
-  files.push_back({"contacts", state_file_name(s, "contacts", number, "dump"), contacts_dump(s, false)});
+  files.push_back({Holds::contacts, state_file_name(s, Holds::contacts, number, "dump"), contacts_dump(s, false)});
   if (!s.walls.empty())
-    files.push_back({"wall_contacts", state_file_name(s, "wall_contacts", number, "dump"), contacts_dump(s, true)});
+    files.push_back(
+        {Holds::wall_contacts, state_file_name(s, Holds::wall_contacts, number, "dump"), contacts_dump(s, true)});
   return files;
 }
 

@@ -116,8 +116,10 @@ std::string contacts_vtp(const Snapshot& s) {
 }  // namespace
 
 std::vector<ExportFile> vtp_files(const Snapshot& s, std::int64_t number) {
-  std::vector<ExportFile> files{{"particles", state_file_name(s, "particles", number, "vtp"), particles_vtp(s)}};
-  if (s.has_contacts) files.push_back({"contacts", state_file_name(s, "contacts", number, "vtp"), contacts_vtp(s)});
+  std::vector<ExportFile> files{
+      {Holds::particles, state_file_name(s, Holds::particles, number, "vtp"), particles_vtp(s)}};
+  if (s.has_contacts)
+    files.push_back({Holds::contacts, state_file_name(s, Holds::contacts, number, "vtp"), contacts_vtp(s)});
   return files;
 }
 

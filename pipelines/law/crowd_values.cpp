@@ -7,7 +7,6 @@
 #include "calibrate/bootstrap.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/data/crowd_replicates.h"
-#include "microsim/crowd_arrangements.h"
 #include "pipelines/law/law_values.h"
 
 namespace softgrain::law {
@@ -115,7 +114,7 @@ const AnyLaw& law_for(const CrowdLaws& laws, PartnerKind kind) {
   return kind == PartnerKind::solid ? laws.soft_solid : laws.soft_soft;
 }
 
-AnyLaw contact_of(const LawTableEntry& entry, const CrowdQuestion& q, const std::string& form) {
+AnyLaw contact_of(const LawTableEntry& entry, const CrowdQuestion& q, Crowd form) {
   CrowdChoices choices;
   choices.form = form;
   choices.modulus = 1.0;
@@ -172,7 +171,7 @@ Where place(const CrowdAnswer& answer, const LawPoint& p) {
 }
 
 /// One law for every replicate, at the solid fraction that was asked for.
-std::vector<AnyLaw> replicate_laws(const LawTable& table, const CrowdQuestion& q, const std::string& form) {
+std::vector<AnyLaw> replicate_laws(const LawTable& table, const CrowdQuestion& q, Crowd form) {
   std::vector<AnyLaw> out;
   std::string ignored;
   const std::size_t n = replicate_count(table, form);
@@ -204,10 +203,10 @@ LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, c
 CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const std::vector<double>& deltas) {
   CrowdAnswer out;
   out.entry = entry_of(table, q, out.remark);
-  out.form = q.form.empty() ? out.entry.best : q.form;
+  out.form = q.form.value_or(out.entry.best);
   const AnyLaw contact = contact_of(out.entry, q, out.form);
   out.overlap_max = overlap_max(out, q, out.remark);
-  const Neighbours around{q.partner, q.ratio, arrangement(q.arrangement), depth_shares(q.arrangement, q.shallow)};
+  const Neighbours around{q.partner, q.ratio, directions_of(q.arrangement), depth_shares(q.arrangement, q.shallow)};
   const std::vector<AnyLaw> drawn = replicate_laws(table, q, out.form);
   out.replicates = drawn.size() < kEnough ? 0 : drawn.size();
   const Beyond beyond = q.beyond.value_or(out.entry.beyond);

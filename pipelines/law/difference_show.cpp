@@ -17,7 +17,7 @@ std::string interval(const Quantity& q) {
 
 std::string source_text(const LawFile& file, double solid_fraction) {
   if (!file.card) return fmt::format("law table, at solid fraction {:.4f}", solid_fraction);
-  if (file.card->relaxation == "experiment") return "law card, from an experiment";
+  if (file.card->from_experiment()) return "law card, from an experiment";
   return fmt::format("law card, {} relaxation", file.card->relaxation);
 }
 

@@ -19,8 +19,7 @@ struct Source {
 };
 
 bool comparable(const PairLaw& law) {
-  return (law.status == "good" || law.status == "underdetermined") && has_part(law, LawPart::normal) &&
-         law.delta_max > 0.0;
+  return has_numbers(law.status) && has_part(law, LawPart::normal) && law.delta_max > 0.0;
 }
 
 std::optional<Source> card_source(const LawCard& card, PairKind kind) {

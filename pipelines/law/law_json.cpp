@@ -40,15 +40,13 @@ json tangential_json(const ThresholdPowerLaw& law, const SoftParticleSpec& spec,
   return out;
 }
 
-bool fitted(const PairLaw& law) { return law.status == "good" || law.status == "underdetermined"; }
-
 json pair_json(const PairLaw& law, const SoftParticleSpec& spec) {
   // A tangential law that was asked for but could not be fitted has no exponent.
-  const bool initial = fitted(law) && law.has_tangential_initial && law.tangential_initial.b.value > 0.0;
-  const bool secant = fitted(law) && law.has_tangential_secant && law.tangential_secant.b.value > 0.0;
-  const bool normal = fitted(law) && law.normal.b.value > 0.0;
+  const bool initial = has_numbers(law.status) && law.has_tangential_initial && law.tangential_initial.b.value > 0.0;
+  const bool secant = has_numbers(law.status) && law.has_tangential_secant && law.tangential_secant.b.value > 0.0;
+  const bool normal = has_numbers(law.status) && law.normal.b.value > 0.0;
   json out;
-  out["status"] = law.status;
+  out["status"] = to_string(law.status);
   out["reason"] = law.reason;
   out["normal"] =
       normal ? law_json(law.normal, spec.youngs_modulus * spec.shell_radius * spec.shell_radius, "N") : json(nullptr);
@@ -74,7 +72,7 @@ void put_range(json& out, const LawTableEntry& e, const LawTableEntry& main) {
   out["main"] = &e == &main;
   out["packings"] = e.packings;
   out["relaxation"] = e.relaxation;
-  out["best"] = e.best;
+  out["best"] = to_string(e.best);
   out["volume_max"] = e.volume_max;
   out["overlap_max"] = e.overlap_max;
   out["grain_overlap_max"] = e.grain_overlap_max;
@@ -89,7 +87,10 @@ json slide_json(const SlideLaw& slide) {
 }
 
 json crowd_json(const CrowdLaw& law) {
-  json out{{"form", law.form}, {"status", law.status}, {"reason", law.reason}, {"partners", json::array()}};
+  json out{{"form", to_string(law.form)},
+           {"status", to_string(law.status)},
+           {"reason", law.reason},
+           {"partners", json::array()}};
   for (const CrowdParameterName& p : kCrowdParameters) put(out, p.key, law.*p.estimate, 1.0);
   for (const PartnerRow& row : law.partners) {
     json one{

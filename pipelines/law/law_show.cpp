@@ -99,7 +99,7 @@ std::string plot_of(const PairLaw& law, bool utf8) {
 }
 
 std::string pair_text(const PairLaw& law, const SoftParticleSpec& spec, bool utf8) {
-  std::string text = fmt::format("{}: {}", to_string(law.kind), law.status);
+  std::string text = fmt::format("{}: {}", to_string(law.kind), to_string(law.status));
   if (!law.reason.empty()) text += " (" + law.reason + ")";
   text += fmt::format(", {} packings, {} points", law.packings, law.points);
   if (law.chi2_per_dof > 0.0)

@@ -9,6 +9,7 @@
 
 #include "common/data/crowd_law.h"
 #include "common/data/law_band.h"
+#include "microsim/crowd_arrangements.h"
 
 namespace softgrain::law {
 
@@ -46,8 +47,8 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
 
 /// What a law of a table is asked: neighbours of one kind around a soft particle, all pressed in by Delta = h/Rs.
 struct CrowdQuestion {
-  std::string form;  ///< empty: the best of the entry
-  std::string arrangement = "one";
+  WantedForm form{};
+  Arrangement arrangement = Arrangement::one;
   PartnerKind partner = PartnerKind::plane;
   double ratio = 1.0;                      ///< radius of the neighbours over Rs; not of planes
   double shallow = 0.5;                    ///< beside-five: share of the overlap that the first neighbour gets
@@ -57,7 +58,7 @@ struct CrowdQuestion {
 };
 
 struct CrowdAnswer {
-  std::string form;
+  Crowd form = Crowd::pair;
   LawTableEntry entry;             ///< at the solid fraction
   std::string remark;              ///< clamped solid fraction, ratio that no row has; empty: none
   double overlap_max = 0.0;        ///< h/Rs up to which single contacts of this kind were measured
@@ -65,7 +66,7 @@ struct CrowdAnswer {
   std::vector<LawPoint> points{};  ///< force, stiffness and tangential (secant) of the first neighbour
 };
 
-/// Forces and stiffnesses of a law of a table. Throws BadInput for an unknown arrangement, a solid fraction that was
+/// Forces and stiffnesses of a law of a table. Throws BadInput for a solid fraction that was
 /// not measured (policy reject), no usable law of the form.
 CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& question, const std::vector<double>& deltas);
 

@@ -29,7 +29,7 @@ std::int32_t law_of(const System3& s, const ContactRecord<3>& c) {
 /// ratios that no row covers.
 class RangeCheck {
  public:
-  RangeCheck(const LawTableEntry& entry, const std::string& form) : entry_(entry), law_(*entry.find(form)) {}
+  RangeCheck(const LawTableEntry& entry, Crowd form) : entry_(entry), law_(*entry.find(form)) {}
 
   /// Contacts deeper than any row of their kind, or smaller partners than the table has.
   [[nodiscard]] std::string note(const System3& s) const {
@@ -76,7 +76,7 @@ class RangeCheck {
 };
 
 /// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
-std::string tag_of(const LawTableEntry& entry, const LawSources& sources, const std::string& form) {
+std::string tag_of(const LawTableEntry& entry, const LawSources& sources, Crowd form) {
   return short_hash(fmt::format("{} {} {} {} {:a}", sources.friction.value_or(-1.0), sources.unloading,
                                 numbers_of(entry, form), to_string(sources.beyond.value_or(entry.beyond)),
                                 entry.volume_max));
@@ -101,8 +101,8 @@ std::string hash_of(const SoftLaws& l) {
                                {"soft-soft", l.soft_soft}}));
 }
 
-LawIdentity identity_of(const std::string& form, double solid_fraction, const MacroSpec& spec,
-                        const SoftParticleSpec& measured, const SoftLaws& laws) {
+LawIdentity identity_of(Crowd form, double solid_fraction, const MacroSpec& spec, const SoftParticleSpec& measured,
+                        const SoftLaws& laws) {
   const auto known = [](double x) { return is_known(x) ? std::optional(x) : std::nullopt; };
   return {form,         solid_fraction, spec.youngs_modulus, known(measured.poisson_ratio), known(measured.friction),
           hash_of(laws)};
@@ -123,8 +123,7 @@ std::string stand_ins(const LawTableEntry& entry, const LawSources& sources) {
 /// not known.
 std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {
   const SoftParticleSpec& measured = card.spec;
-  if (card.relaxation == "experiment" ||
-      (measured.poisson_ratio == spec.poisson_ratio && measured.friction == spec.friction))
+  if (card.from_experiment() || (measured.poisson_ratio == spec.poisson_ratio && measured.friction == spec.friction))
     return nullptr;
   const std::string text = fmt::format(
       "the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, mu = {:g}",
@@ -133,15 +132,26 @@ std::function<std::string(const System3&)> card_note(const LawCard& card, const 
 }
 
 /// Keys that choose among what a table offers.
-constexpr std::array kTableKeys{"form", "solid_fraction", "range", "mu", "unloading"};
+constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "unloading"};
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
   if (t.has("solid_fraction"))
     out.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
   out.beyond = read_beyond(t);
-  out.range = t.choice("range", {"reject", "clamp"}, "reject") == "clamp" ? RangePolicy::clamp : RangePolicy::reject;
+  out.range = t.choice<RangePolicy>("range", RangePolicy::reject);
   if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
   out.unloading = t.flag("unloading", false);
+}
+
+std::vector<WantedForm> read_forms(const SceneTable& law, bool has_table) {
+  std::vector<WantedForm> forms;
+  for (const std::string& word : law.texts("forms")) {
+    const auto form = from_word<Crowd>(word);
+    if (!form) law.reject("forms", "\"" + word + "\" is none of pair, bag, directional");
+    if (form != Crowd::pair && !has_table) law.reject("forms", "the " + word + " law needs a law table (key table)");
+    forms.emplace_back(form);
+  }
+  return forms;
 }
 
 /// A solid fraction that the scene names is refused where it stands.
@@ -178,8 +188,7 @@ const SoftParticleSpec& measured_spec(const LawSources& sources) {
       ->spec;
 }
 
-NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, const MacroSpec& spec,
-                       double contents_fraction) {
+NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const MacroSpec& spec, double contents_fraction) {
   std::string remark;
   const LawTableEntry entry = law_entry(sources, contents_fraction, remark);
   constexpr double kApart = 0.005;
@@ -189,7 +198,7 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, con
   require_same_material(entry, spec);
   const std::string stands_in = stand_ins(entry, sources);
   remark += (remark.empty() || stands_in.empty() ? "" : "; ") + stands_in;
-  const std::string form = wanted == "best" ? entry.best : wanted;
+  const Crowd form = wanted.value_or(entry.best);
   CrowdChoices choices;
   choices.form = form;
   choices.modulus = spec.youngs_modulus;
@@ -200,7 +209,7 @@ NamedLaws table_law_of(const LawSources& sources, const std::string& wanted, con
   choices.friction = spec.wall_friction;
   const RangeCheck check(entry, form);
   const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft};
-  return {form,
+  return {to_string(form),
           form,
           soft,
           identity_of(form, entry.solid_fraction, spec, entry.spec, soft),
@@ -218,9 +227,9 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
   };
   const SoftLaws laws = pair_soft_laws(contact(PairKind::soft_solid), contact(PairKind::soft_soft), spec.wall_friction);
   return {name,
-          "pair",
+          Crowd::pair,
           laws,
-          identity_of("pair", 0.0, spec, card.spec, laws),
+          identity_of(Crowd::pair, 0.0, spec, card.spec, laws),
           beyond ? to_string(*beyond) : "",
           card_note(card, spec)};
 }
@@ -238,17 +247,12 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
     out.text += read_text(out.files.back());
   }
   if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
-  if (law.has("forms")) out.forms = law.texts("forms");
-  for (const std::string& form : out.forms) {
-    if (form != "pair" && form != "bag" && form != "directional")
-      law.reject("forms", "\"" + form + "\" is none of pair, bag, directional");
-    if (form != "pair" && !out.table && law.has("forms"))
-      law.reject("forms", "the " + form + " law needs a law table (key table)");
-  }
-  if (!out.table) out.forms = {"pair"};
+  if (law.has("forms")) out.forms = read_forms(law, out.table.has_value());
+  if (!out.table) out.forms = {Crowd::pair};
   read_table_choices(law, out);
+  if (!out.table) (void)law.has("form");  // a card has but one
   for (const char* key : kTableKeys)
-    if (!out.table && law.has(key) && std::string(key) != "form") law.reject(key, "goes with a law table (key table)");
+    if (!out.table && law.has(key)) law.reject(key, "goes with a law table (key table)");
   require_fraction(law, out);
   return out;
 }
@@ -261,7 +265,7 @@ LawFileKind law_file_kind(const std::string& path) {
 }
 
 void read_law_choices(const SceneTable& root, LawSources& out) {
-  out.forms = {root.choice("form", {"pair", "bag", "directional", "best"}, "best")};
+  out.forms = {from_word<Crowd>(root.choice("form", {"pair", "bag", "directional", "best"}, "best"))};
   read_table_choices(root, out);
 }
 
@@ -276,9 +280,12 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
     return out;
   }
   out.card = load_card(path);
+  const auto refuse = [&](const char* key) {
+    root.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+  };
+  if (root.has("form") && out.forms.front() != Crowd::pair) refuse("form");
   for (const char* key : kTableKeys)
-    if (root.has(key) && !(std::string(key) == "form" && out.forms.front() == "pair"))
-      root.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+    if (root.has(key)) refuse(key);
   return out;
 }
 
@@ -292,8 +299,8 @@ NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double con
 
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction) {
   std::vector<NamedLaws> laws;
-  for (const std::string& form : sources.forms) {
-    if (form == "pair" && sources.card)
+  for (const WantedForm form : sources.forms) {
+    if (form == Crowd::pair && sources.card)
       laws.push_back(pair_law_of(*sources.card, spec, "pair", sources.beyond));
     else
       laws.push_back(table_law_of(sources, form, spec, contents_fraction));

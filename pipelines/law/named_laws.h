@@ -17,7 +17,7 @@ namespace softgrain {
 
 struct NamedLaws {
   std::string name;  ///< engine of the curves: "law" or "pair", "bag", "directional"
-  std::string form;  ///< "pair", "bag" or "directional"
+  Crowd form = Crowd::pair;
   SoftLaws laws;
   LawIdentity identity{};
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
@@ -33,7 +33,7 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 struct LawSources {
   std::optional<LawCard> card;    ///< pair law, as published
   std::optional<LawTable> table;  ///< bag and directional law, and the pair law when there is no card
-  std::vector<std::string> forms{"pair", "bag", "directional"};  ///< one of them, or "best", for a macro scene
+  std::vector<WantedForm> forms{Crowd::pair, Crowd::bag, Crowd::directional};  ///< one for a macro scene
   std::optional<double> solid_fraction{};   ///< at which the table is taken; empty: see law_fraction()
   RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
   std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
@@ -76,11 +76,10 @@ void read_law_choices(const SceneTable& root, LawSources& out);
 NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double contents_fraction,
                     const std::string& name);
 
-/// A law of a table at law_fraction(); `form` "best" is the one that the entry prefers. Throws BadInput when the table
+/// A law of a table at law_fraction(); An empty form is the one that the entry prefers. Throws BadInput when the table
 /// has no such law, was measured with grains of another nu or mu, or does not reach this solid fraction (policy
 /// reject).
-NamedLaws table_law_of(const LawSources& sources, const std::string& form, const MacroSpec& spec,
-                       double contents_fraction);
+NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const MacroSpec& spec, double contents_fraction);
 
 /// Every law that a comparison runs with, in the order of its tables and figures. The one place to add laws.
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction);

@@ -64,8 +64,6 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
                   wanted, what, end));
 }
 
-bool usable(const PairLaw& law) { return law.status == "good" || law.status == "underdetermined"; }
-
 Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTableChoice& choice) {
   const SoftContact contact = make_soft_contact(card, kind, choice.modulus, 0.0, 0.0, false, choice.beyond);
   const PairLaw& law = *card.find(kind);
@@ -86,7 +84,7 @@ std::vector<Pair> card_pairs(const LawCard& card, const PairTableChoice& choice)
   std::vector<Pair> out;
   for (const PairLaw& law : card.pairs) {
     const bool named = std::find(choice.kinds.begin(), choice.kinds.end(), law.kind) != choice.kinds.end();
-    if (choice.kinds.empty() ? !usable(law) : !named) continue;
+    if (choice.kinds.empty() ? !has_numbers(law.status) : !named) continue;
     for (const double ratio : choice.ratios) out.push_back(card_pair(card, law.kind, ratio, choice));
   }
   for (const PairKind kind : choice.kinds)

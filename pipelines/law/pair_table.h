@@ -17,7 +17,7 @@ struct PairTableChoice {
   double radius = 0.0;                ///< R of the soft particle [m]
   std::optional<double> delta_max{};  ///< deepest overlap; empty: the end of the measured range
   std::optional<Beyond> beyond{};     ///< instead of what the law says
-  std::string form{};                 ///< of a table; empty: the best
+  WantedForm form{};                  ///< of a table
   std::optional<double> solid_fraction{};
   RangePolicy range = RangePolicy::reject;
 };

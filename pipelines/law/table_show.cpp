@@ -27,7 +27,7 @@ std::string parameters_text(const LawTableEntry& entry) {
   for (const char* name : {"off by [%]: fitted", "held out", "leave one out", "criterion"}) rows.push_back({name});
   for (const CrowdLaw& law : entry.laws) {
     std::size_t r = 0;
-    rows[r++].push_back(law.form + (law.form == entry.best ? " (best)" : ""));
+    rows[r++].push_back(to_string(law.form) + (law.form == entry.best ? " (best)" : ""));
     for (const CrowdParameterName& p : kCrowdParameters) rows[r++].push_back(with_error(law.*p.estimate));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross}) rows[r++].push_back(percent(x));
     rows[r++].push_back(number(law.criterion, 5));
@@ -41,7 +41,8 @@ std::string partners_text(const CrowdLaw& law) {
     rows.push_back({to_string(row.kind), number(row.ratio), with_error(row.weight), with_error(row.exponent),
                     number(row.overlap_max, 3), percent(row.error)});
   if (rows.size() == 1) return "";
-  return fmt::format("  neighbours of the {} law, nu = w v^m (a plane has w = m = 1)\n", law.form) + aligned(rows, 2);
+  return fmt::format("  neighbours of the {} law, nu = w v^m (a plane has w = m = 1)\n", to_string(law.form)) +
+         aligned(rows, 2);
 }
 
 std::string slides_table(const LawTableEntry& e) {
@@ -60,27 +61,28 @@ std::string slides_table(const LawTableEntry& e) {
 std::string statuses_text(const LawTableEntry& e) {
   std::string text;
   for (const CrowdLaw& law : e.laws)
-    if (law.status != "good")
-      text += wrapped(
-          fmt::format("  {} law: {}{}", law.form, law.status, law.reason.empty() ? "" : " (" + law.reason + ")"), 4);
+    if (law.status != LawStatus::good)
+      text += wrapped(fmt::format("  {} law: {}{}", to_string(law.form), to_string(law.status),
+                                  law.reason.empty() ? "" : " (" + law.reason + ")"),
+                      4);
   return text;
 }
 
 /// Force of one plane and of each of six.
 std::string plot_of(const LawTableEntry& e, bool utf8) {
   const CrowdLaw* best = e.find(e.best);
-  const bool usable = best->status != "no threshold crossing" && !best->rows(PartnerKind::solid).empty() &&
+  const bool usable = best->status != LawStatus::no_threshold_crossing && !best->rows(PartnerKind::solid).empty() &&
                       !best->rows(PartnerKind::soft).empty();
   if (!usable || !(e.overlap_max > 0.0)) return "";
   const LawTable alone{1, {e}};
   constexpr std::size_t kPoints = 160;
-  TerminalPlot plot{"h/Rs", "F/(E Rs^2) on each plane, " + e.best + " law", 76, 10, utf8, {}};
-  for (const char* arranged : {"one", "cube"}) {
+  TerminalPlot plot{"h/Rs", "F/(E Rs^2) on each plane, " + to_string(e.best) + " law", 76, 10, utf8, {}};
+  for (const Arrangement arranged : {Arrangement::one, Arrangement::cube}) {
     CrowdQuestion q;
     q.arrangement = arranged;
     q.beyond = Beyond::extrapolate;
     TerminalCurve curve;
-    if (std::string(arranged) == "one") curve.look = TerminalCurve::Look::dotted;
+    if (arranged == Arrangement::one) curve.look = TerminalCurve::Look::dotted;
     for (const LawPoint& p : crowd_values(alone, q, even(0.0, e.overlap_max, kPoints)).points) {
       if (p.where == Where::beyond) break;
       curve.x.push_back(p.delta);

@@ -95,7 +95,7 @@ std::string force_unit(const ValueUnits& units) { return units.si ? "N" : "E R^2
 std::string stiffness_unit(const ValueUnits& units) { return units.si ? "N/m" : "E R"; }
 
 std::string values_text(const ValueTable& t, const ValueUnits& u) {
-  std::string head = t.law + ": " + t.status;
+  std::string head = t.law + ": " + to_string(t.status);
   if (!t.remark.empty()) head += "; " + t.remark;
   std::string text = wrapped(head, 4);
   std::vector<Row> rows{
@@ -133,7 +133,7 @@ std::string values_csv(const std::vector<ValueTable>& tables, const ValueUnits& 
 }
 
 json values_json(const ValueTable& t, const ValueUnits& u) {
-  json out{{"law", t.law}, {"status", t.status}, {"beyond", to_string(t.beyond)}, {"remark", t.remark}};
+  json out{{"law", t.law}, {"status", to_string(t.status)}, {"beyond", to_string(t.beyond)}, {"remark", t.remark}};
   const std::string origin = origin_of(t);
   out["intervals"] = origin.empty() ? json(nullptr) : json("95 %, " + origin);
   out["units"] = {{"force", force_unit(u)}, {"stiffness", stiffness_unit(u)}};

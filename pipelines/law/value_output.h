@@ -21,8 +21,8 @@ struct ValueUnits {
 
 /// Values of one law and what to call it.
 struct ValueTable {
-  std::string law;     ///< "soft-solid", "cube of planes, directional law"
-  std::string status;  ///< "good", "underdetermined"
+  std::string law;  ///< "soft-solid", "cube of planes, directional law"
+  LawStatus status = LawStatus::good;
   std::string remark;  ///< for people; may be empty
   Beyond beyond = Beyond::extrapolate;
   bool use_secant = false;  ///< in the terminal, where there is room for one of the two

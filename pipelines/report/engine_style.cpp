@@ -48,7 +48,7 @@ SeriesStyle engine_style(const std::string& engine) {
 std::string law_paragraph(const std::vector<MacroCurve>& curves) {
   std::set<std::string> lines;
   for (const MacroCurve& c : curves)
-    if (c.engine != "shelled" && c.engine != "free") lines.insert(engine_name(c.engine) + ": " + identity_text(c.law));
+    if (!c.twin()) lines.insert(engine_name(c.engine) + ": " + identity_text(c.law));
   std::string text;
   for (const std::string& line : lines) text += (text.empty() ? "Laws: " : "; ") + line;
   return text.empty() ? "" : paragraph(text + ".");

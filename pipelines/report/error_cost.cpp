@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/core/error.h"
+#include "microsim/protocol.h"
 #include "pipelines/compare/compare_measurements.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/report/engine_style.h"
@@ -18,7 +19,7 @@ namespace {
 
 void add_scene(const std::string& name, const std::vector<MacroCurve>& curves, std::vector<ErrorCost>& out) {
   for (const EngineScore& s : score_engines(curves)) {
-    if (s.engine == "shelled" || s.shelled.axial.n == 0 || !(s.shelled.speedup_evaluations > 0.0)) continue;
+    if (s.twin() == Twin::shelled || s.shelled.axial.n == 0 || !(s.shelled.speedup_evaluations > 0.0)) continue;
     out.push_back({engine_name(s.engine), fmt::format("{}, axial stress, {} samples", name, s.shelled.axial.n),
                    s.engine, 1.0 / s.shelled.speedup_evaluations, s.shelled.axial.mean, s.shelled.axial.error});
   }
@@ -46,9 +47,10 @@ std::pair<double, double> distance_from_one(const std::vector<RatioRow>& rows) {
 void add_relaxation(const RunData& run, PairKind kind, std::vector<ErrorCost>& out) {
   const std::string own = run.relaxation(kind);
   const auto names = relaxations_of(*run.measurements, kind);
-  if (own == "published" || std::find(names.begin(), names.end(), "published") == names.end()) return;
+  const std::string reference = to_string(Relaxation::published);
+  if (own == reference || std::find(names.begin(), names.end(), reference) == names.end()) return;
   try {
-    const auto c = compare_relaxations(*run.measurements, "published", own, kind, run.angles(kind));
+    const auto c = compare_relaxations(*run.measurements, reference, own, kind, run.angles(kind));
     const auto [error, deviation] = distance_from_one(c.normal);
     const double cost = c.candidate_normal_cost.contact_evaluations / c.reference_normal_cost.contact_evaluations;
     if (!(error > 0.0) || !(cost > 0.0)) return;
@@ -81,7 +83,7 @@ Series series_of(const std::string& name, const std::vector<ErrorCost>& points, 
 std::vector<ErrorCost> error_costs(const RunData& run) {
   std::vector<ErrorCost> out;
   std::map<std::string, std::vector<MacroCurve>> tests;
-  for (const MacroCurve& c : run.macro) tests[c.test].push_back(c);
+  for (const MacroCurve& c : run.macro) tests[to_string(c.test)].push_back(c);
   for (const auto& [test, curves] : tests) add_scene(test, curves, out);
   for (const MacroScene& scene : run.macro_scenes) add_scene(scene.name, scene.curves, out);
   if (run.measurements)

@@ -54,9 +54,11 @@ class Folding {
 };
 
 std::string moment_text(const Snapshot& s) {
-  const std::string name = s.moment_name() == "Delta" ? "Δ" : s.moment_name();
-  const std::string unit = name == "time" ? " " + s.time_unit : "";
-  return fmt::format("{} = {}{}", name, name == "frame" ? std::to_string(s.frame) : format_number(s.moment(), 3), unit);
+  const Moment moment = s.moment_name();
+  const std::string name = moment == Moment::overlap ? "Δ" : to_string(moment);
+  const std::string unit = moment == Moment::time ? " " + s.time_unit : "";
+  const std::string value = moment == Moment::frame ? std::to_string(s.frame) : format_number(s.moment(), 3);
+  return fmt::format("{} = {}{}", name, value, unit);
 }
 
 /// The label of a state without what tells it from others of its series, which comes last.

@@ -96,8 +96,9 @@ std::string measured_line(const Measurements& data) {
 }
 
 std::string law_line(const PairLaw& law, const SoftParticleSpec& spec) {
-  if (law.status != "good" || !has_part(law, LawPart::normal))
-    return fmt::format("{}: {}{}", to_string(law.kind), law.status, law.reason.empty() ? "." : ": " + law.reason);
+  if (law.status != LawStatus::good || !has_part(law, LawPart::normal))
+    return fmt::format("{}: {}{}", to_string(law.kind), to_string(law.status),
+                       law.reason.empty() ? "." : ": " + law.reason);
   const double force = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
   const ThresholdPowerLaw& n = law.normal;
   return fmt::format("{}: Fn = a Δ^b + c above δ; a = {} N, b = {}, c = {} N, δ = {}; fitted for Δ = {} to {}.",
@@ -116,7 +117,7 @@ std::string end_line(const std::vector<MacroCurve>& curves) {
   const MeanError mean = mean_error(stress);
   return fmt::format("Axial stress {} Pa at strain {} ({}; {} {}).",
                      stress.size() > 1 ? format_with_error(mean.mean, mean.error) : format_number(mean.mean, 4),
-                     format_number(curves.front().strain.back(), 3), curves.front().test, stress.size(),
+                     format_number(curves.front().strain.back(), 3), to_string(curves.front().test), stress.size(),
                      stress.size() > 1 ? "samples, mean" : "sample");
 }
 
@@ -144,8 +145,8 @@ std::string table_line(const LawTableEntry& entry) {
   if (std::isfinite(best->error_held_out))
     held_out = fmt::format(" and by {} % on what was held out", format_number(100.0 * best->error_held_out, 2));
   return fmt::format("Solid fraction {}: the {} law is best, off by {} % where it was fitted{}; h/Rs up to {}.",
-                     format_number(entry.solid_fraction, 3), entry.best, format_number(100.0 * best->error_fitted, 2),
-                     held_out, format_number(entry.overlap_max, 2));
+                     format_number(entry.solid_fraction, 3), to_string(entry.best),
+                     format_number(100.0 * best->error_fitted, 2), held_out, format_number(entry.overlap_max, 2));
 }
 
 /// The law that comes closest to the shelled twin.
@@ -153,7 +154,7 @@ std::string scene_line(const MacroScene& scene) {
   const std::vector<EngineScore> scores = score_engines(scene.curves);
   const EngineScore* best = nullptr;
   for (const EngineScore& s : scores) {
-    if (s.shelled.axial.n == 0 || s.engine == "shelled" || s.engine == "free") continue;
+    if (s.shelled.axial.n == 0 || s.twin()) continue;
     if (best == nullptr || s.shelled.axial.mean < best->shelled.axial.mean) best = &s;
   }
   if (best == nullptr) return "";

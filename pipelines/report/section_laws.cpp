@@ -46,7 +46,7 @@ void add_law_rows(HtmlTable& table, const std::string& name, const ThresholdPowe
 }
 
 std::string status_line(const PairLaw& law, const char* noun) {
-  std::string text = "Status: " + law.status;
+  std::string text = "Status: " + to_string(law.status);
   if (!law.reason.empty()) text += " (" + law.reason + ")";
   text += fmt::format(". {} {}, {} points, fitted over Δ = {} .. {}", law.packings, noun, law.points,
                       format_number(law.delta_min), format_number(law.delta_max));

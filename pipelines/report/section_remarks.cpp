@@ -60,8 +60,8 @@ void add_packings(const Measurements& data, Remarks& remarks) {
 
 void add_laws(const LawCard& card, Remarks& remarks) {
   for (const PairLaw& law : card.pairs) {
-    if (law.status == "good") continue;
-    remarks.push_back("The " + to_string(law.kind) + " law is not usable as it is: " + law.status +
+    if (law.status == LawStatus::good) continue;
+    remarks.push_back("The " + to_string(law.kind) + " law is not usable as it is: " + to_string(law.status) +
                       (law.reason.empty() ? "." : " (" + law.reason + ")."));
   }
 }
@@ -69,7 +69,7 @@ void add_laws(const LawCard& card, Remarks& remarks) {
 void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
   for (const MacroCurve& c : macro) {
     if (c.usable && c.note.empty()) continue;
-    remarks.push_back(fmt::format("Macro run \"{}\", {}, sample {}{}: {}", c.engine, c.test, c.sample,
+    remarks.push_back(fmt::format("Macro run \"{}\", {}, sample {}{}: {}", c.engine, to_string(c.test), c.sample,
                                   c.usable ? "" : " is not usable", c.note.empty() ? "no reason given." : c.note));
   }
   if (use_pair_law(macro)) remarks.push_back(pair_law_remark() + ".");

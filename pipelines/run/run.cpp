@@ -19,7 +19,7 @@ Run::Run(const Scene& scene, const CommonOptions& options, const std::string& co
 ExitStatus Run::finish(nlohmann::json summary, const std::string& people) const {
   summary["seconds"] = seconds();
   summary["provenance"] = provenance_json(provenance);
-  const bool good = summary["status"] == "good";
+  const bool good = has_status(summary, RunStatus::good);
   context.finish(std::move(summary), people + fmt::format("{:.0f} s; report: {}", seconds(), path("report.html")));
   write_report(context.directory());
   store.clear();

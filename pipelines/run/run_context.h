@@ -20,6 +20,19 @@ class logger;
 
 namespace softgrain {
 
+/// What a summary says of its run.
+enum class RunStatus { good, not_usable, not_run };
+
+template <>
+inline constexpr auto words<RunStatus> = word_list<RunStatus>({{RunStatus::good, "good"},
+                                                               {RunStatus::not_usable, "not usable"},
+                                                               {RunStatus::not_run, "not run"}});
+
+/// Whether a summary, or the entry of a variant, says this of its run.
+inline bool has_status(const nlohmann::json& summary, RunStatus status) {
+  return from_word<RunStatus>(summary.value("status", "")) == status;
+}
+
 /// Options of the command line that every command takes.
 struct CommonOptions {
   std::vector<std::string> inputs;  ///< positional arguments

@@ -142,7 +142,7 @@ json relaxations_json(const Measurements& data, const std::string& reference, co
 
 json identity_json(const LawIdentity& law) {
   const auto known = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
-  return {{"form", law.form},
+  return {{"form", law.form ? to_string(*law.form) : ""},
           {"solid_fraction", law.solid_fraction > 0.0 ? json(law.solid_fraction) : json(nullptr)},
           {"E", law.youngs_modulus},
           {"nu", known(law.poisson_ratio)},
@@ -176,13 +176,13 @@ json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine
            {"contact_evaluations", cost.contact_evaluations},
            {"seconds", cost.seconds},
            {"usable", usable && samples > 0}};
-  if (!law.form.empty()) out["law"] = identity_json(law);
+  if (law.form) out["law"] = identity_json(law);
   return out;
 }
 
 std::vector<std::string> measurement_remarks(const Measurements& data) {
   std::vector<std::string> out;
-  for (const char* relaxation : kRelaxations) {
+  for (const auto& [ignored, relaxation] : words<Relaxation>) {
     std::int64_t bad = 0;
     std::int64_t all = 0;
     for (const PackingRun& run : data.runs) {
@@ -203,7 +203,7 @@ namespace {
 
 /// The free twin may be without stress for a while: its grains spread into the voids between bodies first.
 bool lacks_stress(const MacroCurve& c) {
-  return c.usable && c.engine != "free" && !c.stress_axial.empty() && c.stress_axial.back() == 0.0;
+  return c.usable && c.twin() != Twin::free && !c.stress_axial.empty() && c.stress_axial.back() == 0.0;
 }
 
 }  // namespace

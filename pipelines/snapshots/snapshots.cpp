@@ -15,7 +15,23 @@ namespace {
 namespace fs = std::filesystem;
 using Visit = std::function<void(const Snapshot&)>;
 
+constexpr const char* kPowderFile = "powder.h5";
+
 bool is_states_file(const std::string& name) { return name.starts_with("states") && name.ends_with(".h5"); }
+
+/// Files of kinds that keep states in a form of their own.
+struct KindFile {
+  const char* name;
+  void (*visit)(const std::string& path, SnapshotChoice choice, const Visit& visit);
+};
+constexpr KindFile kKindFiles[] = {
+    {"run.h5", visit_particles}, {kPowderFile, visit_powder}, {"grain_box.h5", visit_grain_boxes}};
+
+const KindFile* kind_file(const std::string& name) {
+  const auto at =
+      std::find_if(std::begin(kKindFiles), std::end(kKindFiles), [&](const auto& f) { return f.name == name; });
+  return at == std::end(kKindFiles) ? nullptr : at;
+}
 
 /// The states of a file made by save_snapshots(); of a series only its last, when that is asked for.
 void visit_states(const std::string& path, SnapshotChoice choice, const Visit& visit) {
@@ -44,9 +60,7 @@ void visit_file(const std::string& path, const std::string& prefix, SnapshotChoi
   };
   try {
     if (is_states_file(name)) return visit_states(path, choice, renamed);
-    if (name == "run.h5") return visit_particles(path, choice, renamed);
-    if (name == "powder.h5") return visit_powder(path, choice, renamed);
-    if (name == "grain_box.h5") return visit_grain_boxes(path, renamed);
+    if (const KindFile* file = kind_file(name)) return file->visit(path, choice, renamed);
   } catch (const FileTrouble& e) {
     const std::string text = e.what();
     if (!reading) throw;
@@ -60,8 +74,7 @@ std::vector<std::string> files_of(const fs::path& directory) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(directory)) {
     const std::string name = entry.path().filename().string();
-    if (is_states_file(name) || name == "run.h5" || name == "powder.h5" || name == "grain_box.h5")
-      files.push_back(entry.path().string());
+    if (is_states_file(name) || kind_file(name) != nullptr) files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -71,8 +84,8 @@ std::vector<std::string> files_of(const fs::path& directory) {
 std::vector<std::string> variants_of(const fs::path& directory) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (entry.is_directory() && fs::exists(entry.path() / "powder.h5"))
-      files.push_back((entry.path() / "powder.h5").string());
+    if (entry.is_directory() && fs::exists(entry.path() / kPowderFile))
+      files.push_back((entry.path() / kPowderFile).string());
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -128,7 +128,7 @@ void visit_powder(const std::string& path, SnapshotChoice choice, const Visit& v
     visit_sample(root.open(fmt::format("sample_{}", k)), spec, k, choice, visit);
 }
 
-void visit_grain_boxes(const std::string& path, const Visit& visit) {
+void visit_grain_boxes(const std::string& path, SnapshotChoice /*choice*/, const Visit& visit) {
   for (const GrainBoxResult& result : load_grain_boxes(path)) visit(picture_of(result));
 }
 

@@ -16,7 +16,8 @@ void visit_particles(const std::string& path, SnapshotChoice choice, const std::
 /// FileTrouble.
 void visit_powder(const std::string& path, SnapshotChoice choice, const std::function<void(const Snapshot&)>& visit);
 
-/// grain_box.h5: the last state of every pack, one series each. Throws FileTrouble.
-void visit_grain_boxes(const std::string& path, const std::function<void(const Snapshot&)>& visit);
+/// grain_box.h5: the last state of every pack, one series each, whatever the choice. Throws FileTrouble.
+void visit_grain_boxes(const std::string& path, SnapshotChoice choice,
+                       const std::function<void(const Snapshot&)>& visit);
 
 }  // namespace softgrain

@@ -149,7 +149,8 @@ void add_contacts(Snapshot& s, const FrameContacts& all, const std::vector<std::
 void visit_particles(const std::string& path, SnapshotChoice choice,
                      const std::function<void(const Snapshot&)>& visit) {
   const h5::Group root = h5::open_file(path);
-  if (!root.has_attribute("kind") || root.text("kind") != "particles") throw FileTrouble(path + ": holds no particles");
+  if (!root.has_attribute("kind") || from_word<SnapshotKind>(root.text("kind")) != SnapshotKind::particles)
+    throw FileTrouble(path + ": holds no particles");
   const Bodies bodies = read_bodies(root);
   const Trajectory t = read_trajectory(root.open("trajectory"));
   require_fits(t, bodies);

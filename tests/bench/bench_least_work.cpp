@@ -76,7 +76,7 @@ void increment(benchmark::State& state, const GrainPack& start, const LeastWorkO
     GrainPack pack = start;
     result = advance(pack, squeeze(pack, {{0.0, 0.0, 1e-4}}), options);
     if (!result.converged) {
-      state.SkipWithError(result.stopped_by.c_str());
+      state.SkipWithError(to_string(result.stopped_by).c_str());
       return;
     }
   }

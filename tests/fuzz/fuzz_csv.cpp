@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.shell_radius = 0.016;
     options.youngs_modulus = 5e5;
   }
-  options.drop_unloading = data[0] % 4 > 1;
+  options.unloading = data[0] % 4 > 1 ? Unloading::drop : Unloading::refuse;
   const fuzz::InputFile file(data + 2, size - 2, "input.csv");
   try {
     const std::vector<ForceCurves> curves = read_force_curve_files({file.path()}, options);

@@ -57,7 +57,8 @@ TEST(CrowdExperiment, OnePlaneIsTheMeasurementOfOneContactBitForBit) {
   double deltas[2] = {0.125, 0.25};
   const auto expected = single_contact_forces(
       spec, [&] { return make_soft_solid(spec, content.grains, false); }, deltas);
-  CrowdExperiment e = make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.25), content, {});
+  CrowdExperiment e =
+      make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::one), 0.25), content, {});
   const CrowdRun run = run_crowd(e, kHalfAndEnd, binary_options());
   ASSERT_EQ(run.points.size(), 2U);
   EXPECT_GT(run.points[1].normal[0], 1e-4);
@@ -76,7 +77,8 @@ TEST(CrowdExperiment, OneEqualSoftNeighbourIsTheSoftSoftMeasurementBitForBit) {
   double deltas[2] = {0.25, 0.5};
   const auto expected = single_contact_forces(
       spec, [&] { return make_soft_soft(spec, first.grains, second.grains, false); }, deltas);
-  CrowdExperiment e = make_crowd(spec, crowd_of(PartnerKind::soft, 1.0, arrangement("one"), 0.5), first, {&second});
+  CrowdExperiment e =
+      make_crowd(spec, crowd_of(PartnerKind::soft, 1.0, directions_of(Arrangement::one), 0.5), first, {&second});
   const CrowdRun run = run_crowd(e, kHalfAndEnd, binary_options());
   EXPECT_GT(run.points[1].normal[0], 1e-5);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(run.points[k].normal[0], expected[k]);
@@ -99,7 +101,7 @@ TEST(CrowdExperiment, ForcesOfNeighboursAndShellBalance) {
   const SoftParticleSpec spec = coarse_spec();
   const SoftContent content = content_of(spec, 2);
   const SoftContent other = content_of(spec, 3);
-  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("octant"), 0.2);
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::octant), 0.2);
   c.partners[1].kind = PartnerKind::solid;
   c.partners[1].ratio = 0.5;
   c.partners[2].kind = PartnerKind::soft;
@@ -116,7 +118,7 @@ TEST(CrowdExperiment, ForcesOfNeighboursAndShellBalance) {
 
 TEST(CrowdExperiment, ForceOnAFreeShellVanishesAndOverlapsFollowIt) {
   const SoftParticleSpec spec = coarse_spec();
-  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("cube"), 0.15);
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::cube), 0.15);
   c.centre_free = true;
   CrowdOptions options;
   options.tolerance = 1e-5;
@@ -143,7 +145,7 @@ TEST(CrowdExperiment, AMirroredParticleFeelsTheMirroredForces) {
   SoftParticleSpec spec = coarse_spec();
   spec.friction = 0.0;  // paths without friction end in the same state
   const SoftContent content = content_of(spec, 5);
-  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("opposite"), 0.2);
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::opposite), 0.2);
   CrowdOptions options;
   options.tolerance = 1e-4;
   CrowdExperiment e = make_crowd(spec, c, content, {});
@@ -164,7 +166,7 @@ TEST(CrowdExperiment, NeighboursAreBlindToEachOther) {
                 {PartnerKind::soft, 2.0, {{0.5, std::sqrt(0.75), 0.0}}},
                 {PartnerKind::solid, 2.0, {{0.5, 0.0, std::sqrt(0.75)}}},
                 {PartnerKind::plane, 0.0, {{0.0, 1.0, 0.0}}}};
-  c.stages = {{"load", std::vector<double>(4, 0.05), 0.0}};
+  c.stages = {{CrowdMove::load, std::vector<double>(4, 0.05), 0.0}};
   CrowdExperiment e = make_crowd(spec, c, content, {&content, &content});
   (void)run_crowd(e, {{1.0}}, {});
   const auto& n = e.neighbours;
@@ -183,9 +185,9 @@ TEST(CrowdExperiment, NeighboursAreBlindToEachOther) {
 
 TEST(CrowdExperiment, UnloadingComesBackToNothingAndSlidingDragsTheNeighbour) {
   const SoftParticleSpec spec = coarse_spec();
-  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.25);
-  c.stages.push_back({"slide", {0.25}, 0.05});
-  c.stages.push_back({"unload", {0.0}, 0.0});
+  CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::one), 0.25);
+  c.stages.push_back({CrowdMove::slide, {0.25}, 0.05});
+  c.stages.push_back({CrowdMove::unload, {0.0}, 0.0});
   CrowdExperiment e = make_crowd(spec, c, content_of(spec, 1), {});
   const CrowdRun run = run_crowd(e, {{1.0}, {0.5, 1.0}, {1.0}}, {});
   ASSERT_EQ(run.points.size(), 4U);
@@ -202,8 +204,8 @@ TEST(CrowdExperiment, UnloadingComesBackToNothingAndSlidingDragsTheNeighbour) {
 
 TEST(CrowdExperiment, ASlidingSphereKeepsItsOverlap) {
   const SoftParticleSpec spec = coarse_spec();
-  CrowdConfiguration c = crowd_of(PartnerKind::solid, 0.5, arrangement("one"), 0.1);
-  c.stages.push_back({"slide", {0.1}, 0.1});
+  CrowdConfiguration c = crowd_of(PartnerKind::solid, 0.5, directions_of(Arrangement::one), 0.1);
+  c.stages.push_back({CrowdMove::slide, {0.1}, 0.1});
   CrowdExperiment e = make_crowd(spec, c, content_of(spec, 1), {});
   const CrowdRun run = run_crowd(e, {{1.0}, {0.3, 1.0}}, {});
   for (const CrowdPoint& p : run.points) EXPECT_NEAR(p.overlap[0], 0.1, 1e-12);
@@ -216,10 +218,10 @@ TEST(CrowdExperiment, RecordsAreDimensionlessBitForBit) {
   scaled.youngs_modulus *= 256.0;
   scaled.shell_radius *= 16.0;
   const SoftContent content = content_of(spec, 6);
-  CrowdConfiguration c = crowd_of(PartnerKind::soft, 0.5, arrangement("orthogonal"), 0.2);
+  CrowdConfiguration c = crowd_of(PartnerKind::soft, 0.5, directions_of(Arrangement::orthogonal), 0.2);
   c.partners[1].kind = PartnerKind::plane;
   c.partners[1].ratio = 0.0;
-  c.stages.push_back({"slide", {0.2, 0.2}, 0.05});
+  c.stages.push_back({CrowdMove::slide, {0.2, 0.2}, 0.05});
   CrowdExperiment a = make_crowd(spec, c, content, {&content});
   CrowdExperiment b = make_crowd(scaled, c, content, {&content});
   const CrowdRun x = run_crowd(a, {{0.5, 1.0}, {1.0}}, {});
@@ -237,8 +239,9 @@ TEST(CrowdExperiment, TheLeastStiffnessSavesPassesAndLeavesTheMeanAlone) {
     for (int k = 0; k < 2; ++k) {
       CrowdOptions options;
       if (k == 0) options.least_stiffness = 0.0;
-      CrowdExperiment e = make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, arrangement("opposite"), 0.25),
-                                     content_of(spec, packing), {});
+      CrowdExperiment e =
+          make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::opposite), 0.25),
+                     content_of(spec, packing), {});
       const CrowdRun run = run_crowd(e, {{1.0}}, options);
       mean[k] += run.points[0].normal[0] + run.points[0].normal[1];
       passes[k] += run.cost.loop_passes;
@@ -276,7 +279,7 @@ SoftContent one_inner(double r) {
 TEST(CrowdExperiment, AnInnerSoftParticleCarriesTheForceOfItsLaw) {
   const SoftParticleSpec spec = coarse_spec();
   const InnerLaws laws = inner_laws(spec);
-  const CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.6);
+  const CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::one), 0.6);
   CrowdOptions options;
   options.tolerance = 1e-8;
   // The grain stays out of the way. The plane, 0.6 deep, leaves 1.4 between it and the shell for a diameter of 1.6.
@@ -291,7 +294,7 @@ TEST(CrowdExperiment, AnInnerSoftParticleCarriesTheForceOfItsLaw) {
 TEST(CrowdExperiment, InnerSoftParticlesMeetThoseOfSoftNeighboursAndSolids) {
   const SoftParticleSpec spec = coarse_spec();
   const InnerLaws laws = inner_laws(spec);
-  CrowdConfiguration c = crowd_of(PartnerKind::soft, 0.5, arrangement("opposite"), 0.2);
+  CrowdConfiguration c = crowd_of(PartnerKind::soft, 0.5, directions_of(Arrangement::opposite), 0.2);
   c.partners[1].kind = PartnerKind::solid;
   const SoftContent content = one_inner(1.0 - 1e-9);
   CrowdExperiment e = make_crowd(spec, c, content, {&content}, &laws);
@@ -309,11 +312,11 @@ TEST(CrowdExperiment, BadArrangementsAreRefused) {
   const SoftContent content = content_of(spec, 0);
   CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, {Vec3{{1.0, 1.0, 0.0}}}, 0.1);
   EXPECT_THROW((void)make_crowd(spec, c, content, {}), BadInput);
-  c = crowd_of(PartnerKind::soft, 1.0, arrangement("opposite"), 0.1);
+  c = crowd_of(PartnerKind::soft, 1.0, directions_of(Arrangement::opposite), 0.1);
   EXPECT_THROW((void)make_crowd(spec, c, content, {&content}), BadInput);
-  c = crowd_of(PartnerKind::solid, 0.0, arrangement("one"), 0.1);
+  c = crowd_of(PartnerKind::solid, 0.0, directions_of(Arrangement::one), 0.1);
   EXPECT_THROW((void)make_crowd(spec, c, content, {}), BadInput);
-  c = crowd_of(PartnerKind::plane, 0.0, arrangement("one"), 0.1);
+  c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::one), 0.1);
   EXPECT_THROW((void)make_crowd(spec, c, one_inner(0.5), {}), BadInput);
 }
 

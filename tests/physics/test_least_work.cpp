@@ -56,7 +56,7 @@ TEST(LeastWork, PublishedAndFastReachTheSameEquilibrium) {
   ASSERT_TRUE(advance(fast, moves, options).converged);
   options.method = LeastWorkMethod::published;
   const LeastWorkResult r = advance(published, moves, options);
-  ASSERT_TRUE(r.converged) << r.stopped_by << " " << r.worst_residual;
+  ASSERT_TRUE(r.converged) << to_string(r.stopped_by) << " " << r.worst_residual;
   const double scale = norm(wall_forces(fast)[5]);
   // A sliding contact does not fix its grains' place exactly; the forces agree to the share that slides.
   EXPECT_LT(largest_difference(wall_forces(fast), wall_forces(published)), 1e-4 * scale);
@@ -68,7 +68,7 @@ TEST(LeastWork, EveryGrainBalances) {
   options.residual_tolerance = 1e-9;
   for (int k = 0; k < 3; ++k) {
     const LeastWorkResult r = advance(pack, uniaxial(pack, 1e-4), options);
-    ASSERT_TRUE(r.converged) << r.stopped_by;
+    ASSERT_TRUE(r.converged) << to_string(r.stopped_by);
     EXPECT_LE(r.worst_residual, 1e-9);
   }
   // All walls together carry nothing.
@@ -146,7 +146,7 @@ TEST(LeastWork, AnIncrementThatDoesNotConvergeLeavesThePackAlone) {
     options.residual_tolerance = 1e-12;
     const LeastWorkResult r = advance(pack, uniaxial(pack, 1e-3), options);
     EXPECT_FALSE(r.converged);
-    EXPECT_EQ(r.stopped_by, "cap");
+    EXPECT_EQ(r.stopped_by, LeastWorkEnd::cap);
     EXPECT_TRUE(same_bits(pack, frictional_pack()));
   }
 }
@@ -183,7 +183,7 @@ TEST(LeastWork, AGrainUnderGravityFallsOntoTheFloorAndRests) {
   pack.weight = {10.0};
   pack.gravity = {{0.0, 0.0, -1.0}};
   const LeastWorkResult r = advance(pack, std::vector<Vec3>(6), {});
-  ASSERT_TRUE(r.converged) << r.stopped_by;
+  ASSERT_TRUE(r.converged) << to_string(r.stopped_by);
   ASSERT_EQ(pack.contacts.size(), 1U);
   EXPECT_NEAR(pack.contacts[0].normal_force, 10.0, 1e-5);
   EXPECT_NEAR(wall_forces(pack)[4][2], -10.0, 1e-5);

@@ -55,7 +55,7 @@ void expect_self_similar(LeastWorkMethod method, double friction, const Vec3& st
   options.work_tolerance = 0.0;
   options.force_tolerance = 1e-29;
   const LeastWorkResult r = advance(pack, squeeze(pack, strain), options);
-  ASSERT_TRUE(r.converged) << r.stopped_by << " " << r.worst_residual;
+  ASSERT_TRUE(r.converged) << to_string(r.stopped_by) << " " << r.worst_residual;
   const double error = worst_wall_error(pack, kN, strain);
   std::cout << "relative error of the wall forces " << error << "\n";
   EXPECT_LT(error, tolerance);

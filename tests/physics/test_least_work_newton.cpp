@@ -97,7 +97,7 @@ TEST(LeastWorkNewton, IncrementsTakeFewIterations) {
   std::vector<std::int64_t> iterations;
   for (int k = 0; k < 11; ++k) {
     const LeastWorkResult r = advance(pack, squeeze(pack, {{0.0, 0.0, 1e-4}}), {});
-    ASSERT_TRUE(r.converged) << r.stopped_by;
+    ASSERT_TRUE(r.converged) << to_string(r.stopped_by);
     iterations.push_back(r.iterations);
   }
   std::sort(iterations.begin(), iterations.end());

@@ -70,7 +70,7 @@ TEST(LeastWorkReferenceRule, APackWithSlidingAndOpeningContactsRunsThrough) {
   options.max_iterations = 1000;  // with the rule as published the 11th increment used up any number
   for (int k = 0; k < 40; ++k) {
     const LeastWorkResult r = advance(pack, squeeze(pack, {{0.0, 0.0, 3e-4}}), options);
-    ASSERT_TRUE(r.converged) << "increment " << k << ": " << r.stopped_by << " " << r.worst_residual;
+    ASSERT_TRUE(r.converged) << "increment " << k << ": " << to_string(r.stopped_by) << " " << r.worst_residual;
   }
 }
 
@@ -116,8 +116,8 @@ TEST(LeastWorkReferenceRule, PublishedAndFastAgreeWhileContactsSlide) {
     const std::vector<Vec3> moves = squeeze(fast, {{0.0, 0.0, 1e-4}});
     const LeastWorkResult a = advance(fast, moves, options);
     const LeastWorkResult b = advance(published, moves, slow);
-    ASSERT_TRUE(a.converged) << a.stopped_by;
-    ASSERT_TRUE(b.converged) << b.stopped_by << " " << b.worst_residual;
+    ASSERT_TRUE(a.converged) << to_string(a.stopped_by);
+    ASSERT_TRUE(b.converged) << to_string(b.stopped_by) << " " << b.worst_residual;
     bound += std::sqrt(2.0 * fast.grains()) * (std::sqrt(a.residual_energy) + std::sqrt(b.residual_energy));
     const double contacts = largest_difference(fast.contacts, published.contacts);
     double walls = 0.0;

@@ -152,7 +152,7 @@ void expect_closed_form(const Case& c, std::size_t contacts, double tolerance) {
   options.work_tolerance = 0.0;
   options.force_tolerance = 1e-29;
   const LeastWorkResult r = advance(pack, squeeze(pack, c.strain), options);
-  ASSERT_TRUE(r.converged) << r.stopped_by << " " << r.worst_residual;
+  ASSERT_TRUE(r.converged) << to_string(r.stopped_by) << " " << r.worst_residual;
   EXPECT_EQ(pack.contacts.size(), contacts);
   const Errors errors = compare(pack, before, after, c.friction > 0.0 && c.before > 0.0);
   std::cout << "iterations " << r.iterations << ", relative errors: positions " << errors.position
@@ -204,7 +204,7 @@ TEST(LeastWorkSymmetry, AGrainThatIsNotCentredMeetsAPlaneWithoutFriction) {
   for (PackWall& w : pack.walls) w.symmetry = true;
   pack.friction = 0.3;
   const LeastWorkResult r = advance(pack, std::vector<Vec3>(6), {});
-  ASSERT_TRUE(r.converged) << r.stopped_by;
+  ASSERT_TRUE(r.converged) << to_string(r.stopped_by);
   EXPECT_EQ(pack.position[0][0], 0.0);
   const std::vector<Vec3> forces = wall_forces(pack);
   EXPECT_GT(forces[1][0], 0.0);

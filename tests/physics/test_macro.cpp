@@ -345,7 +345,7 @@ TEST(Macro, OedometricStrainKeepsTheSidesStill) {
 
 TEST(Macro, IsotropicStrainMovesAllSidesAlike) {
   MacroSpec spec = small_spec();
-  spec.test = "isotropic";
+  spec.test = MacroTest::isotropic;
   spec.strain_end = 0.05;
   const MacroPacking packing = make_macro_packing(spec, 3, 0);
   MacroSystem end;
@@ -366,7 +366,7 @@ MacroPacking turned(MacroPacking p) {
 
 MacroSpec isotropic_spec() {
   MacroSpec spec = small_spec();
-  spec.test = "isotropic";
+  spec.test = MacroTest::isotropic;
   spec.soft_share = 0.0;
   spec.strain_end = 0.02;
   spec.steps = 4;

@@ -16,7 +16,7 @@ namespace {
 
 MacroSpec small_scene() {
   MacroSpec spec;
-  spec.construction = "voids";
+  spec.construction = Construction::voids;
   spec.bodies = 25;
   spec.soft_share = 0.35;
   spec.soft_radius_max = 0.012;
@@ -129,7 +129,7 @@ CompressionState tested(const MacroSpec& spec, const MacroPacking& packing, Macr
 MacroSpec shear_of_solids() {
   MacroSpec spec = small_scene();
   spec.soft_share = 0.0;
-  spec.test = "shear";
+  spec.test = MacroTest::shear;
   spec.preload = 0.03;
   spec.preload_steps = 2;
   return spec;

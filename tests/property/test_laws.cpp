@@ -147,12 +147,12 @@ RC_GTEST_PROP(LawProperty, AThresholdLawStartsAtZeroAndGrows, ()) {
 
 /// The equivalent volume is homogeneous of degree one in what contacts take, so one contact alone feels no coupling.
 RC_GTEST_PROP(LawProperty, OneContactAloneKnowsNoCoupling, ()) {
-  CrowdLaw coupled = synthetic::crowd_law("directional", 0.05 * share());
+  CrowdLaw coupled = synthetic::crowd_law(Crowd::directional, 0.05 * share());
   coupled.m0.value = 2.0 * share();
   coupled.m1.value = 2.0 * share() - 1.0;
   coupled.m2.value = 0.5 * share();
   CrowdLaw plain = coupled;
-  plain.form = "bag";
+  plain.form = Crowd::bag;
   plain.m0.value = 1.0;
   plain.m1.value = plain.m2.value = 0.0;
   const std::vector<CrowdPartner> one{{PartnerKind::plane, 0.0, {{0.0, 0.6, 0.8}}}};

@@ -55,7 +55,7 @@ TEST(ThresholdCoverage, IntervalsCoverTheTruth) {
   for (std::uint64_t e = 0; e < kEnsembles; ++e) {
     const auto report = fit_pair_law(synthetic(ensemble(1000 + e)), PairKind::soft_solid, options);
     const PairLaw& law = report.law;
-    good += law.status == "good" ? 1 : 0;
+    good += law.status == LawStatus::good ? 1 : 0;
     const auto covers = [](const Estimate& x, double value) { return x.low <= value && value <= x.high; };
     b.add(law.normal.b.value, law.normal.b.standard_error, covers(law.normal.b, truth.normal.b));
     delta.add(law.normal.delta.value, law.normal.delta.standard_error, covers(law.normal.delta, truth.normal.delta));

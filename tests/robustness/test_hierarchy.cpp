@@ -73,7 +73,7 @@ TEST_F(Hierarchy, LevelsOnTopOfLevels) {
   for (const char* file : {"law_table_level_0.toml", "law_table_level_1.toml", "law_table.toml"}) {
     const LawTable table = load_law_table(out("out") + "/" + file);
     ASSERT_EQ(table.entries.size(), 1U);
-    EXPECT_NE(table.entries[0].find("bag"), nullptr);
+    EXPECT_NE(table.entries[0].find(Crowd::bag), nullptr);
   }
   EXPECT_TRUE(fs::exists(out("out") + "/crowd_level_1.h5"));
   EXPECT_EQ(unbalanced_tags(read_text(out("out") + "/report.html")), "");

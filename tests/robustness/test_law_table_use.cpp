@@ -247,7 +247,7 @@ TEST_F(LawTableUse, WrongMacroScenesAreRefused) {
   // The scene takes nu from the table it is given, so another nu comes only with a comparison (below).
   expect(macro("good", "", "--law '" + file("other.toml") + "'"), 0, {});
   LawTableEntry shallow = law_entry(0.70);
-  shallow.laws[2].status = "no threshold crossing";
+  shallow.laws[2].status = LawStatus::no_threshold_crossing;
   shallow.laws[2].reason = "too shallow";
   save_law_table({1, {shallow}}, file("shallow.toml"));
   expect(macro("out", "", "--law '" + file("shallow.toml") + "'"), 2, {"not usable", "too shallow"});
@@ -272,7 +272,7 @@ TEST_F(LawTableUse, ComparisonsRefuseTablesOfOtherGrains) {
 
 TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
   LawTableEntry second = law_entry(0.75, 0.01);
-  second.laws[1].status = "underdetermined";
+  second.laws[1].status = LawStatus::underdetermined;
   second.laws[1].reason = "planes: 3 of 6";
   second.laws[1].error_held_out = std::nan("");
   save_law_table({1, {law_entry(0.70), second}}, file("law_table.toml"));
@@ -289,17 +289,17 @@ TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
   expect(run_the_program("check '" + file("scene.toml") + "' --set form=sack"), 2, {"form", "sack"});
 }
 
-CrowdModel known() { return crowd_model(synthetic::crowd_law("directional")); }
+CrowdModel known() { return crowd_model(synthetic::crowd_law(Crowd::directional)); }
 
 std::vector<CrowdConfiguration> arrangements() {
   using synthetic::crowd_configuration;
-  return {crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
-          crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25),
-          crowd_configuration("orthogonal", PartnerKind::plane, 0.0, 0.25),
-          crowd_configuration("tetrahedron", PartnerKind::plane, 0.0, 0.2),
-          crowd_configuration("cube", PartnerKind::plane, 0.0, 0.18),
-          crowd_configuration("one", PartnerKind::solid, 1.0, 0.35),
-          crowd_configuration("one", PartnerKind::soft, 1.0, 0.4)};
+  return {crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+          crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25),
+          crowd_configuration(Arrangement::orthogonal, PartnerKind::plane, 0.0, 0.25),
+          crowd_configuration(Arrangement::tetrahedron, PartnerKind::plane, 0.0, 0.2),
+          crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18),
+          crowd_configuration(Arrangement::one, PartnerKind::solid, 1.0, 0.35),
+          crowd_configuration(Arrangement::one, PartnerKind::soft, 1.0, 0.4)};
 }
 
 TEST_F(LawTableUse, CalibrateFitsOneEntryPerFile) {
@@ -316,12 +316,12 @@ TEST_F(LawTableUse, CalibrateFitsOneEntryPerFile) {
   const softgrain::LawTable table = load_law_table(file("out") + "/law_table.toml");
   ASSERT_EQ(table.entries.size(), 2U);
   EXPECT_NEAR(table.entries[0].solid_fraction, 0.6525, 1e-12);
-  EXPECT_NEAR(table.entries[1].find("directional")->a.value, 0.7, 0.05);
-  EXPECT_EQ(table.entries[0].find("bag")->a.value, table.entries[1].find("bag")->a.value);
+  EXPECT_NEAR(table.entries[1].find(Crowd::directional)->a.value, 0.7, 0.05);
+  EXPECT_EQ(table.entries[0].find(Crowd::bag)->a.value, table.entries[1].find(Crowd::bag)->a.value);
   EXPECT_TRUE(fs::exists(file("out") + "/law_table.h5"));
   EXPECT_EQ(summary("out")["entries"].size(), 2U);
   EXPECT_EQ(summary("out")["status"], "good");
-  EXPECT_EQ(table.entries[0].best, "directional");
+  EXPECT_EQ(table.entries[0].best, Crowd::directional);
   EXPECT_EQ(unbalanced_tags(read_text(file("out") + "/report.html")), "");
   expect(macro("macro", "", "--law '" + file("out") + "/law_table.toml'"), 0, {});
 }

@@ -215,7 +215,7 @@ TEST_F(OwnData, NoThresholdCrossingEndsWithStatusThree) {
   write("flat.csv", made_up_curve(0.0));
   expect(calibrate("'" + file("flat.csv") + "'", "law", "--kind soft-solid"), 3, {"no threshold crossing"});
   EXPECT_EQ(summary("law")["status"], "not usable");
-  EXPECT_EQ(load_card(file("law") + "/law.toml").pairs.at(0).status, "no threshold crossing");
+  EXPECT_EQ(load_card(file("law") + "/law.toml").pairs.at(0).status, LawStatus::no_threshold_crossing);
 }
 
 TEST_F(OwnData, TheReverseSearchFindsTheFrictionOfATargetMadeWithOtherSeeds) {

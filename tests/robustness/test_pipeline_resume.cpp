@@ -240,7 +240,7 @@ TEST_F(PipelineResume, NoThresholdCrossingIsStatusThreeAndWritten) {
       << remarks_of(summary);
   EXPECT_NE(remarks_of(summary).find("no macro run"), std::string::npos) << remarks_of(summary);
   EXPECT_EQ(load_measurements(out + "/measurements.h5").runs.size(), 8U);
-  EXPECT_EQ(load_card(out + "/law.toml").pairs.at(0).status, "no threshold crossing");
+  EXPECT_EQ(load_card(out + "/law.toml").pairs.at(0).status, LawStatus::no_threshold_crossing);
 }
 
 /// One point of tangential stiffness makes no law: the card says that it was not fitted and can be read again.

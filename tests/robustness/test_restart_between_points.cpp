@@ -19,7 +19,7 @@ void expect_same(const Cost& a, const Cost& b) {
 TEST(RestartBetweenPoints, ACrowdGoesOnFromEveryIncrement) {
   const SoftParticleSpec spec = coarse_spec();
   CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, {{{1.0, 0.0, 0.0}}, {{-1.0, 0.0, 0.0}}}, 0.2);
-  c.stages.push_back({"unload", {0.1, 0.2}, 0.0});
+  c.stages.push_back({CrowdMove::unload, {0.1, 0.2}, 0.0});
   const CrowdPlan plan{{0.6, 1.0}, {0.5}};  // the last leg ends without a record
   CrowdOptions options;
   options.increment = 0.02;

@@ -30,7 +30,7 @@ inline CrowdConfiguration crowd_of(PartnerKind kind, double ratio, const std::ve
   CrowdConfiguration c;
   c.name = "test";
   for (const Vec3& d : directions) c.partners.push_back({kind, kind == PartnerKind::plane ? 0.0 : ratio, d});
-  c.stages = {{"load", std::vector<double>(directions.size(), overlap), 0.0}};
+  c.stages = {{CrowdMove::load, std::vector<double>(directions.size(), overlap), 0.0}};
   return c;
 }
 

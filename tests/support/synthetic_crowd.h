@@ -23,14 +23,14 @@ inline Estimate unknown(double value) {
 }
 
 /// One form; `shift` moves every number a little.
-inline CrowdLaw crowd_law(const std::string& form, double shift = 0.0) {
+inline CrowdLaw crowd_law(Crowd form, double shift = 0.0) {
   CrowdLaw law;
   law.form = form;
   law.a = near(0.7 + shift);
   law.b = near(2.8 + shift / 3.0);
   law.delta = near(0.08 + shift / 7.0);
   law.m0.value = 1.0;
-  if (form == "directional") {
+  if (form == Crowd::directional) {
     law.m0 = near(0.6 + shift);
     law.m1 = near(0.5 + shift / 3.0);
     law.m2 = near(0.1 + shift / 7.0);
@@ -39,12 +39,13 @@ inline CrowdLaw crowd_law(const std::string& form, double shift = 0.0) {
                   {PartnerKind::solid, 2.0, near(0.8 + shift), near(1.1), 0.3, 0.2 / 3.0},
                   {PartnerKind::soft, 1.0, near(0.4 + shift), near(1.3), 0.35, 0.1 / 7.0},
                   {PartnerKind::soft, 2.0, near(0.5 + shift), near(1.3), 0.25, 0.2 / 7.0}};
-  law.errors = {{"one-plane", "fitted", 0.05 / 3.0, 1.01, 0.02}, {"cube-plane", "predicted", 0.1 / 3.0, 0.97, 0.03}};
+  law.errors = {{"one-plane", CrowdUse::fitted, 0.05 / 3.0, 1.01, 0.02},
+                {"cube-plane", CrowdUse::predicted, 0.1 / 3.0, 0.97, 0.03}};
   law.error_fitted = 0.05 / 3.0;
   law.error_held_out = 0.1 / 3.0;
   law.error_cross = 0.07 / 3.0;
   law.criterion = -100.0 / 3.0;
-  law.parameters = form == "directional" ? 6 : 3;
+  law.parameters = form == Crowd::directional ? 6 : 3;
   return law;
 }
 
@@ -62,20 +63,23 @@ inline LawTableEntry law_entry(double solid_fraction = 0.7, double shift = 0.0) 
   e.slide_solid = {near(0.2 + shift), near(0.35 + shift)};
   e.slide_soft = {near(0.1 + shift), near(0.45 + shift)};
   e.retreat = near(1.5 + shift);
-  e.laws = {crowd_law("pair", shift), crowd_law("bag", shift), crowd_law("directional", shift)};
-  e.best = "directional";
+  e.laws = {crowd_law(Crowd::pair, shift), crowd_law(Crowd::bag, shift), crowd_law(Crowd::directional, shift)};
+  e.best = Crowd::directional;
   return e;
 }
 
-/// A configuration that is loaded to `overlap` and, when `path` says so, unloaded ("unload") or slid ("slide").
-inline CrowdConfiguration crowd_configuration(const std::string& arranged, PartnerKind kind, double ratio,
-                                              double overlap, const std::string& path = "") {
+/// A configuration that is loaded to `overlap` and then, when `after` says so, unloaded or slid.
+inline CrowdConfiguration crowd_configuration(Arrangement arranged, PartnerKind kind, double ratio, double overlap,
+                                              CrowdMove after = CrowdMove::load) {
   CrowdConfiguration c;
-  c.name = arranged + "-" + to_string(kind) + "-" + std::to_string(ratio) + path;
-  for (const Vec3& d : arrangement(arranged)) c.partners.push_back({kind, kind == PartnerKind::plane ? 0.0 : ratio, d});
-  c.stages = {{"load", std::vector<double>(c.partners.size(), overlap), 0.0}};
-  if (path == "unload") c.stages.push_back({"unload", std::vector<double>(c.partners.size(), 0.0), 0.0});
-  if (path == "slide") c.stages.push_back({"slide", c.stages[0].overlap, 0.4});
+  c.name = to_string(arranged) + "-" + to_string(kind) + "-" + std::to_string(ratio) +
+           (after == CrowdMove::load ? "" : to_string(after));
+  for (const Vec3& d : directions_of(arranged))
+    c.partners.push_back({kind, kind == PartnerKind::plane ? 0.0 : ratio, d});
+  c.stages = {{CrowdMove::load, std::vector<double>(c.partners.size(), overlap), 0.0}};
+  if (after == CrowdMove::unload)
+    c.stages.push_back({CrowdMove::unload, std::vector<double>(c.partners.size(), 0.0), 0.0});
+  if (after == CrowdMove::slide) c.stages.push_back({CrowdMove::slide, c.stages[0].overlap, 0.4});
   return c;
 }
 

@@ -89,7 +89,7 @@ inline ThresholdPowerLaw threshold_law(double a, double b) {
 inline PairLaw pair_law(PairKind kind, double a) {
   PairLaw p;
   p.kind = kind;
-  p.status = "good";
+  p.status = LawStatus::good;
   p.normal = threshold_law(a, kB);
   p.has_tangential_initial = p.has_tangential_secant = kind == PairKind::soft_solid;
   p.tangential_initial = threshold_law(kKtA, kKtB);
@@ -118,7 +118,7 @@ inline LawCard card() {
 inline MacroCurve macro_curve(const std::string& engine, int sample, double factor, int points = 11) {
   MacroCurve c;
   c.engine = engine;
-  c.test = "oedometric";
+  c.test = MacroTest::oedometric;
   c.sample = sample;
   c.bodies = 320;
   c.soft = 200;

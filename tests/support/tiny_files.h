@@ -29,15 +29,16 @@ inline void tiny_measurements(const std::string& path) {
 }
 
 inline void tiny_crowd(const std::string& path) {
-  const CrowdModel model = crowd_model(synthetic::crowd_law("pair"));
+  const CrowdModel model = crowd_model(synthetic::crowd_law(Crowd::pair));
   synthetic::CrowdOptionsKnown o;
   o.packings = 2;
   o.points = 3;
   save_crowd(
-      synthetic::crowd_measurements(model,
-                                    {synthetic::crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
-                                     synthetic::crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.2, "slide")},
-                                    o),
+      synthetic::crowd_measurements(
+          model,
+          {synthetic::crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+           synthetic::crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.2, CrowdMove::slide)},
+          o),
       path);
 }
 

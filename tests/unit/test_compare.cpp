@@ -294,7 +294,7 @@ std::vector<MacroCurve> stated(const std::string& engine, const std::string& has
   std::vector<MacroCurve> curves = curves_of(synthetic::macro(), engine);
   for (MacroCurve& c : curves) {
     c.start = {0.01, 0.016, 5e5, 0.3, 0.3, 0.0, "start " + std::to_string(c.sample)};
-    if (engine == "law") c.law = {"directional", 0.7, 5e5, 0.3, 0.3, hash};
+    if (engine == "law") c.law = {Crowd::directional, 0.7, 5e5, 0.3, 0.3, hash};
   }
   return curves;
 }
@@ -328,7 +328,7 @@ TEST(CompareSides, WhatCannotBeMeantIsRefusedUnlessToldOtherwise) {
       {"measured with nu = 0.3, the grains of the twin have nu = 0.2",
        [](MacroCurve& c) { c.start.poisson_ratio = 0.2; }},
       {"mu of the walls: 0 against 0.2", [](MacroCurve& c) { c.start.wall_friction = 0.2; }},
-      {"test: oedometric against isotropic", [](MacroCurve& c) { c.test = "isotropic"; }},
+      {"test: oedometric against isotropic", [](MacroCurve& c) { c.test = MacroTest::isotropic; }},
       {"preload of the test: 0 against 0.1", [](MacroCurve& c) { c.preload = 0.1; }}};
   for (const Change& change : changes) {
     std::vector<MacroCurve> twin = stated("shelled");

@@ -31,16 +31,16 @@ CrowdModel known(Crowd crowd) {
 }
 
 std::vector<CrowdConfiguration> arrangements() {
-  std::vector<CrowdConfiguration> list{crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
-                                       crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25),
-                                       crowd_configuration("orthogonal", PartnerKind::plane, 0.0, 0.25),
-                                       crowd_configuration("tetrahedron", PartnerKind::plane, 0.0, 0.2),
-                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.18),
-                                       crowd_configuration("icosahedron", PartnerKind::plane, 0.0, 0.13),
-                                       crowd_configuration("one", PartnerKind::solid, 0.5, 0.35),
-                                       crowd_configuration("one", PartnerKind::solid, 2.0, 0.3),
-                                       crowd_configuration("one", PartnerKind::soft, 1.0, 0.35),
-                                       crowd_configuration("opposite", PartnerKind::soft, 2.0, 0.35)};
+  std::vector<CrowdConfiguration> list{crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+                                       crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25),
+                                       crowd_configuration(Arrangement::orthogonal, PartnerKind::plane, 0.0, 0.25),
+                                       crowd_configuration(Arrangement::tetrahedron, PartnerKind::plane, 0.0, 0.2),
+                                       crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18),
+                                       crowd_configuration(Arrangement::icosahedron, PartnerKind::plane, 0.0, 0.13),
+                                       crowd_configuration(Arrangement::one, PartnerKind::solid, 0.5, 0.35),
+                                       crowd_configuration(Arrangement::one, PartnerKind::solid, 2.0, 0.3),
+                                       crowd_configuration(Arrangement::one, PartnerKind::soft, 1.0, 0.35),
+                                       crowd_configuration(Arrangement::opposite, PartnerKind::soft, 2.0, 0.35)};
   list[5].held_out = true;
   return list;
 }
@@ -64,9 +64,9 @@ TEST(CrowdFit, RecoversAKnownLawWithinItsErrors) {
   CrowdFitOptions options = quick();
   options.replicates = 30;  // errors of neighbours come from them
   const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, arrangements(), o), options);
-  EXPECT_EQ(entry.best, "directional");
-  const CrowdLaw& law = *entry.find("directional");
-  EXPECT_EQ(law.status, "good") << law.reason;
+  EXPECT_EQ(entry.best, Crowd::directional);
+  const CrowdLaw& law = *entry.find(Crowd::directional);
+  EXPECT_EQ(law.status, LawStatus::good) << law.reason;
   EXPECT_EQ(law.parameters, 6);
   expect_within(law.a, model.form.pressure.a, "a");
   expect_within(law.b, model.form.pressure.b, "b");
@@ -82,8 +82,8 @@ TEST(CrowdFit, RecoversAKnownLawWithinItsErrors) {
     expect_within(law.partners[k].exponent, exponents[k], "m " + std::to_string(k));
   }
   EXPECT_LT(law.error_held_out, 0.05);
-  EXPECT_LT(law.error_cross, entry.find("bag")->error_cross);
-  EXPECT_LT(law.criterion, entry.find("bag")->criterion);
+  EXPECT_LT(law.error_cross, entry.find(Crowd::bag)->error_cross);
+  EXPECT_LT(law.criterion, entry.find(Crowd::bag)->criterion);
   EXPECT_NEAR(entry.solid_fraction, 0.7055, 1e-12);
   EXPECT_NEAR(entry.overlap_max, 0.3, 1e-12);
 }
@@ -110,29 +110,30 @@ TEST(CrowdFit, DataOfABagGiveTheBag) {
   auto list = arrangements();
   list.resize(6);  // planes
   const LawTableEntry entry = fit_crowd_laws(crowd_measurements(known(Crowd::bag), list, o), quick());
-  const CrowdLaw& bag = *entry.find("bag");
-  EXPECT_EQ(bag.status, "good") << bag.reason;
+  const CrowdLaw& bag = *entry.find(Crowd::bag);
+  EXPECT_EQ(bag.status, LawStatus::good) << bag.reason;
   expect_within(bag.a, 0.62, "a");
   expect_within(bag.b, 2.7, "b");
   expect_within(bag.delta, 0.07, "delta");
   EXPECT_EQ(bag.m0.value, 1.0);
   EXPECT_LT(bag.error_held_out, 1e-3);
   EXPECT_LT(bag.error_cross, 1e-3);
-  const CrowdLaw& directional = *entry.find("directional");
+  const CrowdLaw& directional = *entry.find(Crowd::directional);
   EXPECT_NEAR(directional.m0.value, 1.0, 1e-2);
   EXPECT_NEAR(directional.m1.value, 0.0, 1e-2);
   EXPECT_NEAR(directional.m2.value, 0.0, 1e-2);
-  EXPECT_GT(entry.find("pair")->error_cross, 0.3);
+  EXPECT_GT(entry.find(Crowd::pair)->error_cross, 0.3);
 }
 
 /// The same loading of the same packings is no new data: it is fitted once, and not at all when it is held out.
 TEST(CrowdFit, ALoadingIsUsedOnce) {
-  std::vector<CrowdConfiguration> list{crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
-                                       crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"),
-                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.15, "slide"),
-                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.2),
-                                       crowd_configuration("one", PartnerKind::solid, 1.0, 0.3),
-                                       crowd_configuration("cube", PartnerKind::plane, 0.0, 0.2)};
+  std::vector<CrowdConfiguration> list{
+      crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+      crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload),
+      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.15, CrowdMove::slide),
+      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2),
+      crowd_configuration(Arrangement::one, PartnerKind::solid, 1.0, 0.3),
+      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2)};
   list[3].held_out = true;
   list[5].centre_free = true;
   const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
@@ -150,8 +151,8 @@ TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
   CrowdOptionsKnown o;
   o.noise = 0.05;
   auto list = arrangements();
-  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"));
-  list.push_back(crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25, "slide"));
+  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload));
+  list.push_back(crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
   for (std::size_t c = list.size() - 2; c < list.size(); ++c) list[c].held_out = true;
   CrowdMeasurements data = crowd_measurements(known(Crowd::directional), list, o);
   CrowdFitOptions options = quick();
@@ -181,8 +182,8 @@ TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
 TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
   const CrowdModel model = known(Crowd::directional);
   auto list = arrangements();
-  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"));
-  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "slide"));
+  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload));
+  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
   CrowdOptionsKnown o;
   o.retreat = 1.6;
   o.kt = 0.06;
@@ -202,8 +203,8 @@ TEST(CrowdFit, ErrorsOfSlidesAndRetreatsAreThoseOfPackingsAndConfigurations) {
   const CrowdModel model = known(Crowd::bag);
   auto list = arrangements();
   list.resize(5);
-  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "unload"));
-  list.push_back(crowd_configuration("one", PartnerKind::plane, 0.0, 0.25, "slide"));
+  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload));
+  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
   CrowdOptionsKnown o;
   o.noise = 0.1;
   o.retreat = 1.6;
@@ -229,7 +230,7 @@ TEST(CrowdFit, ErrorsOfSlidesAndRetreatsAreThoseOfPackingsAndConfigurations) {
   }
 
   // Another configuration that slides three times as hard.
-  list.push_back(crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.25, "slide"));
+  list.push_back(crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
   CrowdMeasurements apart = crowd_measurements(model, list, o);
   for (CrowdRun& run : apart.runs)
     if (run.configuration == static_cast<std::int64_t>(list.size()) - 1)
@@ -259,8 +260,9 @@ TEST(CrowdFit, RefitsWithoutAMinimumAreCountedAndLeftOut) {
   options.replicates = 60;
   const LawTableEntry entry = fit_crowd_laws(data, options);
   for (const CrowdLaw& law : entry.laws) {
-    EXPECT_GE(law.replicates_failed, 9) << law.form << ": a third of the draws is without the one packing with force";
-    EXPECT_EQ(law.replicates.size() + static_cast<std::size_t>(law.replicates_failed), 60U) << law.form;
+    EXPECT_GE(law.replicates_failed, 9) << to_string(law.form)
+                                        << ": a third of the draws is without the one packing with force";
+    EXPECT_EQ(law.replicates.size() + static_cast<std::size_t>(law.replicates_failed), 60U) << to_string(law.form);
   }
 }
 
@@ -285,7 +287,7 @@ TEST(CrowdFit, ALawFarOffOnWhatWasHeldOutIsInaccurate) {
   CrowdMeasurements data = crowd_measurements(known(Crowd::directional), list, o);
   CrowdFitOptions options = quick();
   const LawTableEntry near = fit_crowd_laws(data, options);
-  EXPECT_EQ(near.find(near.best)->status, "good");
+  EXPECT_EQ(near.find(near.best)->status, LawStatus::good);
   for (CrowdRun& run : data.runs)
     if (list[static_cast<std::size_t>(run.configuration)].held_out)
       for (CrowdPoint& p : run.points)
@@ -293,27 +295,27 @@ TEST(CrowdFit, ALawFarOffOnWhatWasHeldOutIsInaccurate) {
   const LawTableEntry far = fit_crowd_laws(data, options);
   EXPECT_EQ(far.best, near.best);
   const CrowdLaw& law = *far.find(far.best);
-  EXPECT_EQ(law.status, "inaccurate");
+  EXPECT_EQ(law.status, LawStatus::inaccurate);
   EXPECT_NE(law.reason.find("loadings that were held out; at most 50 % are allowed"), std::string::npos) << law.reason;
   CrowdLawFit fit;
   add_entry(fit, data, options, 0.04);
   EXPECT_FALSE(fit.usable);
   options.largest_error = 0.9;
-  EXPECT_EQ(fit_crowd_laws(data, options).find(far.best)->status, "good");
+  EXPECT_EQ(fit_crowd_laws(data, options).find(far.best)->status, LawStatus::good);
 }
 
 TEST(CrowdFit, WithOneLoadingThereIsNothingToLeaveOut) {
   CrowdOptionsKnown o;
   o.noise = 0.01;
   const LawTableEntry entry = fit_crowd_laws(crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o), quick());
-  for (const CrowdLaw& law : entry.laws) EXPECT_TRUE(std::isnan(law.error_cross)) << law.form;
-  EXPECT_EQ(entry.best, "pair");
+  for (const CrowdLaw& law : entry.laws) EXPECT_TRUE(std::isnan(law.error_cross)) << to_string(law.form);
+  EXPECT_EQ(entry.best, Crowd::pair);
 }
 
 TEST(CrowdFit, BelowTheThresholdThereIsNoLaw) {
-  std::vector<CrowdConfiguration> list{crowd_configuration("one", PartnerKind::plane, 0.0, 0.06)};
+  std::vector<CrowdConfiguration> list{crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.06)};
   EXPECT_THROW((void)fit_crowd_laws(crowd_measurements(known(Crowd::bag), list, {}), quick()), NotUsable);
-  list[0] = crowd_configuration("opposite", PartnerKind::plane, 0.0, 0.2);  // not one plane alone
+  list[0] = crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.2);  // not one plane alone
   EXPECT_THROW((void)fit_crowd_laws(crowd_measurements(known(Crowd::bag), list, {}), quick()), NotUsable);
 }
 

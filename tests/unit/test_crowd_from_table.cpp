@@ -46,20 +46,20 @@ TEST(CrowdFromTable, WhoIsSoft) {
 
 TEST(CrowdFromTable, FormAndUnloadingChooseTheTypeOfTheLaw) {
   const LawTableEntry entry = law_entry();
-  const auto law = [&](const std::string& form, bool unloading) {
+  const auto law = [&](Crowd form, bool unloading) {
     CrowdChoices choices;
     choices.form = form;
     choices.unloading = unloading;
     return make_crowd_laws(entry, choices).soft_soft;
   };
-  EXPECT_TRUE((std::holds_alternative<SoftCrowd<Crowd::pair, false>>(law("pair", false))));
-  EXPECT_TRUE((std::holds_alternative<SoftCrowd<Crowd::bag, false>>(law("bag", false))));
-  EXPECT_TRUE((std::holds_alternative<SoftCrowd<Crowd::directional, true>>(law("directional", true))));
-  EXPECT_EQ((std::get<SoftCrowd<Crowd::bag, true>>(law("bag", true)).retreat), entry.retreat.value);
+  EXPECT_TRUE((std::holds_alternative<SoftCrowd<Crowd::pair, false>>(law(Crowd::pair, false))));
+  EXPECT_TRUE((std::holds_alternative<SoftCrowd<Crowd::bag, false>>(law(Crowd::bag, false))));
+  EXPECT_TRUE((std::holds_alternative<SoftCrowd<Crowd::directional, true>>(law(Crowd::directional, true))));
+  EXPECT_EQ((std::get<SoftCrowd<Crowd::bag, true>>(law(Crowd::bag, true)).retreat), entry.retreat.value);
 }
 
 TEST(CrowdFromTable, WhatIsNotUsableIsRefused) {
-  const auto refused = [](const LawTableEntry& entry, const std::string& form, const std::string& word) {
+  const auto refused = [](const LawTableEntry& entry, Crowd form, const std::string& word) {
     CrowdChoices choices;
     choices.form = form;
     try {
@@ -70,18 +70,20 @@ TEST(CrowdFromTable, WhatIsNotUsableIsRefused) {
     }
   };
   LawTableEntry entry = law_entry();
-  refused(entry, "sack", "\"sack\"");
-  entry.laws[1].status = "no threshold crossing";
+  LawTableEntry two = entry;
+  two.laws.pop_back();
+  refused(two, Crowd::directional, "no law of the form \"directional\"");
+  entry.laws[1].status = LawStatus::no_threshold_crossing;
   entry.laws[1].reason = "the threshold lies beyond";
-  refused(entry, "bag", "the threshold lies beyond");
+  refused(entry, Crowd::bag, "the threshold lies beyond");
   entry.laws[2].partners.resize(2);  // solid rows only
-  refused(entry, "directional", "no soft neighbours");
+  refused(entry, Crowd::directional, "no soft neighbours");
   entry.laws[0].partners.erase(entry.laws[0].partners.begin(), entry.laws[0].partners.begin() + 2);
-  refused(entry, "pair", "no solid neighbours");
+  refused(entry, Crowd::pair, "no solid neighbours");
 }
 
 /// A soft particle and fixed neighbours of all kinds that are blind to each other.
-class PredictionAndLoop : public ::testing::TestWithParam<std::string> {
+class PredictionAndLoop : public ::testing::TestWithParam<Crowd> {
  protected:
   static constexpr double kRadius = 0.013;
   static constexpr double kModulus = 4.2e5;
@@ -151,7 +153,7 @@ TEST_P(PredictionAndLoop, GiveTheSameForces) {
 /// One neighbour alone: all forms are the pair law of its kind.
 TEST_P(PredictionAndLoop, OneNeighbourFeelsThePairLaw) {
   CrowdLaw pair = *entry_.find(GetParam());
-  pair.form = "pair";
+  pair.form = Crowd::pair;
   const CrowdPartner p{PartnerKind::soft, 1.7, {{0.0, 0.6, 0.8}}};
   add(Vec3{}, kRadius, 0);
   const Slot slot = add(p, 0.33);
@@ -162,7 +164,7 @@ TEST_P(PredictionAndLoop, OneNeighbourFeelsThePairLaw) {
   EXPECT_NEAR(dot(force, p.direction), kModulus * kRadius * kRadius * expected, 1e-12 * kModulus * kRadius * kRadius);
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, PredictionAndLoop, ::testing::Values("pair", "bag", "directional"));
+INSTANTIATE_TEST_SUITE_P(Forms, PredictionAndLoop, ::testing::Values(Crowd::pair, Crowd::bag, Crowd::directional));
 
 MacroSpec spec_of_table() {
   MacroSpec spec;
@@ -172,7 +174,7 @@ MacroSpec spec_of_table() {
   return spec;
 }
 
-LawSources sources(const std::string& form = "best") {
+LawSources sources(WantedForm form = {}) {
   LawSources out;
   out.table = LawTable{1, {law_entry()}};
   out.forms = {form};
@@ -182,14 +184,14 @@ LawSources sources(const std::string& form = "best") {
 TEST(TableLawOfAScene, WallFrictionIsThatOfTheScene) {
   const NamedLaws law = scene_law(sources(), spec_of_table(), 0.7, "law");
   EXPECT_EQ(law.name, "law");
-  EXPECT_EQ(law.form, "directional");
+  EXPECT_EQ(law.form, Crowd::directional);
   EXPECT_EQ(std::get<Directional>(law.laws.soft_wall).friction, 0.07);
   EXPECT_EQ(std::get<Directional>(law.laws.soft_wall).kt_ratio, law_entry().slide_plane.kt_ratio.value);
   EXPECT_EQ(std::get<Directional>(law.laws.soft_solid).friction, law_entry().slide_solid.friction.value);
-  LawSources chosen = sources("bag");
+  LawSources chosen = sources(Crowd::bag);
   chosen.friction = 0.11;
   const NamedLaws bag = scene_law(chosen, spec_of_table(), 0.7, "law");
-  EXPECT_EQ(bag.form, "bag");
+  EXPECT_EQ(bag.form, Crowd::bag);
   EXPECT_EQ((std::get<SoftCrowd<Crowd::bag, false>>(bag.laws.soft_soft).friction), 0.11);
   EXPECT_EQ((std::get<SoftCrowd<Crowd::bag, false>>(bag.laws.soft_wall).friction), 0.07);
 }

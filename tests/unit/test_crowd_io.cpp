@@ -43,12 +43,12 @@ CrowdMeasurements sample() {
   data.packings = {{7, 2, 0.71, 0.8, 3.4, 0.2, {1e-3, 2e-3 / 3.0}}, {8, 0, 0.0, 0.0, 1.0, 0.0, {}}};
   data.configurations = {{"one-plane",
                           {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}},
-                          {{"load", {0.3}, 0.0}, {"slide", {0.3}, 0.1}},
+                          {{CrowdMove::load, {0.3}, 0.0}, {CrowdMove::slide, {0.3}, 0.1}},
                           false,
                           false},
                          {"two-soft",
                           {{PartnerKind::soft, 0.5, {{0.0, 1.0, 0.0}}}, {PartnerKind::solid, 2.0, {{0.6, 0.8, 0.0}}}},
-                          {{"load", {0.2, 0.1 / 3.0}, 0.0}, {"unload", {0.0, 0.0}, 0.0}},
+                          {{CrowdMove::load, {0.2, 0.1 / 3.0}, 0.0}, {CrowdMove::unload, {0.0, 0.0}, 0.0}},
                           true,
                           true}};
   data.runs = {{0, 1, {sample_point(1, 0), sample_point(1, 1)}, {1, 2, 0.3}},
@@ -69,7 +69,7 @@ void expect_equal(const CrowdConfiguration& a, const CrowdConfiguration& b) {
   }
   ASSERT_EQ(a.stages.size(), b.stages.size());
   for (std::size_t k = 0; k < a.stages.size(); ++k) {
-    EXPECT_EQ(a.stages[k].name, b.stages[k].name);
+    EXPECT_EQ(a.stages[k].move, b.stages[k].move);
     EXPECT_EQ(a.stages[k].overlap, b.stages[k].overlap);
     EXPECT_EQ(a.stages[k].slide, b.stages[k].slide);
   }

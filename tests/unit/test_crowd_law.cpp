@@ -128,7 +128,7 @@ class CrowdLawIo : public ::testing::Test {
 TEST_F(CrowdLawIo, RoundTripIsExact) {
   LawTable table{1, {law_entry(0.7), law_entry(0.1 * 7.5, 1e-3 / 3.0)}};
   table.entries[0].slide_soft = {unknown(0.3), unknown(0.25)};
-  table.entries[0].laws[1].status = "underdetermined";
+  table.entries[0].laws[1].status = LawStatus::underdetermined;
   table.entries[0].laws[1].reason = "planes: \"3 of 6\" \\ more";
   table.entries[0].laws[1].criterion = HUGE_VAL;
   table.entries[1].laws[2].partners.pop_back();
@@ -148,7 +148,7 @@ TEST_F(CrowdLawIo, TheGridHoldsTheForcesOfTheLaw) {
   const auto overlap = group.doubles("overlap");
   const auto force = group.doubles("force");
   ASSERT_EQ(overlap.size(), 5U * 101U);  // one plane, two solid, two soft
-  const CrowdModel model = crowd_model(*entry.find("bag"));
+  const CrowdModel model = crowd_model(*entry.find(Crowd::bag));
   const CrowdPartner soft{PartnerKind::soft, 1.0, {{1.0, 0.0, 0.0}}};
   EXPECT_EQ(overlap[100], entry.overlap_max);
   EXPECT_EQ(force[3 * 101 + 77], crowd_forces(model, {soft}, {overlap[3 * 101 + 77]})[0]);
@@ -231,7 +231,7 @@ TEST_F(CrowdLawIo, RatiosAreOrdered) {
 TEST_F(CrowdLawIo, EntriesMustMakeSense) {
   LawTableEntry entry = law_entry();
   entry.laws.erase(entry.laws.begin() + 1);
-  entry.best = "bag";
+  entry.best = Crowd::bag;
   refused(law_table_text({1, {entry}}, build_provenance(), ""), {"best", "no form"});
   refused(law_table_text({1, {law_entry(0.7), law_entry(0.7)}}, build_provenance(), ""), {"must ascend"});
   refused(law_table_text({1, {law_entry(0.75), law_entry(0.7)}}, build_provenance(), ""), {"must ascend"});
@@ -318,21 +318,21 @@ TEST(LawTableEntryAt, UnlikeEntriesAreRefused) {
 
 TEST(LawTableEntryAt, ALawIsAsGoodAsTheWorstEntry) {
   LawTable table{1, {law_entry(0.7), law_entry(0.75)}};
-  table.entries[1].laws[0].status = "no threshold crossing";
+  table.entries[1].laws[0].status = LawStatus::no_threshold_crossing;
   table.entries[1].laws[0].reason = "too shallow";
   std::string remark;
   const LawTableEntry e = entry_at(table, 0.71, RangePolicy::reject, remark);
-  EXPECT_EQ(e.laws[0].status, "no threshold crossing");
+  EXPECT_EQ(e.laws[0].status, LawStatus::no_threshold_crossing);
   EXPECT_EQ(e.laws[0].reason, "too shallow");
-  EXPECT_EQ(e.laws[1].status, "good");
+  EXPECT_EQ(e.laws[1].status, LawStatus::good);
 }
 
 TEST(LawTableEntryAt, AnEntryKnowsNothingOfItsNeighbours) {
   LawTable table{1, {law_entry(0.7), law_entry(0.75, 0.02)}};
-  table.entries[0].laws[0].status = "no threshold crossing";
+  table.entries[0].laws[0].status = LawStatus::no_threshold_crossing;
   std::string remark;
   const LawTableEntry at = entry_at(table, 0.75, RangePolicy::reject, remark, kReachOfNumbers);
-  EXPECT_EQ(at.laws[0].status, "good");
+  EXPECT_EQ(at.laws[0].status, LawStatus::good);
   for (const CrowdLaw& law : at.laws) EXPECT_EQ(numbers_of(at, law.form), numbers_of(table.entries[1], law.form));
 }
 
@@ -346,14 +346,15 @@ TEST(LawTableEntryAt, ANumberThatSomebodyGivesIsRoundedAtMost) {
 }
 
 /// Forces on a plane alone, on six, on one solid sphere and one soft one, at some overlaps.
-std::vector<double> forces_of(const LawTableEntry& e, const std::string& form) {
+std::vector<double> forces_of(const LawTableEntry& e, Crowd form) {
   const CrowdModel model = crowd_model(*e.find(form));
   std::vector<double> out;
   for (const auto& [around, kind, ratio] :
-       {std::tuple{"one", PartnerKind::plane, 0.0}, std::tuple{"cube", PartnerKind::plane, 0.0},
-        std::tuple{"one", PartnerKind::solid, 1.0}, std::tuple{"cube", PartnerKind::solid, 1.0}}) {
+       {std::tuple{Arrangement::one, PartnerKind::plane, 0.0}, std::tuple{Arrangement::cube, PartnerKind::plane, 0.0},
+        std::tuple{Arrangement::one, PartnerKind::solid, 1.0},
+        std::tuple{Arrangement::cube, PartnerKind::solid, 1.0}}) {
     std::vector<CrowdPartner> partners;
-    for (const Vec3& d : arrangement(around)) partners.push_back({kind, ratio, d});
+    for (const Vec3& d : directions_of(around)) partners.push_back({kind, ratio, d});
     for (const double h : {0.14, 0.18, 0.22, 0.26})
       out.push_back(crowd_forces(model, partners, std::vector<double>(partners.size(), h)).front());
   }
@@ -366,7 +367,7 @@ TEST(LawTableEntryAt, TheCommittedTableIsAContinuousLawBetweenItsEntries) {
   const double low = table.entries[0].solid_fraction;
   const double high = table.entries[1].solid_fraction;
   constexpr int kSteps = 64;
-  for (const char* form : {"pair", "bag", "directional"}) {
+  for (const auto& [form, name] : words<Crowd>) {
     const std::vector<double> loose = forces_of(table.entries[0], form);
     const std::vector<double> dense = forces_of(table.entries[1], form);
     std::vector<double> before = loose;
@@ -377,9 +378,9 @@ TEST(LawTableEntryAt, TheCommittedTableIsAContinuousLawBetweenItsEntries) {
       EXPECT_EQ(remark, "") << x;
       for (std::size_t n = 0; n < at.size(); ++n) {
         const auto [least, most] = std::minmax({loose[n], dense[n]});
-        EXPECT_GE(at[n], least * (1.0 - 1e-3)) << form << ", force " << n << " at " << x;
-        EXPECT_LE(at[n], most * (1.0 + 1e-3)) << form << ", force " << n << " at " << x;
-        EXPECT_LE(std::abs(at[n] - before[n]), 3.0 * (most - least) / kSteps + 1e-12) << form << ", force " << n;
+        EXPECT_GE(at[n], least * (1.0 - 1e-3)) << name << ", force " << n << " at " << x;
+        EXPECT_LE(at[n], most * (1.0 + 1e-3)) << name << ", force " << n << " at " << x;
+        EXPECT_LE(std::abs(at[n] - before[n]), 3.0 * (most - least) / kSteps + 1e-12) << name << ", force " << n;
       }
       if (k == 0) {
         EXPECT_EQ(at, loose);
@@ -407,7 +408,7 @@ TEST(LawTableEntryAt, NumbersBetweenDegenerateFitsAreNoLawBetweenThem) {
   (void)entry_at(table, 0.75, RangePolicy::reject, remark);
   EXPECT_EQ(remark, "");
   LawTable forms{1, {law_entry(0.7), law_entry(0.75, 0.01)}};
-  forms.entries[1].best = "bag";
+  forms.entries[1].best = Crowd::bag;
   (void)entry_at(forms, 0.72, RangePolicy::reject, remark);
   EXPECT_NE(remark.find("prefer different forms (directional and bag)"), std::string::npos) << remark;
 }
@@ -416,7 +417,7 @@ TEST(LawTableMainEntry, IsTheMarkedOneElseTheOneOfMostConfigurations) {
   LawTable table{1, {law_entry(0.65), law_entry(0.7), law_entry(0.75)}};
   table.entries[1].packings = 13;
   EXPECT_EQ(main_entry(table).solid_fraction, 0.7) << "of as many configurations the one of most packings";
-  for (CrowdLaw& law : table.entries[2].laws) law.errors.push_back({"two", "fitted", 0.1, 1.0, 0.1});
+  for (CrowdLaw& law : table.entries[2].laws) law.errors.push_back({"two", CrowdUse::fitted, 0.1, 1.0, 0.1});
   EXPECT_EQ(main_entry(table).solid_fraction, 0.75);
   table.entries[0].main = true;
   EXPECT_EQ(main_entry(table).solid_fraction, 0.65);

@@ -53,9 +53,9 @@ TEST(CrowdSetup, ReadsConfigurations) {
   EXPECT_TRUE(setup.configurations[2].held_out);
   const auto& stages = setup.configurations[1].stages;
   ASSERT_EQ(stages.size(), 3U);
-  EXPECT_EQ(stages[1].name, "unload");
+  EXPECT_EQ(stages[1].move, CrowdMove::unload);
   EXPECT_EQ(stages[1].overlap, (std::vector<double>{0.0, 0.0}));
-  EXPECT_EQ(stages[2].name, "reload");
+  EXPECT_EQ(stages[2].move, CrowdMove::reload);
   EXPECT_EQ(stages[2].overlap, (std::vector<double>{0.2, 0.2}));
 }
 

@@ -56,7 +56,7 @@ bool holds(const Estimate& e, double truth) { return e.low <= truth && truth <= 
 TEST(ExperimentFit, ExactCurveOfOneSampleGivesItsLaw) {
   const KnownLaw truth;
   const PairLaw law = fit_experiment({make({.noise = 0.0})}, replicates(50), false).card.pairs.at(0);
-  EXPECT_EQ(law.status, "good") << law.reason;
+  EXPECT_EQ(law.status, LawStatus::good) << law.reason;
   EXPECT_NEAR(law.normal.a.value / truth.a, 1.0, 1e-6);
   EXPECT_NEAR(law.normal.b.value, truth.b, 1e-6);
   EXPECT_NEAR(law.normal.delta.value, truth.delta, 1e-6);
@@ -71,7 +71,7 @@ int missed_intervals(bool errors, std::uint64_t seeds) {
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const auto fit = fit_experiment({make({.errors = errors, .seed = seed})}, replicates(40), false);
     const PairLaw& law = fit.card.pairs.at(0);
-    EXPECT_EQ(law.status, "good") << law.reason;
+    EXPECT_EQ(law.status, LawStatus::good) << law.reason;
     EXPECT_TRUE(fit.reports[0].from_residuals);
     missed += holds(law.normal.b, truth.b) ? 0 : 1;
     width += (law.normal.b.high - law.normal.b.low) / static_cast<double>(seeds);
@@ -161,7 +161,7 @@ TEST(ExperimentFit, NoiseWithoutForceCrossesNoThreshold) {
   nothing.a = 0.0;
   const auto fit = fit_experiment({make({.law = nothing})}, replicates(20), true);
   ASSERT_EQ(fit.card.pairs.size(), 1U);
-  EXPECT_EQ(fit.card.pairs[0].status, "no threshold crossing");
+  EXPECT_EQ(fit.card.pairs[0].status, LawStatus::no_threshold_crossing);
 }
 
 TEST(ExperimentFit, ALawWithoutThresholdIsMarked) {
@@ -169,7 +169,7 @@ TEST(ExperimentFit, ALawWithoutThresholdIsMarked) {
   straight.delta = 0.0;
   straight.b = 1.5;
   const PairLaw law = fit_experiment({make({.noise = 0.0, .law = straight})}, replicates(20), false).card.pairs.at(0);
-  EXPECT_EQ(law.status, "underdetermined");
+  EXPECT_EQ(law.status, LawStatus::underdetermined);
   EXPECT_NE(law.reason.find("no threshold"), std::string::npos) << law.reason;
 }
 
@@ -179,7 +179,7 @@ TEST(ExperimentFit, TheMirrorImageTakesHalfOfTheOverlap) {
   const PairLaw& plane = fit.card.pairs[0];
   const PairLaw& pair = fit.card.pairs[1];
   EXPECT_EQ(pair.kind, PairKind::soft_soft);
-  EXPECT_EQ(pair.status, "underdetermined");
+  EXPECT_EQ(pair.status, LawStatus::underdetermined);
   for (const double d : {0.1, 0.2, 0.3}) EXPECT_NEAR(pair.normal.value(2.0 * d), plane.normal.value(d), 1e-12);
   EXPECT_NEAR(pair.normal.delta.low, 2.0 * plane.normal.delta.low, 1e-12);
   EXPECT_NEAR(pair.normal.c.value, -pair.normal.a.value * std::pow(pair.normal.delta.value, pair.normal.b.value),

@@ -160,7 +160,7 @@ TEST_F(ForceCurveFile, WrongFilesAreNamedWithTheirLine) {
 
 TEST_F(ForceCurveFile, UnloadingCanBeLeftOut) {
   ForceCurveOptions o;
-  o.drop_unloading = true;
+  o.unloading = Unloading::drop;
   const ForceCurves c = read(std::string(kGood) + "3.5, 900\n3.0, 500\n4.5, 2000\n", o);
   EXPECT_EQ(c.samples[0].normal.size(), 6U);
   ASSERT_EQ(c.remarks.size(), 1U);

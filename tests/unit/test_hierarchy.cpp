@@ -58,10 +58,10 @@ TEST(FillLevel, TheCountIsALimit) {
 TEST(LawDistance, IsZeroForTheSameLawAndGrowsWithTheDifference) {
   const LawTableEntry a = synthetic::law_entry();
   LawTableEntry b = a;
-  EXPECT_EQ(law_distance(a, b, "directional"), 0.0);
+  EXPECT_EQ(law_distance(a, b, Crowd::directional), 0.0);
   for (CrowdLaw& law : b.laws) law.a.value *= 1.1;
-  EXPECT_NEAR(law_distance(b, a, "directional"), 0.1, 1e-9);
-  EXPECT_NEAR(law_distance(b, a, "pair"), 0.1, 1e-9);
+  EXPECT_NEAR(law_distance(b, a, Crowd::directional), 0.1, 1e-9);
+  EXPECT_NEAR(law_distance(b, a, Crowd::pair), 0.1, 1e-9);
 }
 
 /// Shell A of radius 1, shell B of radius 0.5 in it that reaches through its wall, grains in B. `inner_first`: B has
@@ -131,8 +131,8 @@ class ResolvedInner : public ::testing::Test {
     for (std::uint64_t k = 0; k < 2; ++k) content_.inner_packings.push_back(generate_shell_packing(spec_, 1, 100 + k));
     laws_ = inner_laws(setup, synthetic::law_entry());
   }
-  CrowdExperiment make(const std::string& arranged, double overlap) {
-    return make_crowd(spec_, test::crowd_of(PartnerKind::plane, 0.0, arrangement(arranged), overlap), content_, {},
+  CrowdExperiment make(Arrangement arranged, double overlap) {
+    return make_crowd(spec_, test::crowd_of(PartnerKind::plane, 0.0, directions_of(arranged), overlap), content_, {},
                       &laws_);
   }
 
@@ -143,7 +143,7 @@ class ResolvedInner : public ::testing::Test {
 
 TEST_F(ResolvedInner, CountsAndMasses) {
   ASSERT_EQ(content_.inner.size(), 2U);
-  const CrowdExperiment e = make("opposite", 0.2);
+  const CrowdExperiment e = make(Arrangement::opposite, 0.2);
   const auto& p = e.system.particles;
   std::size_t grains = content_.grains.radius.size();
   for (const ShellPacking& inner : content_.inner_packings) grains += inner.radius.size();
@@ -173,7 +173,7 @@ TEST_F(ResolvedInner, CountsAndMasses) {
 }
 
 TEST_F(ResolvedInner, ForcesBalance) {
-  CrowdExperiment e = make("opposite", 0.25);
+  CrowdExperiment e = make(Arrangement::opposite, 0.25);
   CrowdOptions options;
   options.tolerance = 1e-3;
   const CrowdRun run = run_crowd(e, {{1.0}}, options);
@@ -190,7 +190,7 @@ TEST_F(ResolvedInner, ForcesBalance) {
 }
 
 TEST_F(ResolvedInner, OnlyTheCentreHoldsThem) {
-  const CrowdConfiguration c = test::crowd_of(PartnerKind::soft, 1.0, arrangement("one"), 0.2);
+  const CrowdConfiguration c = test::crowd_of(PartnerKind::soft, 1.0, directions_of(Arrangement::one), 0.2);
   EXPECT_THROW((void)make_crowd(spec_, c, content_, {&content_}, &laws_), BadInput);
 }
 

@@ -27,7 +27,7 @@ ThresholdPowerLaw published_law() {
 PairLaw sample_pair(PairKind kind) {
   PairLaw pair;
   pair.kind = kind;
-  pair.status = "good";
+  pair.status = LawStatus::good;
   pair.reason = "words with \"quotes\", a \\ and a\nline";
   pair.normal = pair.tangential_initial = pair.tangential_secant = published_law();
   pair.has_tangential_secant = true;
@@ -55,7 +55,7 @@ class LawCardFile : public testing::Test {
     card_.relaxation = "damped";
     card_.spec.shell_radius = 0.016;
     card_.pairs = {sample_pair(PairKind::soft_solid), sample_pair(PairKind::soft_soft)};
-    card_.pairs[1].status = "no threshold crossing";
+    card_.pairs[1].status = LawStatus::no_threshold_crossing;
     card_.pairs[1].normal.a = {std::nan(""), std::numeric_limits<double>::infinity(),
                                -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
@@ -141,7 +141,7 @@ TEST_F(LawCardFile, UnusableLawsKeepWhatIsNotKnown) {
   const LawCard in = load_card(path());
   const PairLaw* pair = in.find(PairKind::soft_soft);
   ASSERT_NE(pair, nullptr);
-  EXPECT_EQ(pair->status, "no threshold crossing");
+  EXPECT_EQ(pair->status, LawStatus::no_threshold_crossing);
   EXPECT_TRUE(std::isnan(pair->normal.a.value));
   EXPECT_EQ(pair->normal.a.low, -std::numeric_limits<double>::infinity());
 }

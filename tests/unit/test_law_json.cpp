@@ -12,7 +12,7 @@ using namespace softgrain;
 
 PairLaw example() {
   PairLaw law;
-  law.status = "good";
+  law.status = LawStatus::good;
   law.normal.a = {0.5755, 0.01, 0.55, 0.60};
   law.normal.b = {2.8, 0.03, 2.7, 2.9};
   law.normal.c = {-0.0003, 1e-5, -0.0004, -0.0002};
@@ -44,7 +44,7 @@ TEST(LawJson, UnknownIsNullAndStaysValidJson) {
   LawCard card;
   PairLaw law = example();
   law.kind = PairKind::soft_soft;
-  law.status = "underdetermined";
+  law.status = LawStatus::underdetermined;
   law.reason = "1 packing, 5 needed for an interval.";
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   law.normal.a = {0.5755, kInfinity, -kInfinity, kInfinity};
@@ -59,7 +59,7 @@ TEST(LawJson, UnknownIsNullAndStaysValidJson) {
 TEST(LawJson, NoCrossingHasNoLaw) {
   LawCard card;
   PairLaw law;
-  law.status = "no threshold crossing";
+  law.status = LawStatus::no_threshold_crossing;
   card.pairs.push_back(law);
   const auto j = laws_json(card)["soft-solid"];
   EXPECT_EQ(j["status"], "no threshold crossing");

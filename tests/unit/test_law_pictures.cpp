@@ -241,30 +241,31 @@ TEST(LawPictures, Crowds) {
       six.push_back(n);
     }
   std::vector<Series> curves;
-  for (const std::string name : {"pair", "bag", "directional"}) {
-    const CrowdLaw& law = *entry.find(name);
+  for (const auto& [kind, text] : words<Crowd>) {
+    const std::string name = text;
+    const CrowdLaw& law = *entry.find(kind);
     const CrowdForm form{{law.a.value, law.b.value, law.delta.value}, {law.m0.value, law.m1.value, law.m2.value}};
-    const char* color = name == "pair"  ? report::palette::grey
-                        : name == "bag" ? report::palette::vermillion
-                                        : report::palette::blue;
+    const char* color = kind == Crowd::pair  ? report::palette::grey
+                        : kind == Crowd::bag ? report::palette::vermillion
+                                             : report::palette::blue;
     Series alone = curve(name + ", one plane", color, "6 3");
     Series crowd = curve(name + ", six planes", color);
     for (int k = 0; k <= 50; ++k) {
       const double x = 0.2 * k / 50.0;
       alone.x.push_back(x);
       crowd.x.push_back(x);
-      alone.y.push_back(crowd_force(form, name == "bag", one, x));
-      crowd.y.push_back(name == "pair" ? alone.y.back() : crowd_force(form, name == "bag", six, x));
+      alone.y.push_back(crowd_force(form, kind == Crowd::bag, one, x));
+      crowd.y.push_back(kind == Crowd::pair ? alone.y.back() : crowd_force(form, kind == Crowd::bag, six, x));
       // One plane alone is the power law itself, whatever the coupling is.
       const double power =
           x > law.delta.value ? law.a.value * (std::pow(x, law.b.value) - std::pow(law.delta.value, law.b.value)) : 0.0;
       EXPECT_NEAR(alone.y.back(), power, 1e-9 + 1e-6 * power);
     }
-    if (name != "pair") {
+    if (kind != Crowd::pair) {
       EXPECT_GT(crowd.y.back(), 2.0 * alone.y.back());
     }
     curves.push_back(alone);
-    if (name != "pair") curves.push_back(crowd);
+    if (kind != Crowd::pair) curves.push_back(crowd);
   }
   expect_picture({.id = "crowd",
                   .title = "One and six planes: the table of results/law_table",

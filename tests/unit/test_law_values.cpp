@@ -79,7 +79,7 @@ TEST(CardValues, BeyondTheRange) {
   const auto refused = at(Beyond::error);
   EXPECT_FALSE(refused[1].refused);
   EXPECT_TRUE(refused[3].refused);
-  const law::ValueTable table{"soft-solid", "good", "", Beyond::error, false, refused};
+  const law::ValueTable table{"soft-solid", LawStatus::good, "", Beyond::error, false, refused};
   EXPECT_TRUE(law::values_json(table, {})["values"][3]["force"].is_null());
   EXPECT_NE(law::values_csv({table}, {}).find(",0.4,0.4,,,,,,,,,,,,,beyond range: refused"), std::string::npos);
 }
@@ -150,8 +150,8 @@ TEST(CardValues, BandsComeWithTheCardUnlessItWasEdited) {
 }
 
 struct Asked {
-  std::string form;
-  std::string arrangement;
+  Crowd form;
+  Arrangement arrangement;
   PartnerKind partner;
   double ratio;
 };
@@ -168,9 +168,9 @@ class CrowdValues : public ::testing::TestWithParam<Asked> {
   }
   [[nodiscard]] std::vector<double> predicted(const std::vector<double>& overlap) const {
     std::vector<CrowdPartner> partners;
-    for (const Vec3& d : arrangement(question_.arrangement))
+    for (const Vec3& d : directions_of(question_.arrangement))
       partners.push_back({question_.partner, question_.partner == PartnerKind::plane ? 0.0 : question_.ratio, d});
-    return crowd_forces(crowd_model(*entry_.find(question_.form)), partners, overlap);
+    return crowd_forces(crowd_model(*entry_.find(*question_.form)), partners, overlap);
   }
   LawTableEntry entry_;
   law::CrowdQuestion question_;
@@ -199,15 +199,16 @@ TEST_P(CrowdValues, AreThoseOfThePrediction) {
 }
 
 INSTANTIATE_TEST_SUITE_P(FormsAndNeighbours, CrowdValues,
-                         ::testing::Values(Asked{"pair", "one", PartnerKind::plane, 1.0},
-                                           Asked{"pair", "cube", PartnerKind::solid, 0.7},
-                                           Asked{"bag", "tetrahedron", PartnerKind::plane, 1.0},
-                                           Asked{"bag", "octant", PartnerKind::soft, 0.5},
-                                           Asked{"directional", "cube", PartnerKind::plane, 1.0},
-                                           Asked{"directional", "random-8", PartnerKind::solid, 1.3},
-                                           Asked{"directional", "beside-five", PartnerKind::soft, 2.0}),
+                         ::testing::Values(Asked{Crowd::pair, Arrangement::one, PartnerKind::plane, 1.0},
+                                           Asked{Crowd::pair, Arrangement::cube, PartnerKind::solid, 0.7},
+                                           Asked{Crowd::bag, Arrangement::tetrahedron, PartnerKind::plane, 1.0},
+                                           Asked{Crowd::bag, Arrangement::octant, PartnerKind::soft, 0.5},
+                                           Asked{Crowd::directional, Arrangement::cube, PartnerKind::plane, 1.0},
+                                           Asked{Crowd::directional, Arrangement::random_8, PartnerKind::solid, 1.3},
+                                           Asked{Crowd::directional, Arrangement::beside_five, PartnerKind::soft, 2.0}),
                          [](const auto& i) {
-                           std::string name = i.param.form + i.param.arrangement + to_string(i.param.partner);
+                           std::string name =
+                               to_string(i.param.form) + to_string(i.param.arrangement) + to_string(i.param.partner);
                            std::erase(name, '-');
                            return name;
                          });
@@ -222,7 +223,7 @@ TEST(CrowdTables, IntervalsAreThoseOfTheReplicates) {
     directional.replicates.push_back(numbers);
   }
   law::CrowdQuestion q;
-  q.arrangement = "octant";
+  q.arrangement = Arrangement::octant;
   const law::CrowdAnswer answer = law::crowd_values({1, {entry}}, q, {0.2});
   const law::Quantity& force = answer.points[0].force;
   EXPECT_EQ(answer.replicates, 41u);
@@ -230,7 +231,7 @@ TEST(CrowdTables, IntervalsAreThoseOfTheReplicates) {
   // Quantile p of n numbers in order: number p (n + 1), between 1 and 2 here.
   EXPECT_NEAR(force.interval->low, 0.8005 * force.value, 1e-12);
   EXPECT_NEAR(force.interval->high, 1.1995 * force.value, 1e-12);
-  q.form = "bag";
+  q.form = Crowd::bag;
   EXPECT_FALSE(law::crowd_values({1, {entry}}, q, {0.2}).points[0].force.interval.has_value());
 }
 
@@ -239,7 +240,7 @@ TEST(CrowdTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
   const std::string path = directory.file("law_table.toml");
   LawTable table{1, {synthetic::law_entry(0.7), synthetic::law_entry(0.75, 0.02)}};
   for (LawTableEntry& e : table.entries)
-    e.laws[1].replicates = {crowd_numbers(e.laws[1]), crowd_numbers(synthetic::crowd_law("bag", 0.03))};
+    e.laws[1].replicates = {crowd_numbers(e.laws[1]), crowd_numbers(synthetic::crowd_law(Crowd::bag, 0.03))};
   save_law_table(table, path);
   LawTable read = load_law_table(path);
   EXPECT_TRUE(read.entries[0].laws[1].replicates.empty());
@@ -247,9 +248,9 @@ TEST(CrowdTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
   for (std::size_t k = 0; k < 2; ++k)
     EXPECT_EQ(read.entries[k].laws[1].replicates, table.entries[k].laws[1].replicates);
   EXPECT_TRUE(read.entries[0].laws[2].replicates.empty());
-  EXPECT_EQ(replicate_count(read, "bag"), 2u);
-  EXPECT_EQ(replicate_count(read, "pair"), 0u);
-  const LawTable drawn = replicate_of(read, "bag", 1);
+  EXPECT_EQ(replicate_count(read, Crowd::bag), 2u);
+  EXPECT_EQ(replicate_count(read, Crowd::pair), 0u);
+  const LawTable drawn = replicate_of(read, Crowd::bag, 1);
   EXPECT_EQ(crowd_numbers(drawn.entries[0].laws[1]), table.entries[0].laws[1].replicates[1]);
   EXPECT_EQ(crowd_numbers(drawn.entries[0].laws[0]), crowd_numbers(table.entries[0].laws[0]));
   LawTable edited = load_law_table(path);
@@ -262,11 +263,11 @@ TEST(CrowdTables, ReplicatesAreKeptBesideTheTableAndBelongToItsNumbers) {
 TEST(CrowdTables, WhatWasNotMeasuredIsSaid) {
   const LawTable table{1, {synthetic::law_entry()}};
   law::CrowdQuestion q;
-  q.arrangement = "cube";
+  q.arrangement = Arrangement::cube;
   const law::CrowdAnswer planes = law::crowd_values(table, q, {0.1, 0.27});
   EXPECT_EQ(planes.points[0].where, Where::inside);
   EXPECT_EQ(planes.points[1].where, Where::beyond);  // by volume
-  q.arrangement = "one";
+  q.arrangement = Arrangement::one;
   EXPECT_EQ(law::crowd_values(table, q, {0.3}).points[0].where, Where::beyond);  // by depth
   q.partner = PartnerKind::soft;
   q.ratio = 5.0;

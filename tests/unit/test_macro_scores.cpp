@@ -68,7 +68,7 @@ TEST(MacroScores, EveryEngineAgainstEveryTwin) {
 
 TEST(MacroScores, TheDeviatorCountsAfterThePreload) {
   MacroCurve a = curve("pair", 0, 1.0);
-  a.test = "shear";
+  a.test = MacroTest::shear;
   for (double& e : a.strain) e -= 0.02;
   MacroCurve b = a;
   b.engine = "shelled";

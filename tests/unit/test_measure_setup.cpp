@@ -22,15 +22,15 @@ MeasureSetup read(const std::string& measure, const std::string& reference = "")
 const std::string kNone = "[measure.least_work]\nincrement_passes = 0\n";
 
 TEST(MeasureSetup, LeastWorkWithoutIncrementsOfLeastWorkIsCalledSlowDynamics) {
-  EXPECT_EQ(read("").series[0].relaxation, "least-work");
-  EXPECT_EQ(read("relaxation = \"least-work\"\n" + kNone).series[0].relaxation, "slow-dynamics");
-  EXPECT_EQ(read(kNone).series[0].relaxation, "slow-dynamics");
-  EXPECT_EQ(read("relaxation = \"slow-dynamics\"").series[0].relaxation, "slow-dynamics");
-  EXPECT_EQ(read("relaxation = \"damped\"\n" + kNone).series[0].relaxation, "damped");
+  EXPECT_EQ(read("").series[0].relaxation, Relaxation::least_work);
+  EXPECT_EQ(read("relaxation = \"least-work\"\n" + kNone).series[0].relaxation, Relaxation::slow_dynamics);
+  EXPECT_EQ(read(kNone).series[0].relaxation, Relaxation::slow_dynamics);
+  EXPECT_EQ(read("relaxation = \"slow-dynamics\"").series[0].relaxation, Relaxation::slow_dynamics);
+  EXPECT_EQ(read("relaxation = \"damped\"\n" + kNone).series[0].relaxation, Relaxation::damped);
   const MeasureSetup beside =
       read("relaxation = \"slow-dynamics\"",
            "[reference]\nrelaxation = \"least-work\"\n[reference.soft_solid]\ndeltas = [0.1]\n");
-  EXPECT_EQ(beside.series[1].relaxation, "least-work");
+  EXPECT_EQ(beside.series[1].relaxation, Relaxation::least_work);
 }
 
 TEST(MeasureSetup, SlowDynamicsAndIncrementsOfLeastWorkExcludeEachOther) {
@@ -51,7 +51,7 @@ TEST(MeasureSetup, SlowDynamicsAndIncrementsOfLeastWorkExcludeEachOther) {
 TEST(MeasureSetup, TheScenesOfSlowDynamicsRecordItAsThat) {
   for (const char* name : {"quickstart", "published", "calibration"}) {
     const Scene scene = Scene::load(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/" + name + ".toml");
-    EXPECT_EQ(read_measure_setup(scene.root()).series[0].relaxation, "slow-dynamics") << name;
+    EXPECT_EQ(read_measure_setup(scene.root()).series[0].relaxation, Relaxation::slow_dynamics) << name;
   }
 }
 

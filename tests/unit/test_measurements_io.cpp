@@ -133,7 +133,7 @@ TEST(MacroIo, RoundTripIsExactAndKeepsTheOrder) {
   for (std::size_t k = 0; k < out.size(); ++k) {
     MacroCurve& c = out[k];
     c.engine = k % 2 == 0 ? "law" : "shelled";
-    c.test = "oedometric";
+    c.test = MacroTest::oedometric;
     c.sample = static_cast<std::int64_t>(k);
     c.bodies = 100;
     c.soft = 20;
@@ -170,7 +170,7 @@ TEST(MacroIo, LaterColumnsAreKeptAndMayBeAbsent) {
   std::vector<MacroCurve> out(2);
   for (MacroCurve& c : out) {
     c.engine = "free";
-    c.test = "shear";
+    c.test = MacroTest::shear;
     c.strain = c.stress_axial = c.stress_lateral = c.stress_axial_contacts = c.coordination = c.residual = {0.0, 0.1};
   }
   MacroCurve& full = out[1];

@@ -17,7 +17,7 @@ using namespace softgrain::test;
 PairLaw good_law(PairKind kind, double a) {
   PairLaw law;
   law.kind = kind;
-  law.status = "good";
+  law.status = LawStatus::good;
   law.normal.a = {a, 0.01, 0.9 * a, 1.1 * a};
   law.normal.b = {2.2, 0.02, 2.1, 2.3};
   law.normal.delta = {0.05, 0.001, 0.04, 0.06};

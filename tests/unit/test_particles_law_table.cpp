@@ -82,7 +82,7 @@ class ParticlesLawTable : public ::testing::Test {
     return text + (soft_first ? bag + others : others + bag) + "[time]\nend = 1e-4\n";
   }
   /// Forces on the neighbours in the order of squeezed(), over E R^2, as the fits predict them.
-  static std::vector<double> predicted(const LawTableEntry& entry, const std::string& form) {
+  static std::vector<double> predicted(const LawTableEntry& entry, Crowd form) {
     const std::vector<CrowdPartner> partners{{PartnerKind::plane, 0.0, {{-1.0, 0.0, 0.0}}},
                                              {PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}},
                                              {PartnerKind::solid, 1.0, {{0.0, 1.0, 0.0}}},
@@ -127,9 +127,10 @@ class ParticlesLawTable : public ::testing::Test {
 
 /// The soft neighbour is too small for the planes: it touches the particle in the middle alone, as the model has it.
 TEST_F(ParticlesLawTable, SeveralContactsAtOnceHaveTheForcesOfTheModel) {
-  for (const std::string form : {"pair", "bag", "directional"})
+  for (const auto& [form, name] : words<Crowd>)
     for (const bool soft_first : {true, false}) {
-      const std::string text = contacts("file = \"one.toml\"\nform = \"" + form + "\"\n") + squeezed(soft_first);
+      const std::string text =
+          contacts("file = \"one.toml\"\nform = \"" + std::string(name) + "\"\n") + squeezed(soft_first);
       expect_forces(read(text), predicted(synthetic::law_entry(0.66), form), 1.0);
     }
 }
@@ -141,9 +142,9 @@ TEST_F(ParticlesLawTable, TheEntryIsThatOfTheSolidFraction) {
   const auto at = [&](const std::string& choice) {
     return read(contacts("file = \"table.toml\"\nform = \"bag\"\n" + choice) + squeezed(true));
   };
-  expect_forces(at("solid_fraction = 0.69\n"), predicted(between, "bag"), 1.0);
-  expect_forces(at("solid_fraction = 0.72\n"), predicted(table.entries[1], "bag"), 1.0);
-  expect_forces(at("solid_fraction = 0.9\nrange = \"clamp\"\n"), predicted(table.entries[1], "bag"), 1.0);
+  expect_forces(at("solid_fraction = 0.69\n"), predicted(between, Crowd::bag), 1.0);
+  expect_forces(at("solid_fraction = 0.72\n"), predicted(table.entries[1], Crowd::bag), 1.0);
+  expect_forces(at("solid_fraction = 0.9\nrange = \"clamp\"\n"), predicted(table.entries[1], Crowd::bag), 1.0);
   EXPECT_TRUE(at("solid_fraction = 0.69\n").remarks.empty());
   const auto remarks = at("solid_fraction = 0.9\nrange = \"clamp\"\n").remarks;
   ASSERT_FALSE(remarks.empty());

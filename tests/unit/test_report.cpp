@@ -122,11 +122,11 @@ TEST(ErrorCosts, LawAndRelaxationAgainstTheirReferences) {
 
 /// A shell that moves may leave every neighbour: nothing was loaded then, and there is nothing to draw.
 TEST_F(Report, ACrowdThatNeverTouchedIsLeftOut) {
-  const CrowdModel model = crowd_model(synthetic::crowd_law("pair"));
+  const CrowdModel model = crowd_model(synthetic::crowd_law(Crowd::pair));
   CrowdMeasurements data =
       synthetic::crowd_measurements(model,
-                                    {synthetic::crowd_configuration("one", PartnerKind::plane, 0.0, 0.3),
-                                     synthetic::crowd_configuration("cube", PartnerKind::plane, 0.0, 0.2)},
+                                    {synthetic::crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+                                     synthetic::crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2)},
                                     {});
   data.configurations[1].centre_free = true;
   for (CrowdRun& run : data.runs)
@@ -182,7 +182,7 @@ TEST_F(Report, LawsOfTheSummaryStandInForACard) {
 
 TEST_F(Report, UnusableResultsAreSaid) {
   auto card = synthetic::card();
-  card.pairs[1].status = "no threshold crossing";
+  card.pairs[1].status = LawStatus::no_threshold_crossing;
   card.pairs[1].reason = "force is zero up to Delta 0.30";
   save_card(card, path("law.toml"));
   auto macro = synthetic::macro();

@@ -22,7 +22,7 @@ std::string all_of(const std::vector<std::string>& lines) {
   return text;
 }
 
-std::vector<MacroCurve> curves_with(const std::string& form) {
+std::vector<MacroCurve> curves_with(Crowd form) {
   std::vector<MacroCurve> curves = synthetic::macro();
   for (MacroCurve& c : curves)
     if (c.engine == "law") c.law = {form, 0.7, 5e5, 0.3, 0.3, "numbers"};
@@ -33,7 +33,7 @@ TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
   const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
   double least = 1e9;
   double most = 0.0;
-  for (const ConfigurationError& e : main_entry(table).find("pair")->errors) {
+  for (const ConfigurationError& e : main_entry(table).find(Crowd::pair)->errors) {
     if (e.name.starts_with("one-")) continue;
     least = std::min(least, 1.0 / e.end_ratio);
     most = std::max(most, 1.0 / e.end_ratio);
@@ -44,27 +44,27 @@ TEST(PairLawRemark, GivesWhatWasMeasuredForTheCommittedTable) {
 }
 
 TEST(MacroRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
-  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with("pair"))), pair_law_remark()));
-  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with("pair"))), "stands in for the friction limit"));
-  for (const char* form : {"bag", "directional"}) {
+  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(Crowd::pair))), pair_law_remark()));
+  EXPECT_TRUE(has_text(all_of(macro_remarks(curves_with(Crowd::pair))), "stands in for the friction limit"));
+  for (const Crowd form : {Crowd::bag, Crowd::directional}) {
     const std::string said = all_of(macro_remarks(curves_with(form)));
-    EXPECT_FALSE(has_text(said, "one contact")) << form << ": " << said;
-    EXPECT_FALSE(has_text(said, "against a plane")) << form << ": " << said;
+    EXPECT_FALSE(has_text(said, "one contact")) << to_string(form) << ": " << said;
+    EXPECT_FALSE(has_text(said, "against a plane")) << to_string(form) << ": " << said;
   }
 }
 
 TEST(ReportRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
   report::RunData run;
   run.summary = nlohmann::json::object();
-  run.macro = curves_with("pair");
+  run.macro = curves_with(Crowd::pair);
   EXPECT_TRUE(has_text(report::remarks_section(run), "1.2 to 9 times"));
-  run.macro = curves_with("directional");
+  run.macro = curves_with(Crowd::directional);
   EXPECT_EQ(report::remarks_section(run), "");
 }
 
 TEST(ReportMacro, NamesTheLawOfItsCurves) {
   report::RunData run;
-  run.macro = curves_with("directional");
+  run.macro = curves_with(Crowd::directional);
   EXPECT_TRUE(has_text(report::macro_section(run), "directional law at solid fraction 0.7000"));
   EXPECT_TRUE(has_text(report::macro_section(run), "mu = 0.3, taken with E = 500000 Pa; numbers numbers"));
   run.macro = synthetic::macro();

@@ -113,7 +113,7 @@ TEST(Snapshot, ComesBackFromAFile) {
   EXPECT_EQ(b.label, "a label");
   EXPECT_EQ(b.frame, 7);
   EXPECT_EQ(b.moment(), 0.125);
-  EXPECT_EQ(b.moment_name(), "strain");
+  EXPECT_EQ(b.moment_name(), Moment::strain);
   EXPECT_TRUE(b.has_velocity);
   EXPECT_EQ(b.cell_edges, shot.cell_edges);
   EXPECT_EQ(b.periodic, shot.periodic);

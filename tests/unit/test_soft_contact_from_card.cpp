@@ -11,7 +11,7 @@ namespace {
 
 using namespace softgrain;
 
-LawCard card_with(PairKind kind, const std::string& status) {
+LawCard card_with(PairKind kind, LawStatus status) {
   PairLaw law;
   law.kind = kind;
   law.status = status;
@@ -39,7 +39,7 @@ ContactState<3> pressed(const SoftContact& law, double ratio) {
 }
 
 TEST(SoftContactFromCard, ScalesWithModulusAndRadius) {
-  const LawCard card = card_with(PairKind::soft_soft, "good");
+  const LawCard card = card_with(PairKind::soft_soft, LawStatus::good);
   const SoftContact law = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, false);
   EXPECT_TRUE(law.partner_is_soft);
   const auto r = law.evaluate(pressed(law, 0.3));
@@ -55,11 +55,12 @@ TEST(SoftContactFromCard, UnusableLawsAreRefused) {
   const auto make = [](const LawCard& card, PairKind kind) {
     return make_soft_contact(card, kind, 1e5, 0.3, 0.0, false);
   };
-  for (const char* status : {"no threshold crossing", "not run"})
-    EXPECT_THROW((void)make(card_with(PairKind::soft_solid, status), PairKind::soft_solid), BadInput) << status;
-  EXPECT_NO_THROW((void)make(card_with(PairKind::soft_solid, "underdetermined"), PairKind::soft_solid));
-  EXPECT_THROW((void)make(card_with(PairKind::soft_solid, "good"), PairKind::soft_soft), BadInput);
-  LawCard broken = card_with(PairKind::soft_solid, "good");
+  for (const LawStatus status : {LawStatus::no_threshold_crossing, LawStatus::not_run})
+    EXPECT_THROW((void)make(card_with(PairKind::soft_solid, status), PairKind::soft_solid), BadInput)
+        << to_string(status);
+  EXPECT_NO_THROW((void)make(card_with(PairKind::soft_solid, LawStatus::underdetermined), PairKind::soft_solid));
+  EXPECT_THROW((void)make(card_with(PairKind::soft_solid, LawStatus::good), PairKind::soft_soft), BadInput);
+  LawCard broken = card_with(PairKind::soft_solid, LawStatus::good);
   broken.pairs[0].normal.b.value = std::nan("");
   EXPECT_THROW((void)make(broken, PairKind::soft_solid), BadInput);
 }

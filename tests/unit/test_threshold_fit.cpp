@@ -27,9 +27,9 @@ FitOptions few_replicates(int n = 60) {
 bool mentions(const PairLaw& law, const std::string& text) { return law.reason.find(text) != std::string::npos; }
 
 TEST(ThresholdFit, ResultStartsAsNotRun) {
-  EXPECT_EQ(FitReport{}.law.status, "not run");
+  EXPECT_EQ(FitReport{}.law.status, LawStatus::not_run);
   const auto report = fit_pair_law(synthetic({}), PairKind::soft_soft, few_replicates());
-  EXPECT_EQ(report.law.status, "not run");
+  EXPECT_EQ(report.law.status, LawStatus::not_run);
   EXPECT_FALSE(report.law.reason.empty());
 }
 
@@ -37,7 +37,7 @@ TEST(ThresholdFit, ExactDataAreRecoveredToNineDigits) {
   const SyntheticOptions o;
   const auto report = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates());
   const PairLaw& law = report.law;
-  EXPECT_EQ(law.status, "good") << law.reason << report.fit_message;
+  EXPECT_EQ(law.status, LawStatus::good) << law.reason << report.fit_message;
   EXPECT_NEAR(law.normal.a.value / o.normal.a, 1.0, 1e-9);
   EXPECT_NEAR(law.normal.b.value / o.normal.b, 1.0, 1e-9);
   EXPECT_NEAR(law.normal.delta.value / o.normal.delta, 1.0, 1e-9);
@@ -125,7 +125,7 @@ TEST(ThresholdFit, DataWithoutThresholdSayThatDeltaIsAtItsBound) {
   SyntheticOptions o;
   o.normal.delta = 0.0;
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
-  EXPECT_EQ(law.status, "underdetermined");
+  EXPECT_EQ(law.status, LawStatus::underdetermined);
   EXPECT_TRUE(mentions(law, "no threshold")) << law.reason;
   EXPECT_NEAR(law.normal.b.value, o.normal.b, 1e-4);
   EXPECT_NEAR(law.normal.delta.value, 0.0, 2e-3);
@@ -135,7 +135,7 @@ TEST(ThresholdFit, NoCrossing) {
   SyntheticOptions o;
   o.normal.delta = 0.3;
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
-  EXPECT_EQ(law.status, "no threshold crossing");
+  EXPECT_EQ(law.status, LawStatus::no_threshold_crossing);
   EXPECT_FALSE(law.reason.empty());
   EXPECT_EQ(law.normal.a.value, 0.0);
 }
@@ -144,14 +144,14 @@ TEST(ThresholdFit, ForcesLostInScatterAreNoCrossing) {
   auto data = synthetic({});
   for (auto& run : data.runs)
     for (auto& p : run.normal) p.force = run.packing == 3 ? 0.01 * p.delta : 0.0;
-  EXPECT_EQ(fit_pair_law(data, PairKind::soft_solid, few_replicates()).law.status, "no threshold crossing");
+  EXPECT_EQ(fit_pair_law(data, PairKind::soft_solid, few_replicates()).law.status, LawStatus::no_threshold_crossing);
 }
 
 TEST(ThresholdFit, OnePackingIsUnderdetermined) {
   SyntheticOptions o;
   o.packings = 1;
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
-  EXPECT_EQ(law.status, "underdetermined");
+  EXPECT_EQ(law.status, LawStatus::underdetermined);
   EXPECT_TRUE(mentions(law, "1 packing, 5 needed")) << law.reason;
   EXPECT_EQ(law.chi2_per_dof, 0.0);                      // one packing has no scatter to judge by
   EXPECT_NEAR(law.normal.b.value, o.normal.b, 1e-6);     // the best values are still there
@@ -165,7 +165,7 @@ TEST(ThresholdFit, TwoPointsAreUnderdetermined) {
   o.a_initial = 0.0;
   o.factor_scatter = 0.1;
   const auto report = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates());
-  EXPECT_EQ(report.law.status, "underdetermined");
+  EXPECT_EQ(report.law.status, LawStatus::underdetermined);
   EXPECT_TRUE(mentions(report.law, "2 points clearly above zero, 3 needed")) << report.law.reason;
   EXPECT_TRUE(mentions(report.law, "rank-deficient")) << report.law.reason;
   EXPECT_TRUE(std::isinf(report.law.normal.a.standard_error));
@@ -175,7 +175,7 @@ TEST(ThresholdFit, FlatTangentialCurveDoesNotSpoilTheNormalLaw) {
   SyntheticOptions o;
   o.a_initial = 1e-12;
   const auto law = fit_pair_law(synthetic(o), PairKind::soft_solid, few_replicates()).law;
-  EXPECT_EQ(law.status, "underdetermined");
+  EXPECT_EQ(law.status, LawStatus::underdetermined);
   EXPECT_TRUE(mentions(law, "initial tangential stiffness: 0 points")) << law.reason;
   EXPECT_NEAR(law.normal.b.value, o.normal.b, 1e-6);
 }
@@ -189,13 +189,13 @@ TEST(ThresholdFit, UnconvergedPointsAreLeftOutAndCounted) {
     data.runs[i].tangential[3].converged = false;
   }
   const auto report = fit_pair_law(data, PairKind::soft_solid, few_replicates());
-  EXPECT_EQ(report.law.status, "good") << report.law.reason;
+  EXPECT_EQ(report.law.status, LawStatus::good) << report.law.reason;
   EXPECT_NEAR(report.law.normal.b.value, 2.799, 1e-8);
   EXPECT_EQ(report.normal_left_out, 2);
   EXPECT_EQ(report.tangential_left_out, 2);
   for (auto& run : data.runs)
     for (auto& p : run.normal) p.converged = false;
-  EXPECT_EQ(fit_pair_law(data, PairKind::soft_solid, few_replicates()).law.status, "underdetermined");
+  EXPECT_EQ(fit_pair_law(data, PairKind::soft_solid, few_replicates()).law.status, LawStatus::underdetermined);
 }
 
 TEST(ThresholdFit, RelaxationsAreNotMixed) {
@@ -308,8 +308,8 @@ TEST(ThresholdFit, CalibrateCoversEveryPairKindPresent) {
   const LawCard card = calibrate(data, few_replicates(), &reports);
   ASSERT_EQ(card.pairs.size(), 2U);
   ASSERT_EQ(reports.size(), 2U);
-  EXPECT_EQ(card.pairs[0].status, "good");
-  EXPECT_EQ(card.pairs[1].status, "no threshold crossing");
+  EXPECT_EQ(card.pairs[0].status, LawStatus::good);
+  EXPECT_EQ(card.pairs[1].status, LawStatus::no_threshold_crossing);
   EXPECT_EQ(card.relaxation, "damped");
   EXPECT_THROW(calibrate(Measurements{}), BadInput);
 }

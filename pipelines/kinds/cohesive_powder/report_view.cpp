@@ -148,6 +148,7 @@ struct LegendEntry {
   const char* color;
   const char* text;
   bool disk = false;
+  bool dashed = false;
 };
 
 std::string draw_legend_row(const std::vector<LegendEntry>& entries, double y) {
@@ -157,8 +158,7 @@ std::string draw_legend_row(const std::vector<LegendEntry>& entries, double y) {
     out += e.disk ? fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"6\" fill=\"{}\" stroke=\"#8d8575\"/>",
                                 svg::number(x + 10.0), svg::number(y), e.color)
                   : fmt::format("<path d=\"M{} {}h20\" stroke=\"{}\" stroke-width=\"3\"{}/>", svg::number(x),
-                                svg::number(y), e.color,
-                                std::string(e.text) == "distant pair" ? " stroke-dasharray=\"4 2.4\"" : "");
+                                svg::number(y), e.color, e.dashed ? " stroke-dasharray=\"4 2.4\"" : "");
     out += svg::text(x + 25.0, y + 4.0, e.text, {.size = 11.5, .anchor = "start"});
     x += 25.0 + svg::text_width(e.text, 11.5) + 10.0;
   }
@@ -210,7 +210,7 @@ std::string packing_view(const PowderSample& sample, PowderLines lines, double z
   const double bottom = kTop + view.height();
   std::vector<LegendEntry> legend{{kCompressive, "compressive"}, {kTensile, "tensile"}};
   if (lines == PowderLines::stressed) legend.push_back({kBlue, "unstressed"});
-  legend.push_back({kBlue, "distant pair"});
+  legend.push_back({kBlue, "distant pair", false, true});
   legend.push_back({kIdleDisk, "disk without force", true});
   return open_svg(kWidth, bottom + kLegend, title) +
          svg::text(kMargin, 18.0, title, {.size = 13.5, .anchor = "start", .bold = true}) +

@@ -218,7 +218,7 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, con
   for (const auto& remark : summary["remarks"]) people += "note: " + remark.get<std::string>() + "\n";
   context.finish(summary, people + "data: " + context.path("powder.h5"));
   store.clear();
-  return summary["status"] == "good" ? ExitStatus::good : ExitStatus::not_usable;
+  return has_status(summary, RunStatus::good) ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pipelines/run/run_context.h"
 #include "pipelines/run/sample_statistics.h"
 
 namespace softgrain {
@@ -90,7 +91,7 @@ json differences(const json& values, const json& published) {
 }
 
 std::string reason_of(const json& summary) {
-  if (summary.value("status", "") == "good" || !summary.contains("remarks")) return "";
+  if (has_status(summary, RunStatus::good) || !summary.contains("remarks")) return "";
   std::string out;
   for (const json& remark : summary["remarks"]) {
     const std::string text = remark.get<std::string>();

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "pipelines/kinds/cohesive_powder/variant_entry.h"
+#include "pipelines/run/run_context.h"
 
 namespace softgrain {
 
@@ -101,12 +102,12 @@ TextTable powder_people_table(const json& entries) {
 std::string powder_variant_line(const json& entry) {
   std::string line = entry["name"].get<std::string>() + ": ";
   for (const std::string name : kCompared) {
-    if (entry["status"] == "not run") break;
+    if (has_status(entry, RunStatus::not_run)) break;
     const std::string published = theirs(entry, name);
     line += fmt::format("{} {}{}, ", name, ours(entry, name, "{:.4f}"),
                         published.empty() ? "" : " (published " + published + ")");
   }
-  if (entry["status"] == "not run") return line + "not run\n";
+  if (has_status(entry, RunStatus::not_run)) return line + "not run\n";
   line += samples_text(entry) + " samples at rest";
   const std::string reason = entry["reason"];
   return line + (reason.empty() ? "" : "; NOT USABLE: " + reason) + "\n";

@@ -91,7 +91,7 @@ ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options)
     const std::string line = powder_variant_line(entries.back());
     if (variant.picked) context.say(line.substr(0, line.size() - 1));
     people += line;
-    usable = usable && (!variant.picked || entries.back()["status"] == "good");
+    usable = usable && (!variant.picked || has_status(entries.back(), RunStatus::good));
     write_tables(entries, context);
   }
   const std::uint64_t seed = context.seed(variants.front().setup.seed);

@@ -13,8 +13,8 @@ namespace softgrain {
 namespace {
 
 std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
-  return fmt::format("{} {} voids {:a} {:a} {} {}", setup.form, setup.unloading, setup.voids.r_max, setup.voids.r_min,
-                     setup.voids.count, numbers_of(below, setup.form));
+  return fmt::format("{} {} voids {:a} {:a} {} {}", to_string(setup.form), setup.unloading, setup.voids.r_max,
+                     setup.voids.r_min, setup.voids.count, numbers_of(below, setup.form));
 }
 
 /// Facts about the inner soft particles, over the packings of the pool.
@@ -89,7 +89,7 @@ CrowdLevel crowd_level(const HierarchySetup& setup, LevelContents& contents, std
 
 /// How far the law has moved from one level to the next, and how much of that packings alone would make.
 void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, const CrowdMeasurements& data,
-                        const CrowdMeasurements& data_below, const std::string& form) {
+                        const CrowdMeasurements& data_below, Crowd form) {
   double noise = 0.0;
   for (std::size_t c = 0; c < data.configurations.size(); ++c) {
     level.changes.push_back(change_of(data, data_below, static_cast<std::int64_t>(c)));
@@ -130,7 +130,7 @@ InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
   return {laws.soft_plane, laws.soft_solid, laws.solid_soft, laws.soft_soft, below.solid_fraction};
 }
 
-double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form) {
+double law_distance(const LawTableEntry& law, const LawTableEntry& below, Crowd form) {
   const CrowdModel here = crowd_model(*law.find(form));
   const CrowdModel there = crowd_model(*below.find(form));
   std::vector<CrowdPartner> cube;

@@ -61,6 +61,6 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
                          const Run& run);
 
 /// Root mean square of the difference of two laws over that of the one below, along one plane and along six planes.
-double law_distance(const LawTableEntry& law, const LawTableEntry& below, const std::string& form);
+double law_distance(const LawTableEntry& law, const LawTableEntry& below, Crowd form);
 
 }  // namespace softgrain

@@ -28,7 +28,7 @@ CrowdConfiguration one_plane(const std::vector<double>& overlaps) {
   CrowdConfiguration c;
   c.name = "check";
   c.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
-  c.stages = {{"load", {overlaps.back()}, 0.0}};
+  c.stages = {{CrowdMove::load, {overlaps.back()}, 0.0}};
   return c;
 }
 

@@ -48,11 +48,12 @@ void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& resul
     for (const std::string& text : level.left_out) result.remarks.push_back(fmt::format("level {}: {}", k, text));
     const CrowdLaw& law = *level.entry.find(setup.form);
     save_law_table({1, {level.entry}}, run.path(fmt::format("law_table_level_{}.toml", k)), run.provenance);
-    if (law.status == "no threshold crossing")
+    if (law.status == LawStatus::no_threshold_crossing)
       throw NotUsable(fmt::format("level {}: its law never crosses its threshold ({})", k, law.reason));
-    if (law.status != "good") {
+    if (law.status != LawStatus::good) {
       result.usable = false;
-      result.remarks.push_back(fmt::format("level {}: {} law: {}: {}", k, setup.form, law.status, law.reason));
+      result.remarks.push_back(
+          fmt::format("level {}: {} law: {}: {}", k, to_string(setup.form), to_string(law.status), law.reason));
     }
     if (!result.fixed && at_rest(setup, level)) result.fixed = k;
     if (k > 0)
@@ -65,7 +66,7 @@ void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& resul
 }
 
 /// Forces of one plane and of six, per plane, over overlap.
-json curves_json(const HierarchyLevel& level, const std::string& form) {
+json curves_json(const HierarchyLevel& level, Crowd form) {
   const CrowdModel model = crowd_model(*level.entry.find(form));
   std::vector<CrowdPartner> cube;
   for (int k = 0; k < 6; ++k) {
@@ -83,7 +84,7 @@ json curves_json(const HierarchyLevel& level, const std::string& form) {
   return out;
 }
 
-json level_json(const HierarchyLevel& level, const std::string& form) {
+json level_json(const HierarchyLevel& level, Crowd form) {
   const CrowdLaw& law = *level.entry.find(form);
   json out{{"level", level.number},
            {"inner",
@@ -98,7 +99,7 @@ json level_json(const HierarchyLevel& level, const std::string& form) {
              {"m0", law.m0.value},
              {"m1", law.m1.value},
              {"m2", law.m2.value},
-             {"status", law.status},
+             {"status", to_string(law.status)},
              {"error_cross", law.error_cross}}},
            {"resolved_grains", level.grains},
            {"loop_passes", level.cost.loop_passes},

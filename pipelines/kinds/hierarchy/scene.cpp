@@ -16,7 +16,7 @@ void read_levels(const SceneTable& t, HierarchySetup& out) {
   out.voids.r_min =
       t.number("inner_radius_min", Unit::none, Range{0.0, out.voids.r_max, true, false}, 0.5 * out.voids.r_max);
   out.voids.count = t.count("inner_count", 1, kMany, kMany);
-  out.form = t.choice("form", {"pair", "bag", "directional"}, out.form);
+  out.form = t.choice<Crowd>("form", out.form);
   out.unloading = t.flag("unloading", out.unloading);
 }
 

@@ -15,7 +15,7 @@ struct HierarchySetup {
   CrowdSetup crowd;          ///< what is measured at every level
   std::int64_t levels = 4;   ///< decades; the finest holds grains only
   VoidFillingOptions voids;  ///< soft particles between the grains of a level, over Rs
-  std::string form = "directional";
+  Crowd form = Crowd::directional;
   bool unloading = false;
   std::int64_t iterations = 8;         ///< levels at most, counted from the finest, on the way to the fixed point
   double tolerance = 0.01;             ///< the fixed point is reached when laws of two levels differ by less

@@ -89,7 +89,7 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
   options.kind = s.kind;
   options.shell_radius = s.measure.spec.shell_radius;
   options.youngs_modulus = s.measure.spec.youngs_modulus;
-  options.drop_unloading = t.choice("unloading", {"refuse", "drop"}, "refuse") == "drop";
+  options.unloading = t.choice<Unloading>("unloading", Unloading::refuse);
   const ForceCurves curves = read_force_curves(scene.resolve(t.text("file")), options);
   s.remarks = curves.remarks;
   const CurveMeans means = mean_curve(curves);
@@ -116,8 +116,7 @@ void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
 }
 
 void read_target(const Scene& scene, const SceneTable& t, InverseSetup& s) {
-  s.kind = t.choice("contact", {"soft-solid", "soft-soft"}, "soft-solid") == "soft-solid" ? PairKind::soft_solid
-                                                                                          : PairKind::soft_soft;
+  s.kind = t.choice<PairKind>("contact", PairKind::soft_solid);
   s.target.discrepancy = t.number("discrepancy", Unit::none, Range::closed(0.0, 1.0), s.target.discrepancy);
   if (t.has("file") && t.has("delta")) t.reject("delta", "give the target as a file or as points, not both");
   if (t.has("file"))

@@ -26,7 +26,7 @@ struct SearchParameter {
 struct InverseSetup {
   std::string title;
   MeasureSetup measure;  ///< protocols; what is not searched of the soft particle
-  std::string relaxation;
+  Relaxation relaxation = Relaxation::least_work;
   MeasurementPlan plan;  ///< the target's overlaps
   PairKind kind = PairKind::soft_solid;
   InverseTarget target;  ///< forces in N

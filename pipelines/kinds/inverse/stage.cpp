@@ -149,7 +149,7 @@ void confirm(const Stage& stage) {
     PackingRun run;
     run.packing = static_cast<std::int64_t>(data.packings.size());
     run.kind = stage.setup.kind;
-    run.relaxation = stage.setup.relaxation;
+    run.relaxation = to_string(stage.setup.relaxation);
     run.normal = results[k].normal;
     run.normal_cost = results[k].cost;
     if (run.normal.empty()) continue;

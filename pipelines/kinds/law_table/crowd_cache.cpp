@@ -27,7 +27,7 @@ std::string text_of(const SoftParticleSpec& s) {
   for (const double x : {s.shell_radius, s.youngs_modulus, s.poisson_ratio, s.friction, s.density, s.exponent,
                          s.polydispersity, s.rmax_over_shell, s.beta})
     text += exact(x);
-  return text + fmt::format(" {} {}\n", s.trials, s.placement == Placement::voids ? "voids" : "trials");
+  return text + fmt::format(" {} {}\n", s.trials, to_string(s.placement));
 }
 
 std::string text_of(const CrowdConfiguration& c) {

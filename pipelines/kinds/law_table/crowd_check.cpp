@@ -27,8 +27,8 @@ std::int64_t increments_of(const CrowdConfiguration& c, const CrowdOptions& opti
   return count_increments(c, CrowdPlan(c.stages.size(), {1.0}), options);
 }
 
-bool has_stage(const CrowdConfiguration& c, const char* name) {
-  return std::any_of(c.stages.begin(), c.stages.end(), [&](const CrowdStage& s) { return s.name == name; });
+bool has_stage(const CrowdConfiguration& c, CrowdMove move) {
+  return std::any_of(c.stages.begin(), c.stages.end(), [&](const CrowdStage& s) { return s.move == move; });
 }
 
 /// What the fit will miss.
@@ -49,9 +49,9 @@ void warn_of_configurations(const CrowdSetup& setup, Findings& out) {
     out.warn("no configuration with three planes or more: the coupling of neighbours is not determined");
   if (!any(partner(PartnerKind::solid))) out.warn("no solid neighbours: macro scenes cannot use such a table");
   if (!any(partner(PartnerKind::soft))) out.warn("no soft neighbours: macro scenes cannot use such a table");
-  if (!any([](const CrowdConfiguration& c) { return has_stage(c, "slide"); }))
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, CrowdMove::slide); }))
     out.warn("no path slides: friction limit and tangential stiffness will not be measured");
-  if (!any([](const CrowdConfiguration& c) { return has_stage(c, "unload"); }))
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, CrowdMove::unload); }))
     out.warn("no path unloads: the unloading branch will not be measured");
   if (!any([](const CrowdConfiguration& c) { return c.held_out; }))
     out.warn("nothing is held out: how well the law predicts is known from leaving one out alone");

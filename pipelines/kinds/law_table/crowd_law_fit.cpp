@@ -40,8 +40,8 @@ nlohmann::json slide_json(const SlideLaw& s) {
 }
 
 nlohmann::json law_json(const CrowdLaw& law) {
-  return {{"form", law.form},
-          {"status", law.status},
+  return {{"form", to_string(law.form)},
+          {"status", to_string(law.status)},
           {"error_fitted", law.error_fitted},
           {"error_held_out", law.error_held_out},
           {"error_cross", law.error_cross},
@@ -59,7 +59,7 @@ nlohmann::json law_json(const CrowdLaw& law) {
 nlohmann::json entry_json(const LawTableEntry& entry) {
   nlohmann::json out{{"solid_fraction", entry.solid_fraction},
                      {"packings", entry.packings},
-                     {"best", entry.best},
+                     {"best", to_string(entry.best)},
                      {"volume_max", entry.volume_max},
                      {"overlap_max", entry.overlap_max},
                      {"grain_overlap_max", entry.grain_overlap_max},
@@ -72,9 +72,9 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
 }
 
 std::string law_line(const CrowdLaw& law, bool best) {
-  return fmt::format("  {}{}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", law.form, best ? " (best)" : "",
-                     law.status == "good" ? "" : law.status + ", ", 100.0 * law.error_fitted, held_out_text(law),
-                     cross_text(law));
+  return fmt::format("  {}{}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", to_string(law.form),
+                     best ? " (best)" : "", law.status == LawStatus::good ? "" : to_string(law.status) + ", ",
+                     100.0 * law.error_fitted, held_out_text(law), cross_text(law));
 }
 
 }  // namespace
@@ -109,10 +109,10 @@ void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOp
           fmt::format("solid fraction {:.3f}, {} law: {} of {} refits to drawn packings did not come to a minimum and "
                       "are left out of "
                       "the intervals",
-                      entry.solid_fraction, law.form, law.replicates_failed, options.replicates));
-    if (law.status == "good") continue;
+                      entry.solid_fraction, to_string(law.form), law.replicates_failed, options.replicates));
+    if (law.status == LawStatus::good) continue;
     fit.usable = fit.usable && law.form != entry.best;
-    fit.remarks.push_back(law.form + " law: " + law.status + ": " + law.reason);
+    fit.remarks.push_back(to_string(law.form) + " law: " + to_string(law.status) + ": " + law.reason);
   }
   insert(fit.table, entry);
 }

@@ -81,7 +81,8 @@ CrowdConfiguration loading_part(const CrowdConfiguration& configuration) {
   CrowdConfiguration c = configuration;
   c.name = "pilot";
   c.held_out = false;
-  const auto other = std::find_if(c.stages.begin(), c.stages.end(), [](const auto& s) { return s.name != "load"; });
+  const auto other =
+      std::find_if(c.stages.begin(), c.stages.end(), [](const auto& s) { return s.move != CrowdMove::load; });
   c.stages.erase(other, c.stages.end());
   return c;
 }
@@ -110,7 +111,7 @@ CrowdPlan recording_plan(const CrowdConfiguration& configuration, const std::vec
                          std::int64_t points, double increment) {
   CrowdPlan plan;
   for (std::size_t k = 0; k < configuration.stages.size(); ++k) {
-    if (configuration.stages[k].name == "slide") {
+    if (configuration.stages[k].move == CrowdMove::slide) {
       plan.push_back(slide_shares(points));
       continue;
     }

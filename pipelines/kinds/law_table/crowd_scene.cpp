@@ -24,45 +24,49 @@ void read_crowd(const SceneTable& t, CrowdSetup& setup) {
   setup.points = t.count("points", 2, 1000, setup.points);
 }
 
-PartnerKind read_partner(const SceneTable& t) {
-  const std::string word = t.choice("partner", {"plane", "solid", "soft"});
-  if (word == "plane") return PartnerKind::plane;
-  return word == "solid" ? PartnerKind::solid : PartnerKind::soft;
-}
+/// How the neighbours come and go.
+enum class CrowdPath { together, sequential, unload, slide };
+enum class Centre { fixed, free };
 
-std::string read_arrangement(const SceneTable& t) {
-  static_assert(kArrangements.size() == 10);
-  const auto& a = kArrangements;
-  return t.choice("arrangement", {a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9]});
-}
+}  // namespace
+
+template <>
+inline constexpr auto words<CrowdPath> = word_list<CrowdPath>({{CrowdPath::together, "together"},
+                                                               {CrowdPath::sequential, "sequential"},
+                                                               {CrowdPath::unload, "unload"},
+                                                               {CrowdPath::slide, "slide"}});
+template <>
+inline constexpr auto words<Centre> = word_list<Centre>({{Centre::fixed, "fixed"}, {Centre::free, "free"}});
+
+namespace {
 
 /// What a [[configuration]] says, before it becomes neighbours and stages.
 struct Wanted {
-  std::string arrangement;
+  Arrangement arrangement = Arrangement::one;
   PartnerKind partner = PartnerKind::plane;
   double ratio = 0.0;
   double overlap = 0.0;
   double shallow = 1.0;
-  std::string path;
+  CrowdPath path = CrowdPath::together;
   double slide = 0.0;
 };
 
 Wanted read_wanted(const SceneTable& t) {
   Wanted w;
-  w.arrangement = read_arrangement(t);
-  w.partner = read_partner(t);
+  w.arrangement = t.choice<Arrangement>("arrangement");
+  w.partner = t.choice<PartnerKind>("partner");
   const bool plane = w.partner == PartnerKind::plane;
   if (plane && t.has("ratio")) t.reject("ratio", "a plane has no radius; leave it out");
   if (!plane) w.ratio = t.number("ratio", Unit::none, Range::positive(), 1.0);
   w.overlap = t.number("overlap", Unit::none, kShare);
   if (!plane && w.overlap >= w.ratio)
     t.reject("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
-  w.path = t.choice("path", {"together", "sequential", "unload", "slide"}, "together");
-  if (w.path == "slide")
+  w.path = t.choice<CrowdPath>("path", CrowdPath::together);
+  if (w.path == CrowdPath::slide)
     w.slide = t.number("slide", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
   else if (t.has("slide"))
     t.reject("slide", "only a path that slides has it: path = \"slide\"");
-  if (w.arrangement == "beside-five")
+  if (w.arrangement == Arrangement::beside_five)
     w.shallow = t.number("shallow", Unit::none, Range{0.0, 1.0, true, false}, 0.5);
   else if (t.has("shallow"))
     t.reject("shallow", "only the arrangement beside-five has a shallow neighbour");
@@ -71,14 +75,15 @@ Wanted read_wanted(const SceneTable& t) {
 
 std::vector<CrowdStage> stages_of(const Wanted& w, const std::vector<double>& deepest) {
   const std::vector<double> apart(deepest.size(), 0.0);
-  if (w.path == "unload") return {{"load", deepest, 0.0}, {"unload", apart, 0.0}, {"reload", deepest, 0.0}};
-  if (w.path == "slide") return {{"load", deepest, 0.0}, {"slide", deepest, w.slide}};
-  if (w.path == "together") return {{"load", deepest, 0.0}};
+  if (w.path == CrowdPath::unload)
+    return {{CrowdMove::load, deepest, 0.0}, {CrowdMove::unload, apart, 0.0}, {CrowdMove::reload, deepest, 0.0}};
+  if (w.path == CrowdPath::slide) return {{CrowdMove::load, deepest, 0.0}, {CrowdMove::slide, deepest, w.slide}};
+  if (w.path == CrowdPath::together) return {{CrowdMove::load, deepest, 0.0}};
   std::vector<CrowdStage> stages;
   std::vector<double> reached = apart;
   for (std::size_t k = 0; k < deepest.size(); ++k) {
     reached[k] = deepest[k];
-    stages.push_back({"load", reached, 0.0});
+    stages.push_back({CrowdMove::load, reached, 0.0});
   }
   return stages;
 }
@@ -92,9 +97,9 @@ std::string short_number(double x) {
 }
 
 std::string default_name(const Wanted& w, bool free) {
-  std::string name = w.arrangement + "-" + to_string(w.partner);
+  std::string name = to_string(w.arrangement) + "-" + to_string(w.partner);
   if (w.partner != PartnerKind::plane) name += "-" + short_number(w.ratio);
-  if (w.path != "together") name += "-" + w.path;
+  if (w.path != CrowdPath::together) name += "-" + to_string(w.path);
   return free ? name + "-free" : name;
 }
 
@@ -103,9 +108,9 @@ CrowdConfiguration read_configuration(const SceneTable& t) {
   CrowdConfiguration c;
   std::vector<double> deepest = depth_shares(w.arrangement, w.shallow);
   for (double& h : deepest) h *= w.overlap;
-  for (const Vec3& d : arrangement(w.arrangement)) c.partners.push_back({w.partner, w.ratio, d});
+  for (const Vec3& d : directions_of(w.arrangement)) c.partners.push_back({w.partner, w.ratio, d});
   c.stages = stages_of(w, deepest);
-  c.centre_free = t.choice("centre", {"fixed", "free"}, "fixed") == "free";
+  c.centre_free = t.choice<Centre>("centre", Centre::fixed) == Centre::free;
   c.held_out = t.flag("held_out", false);
   c.name = t.text("name", default_name(w, c.centre_free));
   if (c.name.empty()) t.reject("name", "must not be empty");

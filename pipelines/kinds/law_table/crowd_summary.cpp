@@ -15,7 +15,7 @@ using nlohmann::json;
 std::int64_t last_loading(const CrowdConfiguration& c) {
   std::int64_t last = 0;
   while (last + 1 < static_cast<std::int64_t>(c.stages.size()) &&
-         c.stages[static_cast<std::size_t>(last) + 1].name == "load")
+         c.stages[static_cast<std::size_t>(last) + 1].move == CrowdMove::load)
     ++last;
   return last;
 }

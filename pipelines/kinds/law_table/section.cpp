@@ -31,7 +31,8 @@ constexpr Group kGroups[] = {{"planes", "Planes, used in the fit", PartnerKind::
 /// Plain loading only: other paths to the same overlaps would be drawn on top of each other.
 bool belongs(const CrowdStates& c, const Group& g) {
   const auto& stages = c.configuration->stages;
-  const auto loads = std::count_if(stages.begin(), stages.end(), [](const CrowdStage& s) { return s.name == "load"; });
+  const auto loads =
+      std::count_if(stages.begin(), stages.end(), [](const CrowdStage& s) { return s.move == CrowdMove::load; });
   const CrowdUse wanted = g.held_out ? CrowdUse::predicted : CrowdUse::fitted;
   return c.all_of(g.kind) && c.use == wanted && loads == 1 && c.states.size() > 1 && !loading_states(c).empty();
 }
@@ -56,7 +57,7 @@ void add_measured(Plot& plot, const CrowdStates& c, const std::string& color) {
 
 void add_law(Plot& plot, const CrowdStates& c, const CrowdLaw& law, const std::string& color, const char* dash) {
   Series s;
-  s.hover = c.configuration->name + ", " + law.form + " law";
+  s.hover = c.configuration->name + ", " + to_string(law.form) + " law";
   s.group = c.configuration->name;
   const CrowdModel model = crowd_model(law);
   const std::vector<double>& end = loading_states(c).back()->overlap;
@@ -85,13 +86,14 @@ std::string group_figure(const Group& group, const std::vector<CrowdStates>& sta
     const char* shade = palette::cycle(color++);
     add_measured(plot, c, shade);
     add_law(plot, c, *entry.find(entry.best), shade, "");
-    if (entry.best != "pair" && entry.find("pair") != nullptr) add_law(plot, c, *entry.find("pair"), shade, "2 3");
+    if (entry.best != Crowd::pair && entry.find(Crowd::pair) != nullptr)
+      add_law(plot, c, *entry.find(Crowd::pair), shade, "2 3");
   }
   if (color == 0) return "";
   return figure(plot.svg(),
                 fmt::format("Points: means over packings with standard errors; lines: the {} law, dotted: the "
                             "pair law{}.",
-                            entry.best, group.held_out ? "; none of this was used in the fit" : ""));
+                            to_string(entry.best), group.held_out ? "; none of this was used in the fit" : ""));
 }
 
 /// "0.73 ± 0.19"; a number that is fixed has no error, one whose error is not known says so.
@@ -103,12 +105,12 @@ std::string with_error(const Estimate& e) {
 
 std::string error_table(const LawTableEntry& entry) {
   std::vector<std::string> header{"configuration", "use"};
-  for (const CrowdLaw& law : entry.laws) header.push_back(law.form + " law: error [%]");
+  for (const CrowdLaw& law : entry.laws) header.push_back(to_string(law.form) + " law: error [%]");
   header.emplace_back("noise of the mean [%]");
   HtmlTable table(header, 2);
   const CrowdLaw& first = entry.laws.front();
   for (std::size_t k = 0; k < first.errors.size(); ++k) {
-    std::vector<std::string> cells{first.errors[k].name, first.errors[k].use};
+    std::vector<std::string> cells{first.errors[k].name, to_string(first.errors[k].use)};
     for (const CrowdLaw& law : entry.laws)
       cells.push_back(k < law.errors.size() ? format_number(100.0 * law.errors[k].error, 2) : "–");
     cells.push_back(format_number(100.0 * first.errors[k].noise, 2));
@@ -121,7 +123,7 @@ std::string parameter_table(const LawTableEntry& entry) {
   HtmlTable table({"law", "a", "b", "delta", "m0", "m1", "m2", "error, fitted [%]", "error, held out [%]",
                    "error, leave one out [%]", "information criterion"});
   for (const CrowdLaw& law : entry.laws) {
-    std::vector<std::string> cells{law.form + (law.form == entry.best ? " (best)" : "")};
+    std::vector<std::string> cells{to_string(law.form) + (law.form == entry.best ? " (best)" : "")};
     for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2}) cells.push_back(with_error(*e));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross})
       cells.push_back(format_number(100.0 * x, 3));
@@ -136,12 +138,12 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeas
       "Solid fraction {:.4f} ± {:.4f}, {} packings. Best by cross-validation: the {} law. Measured up to h/Rs = {:.2f} "
       "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Sliding, "
       "{}; {}.",
-      entry.solid_fraction, entry.solid_fraction_error, entry.packings, entry.best, entry.overlap_max, entry.volume_max,
-      entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
+      entry.solid_fraction, entry.solid_fraction_error, entry.packings, to_string(entry.best), entry.overlap_max,
+      entry.volume_max, entry.grain_overlap_max, slides_text(entry), unloading_text(entry)));
   for (const CrowdLaw& law : entry.laws)
-    if (law.status != "good")
-      body +=
-          paragraph("The " + law.form + " law is " + law.status + (law.reason.empty() ? "" : ": " + law.reason) + ".");
+    if (law.status != LawStatus::good)
+      body += paragraph("The " + to_string(law.form) + " law is " + to_string(law.status) +
+                        (law.reason.empty() ? "" : ": " + law.reason) + ".");
   body += parameter_table(entry) + error_table(entry);
   if (!crowd) return body;
   const std::vector<CrowdStates> states = average_states(*crowd);

@@ -36,7 +36,7 @@ struct BodyCounts {
 /// share does, is known only then.
 BodyCounts count_bodies(const MacroSetup& setup) {
   const auto bodies = static_cast<double>(setup.spec.bodies);
-  if (setup.spec.construction != "voids") return {bodies, setup.spec.soft_share * bodies};
+  if (setup.spec.construction != Construction::voids) return {bodies, setup.spec.soft_share * bodies};
   const SceneFacts facts = describe(make_packing(setup.spec, 1, 0), {});
   return {static_cast<double>(facts.solid + facts.soft), static_cast<double>(facts.soft)};
 }
@@ -64,10 +64,11 @@ void check_card_law(const LawCard& card, const LawSources& laws, const MacroSpec
     if (law == nullptr) continue;
     const Beyond beyond = laws.beyond.value_or(law->beyond);
     out.add_once("law " + to_string(kind),
-                 {{"status", law->status}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
-                 fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), law->status, law->delta_max));
+                 {{"status", to_string(law->status)}, {"delta_max", law->delta_max}, {"beyond", to_string(beyond)}},
+                 fmt::format("law {}: {}, fitted up to Delta = {:.3g}", to_string(kind), to_string(law->status),
+                             law->delta_max));
     beyond_range(to_string(kind) + " Delta along the load", overlap.largest, law->delta_max, beyond, out);
-    if (law->status == "underdetermined")
+    if (law->status == LawStatus::underdetermined)
       out.warn("the " + to_string(kind) + " law is underdetermined: " + law->reason);
   }
   (void)pair_law_of(card, spec, "law", laws.beyond);  // says what is not usable
@@ -103,11 +104,11 @@ void check_ratios(const MacroSpec& spec, const CrowdLaw& law, Findings& out) {
 }
 
 /// S of a soft particle between six planes at the mean overlap, against what was measured.
-void check_volume(const LawTable& table, const LawSources& laws, const std::string& form, double fraction,
-                  const MacroSpec& spec, Findings& out) {
+void check_volume(const LawTable& table, const LawSources& laws, Crowd form, double fraction, const MacroSpec& spec,
+                  Findings& out) {
   law::CrowdQuestion q;
   q.form = form;
-  q.arrangement = "cube";
+  q.arrangement = Arrangement::cube;
   q.solid_fraction = fraction;
   q.range = laws.range;
   q.beyond = laws.beyond;
@@ -119,16 +120,17 @@ void check_volume(const LawTable& table, const LawSources& laws, const std::stri
           fmt::format(
               "{}: lost volume of a soft particle between six neighbours at the mean overlap {:.2g}, measured up to "
               "{:.2g}",
-              answer.form, volume, answer.entry.volume_max));
+              to_string(answer.form), volume, answer.entry.volume_max));
   beyond_range("lost volume of soft particles", volume, answer.entry.volume_max, beyond, out);
   beyond_range("overlaps of single soft contacts along the load", overlap.largest, answer.entry.overlap_max, beyond,
                out);
   const CrowdLaw& law = *answer.entry.find(answer.form);
-  if (law.status != "good") out.warn("the " + answer.form + " law is " + law.status + ": " + law.reason);
+  if (law.status != LawStatus::good)
+    out.warn("the " + to_string(answer.form) + " law is " + to_string(law.status) + ": " + law.reason);
 }
 
 /// One content stands for all: a solid fraction outside the table is no refusal yet.
-void check_table_law(const LawTable& table, const LawSources& given, const std::string& form, const MacroSpec& spec,
+void check_table_law(const LawTable& table, const LawSources& given, WantedForm form, const MacroSpec& spec,
                      double contents_fraction, Findings& out) {
   LawSources laws = given;
   laws.range = RangePolicy::clamp;
@@ -153,8 +155,8 @@ void check_table_law(const LawTable& table, const LawSources& given, const std::
 }
 
 void check_laws_of(const LawSources& laws, const MacroSpec& spec, double contents_fraction, Findings& out) {
-  for (const std::string& form : laws.forms) {
-    if (laws.card && (form == "pair" || !laws.table))
+  for (const WantedForm form : laws.forms) {
+    if (laws.card && (form == Crowd::pair || !laws.table))
       check_card_law(*laws.card, laws, spec, out);
     else
       check_table_law(*laws.table, laws, form, spec, contents_fraction, out);
@@ -166,7 +168,7 @@ void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& ou
   // Measured with a million bodies on two ranks.
   constexpr double kFileBytes = 91.0;
   constexpr double kRankBytes = 800.0;
-  if (setup.spec.preparation != "lammps") return;
+  if (setup.spec.preparation != MacroEngine::lammps) return;
   const double files = count.all * kFileBytes * static_cast<double>(setup.samples);
   out.add(
       "engine", "lammps",
@@ -209,10 +211,10 @@ void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& o
 }  // namespace
 
 AffineOverlap affine_overlap(const MacroSpec& spec) {
-  const double strain = spec.test == "shear" ? spec.strain_end + spec.preload : spec.strain_end;
+  const double strain = spec.test == MacroTest::shear ? spec.strain_end + spec.preload : spec.strain_end;
   const double along = 2.0 * strain;
-  if (spec.test == "isotropic") return {along, along};
-  if (spec.test == "oedometric") return {along / 3.0, along};
+  if (spec.test == MacroTest::isotropic) return {along, along};
+  if (spec.test == MacroTest::oedometric) return {along / 3.0, along};
   return {2.0 * spec.preload, along};
 }
 
@@ -236,12 +238,12 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
   const double memory = macro_memory(resolved);
   out.add("macro_bodies", count.all,
           fmt::format("macro: {} sample{} of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
-                      setup.samples, setup.samples == 1 ? "" : "s", count.all, count.soft, setup.spec.test,
+                      setup.samples, setup.samples == 1 ? "" : "s", count.all, count.soft, to_string(setup.spec.test),
                       setup.spec.strain_end));
   const AffineOverlap overlap = affine_overlap(setup.spec);
   out.add("affine_overlap", {{"mean", overlap.mean}, {"largest", overlap.largest}}, load_text(setup.spec));
-  for (const std::string& twin : setup.twins)
-    out.lines += fmt::format("  resolved twin ({}): about {:.0f} grains per sample\n", twin, resolved);
+  for (const Twin twin : setup.twins)
+    out.lines += fmt::format("  resolved twin ({}): about {:.0f} grains per sample\n", to_string(twin), resolved);
   if (!setup.twins.empty()) {
     out.facts["twin_grains"] = resolved;
     out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));

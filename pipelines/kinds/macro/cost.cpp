@@ -41,9 +41,9 @@ std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, do
   LawSources any = *laws;
   any.range = RangePolicy::clamp;
   std::vector<NamedLaws> out;
-  for (const std::string& form : laws->forms) {
+  for (const WantedForm form : laws->forms) {
     any.forms = {form};
-    out.push_back(scene_law(any, spec, solid_fraction, form));
+    out.push_back(scene_law(any, spec, solid_fraction, "law"));
   }
   return out;
 }
@@ -73,17 +73,17 @@ double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLa
 
 /// Loop passes of a twin over a whole test: 620 and 670 per increment of strain 0.005 (quickstart, published), 820 to
 /// 1650 per one of 0.01 to 0.02 (macro_vs_resolved); grains without shells rearrange more.
-double twin_passes(const MacroSpec& spec, const std::string& twin) {
+double twin_passes(const MacroSpec& spec, Twin twin) {
   const double increments = increments_of(spec);
   const double strain = (spec.strain_end + spec.preload) / increments;
-  return (twin == "free" ? 1.5 : 1.0) * increments * 650.0 * std::pow(strain / 0.005, 0.3);
+  return (twin == Twin::free ? 1.5 : 1.0) * increments * 650.0 * std::pow(strain / 0.005, 0.3);
 }
 
 }  // namespace
 
 void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const LawSources* laws, Findings& out) {
   MacroSpec spec = setup.spec;
-  spec.preparation = "softgrain";
+  spec.preparation = MacroEngine::softgrain;
   spec.bodies = std::min(spec.bodies, kTrialBodies);
   const double larger = static_cast<double>(setup.spec.bodies) / static_cast<double>(spec.bodies);
   const auto samples = static_cast<double>(setup.samples);
@@ -96,7 +96,7 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
   } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
   }
   const double grains = content.bodies + content.soft * content.grains_per_soft;
-  for (const std::string& twin : setup.twins)
+  for (const Twin twin : setup.twins)
     out.spend("twins", samples * grains * content.grain_pass_seconds * twin_passes(setup.spec, twin));
 }
 

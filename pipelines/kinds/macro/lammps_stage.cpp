@@ -90,7 +90,7 @@ class Sample {
   }
 
   [[nodiscard]] RunOutcome outcome() {
-    if (spec().preparation == "lammps") take_over_preparation();
+    if (spec().preparation == MacroEngine::lammps) take_over_preparation();
     const auto rows = lammps::read_points(where_, key_);
     MacroSystem macro = make_law_system(spec(), packing_, runs_.law.laws, runs_.inner_solid_fraction);
     RunOutcome out{begin_curve(spec(), packing_, macro, runs_.law.name, number_), {}};

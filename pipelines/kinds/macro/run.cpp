@@ -33,24 +33,25 @@ std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& cur
 
 /// Nothing for our own engine. Throws BadInput.
 std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
-  if (!options.engine.empty() && options.engine != "softgrain" && options.engine != "lammps") {
+  const auto engine = options.engine.empty() ? MacroEngine::softgrain : from_word<MacroEngine>(options.engine);
+  if (!engine) {
     const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
     throw BadInput("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
                    "known are softgrain and lammps");
   }
-  if (options.engine != "lammps") {
+  if (engine == MacroEngine::softgrain) {
     if (options.ranks > 0) throw BadInput("--ranks goes with --engine lammps");
     if (options.write_only) throw BadInput("--write-only goes with --engine lammps");
     return std::nullopt;
   }
   if (options.write_only && options.ranks > 0)
     throw BadInput("--ranks goes with a run: with --write-only LAMMPS is not started");
-  LammpsEngine engine{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
-  if (engine.write_only) return engine;
-  engine.program = lammps::find_program();
-  if (engine.program.empty()) throw BadInput("macrosim: " + lammps::missing_text());
-  (void)lammps::command_words(engine.program, engine.ranks, {});  // mpirun must be there
-  return engine;
+  LammpsEngine lammps{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
+  if (lammps.write_only) return lammps;
+  lammps.program = lammps::find_program();
+  if (lammps.program.empty()) throw BadInput("macrosim: " + lammps::missing_text());
+  (void)lammps::command_words(lammps.program, lammps.ranks, {});  // mpirun must be there
+  return lammps;
 }
 
 NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& contents) {
@@ -79,14 +80,14 @@ void compare_with_twin(const std::vector<MacroCurve>& curves, nlohmann::json& su
 nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
                          bool usable) {
   nlohmann::json summary;
-  const bool resolved = has_twin(scene.setup, "shelled");
+  const bool resolved = has_twin(scene.setup, Twin::shelled);
   summary["status"] = usable ? "good" : "not usable";
   summary["title"] = scene.title;
   summary["law"] = identity_json(law.identity);
   summary["law"]["file"] = scene.law_file;
   summary["macro"] = macro_json(curves, "law");
   if (resolved) summary["resolved"] = macro_json(curves, "shelled");
-  if (has_twin(scene.setup, "free")) summary["free"] = macro_json(curves, "free");
+  if (has_twin(scene.setup, Twin::free)) summary["free"] = macro_json(curves, "free");
   summary["remarks"] = macro_remarks(curves);
   if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary["remarks"].push_back(assumed);
   if (resolved && usable) compare_with_twin(curves, summary);
@@ -103,7 +104,7 @@ constexpr const char* kInitialFile = "macro_initial.h5";
 
 /// Bodies that LAMMPS is still to bring into touch are no starting state.
 void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& packings, const Run& run) {
-  if (scene.setup.spec.preparation == "softgrain") save_packings(packings, run, kInitialFile);
+  if (scene.setup.spec.preparation == MacroEngine::softgrain) save_packings(packings, run, kInitialFile);
 }
 
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
@@ -137,7 +138,7 @@ std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::option
   const LammpsRuns runs = lammps_runs(scene, law, contents, run.provenance);
   write_lammps_files(runs, packings, run.context);
   auto outcomes = run_with_lammps(runs, *lammps, packings, run.context);
-  if (scene.setup.spec.preparation == "lammps") save_packings(packings, run, kInitialFile);
+  if (scene.setup.spec.preparation == MacroEngine::lammps) save_packings(packings, run, kInitialFile);
   auto curves = run_engines({scene.setup, packings, contents, run.seed, "macro"}, {}, run, "states_macro.h5",
                             std::move(outcomes));
   save_macro(curves, run.path("macro.h5"), run.provenance);
@@ -157,7 +158,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
     scene.root().reject(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
   const std::optional<LammpsEngine> lammps = read_engine(options);
-  if (macro.setup.spec.preparation == "lammps" && !lammps)
+  if (macro.setup.spec.preparation == MacroEngine::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
   const Run run(scene, options, "macrosim", macro.seed, {macro.law.files, macro.law.text});
   const auto contents =

@@ -13,7 +13,7 @@ namespace softgrain {
 namespace {
 
 void read_bodies(const SceneTable& t, MacroSpec& spec) {
-  spec.construction = t.choice("construction", {"mixed", "voids"}, spec.construction);
+  spec.construction = t.choice<Construction>("construction", spec.construction);
   spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
   spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
   spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
@@ -23,19 +23,19 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
   spec.soft_radius_max = t.number("soft_radius_max", Unit::length, Range::positive(), spec.soft_radius_max);
   spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
   spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
-  if (spec.construction == "voids" && spec.soft_share >= 1.0)
+  if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
     t.reject("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
-  spec.preparation = t.choice("preparation", {"softgrain", "lammps"}, spec.preparation);
-  if (spec.preparation == "lammps" && spec.construction == "voids")
+  spec.preparation = t.choice<MacroEngine>("preparation", spec.preparation);
+  if (spec.preparation == MacroEngine::lammps && spec.construction == Construction::voids)
     t.reject("preparation",
              "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
 
 void read_test(const SceneTable& t, MacroSpec& spec) {
-  spec.test = t.choice("test", {"oedometric", "isotropic", "shear"}, spec.test);
+  spec.test = t.choice<MacroTest>("test", spec.test);
   spec.strain_end = t.number("strain", Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
   spec.preload = t.number("preload", Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
   spec.preload_steps = t.count("preload_steps", 1, 100000, spec.preload_steps);
@@ -44,19 +44,21 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
   spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
   spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
-  spec.kt_secant = t.choice("kt", {"initial", "secant"}, spec.kt_secant ? "secant" : "initial") == "secant";
+  spec.kt_secant =
+      t.choice<TangentialSlope>("kt", spec.kt_secant ? TangentialSlope::secant : TangentialSlope::initial) ==
+      TangentialSlope::secant;
 }
 
 /// `resolved`: true for the shelled twin, or a list of twins.
-std::vector<std::string> read_twins(const SceneTable& t, const std::vector<std::string>& fallback) {
+std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallback) {
   if (!t.has("resolved")) return fallback;
-  if (!t.is_list("resolved"))
-    return t.flag("resolved", true) ? std::vector<std::string>{"shelled"} : std::vector<std::string>{};
-  std::vector<std::string> twins = t.texts("resolved");
-  for (std::size_t k = 0; k < twins.size(); ++k) {
-    if (twins[k] != "shelled" && twins[k] != "free")
-      t.reject("resolved", "unknown twin '" + twins[k] + "'; known are \"shelled\" and \"free\"");
-    if (std::count(twins.begin(), twins.end(), twins[k]) > 1) t.reject("resolved", "'" + twins[k] + "' twice");
+  if (!t.is_list("resolved")) return t.flag("resolved", true) ? std::vector<Twin>{Twin::shelled} : std::vector<Twin>{};
+  std::vector<Twin> twins;
+  for (const std::string& word : t.texts("resolved")) {
+    const auto twin = from_word<Twin>(word);
+    if (!twin) t.reject("resolved", "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
+    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.reject("resolved", "'" + word + "' twice");
+    twins.push_back(*twin);
   }
   return twins;
 }
@@ -64,7 +66,7 @@ std::vector<std::string> read_twins(const SceneTable& t, const std::vector<std::
 }  // namespace
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
-  if (setup.spec.preparation == "lammps")
+  if (setup.spec.preparation == MacroEngine::lammps)
     macro.reject("preparation", "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
 }
 

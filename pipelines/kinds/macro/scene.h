@@ -14,13 +14,13 @@ namespace softgrain {
 struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;
-  std::vector<std::string> twins{"shelled"};  ///< of "shelled", "free": resolved beside every sample
-  std::int64_t kept_states = 0;               ///< of the first sample of every engine, for pictures
-  std::vector<std::string> assumed{};         ///< "nu = 0.3": of grains, where the law does not say them
+  std::vector<Twin> twins{Twin::shelled};  ///< resolved beside every sample
+  std::int64_t kept_states = 0;            ///< of the first sample of every engine, for pictures
+  std::vector<std::string> assumed{};      ///< "nu = 0.3": of grains, where the law does not say them
 };
 
-[[nodiscard]] inline bool has_twin(const MacroSetup& setup, const std::string& name) {
-  return std::find(setup.twins.begin(), setup.twins.end(), name) != setup.twins.end();
+[[nodiscard]] inline bool has_twin(const MacroSetup& setup, Twin twin) {
+  return std::find(setup.twins.begin(), setup.twins.end(), twin) != setup.twins.end();
 }
 
 /// Reads [macro]; material defaults come from the measured soft particle, as far as it is known. Throws BadInput.

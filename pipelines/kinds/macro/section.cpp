@@ -32,7 +32,7 @@ double last_strain(const std::vector<MacroCurve>& curves) {
   return last;
 }
 
-std::vector<MacroCurve> of_test(const std::vector<MacroCurve>& curves, const std::string& test) {
+std::vector<MacroCurve> of_test(const std::vector<MacroCurve>& curves, MacroTest test) {
   std::vector<MacroCurve> result;
   std::copy_if(curves.begin(), curves.end(), std::back_inserter(result),
                [&](const MacroCurve& c) { return c.test == test; });
@@ -52,11 +52,11 @@ constexpr double kStressHeight = 310.0;
 constexpr double kDifferenceHeight = 210.0;
 constexpr double kLeftMargin = 66.0;  // [px] for labels of either
 
-Plot stress_plot(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
+Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
   const SiPrefix prefix = si_prefix(largest_stress(curves));
   const double first = first_strain(curves);
-  Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral"),
-             .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + test,
+  Plot plot({.id = "macro-" + to_string(test) + (axial ? "-axial" : "-lateral"),
+             .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + to_string(test),
              .x = {.label = "strain [%]", .low = 100.0 * first, .high = 102.0 * last_strain(curves)},
              .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)},
              .height = kStressHeight,
@@ -99,12 +99,12 @@ void add_differences(Plot& plot, const std::vector<MacroCurve>& laws, const std:
   }
 }
 
-Plot difference_plot(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
+Plot difference_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
   const auto laws = curves_of(curves, "law");
   const auto twins = curves_of(curves, "shelled");
   const double first = first_strain(curves);
   const double last = last_strain(curves);
-  Plot plot({.id = "macro-" + test + (axial ? "-axial" : "-lateral") + "-difference",
+  Plot plot({.id = "macro-" + to_string(test) + (axial ? "-axial" : "-lateral") + "-difference",
              .title = std::string("Law minus resolved twin, ") + (axial ? "axial" : "lateral"),
              .x = {.label = "strain [%]", .low = 100.0 * first, .high = 102.0 * last},
              .y = {.label = "difference [%]"},
@@ -121,7 +121,7 @@ Plot difference_plot(const std::vector<MacroCurve>& curves, const std::string& t
 }
 
 /// Stress above, and below how far the law is from the twin.
-std::string stress_figure(const std::vector<MacroCurve>& curves, const std::string& test, bool axial) {
+std::string stress_figure(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
   const Plot stress = stress_plot(curves, test, axial);
   if (stress.empty()) return "";
   const Plot difference = difference_plot(curves, test, axial);
@@ -184,14 +184,14 @@ std::string bodies_table(const std::vector<MacroCurve>& curves) {
 }  // namespace
 
 std::string macro_section(const RunData& run) {
-  std::set<std::string> tests;
+  std::set<MacroTest> tests;
   for (const MacroCurve& c : run.macro) tests.insert(c.test);
   std::string body;
-  for (const std::string& test : tests) {
+  for (const MacroTest test : tests) {
     const auto curves = of_test(run.macro, test);
     const auto laws = curves_of(curves, "law");
     const auto twins = curves_of(curves, "shelled");
-    if (tests.size() > 1) body += "<h3>" + escape(test) + "</h3>\n";
+    if (tests.size() > 1) body += "<h3>" + escape(to_string(test)) + "</h3>\n";
     body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }

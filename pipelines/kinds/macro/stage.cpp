@@ -51,24 +51,29 @@ struct Stage {
   double inner_solid_fraction;
 };
 
-/// `laws` null: the twin of this name.
-MacroSystem make_system(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws) {
+struct Engine {
+  std::string name;
+  const NamedLaws* laws = nullptr;  ///< null: a twin
+  Twin twin = Twin::shelled;
+};
+
+MacroSystem make_system(const Stage& stage, std::int64_t sample, const Engine& engine) {
   const MacroSpec& spec = stage.runs.setup.spec;
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
-  if (laws != nullptr) return make_law_system(spec, packing, laws->laws, stage.inner_solid_fraction);
-  const auto make = engine == "free" ? make_free_system : make_shelled_system;
+  if (engine.laws != nullptr) return make_law_system(spec, packing, engine.laws->laws, stage.inner_solid_fraction);
+  const auto make = engine.twin == Twin::free ? make_free_system : make_shelled_system;
   return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
 }
 
-RunOutcome run_one(const Stage& stage, std::int64_t sample, const std::string& engine, const NamedLaws* laws,
-                   Progress& progress) {
+RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
+  const NamedLaws* const laws = engine.laws;
   const MacroSpec& spec = stage.runs.setup.spec;
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
   CompressionState state;
-  state.macro = make_system(stage, sample, engine, laws);
-  state.curve = begin_curve(spec, packing, state.macro, engine, sample);
+  state.macro = make_system(stage, sample, engine);
+  state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
   const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
-  const std::string task = stage.runs.name + "-" + engine + law + "-" + std::to_string(sample);
+  const std::string task = stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
   KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
   if (laws != nullptr) state.curve.law = laws->identity;
@@ -115,11 +120,6 @@ MacroPacking kept_packing(const MacroSpec& spec, std::uint64_t seed, std::int64_
   return std::move(*packing);
 }
 
-struct Engine {
-  std::string name;
-  const NamedLaws* laws = nullptr;
-};
-
 /// All samples of all engines, in that order: engines of a kind cost about the same, and share the threads.
 void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std::string& title,
               const RunContext& context, std::vector<RunOutcome>& runs) {
@@ -131,7 +131,7 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
   Progress progress(stage.runs.name + title, static_cast<double>(tasks), context.quiet());
   over_samples(tasks, [&](std::int64_t k) {
     const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
-    runs[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine.name, engine.laws, progress);
+    runs[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine, progress);
   });
 }
 
@@ -140,7 +140,7 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
 Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& c,
                      const std::string& runs) {
   Snapshot s = macro_snapshot(macro, packing);
-  const bool twin = c.engine == "shelled" || c.engine == "free";
+  const bool twin = c.twin().has_value();
   s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
   s.strain = c.strain.back();
   s.series = fmt::format("{}{}-{}", runs == "macro" ? "" : runs + "/", c.engine, c.sample);
@@ -195,7 +195,7 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
   std::vector<Engine> with_laws;
   std::vector<Engine> twins;
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
-  for (const std::string& name : runs.setup.twins) twins.push_back({name});
+  for (const Twin twin : runs.setup.twins) twins.push_back({to_string(twin), nullptr, twin});
   std::vector<RunOutcome> outcomes = std::move(before);
   run_kind(stage, with_laws, " with laws", run.context, outcomes);
   run_kind(stage, twins, ": resolved twins", run.context, outcomes);

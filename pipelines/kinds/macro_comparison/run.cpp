@@ -83,7 +83,7 @@ struct SceneResult {
 /// The voids between bodies are empty in these scenes: without shells the contents spread into them.
 void remark_spread(SceneResult& r) {
   for (const EngineScore& s : r.scores)
-    if (s.engine == "free" && s.shelled.axial_end.n > 0 && s.shelled.axial_end.mean < 0.2)
+    if (s.twin() == Twin::free && s.shelled.axial_end.n > 0 && s.shelled.axial_end.mean < 0.2)
       r.remarks.push_back(
           fmt::format("{}: the free twin carries {:.2g} of the stress of the shelled one: without shells the grains "
                       "spread into the "
@@ -127,8 +127,8 @@ json scene_json(const SceneResult& r) {
   for (const NamedLaws& l : r.laws) laws.push_back(identity_json(l.identity));
   return {{"name", r.name},
           {"laws", laws},
-          {"test", r.spec.test},
-          {"construction", r.spec.construction},
+          {"test", to_string(r.spec.test)},
+          {"construction", to_string(r.spec.construction)},
           {"soft_share", r.spec.soft_share},
           {"file", r.file},
           {"samples", facts},

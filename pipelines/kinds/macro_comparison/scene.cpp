@@ -12,7 +12,9 @@ namespace softgrain {
 
 namespace {
 
-std::string default_name(const MacroSpec& spec) { return fmt::format("{}-{:g}", spec.test, 100.0 * spec.soft_share); }
+std::string default_name(const MacroSpec& spec) {
+  return fmt::format("{}-{:g}", to_string(spec.test), 100.0 * spec.soft_share);
+}
 
 bool sound_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
@@ -48,7 +50,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
   setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
   MacroSetup base = read_macro_setup(root.table("macro"), setup.spec);
   require_own_preparation(root.table("macro"), base);
-  if (!root.table("macro").has("resolved")) base.twins = {"shelled", "free"};
+  if (!root.table("macro").has("resolved")) base.twins = {Twin::shelled, Twin::free};
   base.kept_states = read_kept_states(root);
   for (const SceneTable& t : root.tables("scene"))
     setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes));

@@ -106,7 +106,7 @@ std::string facts_of(const RunData& run, const std::string& name) {
 }
 
 std::string scene_part(const RunData& run, const MacroScene& scene) {
-  const bool shear = !scene.curves.empty() && scene.curves.front().test == "shear";
+  const bool shear = !scene.curves.empty() && scene.curves.front().test == MacroTest::shear;
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
   body += figure_row({stress_figure(scene, &MacroCurve::stress_axial, "axial"),
                       shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")

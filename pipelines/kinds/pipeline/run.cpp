@@ -23,11 +23,11 @@ namespace {
 using nlohmann::json;
 
 std::string law_line(const PairLaw& law) {
-  if (law.status == "no threshold crossing" || law.status == "not run")
-    return fmt::format("{}: {} ({})", to_string(law.kind), law.status, law.reason);
+  if (law.status == LawStatus::no_threshold_crossing || law.status == LawStatus::not_run)
+    return fmt::format("{}: {} ({})", to_string(law.kind), to_string(law.status), law.reason);
   return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}",
                      to_string(law.kind), law.normal.a.value, law.normal.b.value, law.normal.delta.value,
-                     law.normal.b.value, law.delta_max, law.packings, law.status);
+                     law.normal.b.value, law.delta_max, law.packings, to_string(law.status));
 }
 
 json comparison_json(const Comparison& c) {
@@ -61,15 +61,15 @@ struct PipelineResult {
 
 void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   FitOptions options = setup.fit;
-  options.relaxation = setup.measure.series[0].relaxation;
+  options.relaxation = to_string(setup.measure.series[0].relaxation);
   options.seed = run.seed;
   result.card = calibrate(result.measured.data, options);
   save_card(result.card, run.path("law.toml"), run.provenance);
   for (const PairLaw& law : result.card.pairs) {
     run.context.say(law_line(law));
-    if (law.status == "good") continue;
+    if (law.status == LawStatus::good) continue;
     result.usable = false;
-    result.remarks.push_back(fmt::format("{} law: {}: {}", to_string(law.kind), law.status, law.reason));
+    result.remarks.push_back(fmt::format("{} law: {}: {}", to_string(law.kind), to_string(law.status), law.reason));
   }
 }
 
@@ -95,7 +95,7 @@ void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& resul
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   result.usable = result.usable && all_carry_stress(result.curves);
-  if (!has_twin(*setup.macro, "shelled")) return;
+  if (!has_twin(*setup.macro, Twin::shelled)) return;
   try {
     result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
     for (const std::string& one : result.comparison->undefined) {
@@ -118,16 +118,17 @@ json summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& r
   s["packings"] = packings_json(data);
   s["packings"]["broke_off"] = r.measured.left_out.size();
   s["packings"]["seconds"] = r.measured.packing_seconds;
-  s["measurement"] = measurement_json(data, setup.measure.series[0].relaxation);
+  s["measurement"] = measurement_json(data, to_string(setup.measure.series[0].relaxation));
   s["measurement"]["wall_seconds"] = r.measured.wall_seconds;
-  s["forces"] = forces_json(data, setup.measure.series[0].relaxation);
+  s["forces"] = forces_json(data, to_string(setup.measure.series[0].relaxation));
   if (setup.measure.series.size() > 1) {
-    s["reference_measurement"] = measurement_json(data, setup.measure.series[1].relaxation);
-    s["relaxations"] = relaxations_json(data, setup.measure.series[1].relaxation, setup.measure.series[0].relaxation);
+    s["reference_measurement"] = measurement_json(data, to_string(setup.measure.series[1].relaxation));
+    s["relaxations"] = relaxations_json(data, to_string(setup.measure.series[1].relaxation),
+                                        to_string(setup.measure.series[0].relaxation));
   }
   s["macro"] = macro_json(r.curves, "law");
   s["resolved"] = macro_json(r.curves, "shelled");
-  if (setup.macro && has_twin(*setup.macro, "free")) s["free"] = macro_json(r.curves, "free");
+  if (setup.macro && has_twin(*setup.macro, Twin::free)) s["free"] = macro_json(r.curves, "free");
   if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
   s["remarks"] = r.remarks;
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})

@@ -98,9 +98,10 @@ double series_seconds(const MeasureSetup& setup, const MeasureSeries& series, do
     const PointCounts points = count_points(series, kind);
     seconds += static_cast<double>(series.packings) *
                measuring_seconds(setup, series.relaxation, series.plan(kind), kind, pass_seconds);
-    out.add(series.relaxation + " " + to_string(kind), json{{"normal", points.normal}, {"rotated", points.rotated}},
-            fmt::format("{} {}: {} packings, {} normal and {} rotated states", series.relaxation, to_string(kind),
-                        series.packings, points.normal, points.rotated));
+    out.add(to_string(series.relaxation) + " " + to_string(kind),
+            json{{"normal", points.normal}, {"rotated", points.rotated}},
+            fmt::format("{} {}: {} packings, {} normal and {} rotated states", to_string(series.relaxation),
+                        to_string(kind), series.packings, points.normal, points.rotated));
   }
   return seconds;
 }

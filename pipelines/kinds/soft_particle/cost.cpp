@@ -42,9 +42,9 @@ Passes damped_passes(PairKind kind, const DampedProtocolOptions& options) {
   return {p.way * usual.increment / options.increment, p.point, p.rotated};
 }
 
-Passes passes_of(const MeasureSetup& setup, const std::string& relaxation, PairKind kind) {
-  if (relaxation == "published") return published_passes(kind, setup.published);
-  if (relaxation == "damped") return damped_passes(kind, setup.damped);
+Passes passes_of(const MeasureSetup& setup, Relaxation relaxation, PairKind kind) {
+  if (relaxation == Relaxation::published) return published_passes(kind, setup.published);
+  if (relaxation == Relaxation::damped) return damped_passes(kind, setup.damped);
   return least_work_passes(kind, setup.least_work);
 }
 
@@ -65,8 +65,8 @@ MeasureTrial try_soft_particle(const SoftParticleSpec& spec, std::uint64_t seed,
   return t;
 }
 
-double measuring_seconds(const MeasureSetup& setup, const std::string& relaxation, const MeasurementPlan& plan,
-                         PairKind kind, double pass_seconds) {
+double measuring_seconds(const MeasureSetup& setup, Relaxation relaxation, const MeasurementPlan& plan, PairKind kind,
+                         double pass_seconds) {
   constexpr double kTwoParticles = 2.0;
   if (plan.deltas.empty()) return 0.0;
   const Passes p = passes_of(setup, relaxation, kind);

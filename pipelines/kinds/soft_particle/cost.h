@@ -19,7 +19,7 @@ struct MeasureTrial {
 MeasureTrial try_soft_particle(const SoftParticleSpec& spec, std::uint64_t seed, double budget);
 
 /// Core seconds of all runs of one packing and one kind of pair along a plan, rotations included.
-double measuring_seconds(const MeasureSetup& setup, const std::string& relaxation, const MeasurementPlan& plan,
-                         PairKind kind, double pass_seconds);
+double measuring_seconds(const MeasureSetup& setup, Relaxation relaxation, const MeasurementPlan& plan, PairKind kind,
+                         double pass_seconds);
 
 }  // namespace softgrain

@@ -26,11 +26,12 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   summary["title"] = read.title;
   summary["packings"] = packings_json(result.data);
   summary["packings"]["broke_off"] = result.left_out.size();
-  summary["measurement"] = measurement_json(result.data, setup.series[0].relaxation);
-  summary["forces"] = forces_json(result.data, setup.series[0].relaxation);
+  summary["measurement"] = measurement_json(result.data, to_string(setup.series[0].relaxation));
+  summary["forces"] = forces_json(result.data, to_string(setup.series[0].relaxation));
   if (setup.series.size() > 1) {
-    summary["reference_measurement"] = measurement_json(result.data, setup.series[1].relaxation);
-    summary["relaxations"] = relaxations_json(result.data, setup.series[1].relaxation, setup.series[0].relaxation);
+    summary["reference_measurement"] = measurement_json(result.data, to_string(setup.series[1].relaxation));
+    summary["relaxations"] =
+        relaxations_json(result.data, to_string(setup.series[1].relaxation), to_string(setup.series[0].relaxation));
   }
   summary["remarks"] = remarks;
   summary["files"] = {{"measurements", run.path("measurements.h5")}, {"report", run.path("report.html")}};

@@ -102,22 +102,22 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
 }
 
 /// Least work that leaves every increment to dynamics is called by what it does.
-std::string read_relaxation(const SceneTable& t, const char* fallback, const LeastWorkProtocolOptions& least_work) {
-  const std::string name =
-      t.choice("relaxation", {kRelaxations[0], kRelaxations[1], kRelaxations[2], kRelaxations[3]}, fallback);
-  return name == "least-work" && least_work.increment_passes == 0 ? "slow-dynamics" : name;
+Relaxation read_relaxation(const SceneTable& t, Relaxation fallback, const LeastWorkProtocolOptions& least_work) {
+  const auto said = t.choice<Relaxation>("relaxation", fallback);
+  const bool slow = said == Relaxation::least_work && least_work.increment_passes == 0;
+  return slow ? Relaxation::slow_dynamics : said;
 }
 
 /// Slow dynamics makes no increment by least work, and must not be asked for some.
-void require_increments_used(const SceneTable& measure, const std::string& relaxation, bool least_work_too) {
-  if (relaxation != "slow-dynamics" || least_work_too) return;
+void require_increments_used(const SceneTable& measure, Relaxation relaxation, bool least_work_too) {
+  if (relaxation != Relaxation::slow_dynamics || least_work_too) return;
   const SceneTable t = measure.table_or_empty("least_work");
   if (t.has("increment_passes") && t.count("increment_passes", 0, kMostPasses) > 0)
     t.reject("increment_passes",
              "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
 }
 
-MeasureSeries read_series(const SceneTable& t, const std::string& relaxation, std::int64_t packings,
+MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64_t packings,
                           const MeasurementPlan& common) {
   MeasureSeries series;
   series.relaxation = relaxation;
@@ -164,7 +164,7 @@ SoftParticleSpec read_soft_particle(const SceneTable& root) {
   return spec;
 }
 
-MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxation, MeasurementPlan& plan) {
+MeasureSetup read_measure_protocols(const SceneTable& root, Relaxation& relaxation, MeasurementPlan& plan) {
   MeasureSetup setup;
   setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
   setup.spec = read_soft_particle(root);
@@ -176,12 +176,12 @@ MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxat
       measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), plan.rotation_step_deg);
   plan.shell_turns = measure.flag("shell_turns", plan.shell_turns);
   plan.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
-  relaxation = read_relaxation(measure, "least-work", setup.least_work);
+  relaxation = read_relaxation(measure, Relaxation::least_work, setup.least_work);
   return setup;
 }
 
 MeasureSetup read_measure_setup(const SceneTable& root) {
-  std::string relaxation;
+  Relaxation relaxation{};
   MeasurementPlan common;
   MeasureSetup setup = read_measure_protocols(root, relaxation, common);
   const SceneTable measure = root.table("measure");
@@ -189,12 +189,13 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   setup.series.push_back(read_series(measure, relaxation, count, common));
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
-    const std::string name = read_relaxation(reference, "published", setup.least_work);
-    if (name == setup.series[0].relaxation)
+    const Relaxation other = read_relaxation(reference, Relaxation::published, setup.least_work);
+    if (other == setup.series[0].relaxation)
       reference.reject("relaxation", "the reference must differ from measure.relaxation");
-    setup.series.push_back(read_series(reference, name, reference.count("count", 1, 100000, count), common));
+    setup.series.push_back(read_series(reference, other, reference.count("count", 1, 100000, count), common));
   }
-  require_increments_used(measure, setup.series.front().relaxation, setup.series.back().relaxation == "least-work");
+  require_increments_used(measure, setup.series.front().relaxation,
+                          setup.series.back().relaxation == Relaxation::least_work);
   setup.kept_states = read_kept_states(root);
   return setup;
 }
@@ -207,13 +208,12 @@ SoftParticleScene read_soft_particle_scene(const Scene& scene) {
   return out;
 }
 
-std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name) {
-  if (name == "published") return make_published_protocol(setup.published);
-  if (name == "damped") return make_damped_protocol(setup.damped);
+std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation relaxation) {
+  if (relaxation == Relaxation::published) return make_published_protocol(setup.published);
+  if (relaxation == Relaxation::damped) return make_damped_protocol(setup.damped);
   LeastWorkProtocolOptions least_work = setup.least_work;
-  if (name == "slow-dynamics") least_work.increment_passes = 0;
-  if (name == "least-work" || name == "slow-dynamics") return make_least_work_protocol(least_work);
-  throw BadInput("unknown relaxation '" + name + "'");
+  if (relaxation == Relaxation::slow_dynamics) least_work.increment_passes = 0;
+  return make_least_work_protocol(least_work);
 }
 
 }  // namespace softgrain

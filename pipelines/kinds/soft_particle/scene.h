@@ -13,7 +13,7 @@ namespace softgrain {
 
 /// One series of measurements: which relaxation, how many packings, which states of which pair kind.
 struct MeasureSeries {
-  std::string relaxation;  ///< one of kRelaxations
+  Relaxation relaxation = Relaxation::least_work;
   std::int64_t packings = 0;
   std::vector<PairKind> kinds;
   MeasurementPlan soft_solid;
@@ -46,7 +46,7 @@ SoftParticleSpec read_soft_particle(const SceneTable& root);
 
 /// Reads seed, [material], [packing] and how [measure] relaxes, without what is measured: `plan` gets the rotations'
 /// settings, `relaxation` the name. Throws BadInput.
-MeasureSetup read_measure_protocols(const SceneTable& root, std::string& relaxation, MeasurementPlan& plan);
+MeasureSetup read_measure_protocols(const SceneTable& root, Relaxation& relaxation, MeasurementPlan& plan);
 
 /// Reads [material], [packing], [measure], [reference] and [output]. Throws BadInput.
 MeasureSetup read_measure_setup(const SceneTable& root);
@@ -61,6 +61,6 @@ struct SoftParticleScene {
 SoftParticleScene read_soft_particle_scene(const Scene& scene);
 
 /// The protocol of a name.
-std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, const std::string& name);
+std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation relaxation);
 
 }  // namespace softgrain

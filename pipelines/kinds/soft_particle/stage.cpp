@@ -27,14 +27,15 @@ struct Task {
   std::int64_t packing = 0;
 
   [[nodiscard]] std::string name() const {
-    return series->relaxation + "-" + to_string(kind) + "-" + std::to_string(packing);
+    return to_string(series->relaxation) + "-" + to_string(kind) + "-" + std::to_string(packing);
   }
   /// Relative cost, for progress and for starting long tasks first.
   [[nodiscard]] double weight() const {
     const MeasurementPlan& plan = series->plan(kind);
     const auto points =
         static_cast<double>(plan.deltas.size() + plan.tangential_deltas.size() * plan.angles_deg.size());
-    return points * (kind == PairKind::soft_soft ? 2.2 : 1.0) * (series->relaxation == "published" ? 20.0 : 1.0);
+    return points * (kind == PairKind::soft_soft ? 2.2 : 1.0) *
+           (series->relaxation == Relaxation::published ? 20.0 : 1.0);
   }
 };
 
@@ -143,8 +144,9 @@ struct Stage {
 Snapshot named_state(const SoftExperiment& experiment, const Task& task) {
   Snapshot s = soft_snapshot(experiment);
   const std::string kind = to_string(task.kind);
-  s.series = fmt::format("{}-{}-{}", kind, task.series->relaxation, task.packing);
-  s.label = fmt::format("{} by {}, packing {}, Delta {:.4g}", kind, task.series->relaxation, task.packing, s.overlap);
+  s.series = fmt::format("{}-{}-{}", kind, to_string(task.series->relaxation), task.packing);
+  s.label = fmt::format("{} by {}, packing {}, Delta {:.4g}", kind, to_string(task.series->relaxation), task.packing,
+                        s.overlap);
   return s;
 }
 
@@ -164,8 +166,8 @@ std::string break_off_text(const Task& task, const MeasurementState& state, cons
       "packing {} of {} by {} is left out: it broke off {} on the way to Delta = {:.4g}: {}; smaller overlaps{} may "
       "keep it "
       "whole",
-      task.packing, to_string(task.kind), task.series->relaxation, last, deltas[next], why,
-      task.series->relaxation == "damped" ? "" : " or relaxation = \"damped\"");
+      task.packing, to_string(task.kind), to_string(task.series->relaxation), last, deltas[next], why,
+      task.series->relaxation == Relaxation::damped ? "" : " or relaxation = \"damped\"");
 }
 
 TaskOutcome run_task(const Stage& stage, const Task& task) {
@@ -178,7 +180,7 @@ TaskOutcome run_task(const Stage& stage, const Task& task) {
           : make_soft_soft(stage.setup.spec, stage.first[k], stage.second[k], protocol->damped_contacts());
   state.run.packing = task.packing;
   state.run.kind = task.kind;
-  state.run.relaxation = task.series->relaxation;
+  state.run.relaxation = to_string(task.series->relaxation);
   const MeasurementPlan& plan = task.series->plan(task.kind);
   KeptStates states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
                     task.packing == 0 ? stage.setup.kept_states : 0);
