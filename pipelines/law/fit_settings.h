@@ -5,7 +5,8 @@
 
 namespace softgrain {
 
-/// Settings of a fit, the same for measurements of the program and of an experiment. The caller finishes the table.
+/// Settings of a fit: table [calibrate] of a pipeline, and those of softgrain calibrate, for measurements of the
+/// program and of an experiment alike. The caller finishes the table.
 FitOptions read_fit_settings(const SceneTable& table);
 
 }  // namespace softgrain

@@ -9,6 +9,7 @@
 
 #include "calibrate/joint_fit.h"
 #include "common/core/error.h"
+#include "pipelines/law/fit_settings.h"
 #include "tests/support/synthetic_law.h"
 
 namespace {
@@ -312,6 +313,25 @@ TEST(ThresholdFit, CalibrateCoversEveryPairKindPresent) {
   EXPECT_EQ(card.pairs[1].status, LawStatus::no_threshold_crossing);
   EXPECT_EQ(card.relaxation, "damped");
   EXPECT_THROW(calibrate(Measurements{}), BadInput);
+}
+
+FitOptions settings_of(const std::string& text) {
+  const Scene scene = Scene::parse(text, "settings.toml");
+  const FitOptions options = read_fit_settings(scene.root());
+  scene.root().finish();
+  return options;
+}
+
+TEST(FitSettings, AnglesHaveTheirUnitInTheirNameAndAreReadWithoutItToo) {
+  const FitOptions said = settings_of("initial_angle_deg = 0.1\nsecant_angle_deg = 2.0");
+  EXPECT_EQ(said.initial_angle_deg, 0.1);
+  EXPECT_EQ(said.secant_angle_deg, 2.0);
+  const FitOptions earlier = settings_of("initial_angle = 0.2\nsecant_angle = 3.0");
+  EXPECT_EQ(earlier.initial_angle_deg, 0.2);
+  EXPECT_EQ(earlier.secant_angle_deg, 3.0);
+  EXPECT_EQ(settings_of("").initial_angle_deg, FitOptions{}.initial_angle_deg);
+  EXPECT_THROW(settings_of("initial_angle = 0.1\ninitial_angle_deg = 0.1"), BadInput);
+  EXPECT_THROW(settings_of("secant_angle_deg = 0.0"), BadInput);
 }
 
 }  // namespace

@@ -21,7 +21,4 @@ struct PipelineSetup {
 /// Reads a scene of kind "pipeline" to the last key. Throws BadInput.
 PipelineSetup read_pipeline_setup(const SceneTable& root);
 
-/// Reads [calibrate] (all keys optional).
-FitOptions read_fit_options(const SceneTable& calibrate);
-
 }  // namespace softgrain
