@@ -18,14 +18,14 @@ namespace softgrain {
 template <bool kFriction, bool kRolling>
 struct CohesiveDisk {
   static_assert(kFriction || !kRolling, "the limit of rolling is a share of friction [CP 3.1]: mu_r = c mu a");
-  static constexpr int dimension = 2;
-  static constexpr bool has_tangential = kFriction;
-  static constexpr bool has_memory = kRolling;
-  static constexpr bool memory_has_sides = kRolling;  ///< theta, of i against j
-  static constexpr bool has_rolling = kRolling;
-  static constexpr bool needs_velocity = true;
-  static constexpr bool needs_particle_pass = false;
-  static constexpr bool has_onset = false;
+  static constexpr LawTraits traits{.dimension = 2,
+                                    .needs_velocity = true,
+                                    .has_tangential = kFriction,
+                                    .has_memory = kRolling,
+                                    .memory_has_sides = kRolling,  // theta, of i against j
+                                    .has_rolling = kRolling,
+                                    .acts_at_distance = true,
+                                    .stores_energy = true};
 
   double normal = 0.0;         ///< K_N
   double tangential = 0.0;     ///< K_T
@@ -40,32 +40,54 @@ struct CohesiveDisk {
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     return {0.0, damping * std::sqrt(4.0 * normal * bodies.effective_mass())};
   }
-  [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
   /// Gap up to which a pair interacts.
   [[nodiscard]] double reach() const { return adhesion > 0.0 ? range : 0.0; }
 
-  template <int D>
-  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
-    ContactResponse<D> out;
-    if (s.overlap <= 0.0) {
-      if (-s.overlap < reach()) out.elastic_force = out.normal_force = -adhesion * (1.0 + s.overlap / range);
-      return out;
-    }
-    const double repulsion = normal * s.overlap;
+  /// The stiffest of its springs across the contact, against rolling (K_r m/I of a disk) and of the attraction's slope.
+  [[nodiscard]] double stiffest(double radius) const {
+    const double slope = reach() > 0.0 ? adhesion / range : 0.0;
+    return std::max({normal, tangential, 2.0 * rolling / (radius * radius), slope});
+  }
+
+  /// Work of the elastic force from the end of the reach to this overlap (negative: a gap); below 0 where disks are
+  /// bound.
+  [[nodiscard]] double stored_energy(double overlap, const PairConstants&) const {
+    if (overlap > 0.0) return 0.5 * normal * overlap * overlap - adhesion * (overlap + 0.5 * reach());
+    const double left = reach() + overlap;
+    return left > 0.0 ? -0.5 * adhesion * left * left / range : 0.0;
+  }
+
+  template <int D, class T>
+  [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
+    ContactResponse<D, T> out;
+    const Mask<T> apart = s.overlap <= 0.0;
+    const T repulsion = normal * s.overlap;
     out.elastic_force = repulsion - adhesion;
-    out.normal_stiffness = normal;
+    out.normal_stiffness = T(normal);
     out.normal_force = out.elastic_force - s.constants.b * s.normal_speed;
-    if constexpr (kFriction) coulomb_spring(s, tangential, 0.0, friction * repulsion, out);
+    if constexpr (kFriction) coulomb_spring<false>(s, T(tangential), T(0.0), T(friction * repulsion), out);
     if constexpr (kRolling) roll(s, repulsion, out);
+    if (any(apart)) attract(s, apart, out);
     return out;
   }
 
  private:
-  template <int D>
-  void roll(const ContactState<D>& s, double repulsion, ContactResponse<D>& out) const {
-    const double limit = rolling_limit * repulsion / rolling;
-    out.memory = std::clamp(s.memory + s.turning[0] * s.dt, -limit, limit);
+  template <int D, class T>
+  void roll(const ContactState<D, T>& s, const T& repulsion, ContactResponse<D, T>& out) const {
+    const T limit = rolling_limit * repulsion / rolling;
+    const T angle = s.memory + s.turning[0] * s.dt;
+    out.memory = choose<T>(angle < -limit, -limit, choose<T>(limit < angle, limit, angle));
     out.rolling_moment[0] = -rolling * out.memory;
+  }
+
+  /// Where bodies are apart nothing is left but the attraction.
+  template <int D, class T>
+  void attract(const ContactState<D, T>& s, const Mask<T>& apart, ContactResponse<D, T>& out) const {
+    const T pull = choose<T>(-s.overlap < reach(), -adhesion * (1.0 + s.overlap / range), T(0.0));
+    const ContactResponse<D, T> here = out;
+    out = select(apart, {}, here);
+    out.elastic_force = choose<T>(apart, pull, here.elastic_force);
+    out.normal_force = choose<T>(apart, pull, here.normal_force);
   }
 };
 

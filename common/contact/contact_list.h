@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "common/contact/contact_state.h"
@@ -28,13 +29,28 @@ struct ContactSection {
   std::int32_t law = 0;
 };
 
-/// Which pairs of a section a loop looks at: [begin, end), or the places in the list that `order` holds there.
-struct PairRange {
-  std::int32_t begin = 0;
-  std::int32_t end = 0;
-  const std::int32_t* order = nullptr;
+/// What a pass over the list keeps for the next one. It stays with a list and does not go with its copies.
+class PassPlan {
+ public:
+  PassPlan() = default;
+  PassPlan(const PassPlan&) {}
+  PassPlan(PassPlan&&) noexcept = default;
+  PassPlan& operator=(const PassPlan& other) {
+    if (this != &other) kept_.reset();
+    return *this;
+  }
+  PassPlan& operator=(PassPlan&&) noexcept = default;
+  ~PassPlan() = default;
 
-  [[nodiscard]] std::int32_t at(std::int32_t k) const { return order == nullptr ? k : order[k]; }
+  /// The plan, made when there is none.
+  template <class Plan>
+  Plan& get() {
+    if (!kept_) kept_ = std::make_shared<Plan>();
+    return *static_cast<Plan*>(kept_.get());
+  }
+
+ private:
+  std::shared_ptr<void> kept_;
 };
 
 template <int D>
@@ -50,6 +66,7 @@ struct ContactList {
   std::vector<std::uint8_t> touched;      ///< 0: the committed history is known to be empty
   std::vector<CrowdSum<D>> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
   std::vector<ContactSection> sections;
+  PassPlan plan;            ///< of the pass on several threads
   bool has_spring = false;  ///< some law of the scene has a tangential spring
   bool has_memory = false;
   std::uint64_t build = 0;  ///< number of the build, unique in the process; not part of a saved state

@@ -3,47 +3,89 @@
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include "common/contact/crowd_form.h"
+#include "common/core/lanes.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
 
-/// Numbers that depend on the two bodies alone, computed by the law when a pair enters the list.
-struct PairConstants {
-  double a = 0.0;
-  double b = 0.0;
+/// What a law asks of a loop, and what others must know of it; the defaults are those of a frictionless elastic law.
+struct LawTraits {
+  int dimension = 0;              ///< the only one that it serves; 0: it serves both
+  bool needs_velocity = false;    ///< motion at the contact
+  bool has_tangential = false;    ///< a tangential force with its spring; needs velocity
+  bool has_memory = false;        ///< one more number of history
+  bool memory_has_sides = false;  ///< that changes its sign when the pair is seen from the other body, as an angle does
+  bool has_rolling = false;       ///< bodies resist turning against each other
+  bool has_onset = false;         ///< overlaps below onset() carry nothing
+  bool acts_at_distance = false;  ///< pairs interact up to a gap of reach()
+  bool needs_particle_pass = false;  ///< sums over all contacts of a body: share() and finish()
+  bool stores_energy = false;        ///< stored_energy() of a contact by itself
+  bool is_fitted = false;            ///< measured over a range that it can leave
+  bool is_crowd = false;             ///< of a table of laws whose soft particles know of all their contacts
 };
 
-/// Geometry and kinematics of one contact. `normal` points to body i; overlap > 0.
-template <int D>
+/// Numbers that depend on the two bodies alone, computed by the law when a pair enters the list.
+template <class T>
+struct ConstantsOf {
+  T a{};
+  T b{};
+};
+using PairConstants = ConstantsOf<double>;
+
+/// Geometry and kinematics of one contact, or of several side by side (T: lanes). `normal` points to body i; overlap >
+/// 0.
+template <int D, class T = double>
 struct ContactState {
-  double overlap = 0.0;  ///< h [m]
-  Vec<D> normal{};
-  double normal_speed = 0.0;  ///< of i relative to j along the normal, separation positive [m/s]
-  Vec<D> sliding{};           ///< tangential velocity of i relative to j at the contact point [m/s]
-  Rot<D> turning{};           ///< spin of i relative to j, for laws with rolling resistance [rad/s]
-  double dt = 0.0;            ///< time since the history was committed [s]
-  PairConstants constants{};
-  Vec<D> spring{};      ///< history: tangential spring [m]
-  double memory = 0.0;  ///< history: one number for laws that ask for it
-  double radius_i = 0.0;
-  double radius_j = 0.0;               ///< 0 for a plane, negative for the inside of a shell
-  const CrowdSum<D>* sum_i = nullptr;  ///< of the particle pass, for laws that ask for it: all contacts of body i
-  const CrowdSum<D>* sum_j = nullptr;
+  T overlap{};  ///< h [m]
+  Vec<D, T> normal{};
+  T normal_speed{};     ///< of i relative to j along the normal, separation positive [m/s]
+  Vec<D, T> sliding{};  ///< tangential velocity of i relative to j at the contact point [m/s]
+  Rot<D, T> turning{};  ///< spin of i relative to j, for laws with rolling resistance [rad/s]
+  double dt = 0.0;      ///< time since the history was committed [s]
+  ConstantsOf<T> constants{};
+  Vec<D, T> spring{};  ///< history: tangential spring [m]
+  T memory{};          ///< history: one number for laws that ask for it
+  T radius_i{};
+  T radius_j{};                           ///< 0 for a plane, negative for the inside of a shell
+  const CrowdSum<D, T>* sum_i = nullptr;  ///< of the particle pass, for laws that ask for it: all contacts of body i
+  const CrowdSum<D, T>* sum_j = nullptr;
 };
 
 /// Answer of a law: force on i is normal_force * normal + tangential_force.
-template <int D>
+template <int D, class T = double>
 struct ContactResponse {
-  double normal_force = 0.0;          ///< [N], repulsion positive
-  double elastic_force = 0.0;         ///< its part without damping [N]
-  Vec<D> tangential_force{};          ///< [N]
-  double normal_stiffness = 0.0;      ///< d elastic_force / d overlap [N/m]
-  double tangential_stiffness = 0.0;  ///< [N/m]
-  bool sliding = false;               ///< at the Coulomb limit
-  Vec<D> spring{};                    ///< new history
-  double memory = 0.0;                ///< new history
-  Rot<D> rolling_moment{};            ///< on i, the opposite on j; of laws with rolling resistance [N m]
+  T normal_force{};              ///< [N], repulsion positive
+  T elastic_force{};             ///< its part without damping [N]
+  Vec<D, T> tangential_force{};  ///< [N]
+  T normal_stiffness{};          ///< d elastic_force / d overlap [N/m]
+  T tangential_stiffness{};      ///< [N/m]
+  Mask<T> sliding{};             ///< at the Coulomb limit
+  Vec<D, T> spring{};            ///< new history
+  T memory{};                    ///< new history
+  Rot<D, T> rolling_moment{};    ///< on i, the opposite on j; of laws with rolling resistance [N m]
 };
+
+/// Lane by lane: the answer `yes` where the mask holds, else `no`.
+template <int D, class T>
+ContactResponse<D, T> select(const Mask<T>& mask, const ContactResponse<D, T>& yes, const ContactResponse<D, T>& no) {
+  if constexpr (std::is_same_v<Mask<T>, bool>) {
+    return mask ? yes : no;
+  } else {
+    const auto vec = [&](const auto& a, auto b) {
+      for (std::size_t k = 0; k < b.v.size(); ++k) b.v[k] = choose<T>(mask, a.v[k], b.v[k]);
+      return b;
+    };
+    return {choose<T>(mask, yes.normal_force, no.normal_force),
+            choose<T>(mask, yes.elastic_force, no.elastic_force),
+            vec(yes.tangential_force, no.tangential_force),
+            choose<T>(mask, yes.normal_stiffness, no.normal_stiffness),
+            choose<T>(mask, yes.tangential_stiffness, no.tangential_stiffness),
+            (mask && yes.sliding) || (!mask && no.sliding),
+            vec(yes.spring, no.spring),
+            choose<T>(mask, yes.memory, no.memory),
+            vec(yes.rolling_moment, no.rolling_moment)};
+  }
+}
 
 /// What a law is asked for when a pair enters the list.
 struct PairBodies {
@@ -64,40 +106,44 @@ struct PairBodies {
   }
 };
 
-/// Gap up to which pairs of a law interact; nothing but contact for all laws that do not say.
+/// Which bodies of a contact are soft particles under a law.
+struct SoftSides {
+  bool i = false;
+  bool j = false;
+};
+
+/// Of laws between grains neither.
 template <class Law>
-double reach_of(const Law& law) {
-  if constexpr (requires { law.reach(); }) return law.reach();
+SoftSides soft_sides_of(const Law& law) {
+  if constexpr (Law::traits.is_fitted) return law.soft_sides();
+  return {};
+}
+
+/// Overlap below which the pair cannot interact [m].
+template <class Law>
+double onset_of(const Law& law, const PairBodies& bodies) {
+  if constexpr (Law::traits.has_onset) return law.onset(bodies);
   return 0.0;
 }
 
-/// Whether bodies resist turning against each other.
+/// Gap up to which pairs of a law interact; nothing but contact for nearly all [m].
 template <class Law>
-constexpr bool resists_rolling() {
-  if constexpr (requires { Law::has_rolling; }) return Law::has_rolling;
-  return false;
-}
-
-/// Whether the memory of a law changes its sign when the pair is seen from the other body, as an angle of i against j
-/// does and a depth does not.
-template <class Law>
-constexpr bool memory_has_sides() {
-  if constexpr (requires { Law::memory_has_sides; }) return Law::memory_has_sides;
-  return false;
+double reach_of(const Law& law) {
+  if constexpr (Law::traits.acts_at_distance) return law.reach();
+  return 0.0;
 }
 
 /// Keeps a spring in the tangent plane as the normal turns: projects, keeps the magnitude. In two dimensions the
 /// tangent is one direction, and the spring a length along it.
-template <int D>
-[[gnu::always_inline]] inline Vec<D> carried_spring(const Vec<D>& spring, const Vec<D>& normal) {
+template <int D, class T>
+[[gnu::always_inline]] inline Vec<D, T> carried_spring(const Vec<D, T>& spring, const Vec<D, T>& normal) {
   if constexpr (D == 2) {
-    const Vec<D> tangent{{-normal[1], normal[0]}};
-    return tangent * std::copysign(std::sqrt(norm2(spring)), dot(spring, tangent));
+    const Vec<D, T> tangent{{-normal[1], normal[0]}};
+    return tangent * with_sign(root(norm2(spring)), dot(spring, tangent));
   } else {
-    const Vec<D> flat = spring - normal * dot(spring, normal);
-    const double before = norm2(spring);
-    const double after = norm2(flat);
-    return after > 0.0 ? flat * std::sqrt(before / after) : flat;
+    const Vec<D, T> flat = spring - normal * dot(spring, normal);
+    const T after = norm2(flat);
+    return flat * choose<T>(after > 0.0, root<T>(norm2(spring) / after), T(1.0));
   }
 }
 

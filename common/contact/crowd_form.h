@@ -8,40 +8,48 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/lanes.h"
 #include "common/core/law_range.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
 
 /// The part of a sphere of radius 1 that another body covers, and how it grows with the overlap x.
+template <class T>
 struct Lens {
-  double volume = 0.0;     ///< over that of the sphere
-  double slope = 0.0;      ///< d volume/dx = 3/4 a^2, a the radius of the circle where the surfaces meet
-  double curvature = 0.0;  ///< d slope/dx
+  T volume{};     ///< over that of the sphere
+  T slope{};      ///< d volume/dx = 3/4 a^2, a the radius of the circle where the surfaces meet
+  T curvature{};  ///< d slope/dx
 };
 
 /// Overlap x (in radii of the sphere) with a sphere of curvature k = R/R': 0 is a plane, negative the inside of a
 /// larger sphere. With s = 1 + k: V = pi x^2 (12 - 4 s x + k x^2)/(12 (s - k x)), depth of the cap D = x (2 - k x)/(2
 /// (s - k x)), a^2 = 2 D - D^2. Valid for 0 <= x < 2 and while neither sphere holds the centre of the other beyond its
 /// own.
-inline Lens lens(double x, double k) {
-  const double s = 1.0 + k;
-  const double den = s - k * x;
-  const double depth = x * (2.0 - k * x) / (2.0 * den);
-  const double depth_slope = ((1.0 - k * x) * den + 0.5 * k * x * (2.0 - k * x)) / (den * den);
+template <class T>
+Lens<T> lens(const T& x, const std::type_identity_t<T>& k) {
+  const T s = 1.0 + k;
+  const T den = s - k * x;
+  const T depth = x * (2.0 - k * x) / (2.0 * den);
+  const T depth_slope = ((1.0 - k * x) * den + 0.5 * k * x * (2.0 - k * x)) / (den * den);
   return {0.75 * x * x * (1.0 - s * x / 3.0 + k * x * x / 12.0) / den, 0.75 * depth * (2.0 - depth),
           1.5 * (1.0 - depth) * depth_slope};
 }
 
 /// Depth D of the plane cap with volume S: 3/4 D^2 (1 - D/3) = S, 0 <= S <= 1 (S = 1: D = 2).
-inline double cap_depth(double s) {
-  const double phi = std::acos(std::clamp(1.0 - 2.0 * s, -1.0, 1.0));
-  const double d = 1.0 - 2.0 * std::cos((std::numbers::pi + phi) / 3.0);
+template <class T>
+T cap_depth(const T& s) {
+  const T d = each(
+      [](double one) {
+        const double phi = std::acos(std::clamp(1.0 - 2.0 * one, -1.0, 1.0));
+        return 1.0 - 2.0 * std::cos((std::numbers::pi + phi) / 3.0);
+      },
+      s);
   // The cosine cancels for small S, where D = sqrt(4 S/3) (1 + D/6 + ...): one Newton step mends either.
-  const double small = std::sqrt(4.0 * s / 3.0);
-  const double start = s < 1e-4 ? small * (1.0 + small / 6.0) : d;
-  const double slope = 0.75 * start * (2.0 - start);
-  return slope > 1e-12 ? start - (0.75 * start * start * (1.0 - start / 3.0) - s) / slope : start;
+  const T small = root<T>(4.0 * s / 3.0);
+  const T start = choose<T>(s < 1e-4, small * (1.0 + small / 6.0), d);
+  const T slope = 0.75 * start * (2.0 - start);
+  return choose<T>(slope > 1e-12, start - (0.75 * start * start * (1.0 - start / 3.0) - s) / slope, start);
 }
 
 /// Pressure over E as it follows from the law of one plane, F/(E Rs^2) = a (D^b - delta^b): that plane has the disk
@@ -52,20 +60,23 @@ struct CrowdPressure {
   double delta = 0.0;
   LawRange range{};  ///< of S
 
+  template <class T>
   struct Value {
-    double p = 0.0;
-    double slope = 0.0;  ///< dp/dS
+    T p{};
+    T slope{};  ///< dp/dS
   };
 
-  [[nodiscard]] Value at(double s) const {
+  template <class T>
+  [[nodiscard]] Value<T> at(const T& s) const {
     const double end = range.clamp_at();
-    const double d = cap_depth(std::min(s, end));
-    if (d <= delta) return {};  // not a number goes on
-    const double force = a * (std::pow(d, b) - std::pow(delta, b));
-    const double disk = 0.75 * d * (2.0 - d);
-    const double p = force / disk;
-    if (s > end) return {p, 0.0};
-    return {p, (a * b * std::pow(d, b - 1.0) - p * 1.5 * (1.0 - d)) / (disk * disk)};
+    const T d = cap_depth(least<T>(s, end));
+    const Mask<T> idle = d <= delta;  // not a number goes on
+    if (!any(!idle)) return {};
+    const T force = a * (power(d, b) - power(delta, b));
+    const T disk = 0.75 * d * (2.0 - d);
+    const T p = force / disk;
+    const T slope = (a * b * power(d, b - 1.0) - p * 1.5 * (1.0 - d)) / (disk * disk);
+    return {choose<T>(idle, T(0.0), p), choose<T>(idle || s > end, T(0.0), slope)};
   }
 };
 
@@ -82,23 +93,23 @@ struct CrowdCoupling {
 };
 
 /// What the contacts of one body add up to: nu_c the effective lost volume of contact c, n_c its direction.
-template <int D>
+template <int D, class T = double>
 struct CrowdSum {
-  double volume = 0.0;                         ///< sum nu
-  double square = 0.0;                         ///< sum nu^2
-  Vec<D> first{};                              ///< sum nu n
-  std::array<double, D*(D + 1) / 2> second{};  ///< sum nu n n, upper triangle by rows
-  double gain = 0.0;                           ///< p(S)/S, once all contacts are in
-  double gain_slope = 0.0;                     ///< d gain/dS over S
-  bool ready = false;                          ///< whether gain is there
+  T volume{};                             ///< sum nu
+  T square{};                             ///< sum nu^2
+  Vec<D, T> first{};                      ///< sum nu n
+  std::array<T, D*(D + 1) / 2> second{};  ///< sum nu n n, upper triangle by rows
+  T gain{};                               ///< p(S)/S, once all contacts are in
+  T gain_slope{};                         ///< d gain/dS over S
+  bool ready = false;                     ///< whether gain is there
 
   /// For laws that do not ask for directions.
-  void add(double nu) {
+  void add(const T& nu) {
     volume += nu;
     square += nu * nu;
   }
 
-  void add(double nu, const Vec<D>& n) {
+  void add(const T& nu, const Vec<D, T>& n) {
     add(nu);
     first += n * nu;
     std::size_t k = 0;
@@ -107,25 +118,24 @@ struct CrowdSum {
   }
 
   /// All contacts are in and make an equivalent volume s.
-  void close(const CrowdPressure& pressure, double s) {
+  void close(const CrowdPressure& pressure, const T& s) {
     ready = true;
-    gain = gain_slope = 0.0;
-    if (!(s > 0.0)) return;
-    const CrowdPressure::Value p = pressure.at(s);
-    gain = p.p / s;
-    gain_slope = (p.slope - gain) / (s * s);
+    const auto [p, slope] = pressure.at(s);
+    const T ratio = p / s;
+    gain = choose<T>(s > 0.0, ratio, T(0.0));
+    gain_slope = choose<T>(s > 0.0, (slope - ratio) / (s * s), T(0.0));
   }
 
-  [[nodiscard]] double second_along(const Vec<D>& n) const {
-    double sum = 0.0;
+  [[nodiscard]] T second_along(const Vec<D, T>& n) const {
+    T sum{};
     std::size_t k = 0;
     for (int r = 0; r < D; ++r)
       for (int c = r; c < D; ++c) sum += (c > r ? 2.0 : 1.0) * second[k++] * n[r] * n[c];
     return sum;
   }
 
-  [[nodiscard]] double second_squared() const {
-    double sum = 0.0;
+  [[nodiscard]] T second_squared() const {
+    T sum{};
     std::size_t k = 0;
     for (int r = 0; r < D; ++r)
       for (int c = r; c < D; ++c, ++k) sum += (c > r ? 2.0 : 1.0) * second[k] * second[k];
@@ -142,36 +152,44 @@ struct CrowdForm {
   CrowdCoupling coupling;
 
   /// S from the sums.
-  template <int D>
-  [[nodiscard]] double equivalent_volume(const CrowdSum<D>& sum) const {
-    const double s2 = coupling.own() * sum.square + coupling.m0 * sum.volume * sum.volume -
-                      coupling.m1 * norm2(sum.first) - coupling.m2 * sum.second_squared();
-    return std::sqrt(std::max(s2, 0.0));
+  template <int D, class T>
+  [[nodiscard]] T equivalent_volume(const CrowdSum<D, T>& sum) const {
+    const T s2 = coupling.own() * sum.square + coupling.m0 * sum.volume * sum.volume - coupling.m1 * norm2(sum.first) -
+                 coupling.m2 * sum.second_squared();
+    return root(largest<T>(s2, 0.0));
   }
 
   /// B of a contact with these nu and direction; never negative (a contact does not pull).
-  template <int D>
-  [[nodiscard]] double felt(const CrowdSum<D>& sum, double nu, const Vec<D>& n) const {
-    return std::max(coupling.own() * nu + coupling.m0 * sum.volume - coupling.m1 * dot(n, sum.first) -
-                        coupling.m2 * sum.second_along(n),
-                    0.0);
+  template <int D, class T>
+  [[nodiscard]] T felt(const CrowdSum<D, T>& sum, const T& nu, const Vec<D, T>& n) const {
+    return largest<T>(coupling.own() * nu + coupling.m0 * sum.volume - coupling.m1 * dot(n, sum.first) -
+                          coupling.m2 * sum.second_along(n),
+                      0.0);
   }
 };
 
 /// Effective lost volume of one contact: nu = w v^m, v the volume of the lens over that of the shell. w = m = 1 is a
 /// plane; other bodies have other constants.
+template <class T>
 struct LostVolume {
-  double nu = 0.0;
-  double slope = 0.0;      ///< d nu/dx
-  double curvature = 0.0;  ///< d slope/dx
+  T nu{};
+  T slope{};      ///< d nu/dx
+  T curvature{};  ///< d slope/dx
 };
 
-inline LostVolume lost_volume(const Lens& l, double w, double m) {
-  if (l.volume <= 0.0) return {};  // not a number goes on
-  if (m == 1.0) return {w * l.volume, w * l.slope, w * l.curvature};
-  const double nu = w * std::pow(l.volume, m);
-  const double first = m * nu / l.volume;
-  return {nu, first * l.slope, first * (l.curvature + (m - 1.0) * l.slope * l.slope / l.volume)};
+template <class T>
+LostVolume<T> lost_volume(const Lens<T>& l, const std::type_identity_t<T>& w, const std::type_identity_t<T>& m) {
+  LostVolume<T> out{w * l.volume, w * l.slope, w * l.curvature};
+  const Mask<T> bent = m != 1.0;
+  if (any(bent)) {
+    const T nu = w * power(l.volume, m);
+    const T first = m * nu / l.volume;
+    out = {choose<T>(bent, nu, out.nu), choose<T>(bent, first * l.slope, out.slope),
+           choose<T>(bent, first * (l.curvature + (m - 1.0) * l.slope * l.slope / l.volume), out.curvature)};
+  }
+  const Mask<T> none = l.volume <= 0.0;  // not a number goes on
+  if (!any(none)) return out;
+  return {choose<T>(none, T(0.0), out.nu), choose<T>(none, T(0.0), out.slope), choose<T>(none, T(0.0), out.curvature)};
 }
 
 }  // namespace softgrain

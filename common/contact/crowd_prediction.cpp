@@ -15,7 +15,7 @@ PairConstants constants_of(const CrowdModel& model, const CrowdPartner& p) {
   return model.soft.at(p.ratio);
 }
 
-LostVolume lost_to(const CrowdModel& model, const CrowdPartner& p, double overlap) {
+LostVolume<double> lost_to(const CrowdModel& model, const CrowdPartner& p, double overlap) {
   const PairConstants k = constants_of(model, p);
   const double curvature = p.kind == PartnerKind::plane ? 0.0 : 1.0 / p.ratio;
   return lost_volume(lens(positive(overlap), curvature), k.a, k.b);
@@ -34,7 +34,7 @@ CrowdSum<3> sum_of(const CrowdModel& model, const std::vector<CrowdPartner>& par
 }
 
 /// Of one contact of a body that has no other.
-double alone(const CrowdModel& model, const LostVolume& nu) {
+double alone(const CrowdModel& model, const LostVolume<double>& nu) {
   return nu.nu > 0.0 ? nu.slope * model.form.pressure.at(nu.nu).p : 0.0;
 }
 

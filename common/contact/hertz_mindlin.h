@@ -49,12 +49,10 @@ inline HertzCoefficients HertzCoefficients::of(const Material& m1, const Materia
 /// eta = alpha sqrt(m12 sqrt(R12)/D) h^(1/4), the same for both directions. SI units.
 template <Tangential kTangential, bool kDamped>
 struct HertzMindlin {
-  static constexpr bool has_tangential = kTangential != Tangential::none;
-  static constexpr bool is_damped = kDamped;
-  static constexpr bool has_memory = kTangential == Tangential::rescaled;
-  static constexpr bool needs_velocity = has_tangential || kDamped;
-  static constexpr bool needs_particle_pass = false;
-  static constexpr bool has_onset = false;  ///< onset() is not always zero
+  static constexpr LawTraits traits{.needs_velocity = kTangential != Tangential::none || kDamped,
+                                    .has_tangential = kTangential != Tangential::none,
+                                    .has_memory = kTangential == Tangential::rescaled,
+                                    .stores_energy = true};
 
   HertzCoefficients k;
 
@@ -64,42 +62,40 @@ struct HertzMindlin {
     return {root, k.damping * std::sqrt(bodies.effective_mass() * (root * k.inverse_d))};
   }
 
-  /// Overlap below which the pair cannot interact [m].
-  [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
-
   /// Work of the elastic force from touch to this overlap [J]: 2/5 F h.
   [[nodiscard]] double stored_energy(double overlap, const PairConstants& constants) const {
     return 0.4 * constants.a * k.inverse_d * overlap * overlap * std::sqrt(overlap);
   }
 
-  template <int D>
-  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
-    ContactResponse<D> out;
-    const double root_h = std::sqrt(s.overlap);
-    const double contact_radius = s.constants.a * root_h;
+  template <int D, class T>
+  [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
+    ContactResponse<D, T> out;
+    const T root_h = root(s.overlap);
+    const T contact_radius = s.constants.a * root_h;
     out.elastic_force = contact_radius * s.overlap * k.inverse_d;
     out.normal_stiffness = 1.5 * contact_radius * k.inverse_d;
     out.normal_force = out.elastic_force;
-    double eta = 0.0;
+    T eta(0.0);
     if constexpr (kDamped) {
-      eta = s.constants.b * std::sqrt(root_h);
+      eta = s.constants.b * root(root_h);
       out.normal_force -= eta * s.normal_speed;
     }
-    if constexpr (has_tangential) tangential(s, contact_radius, eta, out);
+    if constexpr (traits.has_tangential) tangential(s, contact_radius, eta, out);
     return out;
   }
 
  private:
-  template <int D>
-  void tangential(const ContactState<D>& s, double contact_radius, double eta, ContactResponse<D>& out) const {
-    const double limit = k.friction * std::max(out.normal_force, 0.0);
+  template <int D, class T>
+  void tangential(const ContactState<D, T>& s, const T& contact_radius, const T& eta,
+                  ContactResponse<D, T>& out) const {
+    const T limit = k.friction * largest(out.normal_force, 0.0);
     if constexpr (kTangential == Tangential::rescaled) {
-      ContactState<D> shortened = s;
-      if (s.memory > 0.0 && contact_radius > s.memory) shortened.spring *= s.memory / contact_radius;
-      coulomb_spring(shortened, contact_radius * k.shear, eta, limit, out);
+      ContactState<D, T> shortened = s;
+      shortened.spring *= choose<T>(s.memory > 0.0 && contact_radius > s.memory, s.memory / contact_radius, T(1.0));
+      coulomb_spring<kDamped>(shortened, T(contact_radius * k.shear), eta, limit, out);
       out.memory = contact_radius;
     } else {
-      coulomb_spring(s, contact_radius * k.shear, eta, limit, out);
+      coulomb_spring<kDamped>(s, T(contact_radius * k.shear), eta, limit, out);
     }
   }
 };

@@ -2,6 +2,7 @@
 // list, never per contact.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <concepts>
 #include <cstdint>
 #include <stdexcept>
 #include <variant>
@@ -24,11 +25,59 @@ using AnyLaw =
                  SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>,
                  CohesiveDisk<false, false>, CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
 
-/// Whether a law knows this number of dimensions; all do but those that name one.
+/// What every law is: traits, constants of a pair, and a force for a number or for several side by side; and what it
+/// says of itself is there.
+template <class Law>
+concept ContactLaw = std::is_same_v<const LawTraits, decltype(Law::traits)> &&
+                     (Law::traits.needs_velocity || !Law::traits.has_tangential) &&
+                     requires(const Law& law, const PairBodies& bodies,
+                              const ContactState<Law::traits.dimension == 2 ? 2 : 3>& state,
+                              CrowdSum<Law::traits.dimension == 2 ? 2 : 3>& sum) {
+  { law.pair_constants(bodies) } -> std::same_as<PairConstants>;
+  { law.evaluate(state) } -> std::same_as<ContactResponse<Law::traits.dimension == 2 ? 2 : 3>>;
+  requires !Law::traits.has_onset || requires {
+    { law.onset(bodies) } -> std::same_as<double>;
+  };
+  requires !Law::traits.acts_at_distance || requires {
+    { law.reach() } -> std::same_as<double>;
+    { law.stiffest(1.0) } -> std::same_as<double>;
+  };
+  requires !Law::traits.is_fitted || requires {
+    { law.soft_sides() } -> std::same_as<SoftSides>;
+  };
+  requires !Law::traits.has_rolling || requires {
+    { law.rolling } -> std::convertible_to<double>;
+  };
+  requires !Law::traits.stores_energy || requires {
+    { law.stored_energy(0.0, PairConstants{}) } -> std::same_as<double>;
+  };
+  requires !Law::traits.needs_particle_pass || requires {
+    law.share(state, true, sum);
+    law.finish(sum);
+  };
+  requires !Law::traits.is_crowd || requires {
+    { law.form } -> std::convertible_to<CrowdForm>;
+  };
+};
+
+/// Whether a law knows this number of dimensions.
 template <class Law, int D>
 constexpr bool law_serves() {
-  if constexpr (requires { Law::dimension; }) return Law::dimension == D;
-  return true;
+  return Law::traits.dimension == 0 || Law::traits.dimension == D;
+}
+
+template <class... Laws>
+constexpr bool are_contact_laws(const std::variant<Laws...>*) {
+  return (ContactLaw<Laws> && ...);
+}
+static_assert(are_contact_laws(static_cast<const AnyLaw*>(nullptr)));
+
+inline SoftSides soft_sides(const AnyLaw& any) {
+  return std::visit([](const auto& law) { return soft_sides_of(law); }, any);
+}
+
+inline LawTraits traits_of(const AnyLaw& any) {
+  return std::visit([]<class Law>(const Law&) { return Law::traits; }, any);
 }
 
 /// The cheapest Hertz law that does what the coefficients ask for: no friction, no history; no damping, no dashpot.

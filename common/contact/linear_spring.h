@@ -13,11 +13,7 @@ namespace softgrain {
 /// contact ending at zero force of the undamped clock, as for the Tsuji form); Ft = -kt ht, |Ft| <= mu max(Fn, 0). SI
 /// units.
 struct LinearSpring {
-  static constexpr bool has_tangential = true;
-  static constexpr bool has_memory = false;
-  static constexpr bool needs_velocity = true;
-  static constexpr bool needs_particle_pass = false;
-  static constexpr bool has_onset = false;  ///< onset() is not always zero
+  static constexpr LawTraits traits{.needs_velocity = true, .has_tangential = true, .stores_energy = true};
 
   double normal = 0.0;      ///< kn [N/m]
   double tangential = 0.0;  ///< kt [N/m]
@@ -35,20 +31,19 @@ struct LinearSpring {
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     return {0.0, 2.0 * damping * std::sqrt(normal * bodies.effective_mass())};
   }
-  [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
 
   /// Work of the elastic force from touch to this overlap [J].
   [[nodiscard]] double stored_energy(double overlap, const PairConstants&) const {
     return 0.5 * normal * overlap * overlap;
   }
 
-  template <int D>
-  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
-    ContactResponse<D> out;
+  template <int D, class T>
+  [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
+    ContactResponse<D, T> out;
     out.elastic_force = normal * s.overlap;
-    out.normal_stiffness = normal;
+    out.normal_stiffness = T(normal);
     out.normal_force = out.elastic_force - s.constants.b * s.normal_speed;
-    coulomb_spring(s, tangential, s.constants.b, friction * std::max(out.normal_force, 0.0), out);
+    coulomb_spring<true>(s, T(tangential), s.constants.b, T(friction * largest(out.normal_force, 0.0)), out);
     return out;
   }
 };

@@ -17,19 +17,22 @@ struct PowerTerm {
   double b = 1.0;
   double c = 0.0;
 
-  [[nodiscard]] double value(double d) const { return a * std::pow(d, b) + c; }
-  [[nodiscard]] double slope(double d) const { return a * b * std::pow(d, b - 1.0); }
-  [[nodiscard]] double integral(double d) const { return a * std::pow(d, b + 1.0) / (b + 1.0) + c * d; }
+  template <class T>
+  [[nodiscard]] T value(const T& d) const {
+    return a * power(d, b) + c;
+  }
+  template <class T>
+  [[nodiscard]] T slope(const T& d) const {
+    return a * b * power(d, b - 1.0);
+  }
+  [[nodiscard]] double integral(double d) const { return a * power(d, b + 1.0) / (b + 1.0) + c * d; }
 };
 
 /// Fn = E R^2 f(Delta), kt = E R g(Delta), |Ft| <= mu Fn, viscous damping eta = 2 zeta sqrt(m12 kn).
 /// Below delta: no force, no spring, no history (the pair does not even enter the list before its skin). SI units.
 struct SoftContact {
-  static constexpr bool has_tangential = true;
-  static constexpr bool has_memory = false;
-  static constexpr bool needs_velocity = true;
-  static constexpr bool needs_particle_pass = false;
-  static constexpr bool has_onset = true;  ///< onset() is not always zero
+  static constexpr LawTraits traits{
+      .needs_velocity = true, .has_tangential = true, .has_onset = true, .stores_energy = true, .is_fitted = true};
 
   PowerTerm normal;
   PowerTerm tangential;
@@ -41,25 +44,34 @@ struct SoftContact {
   bool i_is_soft = true;         ///< soft-solid: which of the two is soft
   LawRange range;                ///< of Delta
 
+  [[nodiscard]] SoftSides soft_sides() const { return {partner_is_soft || i_is_soft, partner_is_soft || !i_is_soft}; }
+
   /// a: radius of the shell that Delta refers to [m], b: 2 zeta sqrt(m12).
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     return {reference_radius(bodies), 2.0 * damping * std::sqrt(bodies.effective_mass())};
   }
+  /// Overlap below which the pair cannot interact [m].
   [[nodiscard]] double onset(const PairBodies& bodies) const { return delta * reference_radius(bodies); }
 
-  template <int D>
-  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
-    ContactResponse<D> out;
-    const double radius = s.constants.a;
-    const double ratio = std::min(s.overlap / radius, range.clamp_at());
-    if (ratio < delta) return out;
+  template <int D, class T>
+  [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
+    ContactResponse<D, T> out;
+    const T radius = s.constants.a;
+    const T ratio = least<T>(s.overlap / radius, range.clamp_at());
+    const Mask<T> idle = ratio < delta;
+    if (!any(!idle)) return out;
     out.elastic_force = modulus * radius * radius * normal.value(ratio);
     out.normal_stiffness = modulus * radius * normal.slope(ratio);
-    const double eta = s.constants.b * std::sqrt(out.normal_stiffness);
+    const T eta = s.constants.b * root(out.normal_stiffness);
     out.normal_force = out.elastic_force - eta * s.normal_speed;
-    const double stiffness = modulus * radius * std::max(tangential.value(ratio), 0.0);
-    if (stiffness > 0.0) coulomb_spring(s, stiffness, eta, friction * std::max(out.normal_force, 0.0), out);
-    return out;
+    const T stiffness = modulus * radius * largest<T>(tangential.value(ratio), 0.0);
+    const Mask<T> held = stiffness > 0.0;
+    if (any(held)) {
+      const ContactResponse<D, T> loose = out;
+      coulomb_spring<true>(s, stiffness, eta, T(friction * largest(out.normal_force, 0.0)), out);
+      if (any(!held)) out = select(held, out, loose);
+    }
+    return any(idle) ? select(idle, {}, out) : out;
   }
 
   /// Work of the elastic force from touch to this overlap [J].

@@ -34,12 +34,13 @@ struct LostVolumeTable {
 /// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. SI units; 3D only.
 template <Crowd kCrowd, bool kUnloading>
 struct SoftCrowd {
-  static constexpr int dimension = 3;
-  static constexpr bool has_tangential = true;
-  static constexpr bool has_memory = kUnloading;
-  static constexpr bool needs_velocity = true;
-  static constexpr bool needs_particle_pass = kCrowd != Crowd::pair;
-  static constexpr bool has_onset = false;
+  static constexpr LawTraits traits{.dimension = 3,
+                                    .needs_velocity = true,
+                                    .has_tangential = true,
+                                    .has_memory = kUnloading,
+                                    .needs_particle_pass = kCrowd != Crowd::pair,
+                                    .is_fitted = true,
+                                    .is_crowd = true};
 
   CrowdForm form;
   LostVolumeTable partner;  ///< of the body on the other side, for this kind of pair
@@ -50,6 +51,8 @@ struct SoftCrowd {
   bool i_is_soft = true;
   bool j_is_soft = false;
 
+  [[nodiscard]] SoftSides soft_sides() const { return {i_is_soft, j_is_soft}; }
+
   /// {w, m} of the soft body; of soft-soft pairs those of i, the ones of j follow from the inverse ratio.
   [[nodiscard]] PairConstants pair_constants(const PairBodies& bodies) const {
     if (i_is_soft && j_is_soft)
@@ -57,83 +60,96 @@ struct SoftCrowd {
     if (i_is_soft) return partner.at(bodies.radius_j / bodies.radius_i);
     return partner.at(bodies.radius_i / bodies.radius_j);
   }
-  [[nodiscard]] double onset(const PairBodies&) const { return 0.0; }
 
-  /// Adds what a contact takes from one of its bodies.
+  /// What a contact takes from one of its bodies, nu.
+  template <int D, class T>
+  [[nodiscard]] T taken(const ContactState<D, T>& s, bool of_i) const {
+    return lost(s, of_i).nu;
+  }
+  /// Adds that to the sums of the body; `n` is the direction from it.
   template <int D>
-  void share(const ContactState<D>& s, bool of_i, CrowdSum<D>& sum) const {
-    if (!(of_i ? i_is_soft : j_is_soft)) return;
-    const double nu = lost(s, of_i).nu;
+  static void add(double nu, const Vec<D>& n, CrowdSum<D>& sum) {
     if constexpr (kCrowd == Crowd::bag)
       sum.add(nu);
     else
-      sum.add(nu, of_i ? -s.normal : s.normal);
+      sum.add(nu, n);
+  }
+  template <int D>
+  void share(const ContactState<D>& s, bool of_i, CrowdSum<D>& sum) const {
+    if (of_i ? i_is_soft : j_is_soft) add(taken(s, of_i), of_i ? -s.normal : s.normal, sum);
   }
 
+  /// The volume that stands for all contacts of a body.
+  template <int D>
+  [[nodiscard]] double equivalent(const CrowdSum<D>& sum) const {
+    return kCrowd == Crowd::directional ? form.equivalent_volume(sum) : sum.volume;
+  }
   /// Pressure of a body whose contacts have all been added.
   template <int D>
   void finish(CrowdSum<D>& sum) const {
-    if constexpr (kCrowd == Crowd::bag)
-      sum.close(form.pressure, sum.volume);
-    else
-      sum.close(form.pressure, form.equivalent_volume(sum));
+    sum.close(form.pressure, equivalent(sum));
   }
 
-  template <int D>
-  [[nodiscard]] ContactResponse<D> evaluate(const ContactState<D>& s) const {
-    ContactResponse<D> out;
-    if constexpr (kUnloading) out.memory = std::max(s.memory, s.overlap);
+  template <int D, class T>
+  [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
+    ContactResponse<D, T> out;
+    if constexpr (kUnloading) out.memory = largest(s.memory, s.overlap);
     if (i_is_soft) add_side(s, true, out);
     if (j_is_soft) add_side(s, false, out);
     out.normal_force = out.elastic_force;
-    const double stiffness = kt_ratio * out.normal_stiffness;
-    if (stiffness > 0.0 && out.elastic_force > 0.0)
-      coulomb_spring(s, stiffness, 0.0, friction * out.elastic_force, out);
-    return out;
+    const T stiffness = kt_ratio * out.normal_stiffness;
+    const Mask<T> held = stiffness > 0.0 && out.elastic_force > 0.0;
+    if (!any(held)) return out;
+    const ContactResponse<D, T> loose = out;
+    coulomb_spring<false>(s, stiffness, T(0.0), T(friction * out.elastic_force), out);
+    return any(!held) ? select(held, out, loose) : out;
   }
 
  private:
   /// Overlap as it is felt [m].
-  template <int D>
-  [[nodiscard]] double felt_overlap(const ContactState<D>& s) const {
+  template <int D, class T>
+  [[nodiscard]] T felt_overlap(const ContactState<D, T>& s) const {
     if constexpr (kUnloading)
-      if (s.overlap < s.memory) return std::max(s.memory - retreat * (s.memory - s.overlap), 0.0);
+      return choose<T>(s.overlap < s.memory, largest<T>(s.memory - retreat * (s.memory - s.overlap), 0.0), s.overlap);
     return s.overlap;
   }
 
-  template <int D>
-  [[nodiscard]] LostVolume lost(const ContactState<D>& s, bool of_i) const {
-    const double own = of_i ? s.radius_i : s.radius_j;
-    const double other = of_i ? s.radius_j : s.radius_i;
-    const double curvature = other != 0.0 ? own / other : 0.0;
+  template <int D, class T>
+  [[nodiscard]] LostVolume<T> lost(const ContactState<D, T>& s, bool of_i) const {
+    const T own = of_i ? s.radius_i : s.radius_j;
+    const T other = of_i ? s.radius_j : s.radius_i;
+    const T curvature = choose<T>(other != 0.0, own / other, T(0.0));
     const bool both = i_is_soft && j_is_soft;
-    const double w = both && !of_i ? s.constants.b : s.constants.a;
-    const double m = both ? partner.common_exponent : s.constants.b;
-    return lost_volume(lens(felt_overlap(s) / own, curvature), w, m);
+    const T w = both && !of_i ? s.constants.b : s.constants.a;
+    const T m = both ? T(partner.common_exponent) : s.constants.b;
+    return lost_volume(lens<T>(felt_overlap(s) / own, curvature), w, m);
   }
 
-  template <int D>
-  void add_side(const ContactState<D>& s, bool of_i, ContactResponse<D>& out) const {
-    const LostVolume nu = lost(s, of_i);
-    if (nu.nu <= 0.0) return;  // not a number goes on
-    const double radius = of_i ? s.radius_i : s.radius_j;
-    double gain = 0.0;
-    double gain_slope = 0.0;
-    double felt = nu.nu;
+  template <int D, class T>
+  void add_side(const ContactState<D, T>& s, bool of_i, ContactResponse<D, T>& out) const {
+    const LostVolume<T> nu = lost(s, of_i);
+    const Mask<T> idle = nu.nu <= 0.0;  // not a number goes on
+    if (!any(!idle)) return;
+    const T radius = of_i ? s.radius_i : s.radius_j;
+    T gain(0.0);
+    T gain_slope(0.0);
+    T felt = nu.nu;
     if constexpr (kCrowd == Crowd::pair) {
-      const CrowdPressure::Value p = form.pressure.at(nu.nu);
-      gain = p.p / nu.nu;
-      gain_slope = (p.slope - gain) / (nu.nu * nu.nu);
+      const auto [p, slope] = form.pressure.at(nu.nu);
+      gain = p / nu.nu;
+      gain_slope = (slope - gain) / (nu.nu * nu.nu);
     } else {
-      const CrowdSum<D>& sum = of_i ? *s.sum_i : *s.sum_j;
+      const CrowdSum<D, T>& sum = of_i ? *s.sum_i : *s.sum_j;
       gain = sum.gain;
       gain_slope = sum.gain_slope;
       felt = kCrowd == Crowd::bag ? sum.volume : form.felt(sum, nu.nu, of_i ? -s.normal : s.normal);
     }
-    out.elastic_force += modulus * radius * radius * nu.slope * gain * felt;
-    const double bend = nu.curvature * gain * felt + nu.slope * nu.slope * (gain + gain_slope * felt * felt);
-    const double branch = kUnloading && s.overlap < s.memory ? retreat : 1.0;
-    out.normal_stiffness += branch * std::max(modulus * radius * bend, 0.0);
+    const T force = modulus * radius * radius * nu.slope * gain * felt;
+    const T bend = nu.curvature * gain * felt + nu.slope * nu.slope * (gain + gain_slope * felt * felt);
+    T branch(1.0);
+    if constexpr (kUnloading) branch = choose<T>(s.overlap < s.memory, T(retreat), T(1.0));
+    out.elastic_force += choose<T>(idle, T(0.0), force);
+    out.normal_stiffness += choose<T>(idle, T(0.0), branch * largest<T>(modulus * radius * bend, 0.0));
   }
 };
 

@@ -65,19 +65,11 @@ struct alignas(D == 3 ? 32 : 8 * D) Stored : Vec<D> {
 
 /// Angular quantity: spin, torque. A vector in 3D, one number in 2D.
 template <int D>
-struct RotationOf;
-template <>
-struct RotationOf<3> {
-  using type = Vec<3>;
-};
-template <>
-struct RotationOf<2> {
-  using type = Vec<1>;
-};
+constexpr int kRot = D == 3 ? 3 : 1;
+template <int D, class T = double>
+using Rot = Vec<kRot<D>, T>;
 template <int D>
-using Rot = typename RotationOf<D>::type;
-template <int D>
-using StoredRot = Stored<D == 3 ? 3 : 1>;
+using StoredRot = Stored<kRot<D>>;
 
 /// arm x force: the moment.
 template <class T>

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/dynamics/pair_loop.h"
 #include "common/dynamics/parallel_pass.h"
-#include "common/dynamics/scatter_sink.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -16,36 +16,13 @@ namespace {
 /// Below this many listed pairs one thread is faster than two.
 constexpr std::int32_t kParallelPairs = 8000;
 
-/// To the bodies, and stiffness sums.
-template <int D>
-struct StiffnessSink {
-  ScatterSink<D> scatter;
-  BodyStiffness& out;
-
-  void apart(std::size_t) {}
-  template <bool kTorque>
-  void touch(std::size_t c, std::size_t i, std::size_t j, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
-    scatter.template touch<kTorque>(c, i, j, g, r);
-    if (r.normal_force != 0.0) {
-      out.force_sum += std::abs(r.normal_force);
-      ++out.contacts;
-    }
-    const double k = r.normal_stiffness + r.tangential_stiffness;
-    out.translation[i] += k;
-    out.translation[j] += k;
-    out.rotation[i] += r.tangential_stiffness * g.arm_i * g.arm_i;
-    out.rotation[j] += r.tangential_stiffness * g.arm_j * g.arm_j;
-  }
-  void roll(std::size_t i, std::size_t j, const Rot<D>& moment) { scatter.roll(i, j, moment); }
-};
-
 template <int D>
 struct RecordSink {
   const System<D>& s;
   std::vector<ContactRecord<D>>& out;
 
   void apart(std::size_t) {}
-  template <bool kTorque>
+  template <LawTraits>
   void touch(std::size_t c, std::size_t i, std::size_t, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
     if (r.elastic_force == 0.0 && r.normal_force == 0.0) return;
     out.push_back({s.contacts.i[c], s.contacts.j[c], g.overlap, g.normal, g.branch,
@@ -53,18 +30,6 @@ struct RecordSink {
                    r.rolling_moment});
   }
 };
-
-template <int D>
-void serial_pass(System<D>& s, double dt, History history) {
-  particle_pass(s);
-  ScatterSink<D> sink{s.particles};
-  for (const ContactSection& section : s.contacts.sections) {
-    if (has_fast_loop(s.laws, section))
-      hertz_loop(s, section, dt, {section.begin, section.end}, history);
-    else
-      pair_loop(s, section, dt, {section.begin, section.end}, sink, history);
-  }
-}
 
 template <int D>
 void clear_forces(Particles<D>& p) {
@@ -86,7 +51,8 @@ void add_contact_forces(System<D>& system, double dt, History history) {
   if (system.contacts.size() >= kParallelPairs && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
     parallel_pass(system, dt, history, omp_get_max_threads());
   } else {
-    serial_pass(system, dt, history);
+    particle_pass(system);
+    block_loop<D>(system, {.dt = dt, .history = history});
   }
   count_pass(system);
 }
@@ -106,8 +72,9 @@ void force_pass(System<D>& system, double dt, BodyStiffness& stiffness, History 
   stiffness.rotation.assign(static_cast<std::size_t>(system.particles.size()), 0.0);
   stiffness.force_sum = 0.0;
   stiffness.contacts = 0;
-  StiffnessSink<D> sink{{system.particles}, stiffness};
-  pair_loop(system, dt, sink, history);
+  if (history == History::next) system.contacts.make_next();
+  particle_pass(system);
+  block_loop<D>(system, {.dt = dt, .history = history, .stiffness = &stiffness});
   count_pass(system);
 }
 

@@ -1,9 +1,9 @@
 // Forces and torques on all bodies from all contacts.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "common/dynamics/block_loop.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -18,16 +18,6 @@ void force_pass(System<D>& system, double dt, History history = History::next);
 /// The sums alone: the list is known to be valid and the forces of all bodies are zero.
 template <int D>
 void add_contact_forces(System<D>& system, double dt, History history);
-
-/// Sums of contact stiffness per body, for mass scaling and step control, and the mean contact force of the same pass.
-struct BodyStiffness {
-  std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
-  std::vector<double> rotation;     ///< sum of kt arm^2 [N m]
-  double force_sum = 0.0;           ///< of |normal force| over contacts [N]
-  std::int64_t contacts = 0;        ///< force-carrying
-
-  [[nodiscard]] double mean_force() const { return contacts > 0 ? force_sum / static_cast<double>(contacts) : 0.0; }
-};
 
 /// A pass that also returns the stiffness sums.
 template <int D>

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/dynamics/scatter_sink.h"
+#include "common/dynamics/block_loop.h"
 
 namespace softgrain {
 
@@ -101,8 +101,7 @@ void make_plan(const System<D>& s, int threads, Plan& plan) {
   plan.build = s.contacts.build;
   plan.threads = threads;
   plan.rolls = false;
-  for (std::int32_t l = 0; l < s.laws.size(); ++l)
-    plan.rolls = plan.rolls || std::visit([]<class Law>(const Law&) { return resists_rolling<Law>(); }, s.laws.law(l));
+  for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
   plan.shares.assign(static_cast<std::size_t>(threads), std::vector<Share>(s.contacts.sections.size()));
   for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, owner, plan);
 }
@@ -147,21 +146,6 @@ class Waiters : public WaitingLoads {
   std::size_t at_ = 0;
 };
 
-/// The scalar loop's sink, with the waiting loads in between.
-template <int D>
-struct MergingSink {
-  ScatterSink<D> scatter;
-  Waiters<D>& waiting;
-
-  void apart(std::size_t) {}
-  template <bool kTorque>
-  void touch(std::size_t c, std::size_t i, std::size_t j, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
-    waiting.add_before(static_cast<std::int32_t>(c));
-    scatter.template touch<kTorque>(c, i, j, g, r);
-  }
-  void roll(std::size_t i, std::size_t j, const Rot<D>& moment) { scatter.roll(i, j, moment); }
-};
-
 template <int D>
 class Pass {
  public:
@@ -172,12 +156,8 @@ class Pass {
       Share& share = plan_.shares[thread][k];
       const ContactSection& section = s_.contacts.sections[k];
       const PairRange range{0, static_cast<std::int32_t>(share.outer.size()), share.outer.data()};
-      if (has_fast_loop(s_.laws, section)) {
-        hertz_loop(s_, section, dt_, range, history_, share.loads.data(), share.touches.data());
-      } else {
-        PutDownSink<D> sink{share.loads.data(), share.touches.data()};
-        pair_loop(s_, section, dt_, range, sink, history_);
-      }
+      block_loop<D>(s_, section, range,
+                    {.dt = dt_, .history = history_, .loads = share.loads.data(), .touches = share.touches.data()});
     }
   }
 
@@ -187,12 +167,7 @@ class Pass {
       const ContactSection& section = s_.contacts.sections[k];
       const PairRange range{0, static_cast<std::int32_t>(share.inner.size()), share.inner.data()};
       Waiters<D> waiting(s_, plan_, thread, k);
-      if (has_fast_loop(s_.laws, section)) {
-        hertz_loop(s_, section, dt_, range, history_, nullptr, nullptr, &waiting);
-      } else {
-        MergingSink<D> sink{{s_.particles}, waiting};
-        pair_loop(s_, section, dt_, range, sink, history_);
-      }
+      block_loop<D>(s_, section, range, {.dt = dt_, .history = history_, .waiting = &waiting});
       waiting.add_all();
     }
   }
@@ -208,8 +183,7 @@ class Pass {
 
 template <int D>
 void parallel_pass(System<D>& s, double dt, History history, int threads) {
-  thread_local Plan kept;
-  Plan& plan = kept;  // threads of the team would otherwise each look at their own
+  Plan& plan = s.contacts.plan.template get<Plan>();
   const int many = std::min(threads, 255);
   if (plan.build != s.contacts.build || plan.threads != many) make_plan(s, many, plan);
   particle_pass(s);

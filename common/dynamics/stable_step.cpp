@@ -26,22 +26,19 @@ struct Joint {
 };
 
 /// What a law answers to a contact that does not move but for a normal speed of 1, which shows its dashpot.
-template <int D, class Law>
-Joint<D> joint_of(const System<D>& s, std::size_t c, const Law& law, ContactState<D> state, const ContactGeometry<D>& g,
+template <class Source, class Pair, class Law, int D = Source::kDimension>
+Joint<D> joint_of(const Source& source, const Law& law, std::size_t c, const Pair& pair, const ContactGeometry<D>& g,
                   Dashpots dashpots) {
-  Joint<D> out{static_cast<std::size_t>(s.contacts.i[c]), static_cast<std::size_t>(s.contacts.j[c]), g.normal, g.arm_i,
-               g.arm_j};
+  Joint<D> out{pair.i, pair.j, g.normal, g.arm_i, g.arm_j};
+  ContactState<D> state = source.template state<Law::traits>(pair, c, g);
   state.normal_speed = 1.0;
-  if constexpr (Law::has_memory) state.memory = s.contacts.memory[c];
-  if constexpr (Law::needs_particle_pass) {
-    state.sum_i = &s.contacts.particle_sum[out.i];
-    state.sum_j = &s.contacts.particle_sum[out.j];
-  }
+  state.spring = {};
+  if constexpr (Law::traits.needs_particle_pass) source.give_sums(pair, state);
   const ContactResponse<D> r = law.evaluate(state);
   out.kn = std::max(r.normal_stiffness, 0.0);
   out.kt = 2.0 * r.tangential_stiffness;
   out.eta = dashpots == Dashpots::count ? std::max(r.elastic_force - r.normal_force, 0.0) : 0.0;
-  if constexpr (resists_rolling<Law>()) out.roll = 2.0 * law.rolling;
+  if constexpr (Law::traits.has_rolling) out.roll = 2.0 * law.rolling;
   return out;
 }
 
@@ -49,17 +46,13 @@ Joint<D> joint_of(const System<D>& s, std::size_t c, const Law& law, ContactStat
 template <int D, class Work>
 void for_joints(const System<D>& s, Dashpots dashpots, Work&& work) {
   for (const ContactSection& section : s.contacts.sections)
-    detail::with_types(s, section, [&]<class Law>(const Law& law, auto geometry, auto) {
-      constexpr Geometry kGeometry = decltype(geometry)::value;
-      for (std::int32_t k = section.begin; k < section.end; ++k) {
-        const auto c = static_cast<std::size_t>(k);
-        const Vec<D> shift = s.cell.any_periodic() ? s.cell.image_shift(s.contacts.image[c]) : Vec<D>{};
-        ContactGeometry<D> g;
-        const auto i = static_cast<std::size_t>(s.contacts.i[c]);
-        const auto j = static_cast<std::size_t>(s.contacts.j[c]);
-        if (!detail::meet<D, kGeometry>(s.particles, i, j, shift, g)) continue;
-        work(joint_of(s, c, law, detail::contact_state<D, kGeometry>(s, c, g), g, dashpots));
-      }
+    with_pairs<D>(s, section, [&](const auto& law, const auto& source) {
+      visit_pairs(
+          source, 0.0, {section.begin, section.end},
+          [&](std::size_t c, const auto& pair, const ContactGeometry<D>& g) {
+            work(joint_of(source, law, c, pair, g, dashpots));
+          },
+          [](std::size_t) {});
     });
 }
 

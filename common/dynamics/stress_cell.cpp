@@ -4,30 +4,10 @@
 #include <cmath>
 
 #include "common/core/larger_or_nan.h"
-#include "common/dynamics/pair_loop.h"
-#include "common/dynamics/scatter_sink.h"
+#include "common/dynamics/block_loop.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
-
-namespace {
-
-/// To the bodies, and the sum over pairs of force times branch, per axis.
-template <int D>
-struct VirialSink {
-  ScatterSink<D> scatter;
-  Vec<D> virial{};
-
-  void apart(std::size_t) {}
-  template <bool kTorque>
-  void touch(std::size_t c, std::size_t i, std::size_t j, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
-    scatter.template touch<kTorque>(c, i, j, g, r);
-    for (int k = 0; k < D; ++k) virial[k] += (g.normal[k] * r.normal_force + r.tangential_force[k]) * g.branch[k];
-  }
-  void roll(std::size_t i, std::size_t j, const Rot<D>& moment) { scatter.roll(i, j, moment); }
-};
-
-}  // namespace
 
 /// The exact test of the list runs only when the sum of the bounds says that it may fail.
 template <int D>
@@ -42,9 +22,10 @@ void StressCellVerlet<D>::find_pairs(System<D>& s) {
 /// Forces must be zero before.
 template <int D>
 void StressCellVerlet<D>::sum_forces(System<D>& s, double dt, History history) {
-  VirialSink<D> sink{{s.particles}, {}};
-  pair_loop(s, dt, sink, history);
-  virial_ = sink.virial;
+  if (history == History::next) s.contacts.make_next();
+  particle_pass(s);
+  virial_ = {};
+  block_loop<D>(s, {.dt = dt, .history = history, .virial = &virial_});
   ++s.cost.loop_passes;
   s.cost.contact_evaluations += s.contacts.size();
 }

@@ -27,21 +27,17 @@ CrowdSum<3> crowded(const Law& law, ContactState<3> state) {
 double stiffness_of(const AnyLaw& any, double radius, double inverse_mass, double overlap_ratio) {
   return std::visit(
       [&]<class Law>(const Law& law) {
-        constexpr bool kSoft = requires { law.delta; }
-        || requires { law.form; };
         ContactState<3> state;
-        state.overlap = radius * (kSoft ? kSoftOverlap : overlap_ratio);
+        state.overlap = radius * (Law::traits.is_fitted ? kSoftOverlap : overlap_ratio);
         state.normal = {{1.0, 0.0, 0.0}};
         state.radius_i = state.radius_j = radius;
         state.constants = law.pair_constants({radius, radius, inverse_mass, inverse_mass});
-        if constexpr (Law::needs_particle_pass) {
+        if constexpr (Law::traits.needs_particle_pass) {
           const CrowdSum<3> sum = crowded(law, state);
           state.sum_i = state.sum_j = &sum;
           return law.evaluate(state).normal_stiffness;
-        } else if constexpr (requires { law.adhesion; }) {
-          // Springs across the contact, against rolling (K_r m/I of a disk), and the slope of the attraction.
-          const double slope = law.reach() > 0.0 ? law.adhesion / law.range : 0.0;
-          return std::max({law.normal, law.tangential, 2.0 * law.rolling / (radius * radius), slope});
+        } else if constexpr (Law::traits.acts_at_distance) {
+          return law.stiffest(radius);
         } else {
           return law.evaluate(state).normal_stiffness;
         }

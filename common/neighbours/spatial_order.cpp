@@ -88,7 +88,7 @@ struct RenamedPair {
 };
 
 bool memory_has_sides_under(const AnyLaw& any) {
-  return std::visit([]<class Law>(const Law&) { return memory_has_sides<Law>(); }, any);
+  return std::visit([]<class Law>(const Law&) { return Law::traits.memory_has_sides; }, any);
 }
 
 /// The body with the smaller slot is i: where that changes, the pair is seen from the other side.

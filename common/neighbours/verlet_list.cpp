@@ -35,12 +35,12 @@ PairBodies bodies_of(const Particles<D>& p, Geometry geometry, Slot i, Slot j) {
 
 template <int D>
 double onset_of(const System<D>& s, std::int32_t law, const PairBodies& bodies) {
-  return std::visit([&](const auto& l) { return l.onset(bodies); }, s.laws.law(law));
+  return std::visit([&](const auto& l) { return softgrain::onset_of(l, bodies); }, s.laws.law(law));
 }
 
 /// Whether pairs under a law may overlap without touching, so that they enter the list late.
 bool has_onset(const AnyLaw& any) {
-  return std::visit([]<class Law>(const Law&) { return Law::has_onset; }, any);
+  return std::visit([]<class Law>(const Law&) { return Law::traits.has_onset; }, any);
 }
 
 /// Margins of the search: a pair's is the sum of both, so that whatever may come within reach is found.
@@ -191,9 +191,9 @@ void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) 
   for (std::int32_t l = 0; l < laws.size(); ++l)
     std::visit(
         [&]<class Law>(const Law&) {
-          list.has_spring = list.has_spring || Law::has_tangential;
-          list.has_memory = list.has_memory || Law::has_memory;
-          sums = sums || Law::needs_particle_pass;
+          list.has_spring = list.has_spring || Law::traits.has_tangential;
+          list.has_memory = list.has_memory || Law::traits.has_memory;
+          sums = sums || Law::traits.needs_particle_pass;
         },
         laws.law(l));
   const std::size_t springs = list.has_spring ? list.i.size() : 0;

@@ -73,10 +73,10 @@ void ComputeSoftgrainContacts::init() {
 /// As the watch of the program counts: pair laws per contact, crowd laws per body.
 template <class Law>
 void ComputeSoftgrainContacts::note_use(const Law& law, const ContactState<3>& state, int i, int j, bool mine) {
-  if constexpr (std::is_same_v<Law, softgrain::SoftContact>) {
+  if constexpr (Law::traits.is_fitted && !Law::traits.is_crowd) {
     if (mine) use_.add(state.overlap / (state.constants.a * law.range.end), law.range.beyond);
-  } else if constexpr (requires { law.form; }) {
-    if constexpr (Law::needs_particle_pass) {
+  } else if constexpr (Law::traits.is_crowd) {
+    if constexpr (Law::traits.needs_particle_pass) {
       if (law.i_is_soft) form_[static_cast<std::size_t>(i)] = &law.form;
       if (law.j_is_soft && j < atom->nlocal) form_[static_cast<std::size_t>(j)] = &law.form;
     } else if (mine) {
@@ -104,37 +104,38 @@ void ComputeSoftgrainContacts::look_at(const bridge::ContactStore& store, const 
   constexpr bool kPlanes = std::is_same_v<Surface, bridge::PlaneSurface>;
   const bridge::Bodies& b = surface.b;
   const bridge::Pass still{false, 0.0, pair_->sums.data()};
-  bridge::over_sections(store, laws, [&](const auto& law, const bridge::Section& section) {
-    for (std::size_t c = section.begin; c < section.end; ++c) {
-      const int i = store.i[c];
-      const int j = store.j[c];
-      ContactGeometry<3> g;
-      if (!surface.meet(i, j, softgrain::reach_of(law), g)) continue;
-      const bool mine = kPlanes || is_mine(b, i, j);
-      note_use(law, bridge::state_of(store, c, surface, g), i, kPlanes ? atom->nlocal : j, mine);
-      if (!mine) continue;
-      const double smaller = kPlanes ? b.r(i) : std::min(b.r(i), surface.radius_j(j));
-      values_[kOverlap] = softgrain::larger_or_nan(values_[kOverlap], g.overlap / smaller);
-      if (kPlanes && g.overlap > b.r(i)) values_[kBehind] += 1.0;
-      const ContactResponse<3> r = bridge::response_of(law, store, c, surface, g, still);
-      if (r.elastic_force == 0.0 && r.normal_force == 0.0) continue;
-      const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
-      const Vec<3> branch = kPlanes ? g.normal * dot(g.branch, g.normal) : g.branch;
-      values_[kContacts] += 1.0;
-      values_[kForces] += std::abs(r.normal_force);
-      if (kPlanes) {
-        values_[kWithWalls] += 1.0;
-      } else {
-        pairs_ += 1.0;
-        values_[kFabric] += g.normal[2] * g.normal[2] - g.normal[0] * g.normal[0];
-      }
-      constexpr int kRow[6] = {0, 1, 2, 0, 0, 1};
-      constexpr int kColumn[6] = {0, 1, 2, 1, 2, 2};
-      for (std::size_t k = 0; k < 6; ++k) values_[kVirial + k] += push[kRow[k]] * branch[kColumn[k]];
-      const double partner = kPlanes ? -(planes_before + j + 1) : b.tag[j];
-      rows_.push_back({static_cast<double>(b.tag[i]), partner, r.normal_force, push[0], push[1], push[2], branch[0],
-                       branch[1], branch[2]});
-    }
+  const bridge::StorePairs source{store, surface, still};
+  bridge::over_sections(store, laws, [&]<class Law>(const Law& law, const softgrain::PairRange& range) {
+    softgrain::visit_pairs(
+        source, softgrain::reach_of(law), range,
+        [&](std::size_t c, const auto& pair, const ContactGeometry<3>& g) {
+          const auto [i, j] = pair;
+          const bool mine = kPlanes || is_mine(b, i, j);
+          note_use(law, source.template state<Law::traits>(pair, c, g), i, kPlanes ? atom->nlocal : j, mine);
+          if (!mine) return;
+          const double smaller = kPlanes ? b.r(i) : std::min(b.r(i), surface.radius_j(j));
+          values_[kOverlap] = softgrain::larger_or_nan(values_[kOverlap], g.overlap / smaller);
+          if (kPlanes && g.overlap > b.r(i)) values_[kBehind] += 1.0;
+          const ContactResponse<3> r = response_of(source, law, c, pair, g);
+          if (r.elastic_force == 0.0 && r.normal_force == 0.0) return;
+          const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
+          const Vec<3> branch = kPlanes ? g.normal * dot(g.branch, g.normal) : g.branch;
+          values_[kContacts] += 1.0;
+          values_[kForces] += std::abs(r.normal_force);
+          if (kPlanes) {
+            values_[kWithWalls] += 1.0;
+          } else {
+            pairs_ += 1.0;
+            values_[kFabric] += g.normal[2] * g.normal[2] - g.normal[0] * g.normal[0];
+          }
+          constexpr int kRow[6] = {0, 1, 2, 0, 0, 1};
+          constexpr int kColumn[6] = {0, 1, 2, 1, 2, 2};
+          for (std::size_t k = 0; k < 6; ++k) values_[kVirial + k] += push[kRow[k]] * branch[kColumn[k]];
+          const double partner = kPlanes ? -(planes_before + j + 1) : b.tag[j];
+          rows_.push_back({static_cast<double>(b.tag[i]), partner, r.normal_force, push[0], push[1], push[2], branch[0],
+                           branch[1], branch[2]});
+        },
+        [](std::size_t) {});
   });
 }
 

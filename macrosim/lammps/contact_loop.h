@@ -1,12 +1,11 @@
-// The loop over near pairs of one rank: geometry and law are types, what happens with each contact is the sink's
-// business. The functions of geometry and law are those of the program's own loop.
+// The near pairs of one rank as a source of the program's own loop (common/contact/contact_loop.h).
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "common/contact/contact_geometry.h"
+#include "common/contact/contact_loop.h"
 #include "macrosim/lammps/contact_store.h"
 
 namespace softgrain::lammps {
@@ -67,23 +66,10 @@ struct PlaneSurface {
 
 /// What a pass does.
 struct Pass {
-  bool advance = false;               ///< the history goes on; else it is left alone
-  double dt = 0.0;                    ///< for it [s]
-  const CrowdSum<3>* sums = nullptr;  ///< per atom, ghosts included; of laws with a particle pass
+  bool advance = false;         ///< the history goes on; else it is left alone
+  double dt = 0.0;              ///< for it [s]
+  CrowdSum<3>* sums = nullptr;  ///< per atom, ghosts included; of laws with a particle pass
 };
-
-template <class Surface>
-ContactState<3> state_of(const ContactStore& store, std::size_t c, const Surface& surface,
-                         const ContactGeometry<3>& g) {
-  ContactState<3> s;
-  s.overlap = g.overlap;
-  s.normal = g.normal;
-  s.constants = store.constants[c];
-  s.radius_i = surface.b.r(store.i[c]);
-  s.radius_j = surface.radius_j(store.j[c]);
-  s.memory = store.memory[c];
-  return s;
-}
 
 /// A law of two dimensions asked about bodies in the plane z = 0.
 template <class Law>
@@ -118,91 +104,104 @@ ContactResponse<3> evaluate_flat(const Law& law, const ContactState<3>& s) {
   return out;
 }
 
-/// What a law answers to contact c as it is.
-template <class Law, class Surface>
-ContactResponse<3> response_of(const Law& law, const ContactStore& store, std::size_t c, const Surface& surface,
-                               const ContactGeometry<3>& g, const Pass& pass) {
-  const int i = store.i[c];
-  const int j = store.j[c];
-  ContactState<3> s = state_of(store, c, surface, g);
-  s.dt = pass.dt;
-  if constexpr (Law::needs_velocity) surface.move(i, j, g, s);
-  s.spring = store.spring[c];
-  if constexpr (Law::needs_particle_pass) {
-    s.sum_i = &pass.sums[i];
-    if constexpr (std::is_same_v<Surface, AtomSurface>) s.sum_j = &pass.sums[j];
+/// Pairs of a store as a source; a store that is const keeps no history.
+template <class Surface, class Store>
+struct StorePairs {
+  static constexpr int kDimension = 3;
+  static constexpr bool kAtoms = std::is_same_v<Surface, AtomSurface>;
+
+  Store& store;
+  const Surface& surface;
+  const Pass& pass;
+
+  struct Pair {
+    int i = 0;
+    int j = 0;
+  };
+
+  [[nodiscard]] Pair pair(std::size_t c) const { return {store.i[c], store.j[c]}; }
+  bool meet(const Pair& p, double reach, ContactGeometry<3>& g) const { return surface.meet(p.i, p.j, reach, g); }
+  template <LawTraits>
+  [[nodiscard]] ContactState<3> state(const Pair& p, std::size_t c, const ContactGeometry<3>& g) const {
+    ContactState<3> s;
+    s.overlap = g.overlap;
+    s.normal = g.normal;
+    s.dt = pass.dt;
+    s.constants = store.constants[c];
+    s.spring = store.spring[c];
+    s.memory = store.memory[c];
+    s.radius_i = surface.b.r(p.i);
+    s.radius_j = surface.radius_j(p.j);
+    return s;
   }
-  if constexpr (resists_rolling<Law>()) s.turning = surface.turning(i, j);
-  if constexpr (!law_serves<Law, 3>())
-    return evaluate_flat(law, s);
-  else
-    return law.evaluate(s);
+  template <bool kSpins>
+  void move(const Pair& p, const ContactGeometry<3>& g, ContactState<3>& s) const {
+    surface.move(p.i, p.j, g, s);
+  }
+  [[nodiscard]] Vec<3> turning(const Pair& p) const { return surface.turning(p.i, p.j); }
+
+  void give_sums(const Pair& p, ContactState<3>& s) const {
+    s.sum_i = &pass.sums[p.i];
+    if constexpr (kAtoms) s.sum_j = &pass.sums[p.j];
+  }
+  /// Ghosts get theirs from their rank.
+  template <class Work>
+  void sums_of(const Pair& p, Work&& work) const {
+    work(true, pass.sums[p.i]);
+    if (kAtoms && p.j < surface.b.own) work(false, pass.sums[p.j]);
+  }
+
+  template <class Law>
+  [[nodiscard]] ContactResponse<3> evaluate(const Law& law, const ContactState<3>& s) const {
+    if constexpr (!law_serves<Law, 3>())
+      return evaluate_flat(law, s);
+    else
+      return law.evaluate(s);
+  }
+
+  template <class Law>
+  void keep(std::size_t c, const Vec<3>& spring, double memory) const {
+    if (!pass.advance) return;
+    store.touched[c] = 1;
+    if constexpr (Law::traits.has_tangential) store.spring[c] = spring;
+    if constexpr (Law::traits.has_memory) store.memory[c] = memory;
+  }
+  template <class Law>
+  void forget(std::size_t c) const {
+    if (!pass.advance || store.touched[c] == 0) return;
+    store.touched[c] = 0;
+    store.spring[c] = {};
+    store.memory[c] = 0.0;
+  }
+};
+template <class Surface, class Store>
+StorePairs(Store&, const Surface&, const Pass&) -> StorePairs<Surface, Store>;
+
+/// touch(i, j, geometry, response) as a sink.
+template <class Touch>
+struct ToSink {
+  Touch on_touch;
+
+  void apart(std::size_t) {}
+  template <LawTraits>
+  void touch(std::size_t, int i, int j, const ContactGeometry<3>& g, const ContactResponse<3>& r) {
+    on_touch(i, j, g, r);
+  }
+};
+template <class Touch>
+ToSink<Touch> to_sink(Touch touch) {
+  return {touch};
 }
 
-/// sink(c, geometry, response) for every pair of a section that touches.
-template <class Law, class Surface, class Sink>
-void run_section(const Law& law, ContactStore& store, const Section& section, const Surface& surface, const Pass& pass,
-                 Sink&& sink) {
-  for (std::size_t c = section.begin; c < section.end; ++c) {
-    ContactGeometry<3> g;
-    if (!surface.meet(store.i[c], store.j[c], reach_of(law), g)) {
-      if (pass.advance && store.touched[c] != 0) {
-        store.touched[c] = 0;
-        store.spring[c] = {};
-        store.memory[c] = 0.0;
-      }
-      continue;
-    }
-    const ContactResponse<3> r = response_of(law, store, c, surface, g, pass);
-    if (pass.advance) {
-      store.touched[c] = 1;
-      if constexpr (Law::has_tangential) store.spring[c] = r.spring;
-      if constexpr (Law::has_memory) store.memory[c] = r.memory;
-    }
-    sink(c, g, r);
-  }
-}
-
-/// Opens the law of every section: work(law, section).
+/// Opens the law of every section: work(law, range).
 template <class Work>
 void over_sections(const ContactStore& store, const std::vector<AnyLaw>& laws, Work&& work) {
   for (const Section& section : store.sections)
-    std::visit([&](const auto& law) { work(law, section); }, laws[static_cast<std::size_t>(section.law)]);
-}
-
-/// Adds what the contacts of a store take from their own bodies to the sums of those; ghosts get theirs from their
-/// rank.
-template <class Surface>
-void add_shares(const ContactStore& store, const std::vector<AnyLaw>& laws, const Surface& surface,
-                std::vector<CrowdSum<3>>& sums) {
-  over_sections(store, laws, [&]<class Law>(const Law& law, const Section& section) {
-    if constexpr (Law::needs_particle_pass)
-      for (std::size_t c = section.begin; c < section.end; ++c) {
-        ContactGeometry<3> g;
-        if (!surface.meet(store.i[c], store.j[c], 0.0, g)) continue;
-        const ContactState<3> s = state_of(store, c, surface, g);
-        law.share(s, true, sums[static_cast<std::size_t>(store.i[c])]);
-        if (std::is_same_v<Surface, AtomSurface> && store.j[c] < surface.b.own)
-          law.share(s, false, sums[static_cast<std::size_t>(store.j[c])]);
-      }
-  });
-}
-
-/// Closes the sums of the own bodies of a store, once each.
-template <bool kPlanes>
-void finish_sums(const ContactStore& store, const std::vector<AnyLaw>& laws, int own, std::vector<CrowdSum<3>>& sums) {
-  over_sections(store, laws, [&]<class Law>(const Law& law, const Section& section) {
-    if constexpr (Law::needs_particle_pass) {
-      const auto close = [&](int body) {
-        CrowdSum<3>& sum = sums[static_cast<std::size_t>(body)];
-        if (!sum.ready && sum.square > 0.0) law.finish(sum);
-      };
-      for (std::size_t c = section.begin; c < section.end; ++c) {
-        close(store.i[c]);
-        if (!kPlanes && store.j[c] < own) close(store.j[c]);
-      }
-    }
-  });
+    std::visit(
+        [&](const auto& law) {
+          work(law, PairRange{section.begin, section.end});
+        },
+        laws[static_cast<std::size_t>(section.law)]);
 }
 
 }  // namespace softgrain::lammps

@@ -12,7 +12,9 @@ void ContactStore::assign(const std::vector<NearPair>& pairs, std::size_t laws) 
   for (std::size_t law = 0; law < laws; ++law) {
     const std::size_t begin = next[law];
     next[law + 1] += begin;
-    if (next[law + 1] > begin) sections.push_back({begin, next[law + 1], static_cast<int>(law)});
+    if (next[law + 1] > begin)
+      sections.push_back(
+          {static_cast<std::int32_t>(begin), static_cast<std::int32_t>(next[law + 1]), static_cast<int>(law)});
   }
   i.resize(pairs.size());
   j.resize(pairs.size());

@@ -2,6 +2,7 @@
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/contact/contact_state.h"
@@ -18,8 +19,8 @@ struct NearPair {
 };
 
 struct Section {
-  std::size_t begin = 0;
-  std::size_t end = 0;
+  std::int32_t begin = 0;
+  std::int32_t end = 0;
   int law = 0;
 };
 

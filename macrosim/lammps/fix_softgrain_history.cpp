@@ -66,9 +66,9 @@ void FixSoftgrainHistory::store() {
   const auto own = static_cast<std::size_t>(atom->nlocal);
   for (std::size_t i = 0; i < own; ++i) memory_[i].clear();
   const bridge::ContactStore& s = pair->store;
-  bridge::over_sections(s, pair->laws, [&]<class Law>(const Law&, const bridge::Section& section) {
-    constexpr double kOtherSide = softgrain::memory_has_sides<Law>() ? -1.0 : 1.0;
-    for (std::size_t c = section.begin; c < section.end; ++c) {
+  bridge::over_sections(s, pair->laws, [&]<class Law>(const Law&, const softgrain::PairRange& range) {
+    constexpr double kOtherSide = Law::traits.memory_has_sides ? -1.0 : 1.0;
+    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
       if (s.touched[c] == 0) continue;
       const auto i = static_cast<std::size_t>(s.i[c]);
       const auto j = static_cast<std::size_t>(s.j[c]);

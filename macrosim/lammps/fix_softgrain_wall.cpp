@@ -148,7 +148,7 @@ void FixSoftgrainWall::build(const bridge::Bodies& b, const std::vector<bridge::
     const softgrain::PairBodies pair{b.r(i), 0.0, 1.0 / b.mass[i], 0.0};
     std::visit(
         [&](const auto& l) {
-          const double reach = b.r(i) - l.onset(pair) + neighbor->skin;
+          const double reach = b.r(i) - softgrain::onset_of(l, pair) + neighbor->skin;
           for (std::size_t k = 0; k < planes.size(); ++k)
             if (dot(b.vec(b.x[i]) - planes[k].point, planes[k].normal) < reach)
               near.push_back({i, static_cast<int>(k), law, l.pair_constants(pair)});
@@ -178,12 +178,20 @@ void FixSoftgrainWall::ask_for_list() {
   if (way > 0.5 * neighbor->skin) next_reneighbor = update->ntimestep + 1;
 }
 
-void FixSoftgrainWall::add_shares(const bridge::Bodies& b, std::vector<softgrain::CrowdSum<3>>& sums) const {
-  bridge::add_shares(store, laws, bridge::PlaneSurface{b, planes}, sums);
+void FixSoftgrainWall::add_shares(const bridge::Bodies& b, const bridge::Pass& now) const {
+  const bridge::PlaneSurface surface{b, planes};
+  const bridge::StorePairs source{store, surface, now};
+  bridge::over_sections(store, laws, [&](const auto& law, const softgrain::PairRange& range) {
+    softgrain::add_shares(source, law, range);
+  });
 }
 
-void FixSoftgrainWall::finish_sums(const bridge::Bodies& b, std::vector<softgrain::CrowdSum<3>>& sums) const {
-  bridge::finish_sums<true>(store, laws, b.own, sums);
+void FixSoftgrainWall::close_sums(const bridge::Bodies& b, const bridge::Pass& now) const {
+  const bridge::PlaneSurface surface{b, planes};
+  const bridge::StorePairs source{store, surface, now};
+  bridge::over_sections(store, laws, [&](const auto& law, const softgrain::PairRange& range) {
+    softgrain::close_sums(source, law, range);
+  });
 }
 
 void FixSoftgrainWall::post_force(int) {
@@ -192,25 +200,23 @@ void FixSoftgrainWall::post_force(int) {
   const bridge::Pass now = pair_->pass();
   std::fill(force_.begin(), force_.end(), 0.0);
   auto& gathered = pair_->gathered;
-  bridge::over_sections(store, laws, [&](const auto& law, const bridge::Section& section) {
-    bridge::run_section(law, store, section, surface, now,
-                        [&](std::size_t c, const ContactGeometry<3>& g, const ContactResponse<3>& r) {
-                          const int i = store.i[c];
-                          const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
-                          const Vec<3> moment = cross(g.normal, r.tangential_force);
-                          for (int k = 0; k < 3; ++k) {
-                            atom->f[i][k] += push[k];
-                            atom->torque[i][k] += r.rolling_moment[k] - moment[k] * g.arm_i;
-                          }
-                          force_[static_cast<std::size_t>(store.j[c])] += r.normal_force;
-                          if (!gathered.wanted) return;
-                          gathered.add(i, r.normal_stiffness + r.tangential_stiffness,
-                                       r.tangential_stiffness * g.arm_i * g.arm_i);
-                          if (r.normal_force == 0.0) return;
-                          gathered.force_sum += std::abs(r.normal_force);
-                          gathered.contacts += 1.0;
-                        });
+  auto sink = bridge::to_sink([&](int i, int plane, const ContactGeometry<3>& g, const ContactResponse<3>& r) {
+    const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
+    const Vec<3> moment = cross(g.normal, r.tangential_force);
+    for (int k = 0; k < 3; ++k) {
+      atom->f[i][k] += push[k];
+      atom->torque[i][k] += r.rolling_moment[k] - moment[k] * g.arm_i;
+    }
+    force_[static_cast<std::size_t>(plane)] += r.normal_force;
+    if (!gathered.wanted) return;
+    gathered.add(i, r.normal_stiffness + r.tangential_stiffness, r.tangential_stiffness * g.arm_i * g.arm_i);
+    if (r.normal_force == 0.0) return;
+    gathered.force_sum += std::abs(r.normal_force);
+    gathered.contacts += 1.0;
   });
+  bridge::StorePairs source{store, surface, now};
+  bridge::over_sections(
+      store, laws, [&](const auto& law, const softgrain::PairRange& range) { run_section(source, law, range, sink); });
   pair_->evaluations += static_cast<double>(store.size());
   summed_ = -1;
   if (update->setupflag == 0) ask_for_list();

@@ -38,8 +38,8 @@ class FixSoftgrainWall : public Fix {
   /// Near pairs of atoms and planes; `before`: planes of other fixes, whose numbers come first.
   void build(const softgrain::lammps::Bodies& bodies, const std::vector<softgrain::lammps::AtomMemory>& past_of,
              int before);
-  void add_shares(const softgrain::lammps::Bodies& b, std::vector<softgrain::CrowdSum<3>>& sums) const;
-  void finish_sums(const softgrain::lammps::Bodies& b, std::vector<softgrain::CrowdSum<3>>& sums) const;
+  void add_shares(const softgrain::lammps::Bodies& b, const softgrain::lammps::Pass& now) const;
+  void close_sums(const softgrain::lammps::Bodies& b, const softgrain::lammps::Pass& now) const;
 
   std::vector<softgrain::lammps::Plane> planes;
   std::vector<softgrain::AnyLaw> laws;

@@ -114,17 +114,4 @@ AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardC
   return law;
 }
 
-Softness softness_of(const AnyLaw& law) {
-  return std::visit(
-      []<class Law>(const Law& l) -> Softness {
-        if constexpr (std::is_same_v<Law, SoftContact>)
-          return l.partner_is_soft ? Softness{true, true} : Softness{l.i_is_soft, !l.i_is_soft};
-        else if constexpr (requires { l.j_is_soft; })
-          return {l.i_is_soft, l.j_is_soft};
-        else
-          return {};
-      },
-      law);
-}
-
 }  // namespace softgrain::lammps

@@ -30,11 +30,4 @@ struct CardChoices {
 /// FileTrouble.
 AnyLaw law_of_card(const std::string& path, const std::string& kind, const CardChoices& choices, MPI_Comm world);
 
-/// Whether the bodies of a law are soft.
-struct Softness {
-  bool first = false;
-  bool second = false;
-};
-Softness softness_of(const AnyLaw& law);
-
 }  // namespace softgrain::lammps

@@ -27,6 +27,7 @@ using softgrain::AnyLaw;
 using softgrain::ContactGeometry;
 using softgrain::ContactResponse;
 using softgrain::CrowdSum;
+using softgrain::PairRange;
 using softgrain::Vec;
 namespace bridge = softgrain::lammps;
 
@@ -65,10 +66,6 @@ void unpack(const double* buf, CrowdSum<3>& s) {
   s.gain = *buf++;
   s.gain_slope = *buf++;
   s.ready = *buf++ != 0.0;
-}
-
-bool needs_sums(const AnyLaw& law) {
-  return std::visit([]<class Law>(const Law&) { return Law::needs_particle_pass; }, law);
 }
 
 }  // namespace
@@ -118,17 +115,17 @@ void PairSoftgrain::settings(int count, char** words) {
 int PairSoftgrain::add_law(const AnyLaw& law) {
   bridge::check_dimension(law, domain->dimension, error);
   laws.push_back(law);
-  comm_forward = std::max(comm_forward, needs_sums(law) ? kSumSize : 0);
+  comm_forward = std::max(comm_forward, traits_of(law).needs_particle_pass ? kSumSize : 0);
   return static_cast<int>(laws.size()) - 1;
 }
 
 AnyLaw PairSoftgrain::oriented(const AnyLaw& law, const std::string& name, bool first_soft, bool second_soft) {
-  const bridge::Softness s = bridge::softness_of(law);
-  if (!s.first && !s.second) return law;  // soft bodies may be taken as hard, as preparations do
-  if (s.first == first_soft && s.second == second_soft) return law;
-  if (s.first == second_soft && s.second == first_soft) return softgrain::mirrored(law);
-  error->all(FLERR, "law '" + name + "': its bodies are " + (s.first ? "soft" : "solid") + " and " +
-                        (s.second ? "soft" : "solid") + ", the types are " + (first_soft ? "soft" : "solid") + " and " +
+  const softgrain::SoftSides s = softgrain::soft_sides(law);
+  if (!s.i && !s.j) return law;  // soft bodies may be taken as hard, as preparations do
+  if (s.i == first_soft && s.j == second_soft) return law;
+  if (s.i == second_soft && s.j == first_soft) return softgrain::mirrored(law);
+  error->all(FLERR, "law '" + name + "': its bodies are " + (s.i ? "soft" : "solid") + " and " +
+                        (s.j ? "soft" : "solid") + ", the types are " + (first_soft ? "soft" : "solid") + " and " +
                         (second_soft ? "soft" : "solid"));
 }
 
@@ -194,7 +191,7 @@ bridge::Bodies PairSoftgrain::bodies() const {
   return {atom->x, atom->v, atom->omega, atom->radius, atom->rmass, atom->tag, atom->type, atom->nlocal};
 }
 
-bridge::Pass PairSoftgrain::pass() const {
+bridge::Pass PairSoftgrain::pass() {
   if (update->setupflag != 0) return {strained, strained ? 1.0 : 0.0, sums.data()};
   return {true, spring_dt >= 0.0 ? spring_dt : update->dt, sums.data()};
 }
@@ -215,7 +212,8 @@ void PairSoftgrain::build(const std::vector<bridge::AtomMemory>& memory_of) {
       const softgrain::PairBodies pair{b.r(i), b.r(j), 1.0 / b.mass[i], 1.0 / b.mass[j]};
       std::visit(
           [&](const auto& l) {
-            const double reach = b.r(i) + b.r(j) - l.onset(pair) + softgrain::reach_of(l) + neighbor->skin;
+            const double reach =
+                b.r(i) + b.r(j) - softgrain::onset_of(l, pair) + softgrain::reach_of(l) + neighbor->skin;
             if (norm2(b.vec(b.x[i]) - b.vec(b.x[j])) < reach * reach)
               near.push_back({i, j, law, l.pair_constants(pair)});
           },
@@ -238,10 +236,13 @@ void PairSoftgrain::particle_pass() {
   if (comm_forward == 0) return;
   const bridge::Bodies b = bodies();
   sums.assign(static_cast<std::size_t>(atom->nlocal + atom->nghost), {});
-  bridge::add_shares(store, laws, bridge::AtomSurface{b}, sums);
-  for (const FixSoftgrainWall* wall : walls) wall->add_shares(b, sums);
-  bridge::finish_sums<false>(store, laws, b.own, sums);
-  for (const FixSoftgrainWall* wall : walls) wall->finish_sums(b, sums);
+  const bridge::AtomSurface surface{b};
+  const bridge::Pass now{false, 0.0, sums.data()};
+  const bridge::StorePairs source{store, surface, now};
+  bridge::over_sections(store, laws, [&](const auto& law, const PairRange& range) { add_shares(source, law, range); });
+  for (const FixSoftgrainWall* wall : walls) wall->add_shares(b, now);
+  bridge::over_sections(store, laws, [&](const auto& law, const PairRange& range) { close_sums(source, law, range); });
+  for (const FixSoftgrainWall* wall : walls) wall->close_sums(b, now);
   comm->forward_comm_pair(this);
 }
 
@@ -259,26 +260,23 @@ void PairSoftgrain::compute(int eflag, int vflag) {
   }
   double** f = atom->f;
   double** torque = atom->torque;
-  bridge::over_sections(store, laws, [&](const auto& law, const bridge::Section& section) {
-    bridge::run_section(law, store, section, surface, now,
-                        [&](std::size_t c, const ContactGeometry<3>& g, const ContactResponse<3>& r) {
-                          const int i = store.i[c];
-                          const int j = store.j[c];
-                          const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
-                          const Vec<3> moment = cross(g.normal, r.tangential_force);
-                          for (int k = 0; k < 3; ++k) {
-                            f[i][k] += push[k];
-                            torque[i][k] += r.rolling_moment[k] - moment[k] * g.arm_i;
-                            if (j >= b.own) continue;
-                            f[j][k] -= push[k];
-                            torque[j][k] -= r.rolling_moment[k] + moment[k] * g.arm_j;
-                          }
-                          if (gathered.wanted) gather(gathered, i, j, b.own, g, r);
-                          if (evflag)
-                            ev_tally_xyz(i, j, b.own, 0, 0.0, 0.0, push[0], push[1], push[2], g.branch[0], g.branch[1],
-                                         g.branch[2]);
-                        });
+  auto sink = bridge::to_sink([&](int i, int j, const ContactGeometry<3>& g, const ContactResponse<3>& r) {
+    const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
+    const Vec<3> moment = cross(g.normal, r.tangential_force);
+    for (int k = 0; k < 3; ++k) {
+      f[i][k] += push[k];
+      torque[i][k] += r.rolling_moment[k] - moment[k] * g.arm_i;
+      if (j >= b.own) continue;
+      f[j][k] -= push[k];
+      torque[j][k] -= r.rolling_moment[k] + moment[k] * g.arm_j;
+    }
+    if (gathered.wanted) gather(gathered, i, j, b.own, g, r);
+    if (evflag)
+      ev_tally_xyz(i, j, b.own, 0, 0.0, 0.0, push[0], push[1], push[2], g.branch[0], g.branch[1], g.branch[2]);
   });
+  bridge::StorePairs source{store, surface, now};
+  bridge::over_sections(store, laws,
+                        [&](const auto& law, const PairRange& range) { run_section(source, law, range, sink); });
   evaluations += static_cast<double>(store.size());
 }
 
@@ -305,13 +303,16 @@ double PairSoftgrain::single(int i, int j, int, int, double, double, double, dou
   const auto c = static_cast<std::size_t>(at);
   const bridge::Bodies b = bodies();
   const bridge::AtomSurface surface{b};
+  const bridge::Pass still{false, 0.0, sums.data()};
+  const bridge::StorePairs source{store, surface, still};
   const auto section = std::find_if(store.sections.begin(), store.sections.end(),
-                                    [&](const bridge::Section& s) { return c >= s.begin && c < s.end; });
+                                    [&](const bridge::Section& s) { return at >= s.begin && at < s.end; });
   std::visit(
       [&](const auto& law) {
         ContactGeometry<3> g;
-        if (!surface.meet(store.i[c], store.j[c], softgrain::reach_of(law), g)) return;
-        const ContactResponse<3> r = bridge::response_of(law, store, c, surface, g, {false, 0.0, sums.data()});
+        const auto near = source.pair(c);
+        if (!source.meet(near, softgrain::reach_of(law), g)) return;
+        const ContactResponse<3> r = response_of(source, law, c, near, g);
         fforce = r.normal_force / norm(g.branch);
         for (int k = 0; k < 3; ++k) extra_[static_cast<std::size_t>(k)] = sign * r.tangential_force[k];
         extra_[3] = norm(r.tangential_force);

@@ -51,7 +51,7 @@ class PairSoftgrain : public Pair {
   void build(const std::vector<softgrain::lammps::AtomMemory>& memory_of);
   [[nodiscard]] softgrain::lammps::Bodies bodies() const;
   /// What passes do now: history goes on unless LAMMPS sets up.
-  [[nodiscard]] softgrain::lammps::Pass pass() const;
+  [[nodiscard]] softgrain::lammps::Pass pass();
   /// How far the strain of the box has moved what is at x along an axis [m].
   [[nodiscard]] double strain_move(int axis, double x) const;
   [[nodiscard]] bool is_soft(int type) const { return soft_[static_cast<std::size_t>(type)] != 0; }

@@ -15,7 +15,7 @@ template <int D>
 struct ForceSink {
   std::vector<double>& force;
   void apart(std::size_t c) { force[c] = 0.0; }
-  template <bool kTorque>
+  template <LawTraits>
   void touch(std::size_t c, std::size_t, std::size_t, const ContactGeometry<D>&, const ContactResponse<D>& r) {
     force[c] = r.normal_force;
   }

@@ -63,13 +63,7 @@ double default_travel(const System<D>& s) {
 /// Whether some law was measured over a range that it can leave.
 bool has_measured_law(const LawSet& laws) {
   for (std::int32_t k = 0; k < laws.size(); ++k)
-    if (std::visit(
-            [](const auto& law) {
-              return requires { law.range; }
-              || requires { law.form; };
-            },
-            laws.law(k)))
-      return true;
+    if (traits_of(laws.law(k)).is_fitted) return true;
   return false;
 }
 

@@ -17,7 +17,6 @@
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"
 #include "microsim/particles/scene_memory.h"
-#include "microsim/particles/soft_sides.h"
 
 namespace softgrain {
 

@@ -15,7 +15,6 @@
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_vector.h"
-#include "microsim/particles/soft_sides.h"
 
 namespace softgrain {
 

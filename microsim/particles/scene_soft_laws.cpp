@@ -13,7 +13,6 @@
 #include "common/data/law_card.h"
 #include "common/io/text_file.h"
 #include "microsim/particles/scene_materials.h"
-#include "microsim/particles/soft_sides.h"
 
 namespace softgrain {
 
@@ -155,7 +154,7 @@ void SoftLawReader::require_whole() const {
   for (const auto& [soft, choice] : choices_)
     for (std::int32_t m = 0; m < out_.laws.materials(); ++m) {
       const std::int32_t index = out_.laws.index(soft, m);
-      if (index == LawSet::kNoContact || is_table_law(out_.laws.law(index))) continue;
+      if (index == LawSet::kNoContact || traits_of(out_.laws.law(index)).is_crowd) continue;
       throw BadInput(choice.where + ": the law table of '" + materials_[static_cast<std::size_t>(soft)].name +
                      "' adds up all contacts of a soft particle, and cannot be combined with " +
                      out_.description[static_cast<std::size_t>(index)]);

@@ -45,14 +45,14 @@ class Middle {
       states_.push_back(s);
       if (s.overlap > 0.0) law.share(s, true, own_);
     }
-    if constexpr (Law::needs_particle_pass) law.finish(own_);
+    if constexpr (Law::traits.needs_particle_pass) law.finish(own_);
   }
 
   [[nodiscard]] ContactResponse<3> response(std::size_t k) const {
     ContactState<3> s = states_[k];
     if (!(s.overlap > 0.0)) return {};
     CrowdSum<3> other;
-    if constexpr (Law::needs_particle_pass) {
+    if constexpr (Law::traits.needs_particle_pass) {
       law_.share(s, false, other);
       law_.finish(other);
       s.sum_i = &own_;
@@ -63,7 +63,7 @@ class Middle {
 
   /// Equivalent volume of the particle in the middle; of the pair law the largest of its contacts.
   [[nodiscard]] double volume() const {
-    if constexpr (Law::needs_particle_pass) return is_bag_ ? own_.volume : law_.form.equivalent_volume(own_);
+    if constexpr (Law::traits.needs_particle_pass) return is_bag_ ? own_.volume : law_.form.equivalent_volume(own_);
     double largest = 0.0;
     for (const ContactState<3>& s : states_) {
       CrowdSum<3> one;

@@ -8,9 +8,7 @@
 // Loops written for one scene alone: roofline_bare.cpp. The table: results/performance.
 #include <benchmark/benchmark.h>
 
-#include "common/dynamics/hertz_block.h"
 #include "common/dynamics/pair_loop.h"
-#include "common/dynamics/scatter_sink.h"
 #include "tests/bench/roofline_scene.h"
 
 namespace {
@@ -50,6 +48,26 @@ void count_contacts(benchmark::State& state, const System<D>& s, double passes =
   state.counters["listed"] = listed;
   state.counters["touching"] = t.contacts;
 }
+
+/// Adds each contact to its two bodies.
+template <int D>
+struct ScatterSink {
+  Particles<D>& p;
+
+  void apart(std::size_t) {}
+  template <LawTraits kLaw>
+  void touch(std::size_t, std::size_t i, std::size_t j, const ContactGeometry<D>& g, const ContactResponse<D>& r) {
+    Vec<D> f = g.normal * r.normal_force;
+    if constexpr (kLaw.has_tangential) {
+      f += r.tangential_force;
+      const Rot<D> moment = cross(g.normal, r.tangential_force);
+      p.torque[i] -= moment * g.arm_i;
+      p.torque[j] -= moment * g.arm_j;
+    }
+    p.force[i] += f;
+    p.force[j] -= f;
+  }
+};
 
 template <int D>
 void scalar_pass(System<D>& s) {

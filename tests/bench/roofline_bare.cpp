@@ -248,12 +248,8 @@ void Bare(benchmark::State& state, bool sorted) {
   const OneThread one_thread;
   const Needs needs{.friction = kFull, .damping = kFull, .sorted = sorted};
   System<3> s = packing(needs);
-  BareScene bare(s, std::visit(
-                        []<class Law>(const Law& law) {
-                          if constexpr (requires { law.k; }) return law.k;
-                          return HertzCoefficients{};
-                        },
-                        law_of(needs)));
+  constexpr Tangential kTangential = kFull ? Tangential::mindlin : Tangential::none;
+  BareScene bare(s, std::get<HertzMindlin<kTangential, kFull>>(law_of(needs)).k);
   clear_forces(s.particles);
   add_contact_forces(s, 0.0, History::advance);
   bare_pass<kFull, Part::whole>(bare);

@@ -2,11 +2,13 @@
 // can be built with compilers that the rest is not built with.
 #include <cstdio>
 
-#include "common/dynamics/hertz_lanes.h"
+#include "common/core/lanes.h"
+#include "common/dynamics/block.h"
 
 namespace {
 
-using namespace softgrain::hertz;
+using namespace softgrain;
+using namespace softgrain::block;
 
 /// No constants that a compiler could work the answer out from.
 volatile double kOne = 1.0;
@@ -20,7 +22,7 @@ bool chooses(unsigned wanted) {
   const Lanes yes = numbers(100.0);
   const Lanes no = numbers(-100.0);
   const Lanes sign([wanted](auto lane) { return (wanted >> static_cast<int>(lane) & 1U) != 0 ? kOne : -kOne; });
-  const Lanes chosen = choose(sign > 0.0, yes, no);
+  const Lanes chosen = choose<Lanes>(sign > 0.0, yes, no);
   bool right = true;
   for (int k = 0; k < kLanes; ++k) {
     const auto lane = static_cast<std::size_t>(k);

@@ -10,10 +10,7 @@ namespace {
 
 /// Force = overlap times the sum of all overlaps of both bodies: needs the sums before the first contact.
 struct CrowdLaw {
-  static constexpr bool has_tangential = false;
-  static constexpr bool has_memory = false;
-  static constexpr bool needs_velocity = false;
-  static constexpr bool needs_particle_pass = true;
+  static constexpr LawTraits traits{.needs_particle_pass = true};
 
   template <int D>
   void share(const ContactState<D>& s, bool of_i, CrowdSum<D>& sum) const {
@@ -30,7 +27,7 @@ struct CrowdLaw {
 struct ForceOfContact {
   std::vector<double> force;
   void apart(std::size_t) {}
-  template <bool kTorque>
+  template <LawTraits>
   void touch(std::size_t, std::size_t, std::size_t, const ContactGeometry<3>&, const ContactResponse<3>& r) {
     force.push_back(r.normal_force);
   }
@@ -58,10 +55,11 @@ TEST(ParticlePass, SumsAreThereBeforeTheFirstContactIsEvaluated) {
   s.contacts.particle_sum.assign(3, CrowdSum<3>{});
   const CrowdLaw law;
   const ContactSection section = s.contacts.sections[0];
-  detail::sum_section<3, Geometry::sphere_sphere, false>(s, section, law);
+  SystemPairs<3, Geometry::sphere_sphere, false, System3> source{s, 0.0, History::none};
+  const PairRange range{section.begin, section.end};
+  add_shares(source, law, range);
   ForceOfContact sink;
-  detail::run_section<3, Geometry::sphere_sphere, false>(s, law, 0.0, {section.begin, section.end}, History::next,
-                                                         sink);
+  run_section(source, law, range, sink);
   ASSERT_EQ(sink.force.size(), 2u);
   // Sums: body 0: 0.1; body 1: 2*0.1 + 0.3; body 2: 2*0.3.
   EXPECT_NEAR(sink.force[0], 0.1 * (0.1 + 0.5), 1e-12);

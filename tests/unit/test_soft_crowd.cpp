@@ -163,7 +163,7 @@ TYPED_TEST(SoftCrowdLaws, ForcesAddUpToNothing) {
   }
   EXPECT_GT(largest, 1e-3);
   EXPECT_LT(norm(sum), 1e-14 * largest);
-  EXPECT_EQ(s.contacts.particle_sum.empty(), !TypeParam::needs_particle_pass) << "the pair law keeps no sums";
+  EXPECT_EQ(s.contacts.particle_sum.empty(), !TypeParam::traits.needs_particle_pass) << "the pair law keeps no sums";
 }
 
 TYPED_TEST(SoftCrowdLaws, OneContactGivesThePairLaw) {
@@ -230,7 +230,7 @@ TYPED_TEST(SoftCrowdLaws, UnloadingReturnsLessWork) {
   const double in = work(0.01, 0.25);
   const double out = -work(0.25, 0.01);
   const double again = work(0.01, 0.25);
-  if (TypeParam::has_memory) {
+  if (TypeParam::traits.has_memory) {
     EXPECT_NEAR(out, in / 1.5, 2e-3 * in);
     EXPECT_NEAR(again, out, 2e-3 * in);
   } else {

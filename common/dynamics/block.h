@@ -1,5 +1,5 @@
 // What the vectorised contact loop works on: the touching pairs of a block, number by number, in lanes of the
-// processor. For hertz_block.cpp alone: the header of the vector types is a heavy one.
+// processor. For block_loop.cpp and its laws alone: the header of the vector types is a heavy one.
 #pragma once
 
 #include <array>
@@ -11,23 +11,11 @@
 #include "common/core/particles.h"
 #include "common/core/quad.h"
 
-namespace softgrain::hertz {
+namespace softgrain::block {
 
 using Lanes = std::experimental::native_simd<double>;
 constexpr int kLanes = static_cast<int>(Lanes::size());
 constexpr auto kAligned = std::experimental::vector_aligned;
-
-/// Lane by lane: `yes` where the mask holds, else `no`.
-inline Lanes choose(const Lanes::mask_type& mask, const Lanes& yes, Lanes no) {
-#if defined __clang__ && defined __AVX512F__
-  // where() of libstdc++ takes one side for all lanes here: its _S_blend_avx512 (bits/simd_x86.h) has no blend for
-  // clang but a boolean choice, marked FIXME.
-  return Lanes([&](auto lane) { return mask[lane] ? yes[lane] : no[lane]; });
-#else
-  where(mask, no) = yes;
-  return no;
-#endif
-}
 
 /// Pairs looked at in one go. All that a block needs stays in the first-level cache.
 constexpr int kBlock = 128;
@@ -44,9 +32,6 @@ template <int D>
 using Rows = std::array<Row, static_cast<std::size_t>(D)>;
 
 template <int D>
-constexpr int kRot = D == 3 ? 3 : 1;
-
-template <int D>
 Vec<D, Lanes> at(const Rows<D>& rows, int k) {
   Vec<D, Lanes> out;
   for (int c = 0; c < D; ++c) out[c] = rows[static_cast<std::size_t>(c)].at(k);
@@ -57,24 +42,40 @@ void put(Rows<D>& rows, int k, const Vec<D, Lanes>& x) {
   for (int c = 0; c < D; ++c) rows[static_cast<std::size_t>(c)].put(k, x[c]);
 }
 
+/// Sums of bodies, see CrowdSum.
+template <int D>
+struct SumRows {
+  Row volume, square;
+  Rows<D> first;
+  Rows<D*(D + 1) / 2> second;
+  Row gain, gain_slope;
+};
+
 /// The touching pairs of a block, number by number.
 template <int D>
 struct Block {
   int touching = 0;
   std::array<std::int32_t, kBlock + 8> pair;    ///< place in the list
   std::array<std::int32_t, kBlock + 8> number;  ///< in an ordered range
-  std::array<Quad, kBlock + 8> record;          ///< x_i - x_j, r_i + r_j
+  std::array<Quad, kBlock + 8> record;          ///< x_i - x_j and one number more, see `fourth`
   Rows<D> branch;
-  Row reach;
+  std::array<Quad, kBlock + 8> upright_record;  ///< normals of planes
+  Row fourth;                                   ///< r_i + r_j of spheres, r_j - r_i of a shell, r_i above a plane
+  Rows<D> upright;                              ///< normals of planes
   Row radius_i, radius_j;
   Rows<D> velocity;  ///< of i against j
   Rows<kRot<D>> spin_i, spin_j;
   Rows<D> spring;
   Row a, b, memory;
+  SumRows<D> sum_i, sum_j;
   // Results.
   Rows<D> force;         ///< on i
   Rows<kRot<D>> moment;  ///< of a unit arm
   Row arm_i, arm_j;
+  Row rolling;  ///< moment of rolling resistance, in two dimensions
+  Row normal_force, stiffness, tangential_stiffness;
+  Rows<D> normal;        ///< of the particle pass
+  Row taken_i, taken_j;  ///< of the particle pass
 };
 
 /// Position with the radius in the fourth place.
@@ -130,4 +131,4 @@ void store_rows(Rows<N>& rows, int k, const std::array<Quad, 4>& columns) {
   for (std::size_t c = 0; c < static_cast<std::size_t>(N); ++c) store_quad(rows[c].v + k, columns[c]);
 }
 
-}  // namespace softgrain::hertz
+}  // namespace softgrain::block

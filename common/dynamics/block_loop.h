@@ -1,0 +1,67 @@
+// The contact loop many contacts at a time: the laws' own text on lanes of the processor. The same arithmetic,
+// operation by operation, as the scalar loop (pair_loop.h), which stays the reference: both give the same bits.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/contact/contact_loop.h"
+#include "common/system.h"
+
+namespace softgrain {
+
+/// Force and moment of a contact, put down for bodies that another thread owns.
+struct alignas(64) ContactLoad {
+  double force[3];   ///< on i [N]
+  double arm_i;      ///< [m]
+  double moment[3];  ///< of a unit arm along the normal [N]; in 2D the first, and [1] is that of rolling [N m]
+  double arm_j;      ///< [m]
+};
+
+/// Loads that wait to be added to bodies, in list order.
+class WaitingLoads {
+ public:
+  virtual ~WaitingLoads() = default;
+  /// Place in the list of the next one; beyond every place when there is none.
+  std::int32_t next = 0;
+  /// Adds all that stand before place `c`.
+  virtual void add_before(std::int32_t c) = 0;
+};
+
+/// Sums of contact stiffness per body, for mass scaling and step control, and the mean contact force of the same pass.
+struct BodyStiffness {
+  std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
+  std::vector<double> rotation;     ///< sum of kt arm^2 [N m]
+  double force_sum = 0.0;           ///< of |normal force| over contacts [N]
+  std::int64_t contacts = 0;        ///< force-carrying
+
+  [[nodiscard]] double mean_force() const { return contacts > 0 ? force_sum / static_cast<double>(contacts) : 0.0; }
+};
+
+/// What a pass over contacts does beside the forces.
+template <int D>
+struct BlockPass {
+  double dt = 0.0;  ///< since the history was committed [s]
+  History history = History::next;
+  ContactLoad* loads =
+      nullptr;  ///< when there, bodies are left alone: the load of pair k of the range goes to loads[k]
+  std::uint8_t* touches = nullptr;     ///< and touches[k] says whether it touches
+  WaitingLoads* waiting = nullptr;     ///< added in between, in list order
+  BodyStiffness* stiffness = nullptr;  ///< gets the sums of what goes to the bodies
+  Vec<D>* virial = nullptr;            ///< sum over contacts of force times branch, per axis [N m]
+};
+
+/// Adds the forces and torques of some pairs of a section to their bodies, in the order of the range, and treats their
+/// history as asked. Pairs that do not touch lose theirs.
+template <int D>
+void block_loop(System<D>& system, const ContactSection& section, const PairRange& range, const BlockPass<D>& pass);
+
+/// All sections, in list order; `system.contacts.make_next()` where the history asks for it.
+template <int D>
+void block_loop(System<D>& system, const BlockPass<D>& pass);
+
+/// The particle pass of all laws that ask for one; must precede the loop over contacts.
+template <int D>
+void particle_pass(System<D>& system);
+
+}  // namespace softgrain
