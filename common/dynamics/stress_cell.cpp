@@ -175,33 +175,5 @@ void StressCellVerlet<D>::advance(System<D>& s, std::int64_t steps) {
   publish(s);
 }
 
-template <int D>
-PowderResidual<D> powder_residual(const System<D>& s, const Vec<D>& imposed, const Vec<D>& measured, double f1,
-                                  double largest_diameter, bool lengths_free) {
-  PowderResidual<D> out;
-  const auto& p = s.particles;
-  double kinetic = 0.0;
-  for (Slot i = 0; i < p.grains; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    out.force = larger_or_nan(out.force, norm(static_cast<Vec<D>>(p.force[u])));
-    out.moment = larger_or_nan(out.moment, std::sqrt(norm2(static_cast<Rot<D>>(p.torque[u]))));
-    // Nothing slows a disk in free flight, nor its spin: it is a rattler, and the pack may rest without it.
-    if (static_cast<Vec<D>>(p.force[u]) == Vec<D>{} && static_cast<Rot<D>>(p.torque[u]) == Rot<D>{}) continue;
-    Vec<D> v = p.velocity[u];
-    for (int k = 0; k < D; ++k) v[k] -= s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
-    kinetic += 0.5 * norm2(v) / p.inverse_mass[u] + 0.5 * norm2(static_cast<Rot<D>>(p.spin[u])) / p.inverse_inertia[u];
-  }
-  out.force /= kPowderForceLimit * f1;
-  out.moment /= kPowderForceLimit * f1 * largest_diameter;
-  out.kinetic =
-      kinetic / static_cast<double>(std::max<Slot>(p.grains, 1)) / (kPowderKineticLimit * f1 * largest_diameter);
-  for (int k = 0; lengths_free && k < D; ++k)
-    out.pressure =
-        larger_or_nan(out.pressure, std::abs(imposed[k] - measured[k]) * largest_diameter / (kPowderForceLimit * f1));
-  return out;
-}
-
 template class StressCellVerlet<2>;
-template PowderResidual<2> powder_residual<2>(const System<2>&, const Vec<2>&, const Vec<2>&, double, double, bool);
-
 }  // namespace softgrain

@@ -81,24 +81,4 @@ class StressCellVerlet {
   double used_ = 0.0;        ///< bound for the share of its margin that any body has used up
 };
 
-constexpr double kPowderForceLimit = 1e-4;    ///< of net force, moment and pressure error, in F1, F1 a and F1/a
-constexpr double kPowderKineticLimit = 5e-8;  ///< of the kinetic energy per disk, in F1 a
-
-/// How far a powder is from the published equilibrium [CP 3.2], each over its limit: equilibrium when all are below 1.
-template <int D>
-struct PowderResidual {
-  double force = 0.0;     ///< largest net force over 1e-4 F1
-  double moment = 0.0;    ///< largest net moment over 1e-4 F1 a
-  double pressure = 0.0;  ///< largest |imposed - measured| over 1e-4 F1/a (a: largest diameter)
-  double kinetic = 0.0;   ///< kinetic energy per body over 5e-8 F1 a, without bodies in free flight (rattlers)
-
-  [[nodiscard]] bool equilibrium() const { return force < 1.0 && moment < 1.0 && pressure < 1.0 && kinetic < 1.0; }
-};
-
-/// F1 = max(F0, P a). From the forces of the last pass; velocities relative to the moving cell. `lengths_free`: whether
-/// the pressure counts.
-template <int D>
-PowderResidual<D> powder_residual(const System<D>& system, const Vec<D>& imposed, const Vec<D>& measured, double f1,
-                                  double largest_diameter, bool lengths_free);
-
 }  // namespace softgrain

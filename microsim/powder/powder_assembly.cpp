@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/core/error.h"
+#include "common/core/larger_or_nan.h"
 #include "common/core/limits.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"
@@ -52,7 +53,7 @@ StressControl<2> control_of(const PowderState& state, const PowderPhase& phase, 
 }
 
 /// The criteria that do not hold, for people.
-std::string unmet(const PowderResidual<2>& r, const PowderPhase& phase, bool together) {
+std::string unmet(const PowderResidual& r, const PowderPhase& phase, bool together) {
   std::string text;
   const auto add = [&](const char* what, double value) {
     if (value < 1.0) return;
@@ -135,7 +136,7 @@ class Phase {
     look();
   }
 
-  [[nodiscard]] const PowderResidual<2>& residual() const { return residual_; }
+  [[nodiscard]] const PowderResidual& residual() const { return residual_; }
   [[nodiscard]] const Vec<2>& stress() const { return integrator_.stress(); }
 
  private:
@@ -226,10 +227,35 @@ class Phase {
   const PowderOptions& options_;
   StressControl<2> control_;
   StressCellVerlet<2> integrator_;
-  PowderResidual<2> residual_;
+  PowderResidual residual_;
 };
 
 }  // namespace
+
+PowderResidual powder_residual(const System<2>& s, const Vec<2>& imposed, const Vec<2>& measured, double f1,
+                               double largest_diameter, bool lengths_free) {
+  PowderResidual out;
+  const auto& p = s.particles;
+  double kinetic = 0.0;
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    out.force = larger_or_nan(out.force, norm(static_cast<Vec<2>>(p.force[u])));
+    out.moment = larger_or_nan(out.moment, std::sqrt(norm2(static_cast<Rot<2>>(p.torque[u]))));
+    // Nothing slows a disk in free flight, nor its spin: it is a rattler, and the pack may rest without it.
+    if (static_cast<Vec<2>>(p.force[u]) == Vec<2>{} && static_cast<Rot<2>>(p.torque[u]) == Rot<2>{}) continue;
+    Vec<2> v = p.velocity[u];
+    for (int k = 0; k < 2; ++k) v[k] -= s.cell.velocity_gradient[k][k] * p.sphere[u].x[k];
+    kinetic += 0.5 * norm2(v) / p.inverse_mass[u] + 0.5 * norm2(static_cast<Rot<2>>(p.spin[u])) / p.inverse_inertia[u];
+  }
+  out.force /= kPowderForceLimit * f1;
+  out.moment /= kPowderForceLimit * f1 * largest_diameter;
+  out.kinetic =
+      kinetic / static_cast<double>(std::max<Slot>(p.grains, 1)) / (kPowderKineticLimit * f1 * largest_diameter);
+  for (int k = 0; lengths_free && k < 2; ++k)
+    out.pressure =
+        larger_or_nan(out.pressure, std::abs(imposed[k] - measured[k]) * largest_diameter / (kPowderForceLimit * f1));
+  return out;
+}
 
 std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProtocol& p) {
   const double kappa = spec.stiffness;

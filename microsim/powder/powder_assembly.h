@@ -13,6 +13,24 @@
 
 namespace softgrain {
 
+constexpr double kPowderForceLimit = 1e-4;    ///< of net force, moment and pressure error, in F1, F1 a and F1/a
+constexpr double kPowderKineticLimit = 5e-8;  ///< of the kinetic energy per disk, in F1 a
+
+/// How far a powder is from the published equilibrium [CP 3.2], each over its limit: equilibrium when all are below 1.
+struct PowderResidual {
+  double force = 0.0;     ///< largest net force over 1e-4 F1
+  double moment = 0.0;    ///< largest net moment over 1e-4 F1 a
+  double pressure = 0.0;  ///< largest |imposed - measured| over 1e-4 F1/a (a: largest diameter)
+  double kinetic = 0.0;   ///< kinetic energy per body over 5e-8 F1 a, without bodies in free flight (rattlers)
+
+  [[nodiscard]] bool equilibrium() const { return force < 1.0 && moment < 1.0 && pressure < 1.0 && kinetic < 1.0; }
+};
+
+/// F1 = max(F0, P a). From the forces of the last pass; velocities relative to the moving cell. `lengths_free`: whether
+/// the pressure counts.
+PowderResidual powder_residual(const System<2>& system, const Vec<2>& imposed, const Vec<2>& measured, double f1,
+                               double largest_diameter, bool lengths_free);
+
 /// A stretch of an assembly.
 struct PowderPhase {
   std::string name;            ///< "compaction", "aggregation", "free" or "stiffening", "load"
@@ -87,7 +105,7 @@ struct PowderResult {
   std::string reason;  ///< which criterion was unmet when the time ran out
   double fraction = 0.0;
   Vec<2> stress{};
-  PowderResidual<2> residual;
+  PowderResidual residual;
 };
 
 PowderState start_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);

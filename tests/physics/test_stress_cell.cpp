@@ -10,6 +10,7 @@
 
 #include "common/core/random.h"
 #include "common/dynamics/force_pass.h"
+#include "microsim/powder/powder_assembly.h"
 
 namespace softgrain {
 namespace {
@@ -169,7 +170,7 @@ TEST(StressCell, TheCapHoldsTheStrainRate) {
 struct Rest {
   System2 system;
   Vec<2> stress{};
-  PowderResidual<2> residual;
+  PowderResidual residual;
   int steps = 0;
 };
 

@@ -6,10 +6,10 @@
 
 #include "common/core/error.h"
 #include "common/core/larger_or_nan.h"
-#include "common/dynamics/stress_cell.h"
 #include "common/dynamics/verlet.h"
 #include "common/statics/minimiser.h"
 #include "microsim/particles/guards.h"
+#include "microsim/powder/powder_assembly.h"
 #include "tests/support/disks.h"
 #include "tests/support/small_packing.h"
 
@@ -53,7 +53,7 @@ TEST(NotANumber, InAForceIsTheResidualOfAPowder) {
     s.particles.torque.assign(3, {});
     s.particles.force[lost][0] = kNaN;
     s.particles.torque[lost][0] = kNaN;
-    const auto r = powder_residual<2>(s, {{1.0, 1.0}}, {{1.0, lost == 0 ? kNaN : 1.0}}, 1.0, 1.0, true);
+    const auto r = powder_residual(s, {{1.0, 1.0}}, {{1.0, lost == 0 ? kNaN : 1.0}}, 1.0, 1.0, true);
     EXPECT_TRUE(std::isnan(r.force)) << lost;
     EXPECT_TRUE(std::isnan(r.moment)) << lost;
     EXPECT_EQ(std::isnan(r.pressure), lost == 0);
