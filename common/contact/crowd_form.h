@@ -72,10 +72,11 @@ struct CrowdPressure {
     const T d = cap_depth(least<T>(s, end));
     const Mask<T> idle = d <= delta;  // not a number goes on
     if (!any(!idle)) return {};
-    const T force = a * (power(d, b) - power(delta, b));
+    const T powered = power(d, b);
+    const T force = a * (powered - power(delta, b));
     const T disk = 0.75 * d * (2.0 - d);
     const T p = force / disk;
-    const T slope = (a * b * power(d, b - 1.0) - p * 1.5 * (1.0 - d)) / (disk * disk);
+    const T slope = (a * b * (powered / d) - p * 1.5 * (1.0 - d)) / (disk * disk);
     return {choose<T>(idle, T(0.0), p), choose<T>(idle || s > end, T(0.0), slope)};
   }
 };

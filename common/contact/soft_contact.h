@@ -21,9 +21,16 @@ struct PowerTerm {
   [[nodiscard]] T value(const T& d) const {
     return a * power(d, b) + c;
   }
+  /// Value and its derivative, for d > 0.
   template <class T>
-  [[nodiscard]] T slope(const T& d) const {
-    return a * b * power(d, b - 1.0);
+  struct Pair {
+    T value{};
+    T slope{};
+  };
+  template <class T>
+  [[nodiscard]] Pair<T> at(const T& d) const {
+    const T powered = power(d, b);
+    return {a * powered + c, a * b * (powered / d)};
   }
   [[nodiscard]] double integral(double d) const { return a * power(d, b + 1.0) / (b + 1.0) + c * d; }
 };
@@ -58,10 +65,11 @@ struct SoftContact {
     ContactResponse<D, T> out;
     const T radius = s.constants.a;
     const T ratio = least<T>(s.overlap / radius, range.clamp_at());
-    const Mask<T> idle = ratio < delta;
+    const Mask<T> idle = ratio < delta || ratio <= 0.0;
     if (!any(!idle)) return out;
-    out.elastic_force = modulus * radius * radius * normal.value(ratio);
-    out.normal_stiffness = modulus * radius * normal.slope(ratio);
+    const auto [force, slope] = normal.at(ratio);
+    out.elastic_force = modulus * radius * radius * force;
+    out.normal_stiffness = modulus * radius * slope;
     const T eta = s.constants.b * root(out.normal_stiffness);
     out.normal_force = out.elastic_force - eta * s.normal_speed;
     const T stiffness = modulus * radius * largest<T>(tangential.value(ratio), 0.0);

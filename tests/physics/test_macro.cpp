@@ -65,7 +65,7 @@ const std::vector<double> kRadii{0.016, 0.011, 0.13};
 
 /// Overlaps come from positions of up to 1 m: their rounding, 1e-16 m, is what the force can be known to.
 double allowed(const SoftContact& law, double radius, double ratio) {
-  const double slope = kModulus * radius * law.normal.slope(ratio);
+  const double slope = kModulus * radius * law.normal.at(ratio).slope;
   return 1e-12 * kModulus * radius * radius * law_value(law, ratio) + 4e-16 * slope;
 }
 
