@@ -51,7 +51,8 @@ std::vector<double> read_numbers(const h5::Group& group, const std::string& name
   std::vector<double> values = group.doubles(name);
   const std::size_t width =
       shape.size() > 1 ? std::max<std::size_t>(values.size() / std::max<std::size_t>(shape[0], 1), 1) : 1;
-  for (std::size_t k = 0; k < values.size(); ++k) require_within(values[k], limits, name, k / width);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (limits.finite) require_within(values[k], limits, name, k / width);
   return values;
 }
 
@@ -61,6 +62,25 @@ double read_attribute(const h5::Group& group, const std::string& name, const Lim
   if (value < limits.low || value > limits.high)
     throw FileTrouble(fmt::format("attribute '{}' is {}; allowed: {}", name, value, text_of(limits)));
   return value;
+}
+
+void StoredColumn::write(const h5::Group& group) const {
+  if (whole)
+    group.write(name, std::span<const std::int64_t>(wholes));
+  else
+    group.write(name, std::span<const double>(reals));
+  group.attribute_of(name, "unit", unit);
+}
+
+void StoredColumn::read(const h5::Group& group, std::size_t length) {
+  if (!whole) {
+    reals = read_numbers(group, name, unit, {length}, limits);
+    return;
+  }
+  require_shape(group, name, {length});
+  require_unit(group, name, unit);
+  wholes = group.integers(name);
+  for (std::size_t k = 0; k < length; ++k) require_within(static_cast<double>(wholes[k]), limits, name, k);
 }
 
 std::size_t column_length(const h5::Group& group, const std::string& name) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/core/vec.h"
 #include "common/core/words.h"
 #include "common/io/hdf5_file.h"
 
@@ -33,6 +34,11 @@ struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
+  bool finite = true;  ///< false: anything may stand there, NaN too
+
+  static Limits anything() {
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), false};
+  }
   static Limits not_negative() { return {0.0, std::numeric_limits<double>::infinity()}; }
   static Limits flag() { return {0.0, 1.0}; }
 };
@@ -98,6 +104,124 @@ void read_integers(const h5::Group& group, const std::string& name, std::vector<
     require_within(static_cast<double>(values[k]), limits, name, k);
     set(records[k], values[k]);
   }
+}
+
+/// Data sets "NAME" of vectors, one row each.
+template <class Record, class Field>
+void write_vectors(const h5::Group& group, const std::string& name, const std::string& unit,
+                   const std::vector<Record>& records, Field field) {
+  std::vector<double> flat;
+  flat.reserve(3 * records.size());
+  for (const Record& record : records) {
+    const Vec3 a = field(record);
+    flat.insert(flat.end(), {a[0], a[1], a[2]});
+  }
+  group.write(name, std::span<const double>(flat), {records.size(), 3});
+  group.attribute_of(name, "unit", unit);
+}
+
+template <class Record, class Set>
+void read_vectors(const h5::Group& group, const std::string& name, const std::string& unit,
+                  std::vector<Record>& records, Set set) {
+  const std::vector<double> flat = read_numbers(group, name, unit, {records.size(), 3});
+  for (std::size_t k = 0; k < records.size(); ++k)
+    set(records[k], Vec3{{flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]}});
+}
+
+/// A record, to read or to write.
+template <class T, class Record>
+concept Of = std::is_same_v<std::remove_const_t<T>, Record>;
+
+/// One column of a list of records: numbers with a fraction, or whole ones.
+struct StoredColumn {
+  std::string name;
+  const char* unit;
+  Limits limits;
+  bool whole;
+  std::vector<double> reals{};
+  std::vector<std::int64_t> wholes{};
+
+  void write(const h5::Group& group) const;
+  /// Throws FileTrouble where the numbers are not `length` ones of this unit within the limits.
+  void read(const h5::Group& group, std::size_t length);
+};
+
+/// Calls each(name, number, unit, limits) for every number among the fields of a record, see common/data/fields.h;
+/// those of a vector are NAME_x, NAME_y, NAME_z.
+template <class Record, class Each>
+void numbers_of_fields(Record& record, Each each) {
+  fields(
+      [&](const std::string& name, auto& member, const char* unit, const Limits& limits = {}) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, Vec3>)
+          for (std::size_t k = 0; k < 3; ++k) each(name + "_" + "xyz"[k], member.v[k], unit, limits);
+        else
+          each(name, member, unit, limits);
+      },
+      record);
+}
+
+template <class Record>
+std::vector<StoredColumn> columns_of() {
+  std::vector<StoredColumn> columns;
+  const Record blank{};
+  numbers_of_fields(blank, [&](const std::string& name, const auto& number, const char* unit, const Limits& limits) {
+    columns.push_back({name, unit, limits, std::is_integral_v<std::remove_cvref_t<decltype(number)>>});
+  });
+  return columns;
+}
+
+/// The fields of records as one data set each.
+template <class Record>
+void write_records(const h5::Group& group, const std::vector<Record>& records) {
+  std::vector<StoredColumn> columns = columns_of<Record>();
+  for (const Record& record : records) {
+    auto column = columns.begin();
+    numbers_of_fields(record, [&](const std::string&, const auto& number, const char*, const Limits&) {
+      if (column->whole)
+        column->wholes.push_back(static_cast<std::int64_t>(number));
+      else
+        column->reals.push_back(static_cast<double>(number));
+      ++column;
+    });
+  }
+  for (const StoredColumn& column : columns) column.write(group);
+}
+
+/// Reads them back into as many records as there are. Throws FileTrouble.
+template <class Record>
+void read_records(const h5::Group& group, std::vector<Record>& records) {
+  std::vector<StoredColumn> columns = columns_of<Record>();
+  for (StoredColumn& column : columns) column.read(group, records.size());
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    auto column = columns.begin();
+    numbers_of_fields(records[k], [&](const std::string&, auto& number, const char*, const Limits&) {
+      using Number = std::remove_cvref_t<decltype(number)>;
+      number = column->whole ? static_cast<Number>(column->wholes[k]) : static_cast<Number>(column->reals[k]);
+      ++column;
+    });
+  }
+}
+
+/// All numbers of all records one after the other, for checkpoints.
+template <class Record>
+std::vector<double> rows_of(const std::vector<Record>& records) {
+  std::vector<double> rows;
+  for (const Record& record : records)
+    numbers_of_fields(record, [&](const std::string&, const auto& number, const char*, const Limits&) {
+      rows.push_back(static_cast<double>(number));
+    });
+  return rows;
+}
+
+template <class Record>
+std::vector<Record> records_of(const std::vector<double>& rows) {
+  std::vector<Record> records(rows.size() / columns_of<Record>().size());
+  auto next = rows.begin();
+  for (Record& record : records)
+    numbers_of_fields(record, [&](const std::string&, auto& number, const char*, const Limits&) {
+      number = static_cast<std::remove_cvref_t<decltype(number)>>(*next++);
+    });
+  return records;
 }
 
 /// Hands out consecutive parts of a long list; a part that reaches beyond the end means a damaged file.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/data/columns.h"
+#include "common/data/fields.h"
 #include "common/data/packing_io.h"
 #include "common/data/spec_io.h"
 
@@ -15,20 +15,17 @@ namespace {
 constexpr const char* kCrowdFormat = "crowd-measurements";
 constexpr Limits kTouch{-2.0, 2.0};  ///< of states: a shell that moves may leave a neighbour
 
-template <class Record, class Field>
-void write_vector(const h5::Group& group, const std::string& name, const std::string& unit,
-                  const std::vector<Record>& records, Field field) {
-  constexpr const char* kAxis[] = {"_x", "_y", "_z"};
-  for (int k = 0; k < 3; ++k)
-    write_column(group, name + kAxis[k], unit, records, [&](const Record& r) -> double { return field(r)[k]; });
-}
+/// What a point says of one neighbour.
+struct NeighbourRow {
+  double overlap = 0.0;
+  double normal = 0.0;
+  Vec3 tangential{};
+};
 
-template <class Record, class Field>
-void read_vector(const h5::Group& group, const std::string& name, const std::string& unit, std::vector<Record>& records,
-                 Field field) {
-  constexpr const char* kAxis[] = {"_x", "_y", "_z"};
-  for (int k = 0; k < 3; ++k)
-    read_finite(group, name + kAxis[k], unit, records, [&](Record& r, double v) { field(r)[k] = v; });
+void fields(auto&& visit, Of<NeighbourRow> auto& r) {
+  visit("overlap", r.overlap, "Rs", kTouch);
+  visit("normal", r.normal, "E Rs^2");
+  visit("tangential", r.tangential, "E Rs^2");
 }
 
 void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration>& configurations) {
@@ -37,8 +34,7 @@ void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration
   const h5::Group g = group.create("partners");
   g.attribute("kinds", "0 plane, 1 solid, 2 soft");
   write_column(g, "kind", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.kind); });
-  write_column(g, "ratio", "1", all, [](const auto& p) { return p.ratio; });
-  write_vector(g, "direction", "1", all, [](const auto& p) { return p.direction; });
+  write_records(g, all);
 }
 
 std::vector<CrowdPartner> read_partners(const h5::Group& group) {
@@ -46,9 +42,7 @@ std::vector<CrowdPartner> read_partners(const h5::Group& group) {
   std::vector<CrowdPartner> all(column_length(g, "kind"));
   read_integers(g, "kind", all,
                 [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
-  read_finite(
-      g, "ratio", "1", all, [](auto& p, double v) { p.ratio = v; }, Limits::not_negative());
-  read_vector(g, "direction", "1", all, [](auto& p) -> Vec3& { return p.direction; });
+  read_records(g, all);
   for (const CrowdPartner& p : all) {
     constexpr double kUnit = 1e-6;
     if ((p.kind == PartnerKind::plane) != (p.ratio == 0.0))
@@ -91,8 +85,7 @@ std::vector<CrowdStage> read_stages(const h5::Group& group) {
 void write_configurations(const h5::Group& root, const std::vector<CrowdConfiguration>& all) {
   const h5::Group g = root.create("configurations");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
-  write_column(g, "centre_free", "1", all, [](const auto& c) { return c.centre_free; });
-  write_column(g, "held_out", "1", all, [](const auto& c) { return c.held_out; });
+  write_records(g, all);
   write_column(g, "partner_count", "1", all, [](const auto& c) { return c.partners.size(); });
   write_column(g, "stage_count", "1", all, [](const auto& c) { return c.stages.size(); });
   write_partners(g, all);
@@ -103,10 +96,7 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
   const h5::Group g = root.open("configurations");
   std::vector<CrowdConfiguration> all(column_length(g, "centre_free"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
-  read_integers(
-      g, "centre_free", all, [](auto& c, auto v) { c.centre_free = v != 0; }, Limits::flag());
-  read_integers(
-      g, "held_out", all, [](auto& c, auto v) { c.held_out = v != 0; }, Limits::flag());
+  read_records(g, all);
   const std::vector<CrowdPartner> partners = read_partners(g);
   const std::vector<CrowdStage> stages = read_stages(g);
   Slices partner_slices(partners.size());
@@ -124,38 +114,20 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
   return all;
 }
 
-/// What a point says of one neighbour.
-struct NeighbourRow {
-  double overlap = 0.0;
-  double normal = 0.0;
-  Vec3 tangential{};
-};
-
 void write_points(const h5::Group& group, const std::vector<CrowdPoint>& points) {
   const h5::Group g = group.create("points");
-  write_column(g, "stage", "1", points, [](const auto& p) { return p.stage; });
+  write_records(g, points);
   write_column(g, "neighbours", "1", points, [](const auto& p) { return p.overlap.size(); });
-  write_column(g, "slide", "Rs", points, [](const auto& p) { return p.slide; });
-  write_vector(g, "centre", "Rs", points, [](const auto& p) { return p.centre; });
-  write_column(g, "residual", "1", points, [](const auto& p) { return p.residual; });
-  write_column(g, "max_overlap", "1", points, [](const auto& p) { return p.max_overlap; });
-  write_column(g, "converged", "1", points, [](const auto& p) { return p.converged; });
   std::vector<NeighbourRow> rows;
   for (const CrowdPoint& p : points)
     for (std::size_t k = 0; k < p.overlap.size(); ++k) rows.push_back({p.overlap[k], p.normal[k], p.tangential[k]});
-  const h5::Group n = group.create("neighbours");
-  write_column(n, "overlap", "Rs", rows, [](const auto& r) { return r.overlap; });
-  write_column(n, "normal", "E Rs^2", rows, [](const auto& r) { return r.normal; });
-  write_vector(n, "tangential", "E Rs^2", rows, [](const auto& r) { return r.tangential; });
+  write_records(group.create("neighbours"), rows);
 }
 
 std::vector<NeighbourRow> read_neighbours(const h5::Group& group) {
   const h5::Group g = group.open("neighbours");
   std::vector<NeighbourRow> rows(g.doubles("overlap").size());
-  read_finite(
-      g, "overlap", "Rs", rows, [](auto& r, double v) { r.overlap = v; }, kTouch);
-  read_finite(g, "normal", "E Rs^2", rows, [](auto& r, double v) { r.normal = v; });
-  read_vector(g, "tangential", "E Rs^2", rows, [](auto& r) -> Vec3& { return r.tangential; });
+  read_records(g, rows);
   return rows;
 }
 
@@ -170,18 +142,11 @@ void append_neighbours(CrowdPoint& p, const std::vector<NeighbourRow>& rows) {
 std::vector<CrowdPoint> read_points(const h5::Group& group) {
   const h5::Group g = group.open("points");
   std::vector<CrowdPoint> points(column_length(g, "stage"));
-  read_integers(g, "stage", points, [](auto& p, auto v) { p.stage = v; });
+  read_records(g, points);
   const std::vector<NeighbourRow> rows = read_neighbours(group);
   Slices slices(rows.size());
   read_integers(g, "neighbours", points, [&](auto& p, auto v) { append_neighbours(p, take(rows, slices, v)); });
   slices.finish();
-  read_finite(g, "slide", "Rs", points, [](auto& p, double v) { p.slide = v; });
-  read_vector(g, "centre", "Rs", points, [](auto& p) -> Vec3& { return p.centre; });
-  read_doubles(g, "residual", "1", points, [](auto& p, double v) { p.residual = v; });
-  read_finite(
-      g, "max_overlap", "1", points, [](auto& p, double v) { p.max_overlap = v; }, Limits::not_negative());
-  read_integers(
-      g, "converged", points, [](auto& p, auto v) { p.converged = v != 0; }, Limits::flag());
   return points;
 }
 
@@ -213,12 +178,8 @@ void require_consistent(const CrowdMeasurements& data) {
 }  // namespace
 
 void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs) {
-  write_column(group, "configuration", "1", runs, [](const auto& r) { return r.configuration; });
-  write_column(group, "packing", "1", runs, [](const auto& r) { return r.packing; });
+  write_records(group, runs);
   write_column(group, "point_count", "1", runs, [](const auto& r) { return r.points.size(); });
-  write_column(group, "loop_passes", "1", runs, [](const auto& r) { return r.cost.loop_passes; });
-  write_column(group, "contact_evaluations", "1", runs, [](const auto& r) { return r.cost.contact_evaluations; });
-  write_column(group, "seconds", "s", runs, [](const auto& r) { return r.cost.seconds; });
   std::vector<CrowdPoint> points;
   for (const CrowdRun& run : runs) points.insert(points.end(), run.points.begin(), run.points.end());
   write_points(group, points);
@@ -226,15 +187,7 @@ void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs)
 
 std::vector<CrowdRun> read_crowd_runs(const h5::Group& group) {
   std::vector<CrowdRun> runs(column_length(group, "configuration"));
-  read_integers(group, "configuration", runs, [](auto& r, auto v) { r.configuration = v; });
-  read_integers(group, "packing", runs, [](auto& r, auto v) { r.packing = v; });
-  const Limits limits = Limits::not_negative();
-  read_integers(
-      group, "loop_passes", runs, [](auto& r, auto v) { r.cost.loop_passes = v; }, limits);
-  read_integers(
-      group, "contact_evaluations", runs, [](auto& r, auto v) { r.cost.contact_evaluations = v; }, limits);
-  read_finite(
-      group, "seconds", "s", runs, [](auto& r, double v) { r.cost.seconds = v; }, limits);
+  read_records(group, runs);
   const std::vector<CrowdPoint> points = read_points(group);
   Slices slices(points.size());
   read_integers(group, "point_count", runs, [&](auto& r, auto v) { r.points = take(points, slices, v); });

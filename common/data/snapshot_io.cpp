@@ -15,27 +15,6 @@ namespace {
 
 constexpr const char* kStatesFormat = "states";
 
-template <class Record, class Field>
-void write_vectors(const h5::Group& g, const std::string& name, const std::string& unit,
-                   const std::vector<Record>& records, Field field) {
-  std::vector<double> flat;
-  flat.reserve(3 * records.size());
-  for (const Record& r : records) {
-    const Vec3 a = field(r);
-    flat.insert(flat.end(), {a[0], a[1], a[2]});
-  }
-  g.write(name, std::span<const double>(flat), {records.size(), 3});
-  g.attribute_of(name, "unit", unit);
-}
-
-template <class Record, class Set>
-void read_vectors(const h5::Group& g, const std::string& name, const std::string& unit, std::vector<Record>& records,
-                  Set set) {
-  const std::vector<double> flat = read_numbers(g, name, unit, {records.size(), 3});
-  for (std::size_t k = 0; k < records.size(); ++k)
-    set(records[k], Vec3{{flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]}});
-}
-
 template <class Enum>
 Enum checked(std::int64_t value, Enum last, const char* what) {
   if (value < 0 || value > static_cast<std::int64_t>(last)) throw FileTrouble(std::string("unknown ") + what);

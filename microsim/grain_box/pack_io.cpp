@@ -3,31 +3,11 @@
 #include <span>
 
 #include "common/core/error.h"
+#include "common/data/columns.h"
 
 namespace softgrain {
 
 namespace {
-
-template <class Record, class Field>
-void write_vectors(const h5::Group& g, const std::string& name, const std::string& unit,
-                   const std::vector<Record>& records, Field field) {
-  std::vector<double> flat;
-  flat.reserve(3 * records.size());
-  for (const Record& r : records) {
-    const Vec3& a = field(r);
-    flat.insert(flat.end(), {a[0], a[1], a[2]});
-  }
-  g.write(name, std::span<const double>(flat), {records.size(), 3});
-  g.attribute_of(name, "unit", unit);
-}
-
-template <class Record, class Set>
-void read_vectors(const h5::Group& g, const std::string& name, std::vector<Record>& records, Set set) {
-  const std::vector<double> flat = g.doubles(name);
-  if (flat.size() != 3 * records.size()) throw FileTrouble("data set '" + name + "' has a wrong length");
-  for (std::size_t k = 0; k < records.size(); ++k)
-    set(records[k], Vec3{{flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]}});
-}
 
 void write_numbers(const h5::Group& g, const std::string& name, const std::string& unit,
                    const std::vector<double>& values) {
@@ -71,8 +51,8 @@ void write_contacts(const h5::Group& g, const std::vector<PackContact>& contacts
 void read_walls(const h5::Group& g, GrainPack& pack) {
   const std::vector<double> numbers = g.doubles("wall_E_nu_mu");
   pack.walls.resize(numbers.size() / kWallNumbers);
-  read_vectors(g, "wall_point", pack.walls, [](PackWall& w, const Vec3& a) { w.point = a; });
-  read_vectors(g, "wall_normal", pack.walls, [](PackWall& w, const Vec3& a) { w.normal = a; });
+  read_vectors(g, "wall_point", "m", pack.walls, [](PackWall& w, const Vec3& a) { w.point = a; });
+  read_vectors(g, "wall_normal", "1", pack.walls, [](PackWall& w, const Vec3& a) { w.normal = a; });
   for (std::size_t k = 0; k < pack.walls.size(); ++k) {
     pack.walls[k].youngs_modulus = numbers[kWallNumbers * k];
     pack.walls[k].poisson_ratio = numbers[kWallNumbers * k + 1];
@@ -85,8 +65,8 @@ void read_contacts(const h5::Group& g, GrainPack& pack) {
   const std::vector<double> numbers =
       read_numbers(g, "contact_numbers", marks.size() / kContactMarks * kContactNumbers);
   pack.contacts.resize(marks.size() / kContactMarks);
-  read_vectors(g, "contact_normal", pack.contacts, [](PackContact& c, const Vec3& a) { c.normal = a; });
-  read_vectors(g, "contact_tangential_force", pack.contacts,
+  read_vectors(g, "contact_normal", "1", pack.contacts, [](PackContact& c, const Vec3& a) { c.normal = a; });
+  read_vectors(g, "contact_tangential_force", "N", pack.contacts,
                [](PackContact& c, const Vec3& a) { c.tangential_force = a; });
   const auto bodies = static_cast<std::int64_t>(pack.position.size() + pack.walls.size());
   for (std::size_t k = 0; k < pack.contacts.size(); ++k) {
@@ -121,7 +101,7 @@ GrainPack read_pack(const h5::Group& g) {
   GrainPack pack;
   pack.radius = g.doubles("radius");
   pack.position.resize(pack.radius.size());
-  read_vectors(g, "position", pack.position, [](Vec3& x, const Vec3& a) { x = a; });
+  read_vectors(g, "position", "m", pack.position, [](Vec3& x, const Vec3& a) { x = a; });
   pack.youngs_modulus = read_numbers(g, "youngs_modulus", pack.radius.size());
   pack.poisson_ratio = read_numbers(g, "poisson_ratio", pack.radius.size());
   pack.friction = g.number("friction");

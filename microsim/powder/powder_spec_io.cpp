@@ -1,14 +1,13 @@
 #include "microsim/powder/powder_spec_io.h"
 
+#include "common/data/columns.h"
 #include "common/io/attribute_members.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Calls item(name, member) for each member, the same list for both directions.
-template <class Spec, class Item>
-void for_members(Spec& s, const Item& item) {
+void fields(auto&& item, Of<PowderSpec> auto& s) {
   item("disks", s.disks);
   item("diameter_min", s.diameter_min);
   item("solid_fraction", s.solid_fraction);
@@ -27,11 +26,11 @@ void for_members(Spec& s, const Item& item) {
 
 }  // namespace
 
-void write_powder_spec(const h5::Group& group, const PowderSpec& spec) { for_members(spec, AttributeWriter{group}); }
+void write_powder_spec(const h5::Group& group, const PowderSpec& spec) { fields(AttributeWriter{group}, spec); }
 
 PowderSpec read_powder_spec(const h5::Group& group) {
   PowderSpec spec;
-  for_members(spec, AttributeReader{group});
+  fields(AttributeReader{group}, spec);
   return spec;
 }
 

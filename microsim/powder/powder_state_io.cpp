@@ -2,18 +2,26 @@
 
 #include <string>
 
+#include "common/data/fields.h"
 #include "common/io/attribute_members.h"
 #include "common/state/system_io.h"
 
 namespace softgrain {
 
+void fields(auto&& visit, Of<PowderPoint> auto& p) {
+  visit("phase", p.phase, "1");
+  visit("time", p.time, "T0");
+  visit("fraction", p.fraction, "1");
+  visit("coordination", p.coordination, "1");
+  visit("kinetic", p.kinetic, "1");
+  visit("stress_x", p.stress.v[0], "1");
+  visit("stress_y", p.stress.v[1], "1");
+}
+
 namespace {
 
-constexpr std::size_t kColumns = 7;
-
-/// Calls item(name, member) for each number of a state, the same list for both directions.
-template <class State, class Item>
-void for_progress(State& s, const Item& item) {
+/// The numbers of a state beside its lists.
+void fields(auto&& item, Of<PowderState> auto& s) {
   item("phase", s.phase);
   item("phase_start", s.phase_start);
   item("phase_edge_x", s.phase_edge.v[0]);
@@ -31,28 +39,16 @@ void for_progress(State& s, const Item& item) {
 }  // namespace
 
 void write_powder_state(const h5::Group& group, const PowderState& state) {
-  std::vector<double> rows;
-  for (const PowderPoint& p : state.points)
-    rows.insert(rows.end(), {static_cast<double>(p.phase), p.time, p.fraction, p.coordination, p.kinetic, p.stress[0],
-                             p.stress[1]});
   group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
-  group.write("course", rows, {state.points.size(), kColumns});
-  for_progress(state, AttributeWriter{group.create("progress")});
+  group.write("course", rows_of(state.points), {state.points.size(), columns_of<PowderPoint>().size()});
+  fields(AttributeWriter{group.create("progress")}, state);
   write_snapshots(group, state.snapshots);
   write_system(group.create("system"), state.system);
 }
 
 void read_powder_state(const h5::Group& group, PowderState& state) {
-  const auto rows = group.doubles("course");
-  state.points.clear();
-  for (std::size_t k = 0; k + kColumns <= rows.size(); k += kColumns)
-    state.points.push_back({static_cast<std::int64_t>(rows[k]),
-                            rows[k + 1],
-                            rows[k + 2],
-                            rows[k + 3],
-                            rows[k + 4],
-                            {{rows[k + 5], rows[k + 6]}}});
-  for_progress(state, AttributeReader{group.open("progress")});
+  state.points = records_of<PowderPoint>(group.doubles("course"));
+  fields(AttributeReader{group.open("progress")}, state);
   state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);
 }

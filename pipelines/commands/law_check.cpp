@@ -9,6 +9,7 @@
 #include "common/data/law_band.h"
 #include "common/data/law_remarks.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
+#include "pipelines/law/law_json.h"
 #include "pipelines/law/named_laws.h"
 
 namespace softgrain {
@@ -68,11 +69,7 @@ std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
 }
 
 void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
-  facts["laws"].push_back({{"form", to_string(law.form)},
-                           {"status", to_string(law.status)},
-                           {"error_fitted", law.error_fitted},
-                           {"error_held_out", law.error_held_out},
-                           {"error_cross", law.error_cross}});
+  facts["laws"].push_back(verdict_json(law));
   lines += fmt::format("    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n",
                        to_string(law.form), law.form == entry.best ? " (best)" : "", to_string(law.status),
                        law.reason.empty() ? "" : " (" + law.reason + ")", 100.0 * law.error_fitted, held_out_text(law),
@@ -80,9 +77,7 @@ void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std
 }
 
 void check_entry(const LawTableEntry& e, Findings& out) {
-  json facts{{"solid_fraction", e.solid_fraction}, {"packings", e.packings},
-             {"best", to_string(e.best)},          {"volume_max", e.volume_max},
-             {"overlap_max", e.overlap_max},       {"grain_overlap_max", e.grain_overlap_max}};
+  json facts = verdict_json(e);
   out.lines += fmt::format(
       "  solid fraction {:.4f} +- {:.4f}: {} packings, {} relaxation, grains of nu = {}, mu = {}\n"
       "    valid up to a lost volume of {:.3f} and an overlap of {:.3f} Rs with a plane, where grains overlap by "

@@ -66,19 +66,6 @@ json pair_json(const PairLaw& law, const SoftParticleSpec& spec) {
   return out;
 }
 
-void put_range(json& out, const LawTableEntry& e, const LawTableEntry& main) {
-  out["solid_fraction"] = e.solid_fraction;
-  out["solid_fraction_error"] = e.solid_fraction_error;
-  out["main"] = &e == &main;
-  out["packings"] = e.packings;
-  out["relaxation"] = e.relaxation;
-  out["best"] = to_string(e.best);
-  out["volume_max"] = e.volume_max;
-  out["overlap_max"] = e.overlap_max;
-  out["grain_overlap_max"] = e.grain_overlap_max;
-  out["beyond"] = to_string(e.beyond);
-}
-
 json slide_json(const SlideLaw& slide) {
   json out;
   put(out, "kt_ratio", slide.kt_ratio, 1.0);
@@ -87,10 +74,9 @@ json slide_json(const SlideLaw& slide) {
 }
 
 json crowd_json(const CrowdLaw& law) {
-  json out{{"form", to_string(law.form)},
-           {"status", to_string(law.status)},
-           {"reason", law.reason},
-           {"partners", json::array()}};
+  json out = verdict_json(law);
+  out["reason"] = law.reason;
+  out["partners"] = json::array();
   for (const CrowdParameterName& p : kCrowdParameters) put(out, p.key, law.*p.estimate, 1.0);
   for (const PartnerRow& row : law.partners) {
     json one{
@@ -99,19 +85,33 @@ json crowd_json(const CrowdLaw& law) {
     put(one, "exponent", row.exponent, 1.0);
     out["partners"].push_back(std::move(one));
   }
-  out["error_fitted"] = number_or_null(law.error_fitted);
-  out["error_held_out"] = number_or_null(law.error_held_out);
-  out["error_cross"] = number_or_null(law.error_cross);
   return out;
 }
 
 }  // namespace
 
+json verdict_json(const CrowdLaw& law) {
+  return {{"form", to_string(law.form)},
+          {"status", to_string(law.status)},
+          {"error_fitted", number_or_null(law.error_fitted)},
+          {"error_held_out", number_or_null(law.error_held_out)},
+          {"error_cross", number_or_null(law.error_cross)}};
+}
+
+json verdict_json(const LawTableEntry& e) {
+  return {{"solid_fraction", e.solid_fraction}, {"packings", e.packings},
+          {"best", to_string(e.best)},          {"volume_max", e.volume_max},
+          {"overlap_max", e.overlap_max},       {"grain_overlap_max", e.grain_overlap_max}};
+}
+
 json law_table_json(const LawTable& table) {
   json out{{"entries", json::array()}};
   for (const LawTableEntry& e : table.entries) {
-    json one;
-    put_range(one, e, main_entry(table));
+    json one = verdict_json(e);
+    one["solid_fraction_error"] = e.solid_fraction_error;
+    one["main"] = &e == &main_entry(table);
+    one["relaxation"] = e.relaxation;
+    one["beyond"] = to_string(e.beyond);
     put(one, "retreat", e.retreat, 1.0);
     one["slides"] = {
         {"plane", slide_json(e.slide_plane)}, {"solid", slide_json(e.slide_solid)}, {"soft", slide_json(e.slide_soft)}};

@@ -23,4 +23,9 @@ nlohmann::json laws_json(const LawCard& card);
 /// laws_json().
 nlohmann::json law_table_json(const LawTable& table);
 
+/// What every list of laws says of one: form, status, errors.
+nlohmann::json verdict_json(const CrowdLaw& law);
+/// And of an entry: which packings, the best form, up to where it was measured.
+nlohmann::json verdict_json(const LawTableEntry& entry);
+
 }  // namespace softgrain

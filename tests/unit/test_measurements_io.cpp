@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/data/fields.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
 
@@ -208,6 +209,19 @@ TEST(MacroIo, ColumnsOfUnequalLengthAreRefused) {
   save_macro(curves, path);
   EXPECT_THROW((void)load_macro(path), FileTrouble);
   fs::remove(path);
+}
+
+TEST(RowsOfCheckpoints, HoldTheFieldsInTheirOrder) {
+  const std::vector<TangentialPoint> points{{0.1, -0.5, 1.25, 0.3, 1e-3, true}, {0.2, 1.0, 2.0 / 3.0, 0.0, 0.5, false}};
+  const std::vector<double> rows = rows_of(points);
+  EXPECT_EQ(rows, (std::vector<double>{0.1, -0.5, 1.25, 0.3, 1e-3, 1.0, 0.2, 1.0, 2.0 / 3.0, 0.0, 0.5, 0.0}));
+  const auto read = records_of<TangentialPoint>(rows);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(rows_of(read), rows);
+  EXPECT_TRUE(read[0].converged);
+  EXPECT_FALSE(read[1].converged);
+  EXPECT_EQ(rows_of(std::vector{Cost{3, 40, 0.5}}), (std::vector<double>{3.0, 40.0, 0.5}));
+  EXPECT_TRUE(records_of<NormalPoint>({}).empty());
 }
 
 }  // namespace

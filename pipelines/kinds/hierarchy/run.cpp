@@ -92,20 +92,13 @@ json level_json(const HierarchyLevel& level, Crowd form) {
              {"radius_low", level.inner_low},
              {"radius_high", level.inner_high},
              {"volume_percent", 100.0 * level.inner_volume}}},
-           {"law",
-            {{"a", law.a.value},
-             {"b", law.b.value},
-             {"delta", law.delta.value},
-             {"m0", law.m0.value},
-             {"m1", law.m1.value},
-             {"m2", law.m2.value},
-             {"status", to_string(law.status)},
-             {"error_cross", law.error_cross}}},
+           {"law", {{"status", to_string(law.status)}, {"error_cross", law.error_cross}}},
            {"resolved_grains", level.grains},
            {"loop_passes", level.cost.loop_passes},
            {"contact_evaluations", level.cost.contact_evaluations},
            {"seconds", level.seconds},
            {"curves", curves_json(level, form)}};
+  for (const CrowdParameterName& p : kCrowdParameters) out["law"][p.key] = (law.*p.estimate).value;
   if (level.number == 0) {
     out.erase("inner");
     return out;

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/law/law_json.h"
 
 namespace softgrain {
 
@@ -40,33 +41,20 @@ nlohmann::json slide_json(const SlideLaw& s) {
 }
 
 nlohmann::json law_json(const CrowdLaw& law) {
-  return {{"form", to_string(law.form)},
-          {"status", to_string(law.status)},
-          {"error_fitted", law.error_fitted},
-          {"error_held_out", law.error_held_out},
-          {"error_cross", law.error_cross},
-          {"criterion", law.criterion},
-          {"reason", law.reason},
-          {"replicates_failed", law.replicates_failed},
-          {"a", estimate_json(law.a)},
-          {"b", estimate_json(law.b)},
-          {"delta", estimate_json(law.delta)},
-          {"m0", estimate_json(law.m0)},
-          {"m1", estimate_json(law.m1)},
-          {"m2", estimate_json(law.m2)}};
+  nlohmann::json out = verdict_json(law);
+  out["criterion"] = law.criterion;
+  out["reason"] = law.reason;
+  out["replicates_failed"] = law.replicates_failed;
+  for (const CrowdParameterName& p : kCrowdParameters) out[p.key] = estimate_json(law.*p.estimate);
+  return out;
 }
 
 nlohmann::json entry_json(const LawTableEntry& entry) {
-  nlohmann::json out{{"solid_fraction", entry.solid_fraction},
-                     {"packings", entry.packings},
-                     {"best", to_string(entry.best)},
-                     {"volume_max", entry.volume_max},
-                     {"overlap_max", entry.overlap_max},
-                     {"grain_overlap_max", entry.grain_overlap_max},
-                     {"slide_plane", slide_json(entry.slide_plane)},
-                     {"slide_solid", slide_json(entry.slide_solid)},
-                     {"slide_soft", slide_json(entry.slide_soft)},
-                     {"retreat", estimate_json(entry.retreat)}};
+  nlohmann::json out = verdict_json(entry);
+  out["slide_plane"] = slide_json(entry.slide_plane);
+  out["slide_solid"] = slide_json(entry.slide_solid);
+  out["slide_soft"] = slide_json(entry.slide_soft);
+  out["retreat"] = estimate_json(entry.retreat);
   for (const CrowdLaw& law : entry.laws) out["laws"].push_back(law_json(law));
   return out;
 }

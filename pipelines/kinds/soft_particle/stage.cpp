@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/core/stopwatch.h"
+#include "common/data/fields.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
@@ -55,30 +56,11 @@ std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
   return order;
 }
 
-template <class T>
-std::vector<double> columns(const std::vector<T>& points, const std::function<std::vector<double>(const T&)>& row) {
-  std::vector<double> out;
-  for (const T& p : points) {
-    const auto r = row(p);
-    out.insert(out.end(), r.begin(), r.end());
-  }
-  return out;
-}
-
 void write_run(const h5::Group& group, const MeasurementState& state) {
   const PackingRun& run = state.run;
-  group.write("normal", columns<NormalPoint>(run.normal, [](const NormalPoint& p) {
-                return std::vector<double>{p.delta, p.force, p.residual, p.max_overlap, p.converged ? 1.0 : 0.0};
-              }));
-  group.write("tangential", columns<TangentialPoint>(run.tangential, [](const TangentialPoint& p) {
-                return std::vector<double>{
-                    p.delta, p.angle_deg, p.force_parallel, p.force_perpendicular, p.residual, p.converged ? 1.0 : 0.0};
-              }));
-  group.write("cost", std::vector<double>{static_cast<double>(run.normal_cost.loop_passes),
-                                          static_cast<double>(run.normal_cost.contact_evaluations),
-                                          run.normal_cost.seconds, static_cast<double>(run.tangential_cost.loop_passes),
-                                          static_cast<double>(run.tangential_cost.contact_evaluations),
-                                          run.tangential_cost.seconds});
+  group.write("normal", rows_of(run.normal));
+  group.write("tangential", rows_of(run.tangential));
+  group.write("cost", rows_of(std::vector{run.normal_cost, run.tangential_cost}));
   group.attribute("normal_overlap", state.experiment.normal_overlap);
   std::vector<double> rotating;  // empty: no rotations under way
   if (const auto& rest = state.rotating)
@@ -90,15 +72,11 @@ void write_run(const h5::Group& group, const MeasurementState& state) {
 
 void read_run(const h5::Group& group, MeasurementState& state) {
   PackingRun& run = state.run;
-  const auto normal = group.doubles("normal");
-  for (std::size_t k = 0; k + 5 <= normal.size(); k += 5)
-    run.normal.push_back({normal[k], normal[k + 1], normal[k + 2], normal[k + 3], normal[k + 4] != 0.0});
-  const auto t = group.doubles("tangential");
-  for (std::size_t k = 0; k + 6 <= t.size(); k += 6)
-    run.tangential.push_back({t[k], t[k + 1], t[k + 2], t[k + 3], t[k + 4], t[k + 5] != 0.0});
-  const auto cost = group.doubles("cost");
-  run.normal_cost = {static_cast<std::int64_t>(cost.at(0)), static_cast<std::int64_t>(cost.at(1)), cost.at(2)};
-  run.tangential_cost = {static_cast<std::int64_t>(cost.at(3)), static_cast<std::int64_t>(cost.at(4)), cost.at(5)};
+  run.normal = records_of<NormalPoint>(group.doubles("normal"));
+  run.tangential = records_of<TangentialPoint>(group.doubles("tangential"));
+  const auto cost = records_of<Cost>(group.doubles("cost"));
+  run.normal_cost = cost.at(0);
+  run.tangential_cost = cost.at(1);
   state.experiment.normal_overlap = group.number("normal_overlap");
   if (const auto r = group.doubles("rotating"); r.size() == 6)
     state.rotating = SettleResult{{{r[0], r[1], r[2]}}, r[3], r[4], r[5] != 0.0};

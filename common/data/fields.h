@@ -1,0 +1,77 @@
+// The members of records, each with its name and unit once: fields(visit, record) calls visit(name, member, unit,
+// limits), in the order in which rows hold them. Columns of files and rows of checkpoints go by it.
+#pragma once
+
+#include "common/data/columns.h"
+#include "common/data/crowd_measurements.h"
+#include "common/data/measurements.h"
+
+namespace softgrain {
+
+void fields(auto&& visit, Of<NormalPoint> auto& p) {
+  visit("delta", p.delta, "1", kOverlaps);
+  visit("force", p.force, "N");
+  visit("residual", p.residual, "1", Limits::anything());
+  visit("max_overlap", p.max_overlap, "1", Limits::not_negative());
+  visit("converged", p.converged, "1", Limits::flag());
+}
+
+void fields(auto&& visit, Of<TangentialPoint> auto& p) {
+  visit("delta", p.delta, "1", kOverlaps);
+  visit("angle", p.angle_deg, "degree", Limits{-360.0, 360.0});
+  visit("force_parallel", p.force_parallel, "N");
+  visit("force_perpendicular", p.force_perpendicular, "N");
+  visit("residual", p.residual, "1", Limits::anything());
+  visit("converged", p.converged, "1", Limits::flag());
+}
+
+void fields(auto&& visit, Of<Cost> auto& c, const std::string& prefix = "") {
+  visit(prefix + "loop_passes", c.loop_passes, "1", Limits::not_negative());
+  visit(prefix + "contact_evaluations", c.contact_evaluations, "1", Limits::not_negative());
+  visit(prefix + "seconds", c.seconds, "s", Limits::not_negative());
+}
+
+void fields(auto&& visit, Of<PackingInfo> auto& p) {
+  visit("seed", p.seed, "1");
+  visit("grains", p.grains, "1", Limits::not_negative());
+  visit("solid_fraction", p.solid_fraction, "1", Limits::flag());
+  visit("contacts_per_grain", p.contacts_per_grain, "1", Limits::not_negative());
+  visit("exponent", p.exponent, "1", Limits::anything());
+  visit("exponent_error", p.exponent_error, "1", Limits::anything());
+}
+
+/// Without its lists.
+void fields(auto&& visit, Of<PackingRun> auto& r) {
+  visit("packing", r.packing, "1");
+  fields(visit, r.normal_cost, "normal_");
+  fields(visit, r.tangential_cost, "tangential_");
+}
+
+void fields(auto&& visit, Of<CrowdPartner> auto& p) {
+  visit("ratio", p.ratio, "1", Limits::not_negative());
+  visit("direction", p.direction, "1");
+}
+
+void fields(auto&& visit, Of<CrowdConfiguration> auto& c) {
+  visit("centre_free", c.centre_free, "1", Limits::flag());
+  visit("held_out", c.held_out, "1", Limits::flag());
+}
+
+/// Without what it says of each neighbour.
+void fields(auto&& visit, Of<CrowdPoint> auto& p) {
+  visit("stage", p.stage, "1");
+  visit("slide", p.slide, "Rs");
+  visit("centre", p.centre, "Rs");
+  visit("residual", p.residual, "1", Limits::anything());
+  visit("max_overlap", p.max_overlap, "1", Limits::not_negative());
+  visit("converged", p.converged, "1", Limits::flag());
+}
+
+/// Without its points.
+void fields(auto&& visit, Of<CrowdRun> auto& r) {
+  visit("configuration", r.configuration, "1");
+  visit("packing", r.packing, "1");
+  fields(visit, r.cost);
+}
+
+}  // namespace softgrain
