@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "common/core/error.h"
 #include "common/core/vec.h"
 #include "common/core/words.h"
 
@@ -46,9 +51,30 @@ struct Range {
   static Range above(double low) { return {low, std::numeric_limits<double>::infinity(), true, false}; }
 };
 
+/// One mistake: "file:line: key = value: what is wrong, allowed range".
+struct SceneMistake {
+  std::size_t line = 0;  ///< 0: not of the file, but of the command line or of a file that the scene names
+  std::string text{};
+  std::string of{};  ///< what follows the text: " (in the variant ...)"
+};
+
+/// What is wrong with a scene: in the order of the file, one a line, the first twenty.
+class BadScene : public BadInput {
+ public:
+  BadScene(const std::string& file, std::vector<SceneMistake> mistakes);
+  [[nodiscard]] const std::string& file() const { return file_; }
+  /// None of a complaint that only follows from a mistake that was noted before (Scene::read).
+  [[nodiscard]] const std::vector<SceneMistake>& mistakes() const { return mistakes_; }
+
+ private:
+  std::string file_;
+  std::vector<SceneMistake> mistakes_;
+};
+
 /// A table of a scene. Copies share the record of which keys were used.
-/// Every reader throws BadInput ("file:line: key = value: what is wrong, allowed range") on a wrong type, unit, NaN or
-/// range.
+/// A wrong type, unit, NaN or range throws BadScene; within Scene::read it is noted, and the reader gets a value that
+/// is allowed: the fallback, else the low end of the range (what asks for least beside it), and none for what goes with
+/// a table that is missing.
 class SceneTable {
  public:
   struct Impl;
@@ -106,10 +132,20 @@ class SceneTable {
 
   /// "file:line" of a key (of the table itself when the key is absent), for messages of checks that span keys.
   [[nodiscard]] std::string where(const std::string& key) const;
-  /// Throws BadInput at `key` with this text in the standard form.
+  /// Throws BadScene at `key` with this text in the standard form; one without mistakes where a value of this table, or
+  /// of one below, is not that of the file, so that the complaint may come from that.
   [[noreturn]] void reject(const std::string& key, const std::string& problem) const;
+  /// The same where reading can go on: within Scene::read it is noted.
+  void mistake(const std::string& key, const std::string& problem) const;
+  /// Whether nothing was found wrong so far in this table and all below; a check that takes values of several tables
+  /// asks them first.
+  [[nodiscard]] bool sound() const;
+  /// Reads this table, or a part of it; within Scene::read a BadInput that ends it is noted, and what follows is read.
+  void part(const std::function<void()>& read) const;
+  /// The same for what reads no keys of this table.
+  void check(const std::function<void()>& rule) const;
 
-  /// Throws BadInput for the first key of this table, or any table below, that nobody asked for.
+  /// Throws BadScene for the keys of this table, or any table below, that nobody asked for.
   void finish() const;
 
  private:
@@ -128,6 +164,14 @@ class Scene {
   static Scene parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
 
   [[nodiscard]] SceneTable root() const;
+  /// What `reader` makes of the root, once all is read to the last key (SceneTable::finish). Throws BadScene with all
+  /// mistakes that were found on the way.
+  template <class Reader>
+  auto read(Reader&& reader) const {
+    std::optional<std::invoke_result_t<Reader, SceneTable>> out;
+    collect([&] { out.emplace(reader(root())); });
+    return std::move(*out);
+  }
   [[nodiscard]] const std::string& path() const { return path_; }
   /// The scene as it is used, overrides included, as TOML: goes into every output as provenance.
   [[nodiscard]] const std::string& text() const { return text_; }
@@ -139,6 +183,7 @@ class Scene {
 
  private:
   Scene(const std::string& name, std::string text, std::shared_ptr<SceneDocument> document);
+  void collect(const std::function<void()>& reader) const;
 
   std::shared_ptr<const SceneDocument> document_;
   std::string path_;

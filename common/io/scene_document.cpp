@@ -127,6 +127,7 @@ Scene::Scene(const std::string& name, std::string text, std::shared_ptr<SceneDoc
     : document_(document), path_(name), text_(std::move(text)), root_(std::make_shared<SceneTable::Impl>()) {
   root_->content = document->content.get();
   root_->place = name + ":1";
+  root_->line = 1;
   root_->document = std::move(document);
 }
 

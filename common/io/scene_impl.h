@@ -5,8 +5,10 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/core/error.h"
 #include "common/io/scene.h"
 
 // toml++ is included by sources only; this is how its version 3 declares the two types.
@@ -19,13 +21,24 @@ class table;
 
 namespace softgrain {
 
+/// The mistakes of a scene that is being read to its end.
+struct SceneMistakes {
+  std::vector<SceneMistake> all;
+  std::set<std::pair<std::size_t, std::string>> noted;  ///< line and text of them
+  std::set<std::string> meant;  ///< unknown keys ("packing.raddius") that a message about a missing one names
+
+  /// Once, wherever it is met again.
+  void note(const SceneMistake& mistake);
+};
+
 /// A parsed file; every table of it holds the document.
 struct SceneDocument {
   std::string name;                    ///< of the file, as shown in messages
   std::string source;                  ///< the file as it was read
   std::vector<std::string> overrides;  ///< applied to it
   std::shared_ptr<toml::table> content;
-  std::set<const toml::node*> overridden;  ///< nodes that --set gave
+  std::set<const toml::node*> overridden;     ///< nodes that --set gave
+  mutable SceneMistakes* mistakes = nullptr;  ///< null: the first one is thrown
 };
 
 /// Parses the text and applies the overrides. Throws BadInput.
@@ -40,7 +53,14 @@ struct SceneTable::Impl {
   std::string name;                      ///< dotted, empty for the root
   bool element = false;                  ///< one of an [[array of tables]]
   std::string place;                     ///< "file:line" of the header
+  std::size_t line = 0;                  ///< of the header
   std::set<std::string> known;           ///< keys that were asked for
+  bool missing = false;                  ///< it had to be there
+  bool replaced = false;                 ///< a value was wrong: the reader has another one
+  bool misread = false;                  ///< a word was wrong: other keys may have been asked for
+  bool broken = false;                   ///< not read to its end
+  std::set<std::string> blamed;          ///< keys of which one of several mistakes was noted
+  bool wrong = false;                    ///< anything was noted
   std::map<std::string, std::vector<std::shared_ptr<Impl>>> children;
 
   /// The node under `key`, marked as known; null when absent.
@@ -53,11 +73,36 @@ struct SceneTable::Impl {
   [[nodiscard]] std::string location() const;
   /// "file:line", or "file (--set a.b)" for what came from the command line.
   [[nodiscard]] std::string where(const std::string& key, const toml::node& node) const;
-  /// Throws BadInput "file:line: key = value: problem".
+  /// 0 for what came from the command line.
+  [[nodiscard]] std::size_t line_of(const toml::node& node) const;
+  /// "file:line: key = value: problem".
+  [[nodiscard]] SceneMistake mistake(const std::string& key, const toml::node* node, const std::string& problem) const;
+  /// Throws it as BadScene.
   [[noreturn]] void reject(const std::string& key, const toml::node& node, const std::string& problem) const;
 
+  /// Notes what a BadScene of this file says, and what another error says at the header of this table.
+  void note(const Error& error);
+  /// What `read` returns; where mistakes are collected and it throws one, that is noted and `stand_in` returned.
+  /// `word`: the value decides which other keys are asked for.
+  template <class Read, class T>
+  T value(Read read, const T& stand_in, bool word = false) {
+    if (!document->mistakes) return read();
+    try {
+      return read();
+    } catch (const BadScene& e) {
+      note(e);
+      replaced = true;
+      misread = misread || word;
+      return stand_in;
+    }
+  }
+
+  /// Of this table or one below.
+  [[nodiscard]] bool any(bool Impl::*what) const;
+
   std::shared_ptr<Impl> make_child(const std::string& key, const toml::table* table, bool is_element) const;
-  void finish() const;
+  /// Adds keys that nobody asked for.
+  void find_unknown(std::vector<SceneMistake>& out) const;
 };
 
 /// A value as it is shown in messages, shortened when long.

@@ -62,14 +62,18 @@ const toml::node* SceneTable::Impl::find(const std::string& key) {
 
 const toml::node& SceneTable::Impl::require(const std::string& key) {
   if (const toml::node* node = find(key)) return *node;
+  if (document->mistakes && (missing || misread)) throw BadScene(document->name, {});
   std::string message = place + ": missing key '" + key + "' " + location();
   std::vector<std::string> unused;
   if (content != nullptr)
     for (const auto& [name_here, node] : *content)
       if (!known.contains(std::string(name_here.str()))) unused.emplace_back(name_here.str());
   const std::string near = nearest_word(key, unused);
-  if (!near.empty()) message += "; did '" + near + "' at " + where(near, *content->get(near)) + " mean it?";
-  throw BadInput(message);
+  if (!near.empty()) {
+    message += "; did '" + near + "' at " + where(near, *content->get(near)) + " mean it?";
+    if (document->mistakes) document->mistakes->meant.insert(dotted(near));
+  }
+  throw BadScene(document->name, {{.line = line, .text = message}});
 }
 
 std::string SceneTable::Impl::location() const {
@@ -77,15 +81,41 @@ std::string SceneTable::Impl::location() const {
   return element ? "in [[" + name + "]]" : "in [" + name + "]";
 }
 
+std::size_t SceneTable::Impl::line_of(const toml::node& node) const {
+  return document->overridden.contains(&node) ? 0 : node.source().begin.line;
+}
+
 std::string SceneTable::Impl::where(const std::string& key, const toml::node& node) const {
-  const auto line = node.source().begin.line;
-  if (line == 0 || document->overridden.contains(&node)) return document->name + " (--set " + dotted(key) + ")";
-  return document->name + ":" + std::to_string(line);
+  const std::size_t at = line_of(node);
+  return document->name + (at == 0 ? " (--set " + dotted(key) + ")" : ":" + std::to_string(at));
+}
+
+SceneMistake SceneTable::Impl::mistake(const std::string& key, const toml::node* node,
+                                       const std::string& problem) const {
+  if (node == nullptr) return {.line = line, .text = place + ": " + key + ": " + problem};
+  const std::string value = node->is_table() || node->is_array_of_tables() ? "" : " = " + shown(*node);
+  return {.line = line_of(*node), .text = where(key, *node) + ": " + key + value + ": " + problem};
 }
 
 void SceneTable::Impl::reject(const std::string& key, const toml::node& node, const std::string& problem) const {
-  const std::string value = node.is_table() || node.is_array_of_tables() ? "" : " = " + shown(node);
-  throw BadInput(where(key, node) + ": " + key + value + ": " + problem);
+  throw BadScene(document->name, {mistake(key, &node, problem)});
+}
+
+void SceneTable::Impl::note(const Error& error) {
+  const auto* own = dynamic_cast<const BadScene*>(&error);
+  if (own != nullptr && own->file() == document->name)
+    for (const SceneMistake& m : own->mistakes()) document->mistakes->note(m);
+  else if (!any(&Impl::replaced))
+    document->mistakes->note({.line = line, .text = error.what()});
+  wrong = true;
+}
+
+bool SceneTable::Impl::any(bool Impl::*what) const {
+  if (this->*what) return true;
+  for (const auto& [key, tables] : children)
+    for (const auto& table : tables)
+      if (table->any(what)) return true;
+  return false;
 }
 
 std::shared_ptr<SceneTable::Impl> SceneTable::Impl::make_child(const std::string& key, const toml::table* table,
@@ -96,27 +126,32 @@ std::shared_ptr<SceneTable::Impl> SceneTable::Impl::make_child(const std::string
   child->name = dotted(key);
   child->element = is_element;
   child->place = table == nullptr ? place : where(key, *table);
+  child->line = table == nullptr ? line : line_of(*table);
   return child;
 }
 
-void SceneTable::Impl::finish() const {
-  const toml::node* first = nullptr;
-  std::string first_key;
+void SceneTable::Impl::find_unknown(std::vector<SceneMistake>& out) const {
+  if (broken) return;
+  const std::vector<std::string> asked(known.begin(), known.end());
+  std::vector<std::string> absent;
+  for (const std::string& key : asked)
+    if (content == nullptr || !content->contains(key)) absent.push_back(key);
   if (content != nullptr)
-    for (const auto& [key, node] : *content) {
-      if (known.contains(std::string(key.str()))) continue;
-      if (first != nullptr && first->source().begin.line <= node.source().begin.line) continue;
-      first = &node;
-      first_key = key.str();
+    for (const auto& [name_here, node] : *content) {
+      const std::string key(name_here.str());
+      if (known.contains(key)) continue;
+      if (document->mistakes && document->mistakes->meant.contains(dotted(key))) continue;
+      // With a word that is not that of the file other keys may have been asked for: then only typing errors count.
+      if (misread && nearest_word(key, absent).empty()) continue;
+      const std::string near = nearest_word(key, asked);
+      const std::string help =
+          !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + joined(known);
+      out.push_back({.line = line_of(node),
+                     .text = where(key, node) + ": unknown key '" + key + "' " + location() +
+                             (known.empty() ? "" : "; " + help)});
     }
-  if (first != nullptr) {
-    const std::string near = nearest_word(first_key, {known.begin(), known.end()});
-    const std::string help = !near.empty() ? "nearest known key is '" + near + "'" : "known keys are " + joined(known);
-    throw BadInput(where(first_key, *first) + ": unknown key '" + first_key + "' " + location() +
-                   (known.empty() ? "" : "; " + help));
-  }
   for (const auto& [key, tables] : children)
-    for (const auto& table : tables) table->finish();
+    for (const auto& table : tables) table->find_unknown(out);
 }
 
 bool SceneTable::has(const std::string& key) const { return impl_->find(key) != nullptr; }
@@ -132,15 +167,33 @@ bool SceneTable::is_list(const std::string& key) const {
 }
 
 SceneTable SceneTable::table(const std::string& key) const {
-  if (!impl_->find(key)) throw BadInput(impl_->place + ": missing table [" + impl_->dotted(key) + "]");
-  return table_or_empty(key);
+  const bool there = impl_->value(
+      [&] {
+        if (impl_->find(key) != nullptr) return true;
+        if (impl_->missing) throw BadScene(impl_->document->name, {});
+        throw BadScene(impl_->document->name,
+                       {{.line = impl_->line, .text = impl_->place + ": missing table [" + impl_->dotted(key) + "]"}});
+      },
+      false);
+  SceneTable table = table_or_empty(key);
+  if (!there) table.impl_->missing = table.impl_->replaced = true;
+  return table;
 }
 
 SceneTable SceneTable::table_or_empty(const std::string& key) const {
   const toml::node* node = impl_->find(key);
-  if (node != nullptr && !node->is_table()) impl_->reject(key, *node, "must be a table [" + impl_->dotted(key) + "]");
+  const toml::table* table = impl_->value(
+      [&] {
+        if (node != nullptr && !node->is_table())
+          impl_->reject(key, *node, "must be a table [" + impl_->dotted(key) + "]");
+        return node == nullptr ? nullptr : node->as_table();
+      },
+      static_cast<const toml::table*>(nullptr));
   auto& made = impl_->children[key];
-  if (made.empty()) made.push_back(impl_->make_child(key, node == nullptr ? nullptr : node->as_table(), false));
+  if (made.empty()) {
+    made.push_back(impl_->make_child(key, table, false));
+    made.front()->missing = made.front()->replaced = node != nullptr && table == nullptr;
+  }
   return SceneTable(made.front());
 }
 
@@ -148,14 +201,17 @@ std::vector<SceneTable> SceneTable::tables(const std::string& key) const {
   const toml::node* node = impl_->find(key);
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
-  const std::string problem = "must be an array of tables [[" + impl_->dotted(key) + "]]";
-  if (array == nullptr) impl_->reject(key, *node, problem);
   auto& made = impl_->children[key];
-  if (made.empty())
+  const auto make = [&] {
+    const std::string problem = "must be an array of tables [[" + impl_->dotted(key) + "]]";
+    if (array == nullptr) impl_->reject(key, *node, problem);
     for (const toml::node& element : *array) {
       if (!element.is_table()) impl_->reject(key, element, problem);
       made.push_back(impl_->make_child(key, element.as_table(), true));
     }
+    return true;
+  };
+  if (made.empty()) (void)impl_->value(make, false);
   std::vector<SceneTable> result;
   for (const auto& table : made) result.emplace_back(table);
   return result;
@@ -176,10 +232,40 @@ std::string SceneTable::where(const std::string& key) const {
 }
 
 void SceneTable::reject(const std::string& key, const std::string& problem) const {
-  if (const toml::node* node = impl_->find(key)) impl_->reject(key, *node, problem);
-  throw BadInput(impl_->place + ": " + key + ": " + problem);
+  const toml::node* node = impl_->find(key);
+  const bool again = impl_->document->mistakes != nullptr && !impl_->blamed.insert(key).second;
+  if (again || impl_->any(&Impl::replaced)) throw BadScene(impl_->document->name, {});
+  throw BadScene(impl_->document->name, {impl_->mistake(key, node, problem)});
 }
 
-void SceneTable::finish() const { impl_->finish(); }
+void SceneTable::mistake(const std::string& key, const std::string& problem) const {
+  check([&] { reject(key, problem); });
+}
+
+bool SceneTable::sound() const { return !impl_->any(&Impl::wrong); }
+
+void SceneTable::part(const std::function<void()>& read) const {
+  bool whole = false;
+  check([&] {
+    read();
+    whole = true;
+  });
+  impl_->broken = impl_->broken || !whole;
+}
+
+void SceneTable::check(const std::function<void()>& rule) const {
+  try {
+    rule();
+  } catch (const BadInput& e) {
+    if (impl_->document->mistakes == nullptr) throw;
+    impl_->note(e);
+  }
+}
+
+void SceneTable::finish() const {
+  std::vector<SceneMistake> unknown;
+  impl_->find_unknown(unknown);
+  if (!unknown.empty()) throw BadScene(impl_->document->name, unknown);
+}
 
 }  // namespace softgrain

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 #include <sstream>
+#include <type_traits>
 
 #include "common/core/error.h"
 #include "common/io/scene_impl.h"
@@ -109,104 +110,142 @@ std::string choice_of(const Table& table, const std::string& key, const toml::no
   table.reject(key, node, problem);
 }
 
+bool flag_of(const Table& table, const std::string& key, const toml::node& node) {
+  const auto value = node.as_boolean();
+  if (value == nullptr) table.reject(key, node, "must be true or false");
+  return value->get();
+}
+
 const toml::array& array_of(const Table& table, const std::string& key, const toml::node& node) {
   const toml::array* array = node.as_array();
   if (array == nullptr) table.reject(key, node, "must be a list in brackets");
   return *array;
 }
 
-std::vector<double> numbers_of(const Table& table, const std::string& key, const toml::node& node, Unit unit,
+/// What stands in for a number that is not there or not allowed: as little as the range allows.
+double stand_in(const Range& range) {
+  if (std::isfinite(range.low)) {
+    if (!range.low_open) return range.low;
+    return std::isfinite(range.high) ? 0.5 * (range.low + range.high) : range.low + 1.0;
+  }
+  return std::isfinite(range.high) ? range.high - 1.0 : 0.0;
+}
+
+std::vector<double> numbers_of(Table& table, const std::string& key, const toml::node& node, Unit unit,
                                const Range& range) {
   std::vector<double> values;
   for (const toml::node& element : array_of(table, key, node))
-    values.push_back(number_of(table, key, element, unit, range));
+    values.push_back(table.value([&] { return number_of(table, key, element, unit, range); }, stand_in(range)));
   return values;
 }
 
-Vec3 vector_of(const Table& table, const std::string& key, const toml::node& node, Unit unit) {
+Vec3 vector_of(Table& table, const std::string& key, const toml::node& node, Unit unit) {
   const std::vector<double> values = numbers_of(table, key, node, unit, Range::any());
   if (values.size() != 3) table.reject(key, node, "must have three components");
   return {{values[0], values[1], values[2]}};
 }
 
+/// The value under a key, by `read(node)`; `fallback` where there is none and null where there must be one.
+template <class T, class Read>
+T value_of(Table& table, const std::string& key, Read read, const T& stand_in,
+           std::type_identity_t<const T*> fallback = nullptr, bool word = false) {
+  return table.value(
+      [&]() -> T {
+        if (fallback == nullptr) return read(table.require(key));
+        const toml::node* node = table.find(key);
+        return node == nullptr ? *fallback : read(*node);
+      },
+      stand_in, word);
+}
+
 }  // namespace
 
 double SceneTable::number(const std::string& key, Unit unit, const Range& range) const {
-  return number_of(*impl_, key, impl_->require(key), unit, range);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, stand_in(range));
 }
 double SceneTable::number(const std::string& key, Unit unit, const Range& range, double fallback) const {
-  const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : number_of(*impl_, key, *node, unit, range);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, fallback, &fallback);
 }
 
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high) const {
-  return count_of(*impl_, key, impl_->require(key), low, high);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, low);
 }
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high,
                                std::int64_t fallback) const {
-  const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : count_of(*impl_, key, *node, low, high);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, fallback, &fallback);
 }
 
 bool SceneTable::flag(const std::string& key, bool fallback) const {
-  const toml::node* node = impl_->find(key);
-  if (node == nullptr) return fallback;
-  const auto value = node->as_boolean();
-  if (value == nullptr) impl_->reject(key, *node, "must be true or false");
-  return value->get();
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return flag_of(*impl_, key, n); }, fallback, &fallback, true);
 }
 
-std::string SceneTable::text(const std::string& key) const { return text_of(*impl_, key, impl_->require(key)); }
+std::string SceneTable::text(const std::string& key) const {
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, std::string(), nullptr, true);
+}
 std::string SceneTable::text(const std::string& key, const std::string& fallback) const {
-  const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : text_of(*impl_, key, *node);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, fallback, &fallback, true);
 }
 
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words) const {
-  return choice_of(*impl_, key, impl_->require(key), {words.begin(), words.size()});
+  return choice(key, std::vector<const char*>(words));
 }
 std::string SceneTable::choice(const std::string& key, const std::vector<const char*>& words) const {
-  return choice_of(*impl_, key, impl_->require(key), words);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return choice_of(*impl_, key, n, words); }, std::string(words.front()),
+      nullptr, true);
 }
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words,
                                const std::string& fallback) const {
-  const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : choice_of(*impl_, key, *node, {words.begin(), words.size()});
+  return value_of(
+      *impl_, key,
+      [&](const toml::node& n) {
+        return choice_of(*impl_, key, n, {words.begin(), words.size()});
+      },
+      fallback, &fallback, true);
 }
 
 Vec3 SceneTable::vector3(const std::string& key, Unit unit) const {
-  return vector_of(*impl_, key, impl_->require(key), unit);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, Vec3{});
 }
 Vec3 SceneTable::vector3(const std::string& key, Unit unit, const Vec3& fallback) const {
-  const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : vector_of(*impl_, key, *node, unit);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, fallback, &fallback);
 }
 
 std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range) const {
-  return numbers_of(*impl_, key, impl_->require(key), unit, range);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); }, std::vector<double>());
 }
 std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range,
                                         const std::vector<double>& fallback) const {
-  const toml::node* node = impl_->find(key);
-  return node == nullptr ? fallback : numbers_of(*impl_, key, *node, unit, range);
+  return value_of(
+      *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); }, fallback, &fallback);
 }
 
 std::vector<std::string> SceneTable::texts(const std::string& key) const {
-  std::vector<std::string> values;
-  const toml::node& node = impl_->require(key);
-  for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(text_of(*impl_, key, element));
-  return values;
+  const auto read = [&](const toml::node& node) {
+    std::vector<std::string> values;
+    for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(text_of(*impl_, key, element));
+    return values;
+  };
+  return value_of(*impl_, key, read, std::vector<std::string>(), nullptr, true);
 }
 
 std::vector<bool> SceneTable::flags(const std::string& key) const {
-  std::vector<bool> values;
-  const toml::node& node = impl_->require(key);
-  for (const toml::node& element : array_of(*impl_, key, node)) {
-    const auto value = element.as_boolean();
-    if (value == nullptr) impl_->reject(key, element, "must be true or false");
-    values.push_back(value->get());
-  }
-  return values;
+  const auto read = [&](const toml::node& node) {
+    std::vector<bool> values;
+    for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(flag_of(*impl_, key, element));
+    return values;
+  };
+  return value_of(*impl_, key, read, std::vector<bool>(), nullptr, true);
 }
 
 }  // namespace softgrain

@@ -107,7 +107,7 @@ GuardSpec read_guards(const SceneTable& t, int dimension) {
   if (escape.has("low")) out.low = read_corner(escape, "low", dimension);
   if (escape.has("high")) out.high = read_corner(escape, "high", dimension);
   for (int k = 0; out.low && out.high && k < dimension; ++k)
-    if (!((*out.low)[k] < (*out.high)[k])) escape.reject("high", "must be above low along every axis");
+    if (!((*out.low)[k] < (*out.high)[k])) escape.mistake("high", "must be above low along every axis");
   out.escape.action = escape.choice<GuardAction>("action", out.escape.action);
   const SceneTable wall = t.table_or_empty("wall");
   out.wall_travel.limit = wall.number("travel", Unit::length, Range::positive(), 0.0);

@@ -130,19 +130,20 @@ template <int D>
 void read_output(const SceneTable& t, ParticlesSceneOf<D>& out) {
   out.record = t.flag("record", true);
   if (!out.record && t.has("snapshots"))
-    t.reject("snapshots", "cannot be combined with record = false, which records nothing");
+    t.mistake("snapshots", "cannot be combined with record = false, which records nothing");
   out.snapshots = t.count("snapshots", 0, 1'000'000, default_snapshots(out.system.particles.grains));
   if (!t.has("every")) return;
-  if (!out.record) t.reject("every", "cannot be combined with record = false, which records nothing");
+  if (!out.record) t.mistake("every", "cannot be combined with record = false, which records nothing");
   const double every = t.number("every", Unit::time, Range::positive());
+  if (!(out.time.step > 0.0)) return;  // nothing is known of the time
   const double steps = std::round(every / out.time.step);
   if (steps >= static_cast<double>(out.time.steps)) return;
   out.output_stride = std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
   const double frames = static_cast<double>(out.time.steps) / static_cast<double>(out.output_stride);
   const double bytes = frames * 72.0 * static_cast<double>(out.system.particles.size());
   if (bytes > kMostFrameBytes)
-    t.reject("every", std::to_string(static_cast<std::int64_t>(frames)) + " frames take " +
-                          std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
+    t.mistake("every", std::to_string(static_cast<std::int64_t>(frames)) + " frames take " +
+                           std::to_string(bytes / 1e9) + " GB of memory, at most 8.6 are allowed");
 }
 
 template <int D>
@@ -155,36 +156,48 @@ void read_checkpoint(const SceneTable& t, ParticlesSceneOf<D>& out) {
 
 int particles_dimension(const Scene& scene) { return static_cast<int>(scene.root().count("dimension", 2, 3, 3)); }
 
+namespace {
+
+/// What no table shows by itself.
 template <int D>
-ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
+void require_sense(const Scene& scene, const System<D>& s, const SceneLaws& laws) {
   const SceneTable root = scene.root();
-  (void)root.choice("kind", {"particles"});
-  if (particles_dimension(scene) != D) throw std::logic_error("a scene of another number of dimensions");
-  ParticlesSceneOf<D> out;
-  out.title = root.text("title", "");
-  out.text = scene.text();
-  System<D>& s = out.system;
-  s.gravity = read_vector<D>(root, "gravity", Unit::acceleration, {});
-  s.materials = read_materials(root, D);
-  SceneLaws laws = read_contacts(scene, s.materials, D);
-  s.laws = laws.laws;
-  out.law_files = std::move(laws.files);
-  out.remarks = laws.remarks;
-  SceneBodies<D> bodies = read_bodies<D>(scene, s.materials);
-  s.cell = read_cell(root, bodies);
-  s.particles = std::move(bodies.particles);
-  out.wall_name = std::move(bodies.wall_name);
   require_walls_fit_cell(root, s.cell);
   require_contacts(scene, s);
   require_resolved(scene, s);
   require_partners(scene, s, laws);
   require_wide_cell(root, s.particles, s.cell);
-  out.time = read_time(root.table("time"), s, laws.description);
-  read_output(root.table_or_empty("output"), out);
-  read_checkpoint(root.table_or_empty("checkpoint"), out);
-  out.guards = read_guards(root.table_or_empty("guards"), D);
-  root.finish();
-  return out;
+}
+
+}  // namespace
+
+template <int D>
+ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
+  if (particles_dimension(scene) != D) throw std::logic_error("a scene of another number of dimensions");
+  return scene.read([&](const SceneTable& root) {
+    (void)root.choice("kind", {"particles"});
+    ParticlesSceneOf<D> out;
+    out.title = root.text("title", "");
+    out.text = scene.text();
+    System<D>& s = out.system;
+    s.gravity = read_vector<D>(root, "gravity", Unit::acceleration, {});
+    s.materials = read_materials(root, D);
+    SceneLaws laws = read_contacts(scene, s.materials, D);
+    s.laws = laws.laws;
+    out.law_files = std::move(laws.files);
+    out.remarks = laws.remarks;
+    SceneBodies<D> bodies = read_bodies<D>(scene, s.materials);
+    root.table_or_empty("cell").part([&] { s.cell = read_cell(root, bodies); });
+    s.particles = std::move(bodies.particles);
+    out.wall_name = std::move(bodies.wall_name);
+    if (root.sound()) root.check([&] { require_sense(scene, s, laws); });
+    const SceneTable time = root.table("time");
+    time.part([&] { out.time = read_time(time, s, laws.description, root.sound()); });
+    read_output(root.table_or_empty("output"), out);
+    read_checkpoint(root.table_or_empty("checkpoint"), out);
+    out.guards = read_guards(root.table_or_empty("guards"), D);
+    return out;
+  });
 }
 
 template ParticlesSceneOf<2> read_particles_scene<2>(const Scene&);

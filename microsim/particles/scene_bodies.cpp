@@ -21,6 +21,7 @@ struct Builder {
   const Scene& scene;
   const std::vector<Material>& materials;
   std::vector<SceneWall<D>> walls;
+  bool sound;  ///< materials and walls are those of the scene
   SceneBodies<D> out;
   std::vector<NewBody<D>> grains;
   std::vector<std::ptrdiff_t> wall_of;  ///< per grain: index of its sphere-inside, -1 none
@@ -45,7 +46,7 @@ Rot<D> read_spin(const SceneTable& t) {
 template <int D>
 double density_of(const Builder<D>& b, const SceneTable& t, std::int32_t material) {
   const Material& m = b.materials[static_cast<std::size_t>(material)];
-  if (!(m.density > 0.0)) t.reject("material", "has no density, which particles need");
+  if (b.sound && !(m.density > 0.0)) t.mistake("material", "has no density, which particles need");
   return m.density;
 }
 
@@ -65,7 +66,7 @@ template <int D>
 std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D>& x) {
   if (!t.has("inside")) return wall_around(b, x);
   const std::string name = t.text("inside");
-  if (name == "none") return -1;
+  if (name == "none" || !b.sound) return -1;
   const auto found = std::find_if(b.walls.begin(), b.walls.end(), [&](const auto& w) { return w.name == name; });
   if (found == b.walls.end()) t.reject("inside", "no wall of this name");
   if (found->plane) t.reject("inside", "this wall is a plane, not a \"sphere-inside\"");
@@ -100,9 +101,10 @@ Vec<D> flat(const Vec3& x, const std::string& path, std::size_t k) {
 template <int D>
 void add_file(Builder<D>& b, const SceneTable& t) {
   if (!t.has("file")) return;
+  b.out.many_file = b.scene.resolve(t.text("file"));
   const std::int32_t material = material_index(b.materials, t, "material");
   const double density = density_of(b, t, material);
-  b.out.many_file = b.scene.resolve(t.text("file"));
+  if (!t.sound()) return;
   const XyzrFile file = read_xyzr(b.out.many_file, [&](std::int64_t n) {
     const std::string problem = memory_problem(n, available_memory());
     if (!problem.empty()) throw BadInput(b.out.many_file + ":1: N = " + std::to_string(n) + ": " + problem);
@@ -209,14 +211,18 @@ std::string SceneBodies<D>::where_of(Slot particle) const {
 template <int D>
 SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials) {
   const SceneTable root = scene.root();
-  Builder<D> b{scene, materials, read_walls<D>(root, materials), {}, {}, {}};
-  for (const SceneTable& t : root.tables("particle")) add_table(b, t);
-  add_file(b, root.table_or_empty("particles"));
-  if (b.grains.empty())
-    throw BadInput(scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
-  require_distinct_centres(b);
-  place_grains(b, wall_slots(b));
-  place_walls(b);
+  Builder<D> b{scene, materials, read_walls<D>(root, materials), root.sound(), {}, {}, {}};
+  for (const SceneTable& t : root.tables("particle")) t.part([&] { add_table(b, t); });
+  const SceneTable many = root.table_or_empty("particles");
+  many.part([&] { add_file(b, many); });
+  if (!root.sound()) return std::move(b.out);
+  root.check([&] {
+    if (b.grains.empty())
+      throw BadInput(scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
+    require_distinct_centres(b);
+    place_grains(b, wall_slots(b));
+    place_walls(b);
+  });
   return std::move(b.out);
 }
 

@@ -11,13 +11,13 @@ namespace softgrain {
 
 namespace {
 
-/// The box on the first line of the file with the particles.
+/// The box on the first line of the file with the particles; `known`: that could be read.
 template <int D>
-Vec<D> size_in_file(const SceneTable& t, const SceneBodies<D>& bodies) {
+Vec<D> size_in_file(const SceneTable& t, const SceneBodies<D>& bodies, bool known) {
   if (bodies.many_file.empty()) t.reject("size", "\"file\" needs [particles] file, whose first line gives the box");
   Vec<D> size;
   for (int k = 0; k < D; ++k) {
-    if (!(bodies.many_box[k] > 0.0))
+    if (known && !(bodies.many_box[k] > 0.0))
       throw BadInput(bodies.many_file + ":1: " + (D == 3 ? "Lx Ly Lz" : "Lx Ly") +
                      " must be above 0 for a cell with size = \"file\"");
     size[k] = bodies.many_box[k];
@@ -26,10 +26,10 @@ Vec<D> size_in_file(const SceneTable& t, const SceneBodies<D>& bodies) {
 }
 
 template <int D>
-Vec<D> read_size(const SceneTable& t, const SceneBodies<D>& bodies) {
+Vec<D> read_size(const SceneTable& t, const SceneBodies<D>& bodies, bool known) {
   if (t.is_text("size")) {
     (void)t.choice("size", {"file"});
-    return size_in_file(t, bodies);
+    return size_in_file(t, bodies, known);
   }
   const Vec<D> size = read_vector<D>(t, "size", Unit::length);
   for (int k = 0; k < D; ++k)
@@ -43,7 +43,9 @@ template <int D>
 Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
   if (!root.has("cell")) return open_cell<D>();
   const SceneTable t = root.table("cell");
-  const Vec<D> size = read_size(t, bodies);
+  Vec<D> size;
+  for (int k = 0; k < D; ++k) size[k] = 1.0;
+  t.check([&] { size = read_size(t, bodies, root.table_or_empty("particles").sound()); });
   const std::vector<bool> periodic = t.flags("periodic");
   if (periodic.size() != static_cast<std::size_t>(D))
     t.reject("periodic", D == 3 ? "must have three flags" : "must have two flags, as the scene has dimension = 2");
@@ -52,7 +54,7 @@ Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
   Cell<D> cell = box_cell<D>(size, along);
   const double rate = t.number("shear_rate", Unit::frequency, Range::any(), 0.0);
   if (rate != 0.0 && !(periodic[0] && periodic[1]))
-    t.reject("shear_rate", "needs a cell that is periodic along x and y");
+    t.mistake("shear_rate", "needs a cell that is periodic along x and y");
   cell.velocity_gradient[0][1] = rate;
   return cell;
 }
@@ -67,9 +69,9 @@ void require_wide_cell(const SceneTable& root, const Particles<D>& p, const Cell
     if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
     const double width = cell.edges[k][k];
     if (width >= 4.0 * largest) continue;
-    root.table("cell").reject("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " + std::to_string(width) +
-                                          " m wide; allowed: at least " + std::to_string(4.0 * largest) +
-                                          " m, two diameters of the largest particle");
+    root.table("cell").mistake("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " +
+                                           std::to_string(width) + " m wide; allowed: at least " +
+                                           std::to_string(4.0 * largest) + " m, two diameters of the largest particle");
   }
 }
 

@@ -48,14 +48,14 @@ AnyLaw read_linear(const SceneTable& t) {
   law.damping = LinearSpring::zeta(read_restitution(t));
   law.normal = t.number("normal_stiffness", Unit::stiffness, Range::positive());
   law.tangential = t.number("tangential_stiffness", Unit::stiffness, Range::not_negative());
-  if (law.friction > 0.0 && law.tangential == 0.0) t.reject("tangential_stiffness", "must be above 0 when mu is");
+  if (law.friction > 0.0 && law.tangential == 0.0) t.mistake("tangential_stiffness", "must be above 0 when mu is");
   return law;
 }
 
 /// A key that means nothing unless something else is above 0 (or there): needed then, refused otherwise.
 double read_when(const SceneTable& t, const std::string& key, Unit unit, bool used, const char* without) {
   if (used) return t.number(key, unit, Range::positive());
-  if (t.has(key)) t.reject(key, without);
+  if (t.has(key)) t.mistake(key, without);
   return 0.0;
 }
 
@@ -79,17 +79,17 @@ AnyLaw read_cohesive(const SceneTable& t) {
   const double friction = read_friction(t);
   const bool rolling = t.has("rolling_stiffness");
   if (friction > 0.0) return rolling ? read_cohesive<true, true>(t, friction) : read_cohesive<true, false>(t, friction);
-  if (rolling) t.reject("rolling_stiffness", "needs friction (mu above 0): disks that slide freely do not roll");
+  if (rolling) t.mistake("rolling_stiffness", "needs friction (mu above 0): disks that slide freely do not roll");
   return read_cohesive<false, false>(t, friction);
 }
 
 /// Spheres that move in a plane are spheres still; only laws that are linear in the overlap hold for disks as well.
 void require_dimension(const SceneTable& t, const std::string& law, int dimension) {
   if (dimension == 3 && law == "cohesive")
-    t.reject("law", "\"cohesive\" is a law of disks in the plane: give the scene dimension = 2");
+    t.mistake("law", "\"cohesive\" is a law of disks in the plane: give the scene dimension = 2");
   if (dimension == 2 && (law == "hertz-tsuji" || law == "law-card"))
-    t.reject("law",
-             "\"" + law + "\" is a law of spheres; a scene with dimension = 2 has \"linear-spring\" and \"cohesive\"");
+    t.mistake("law",
+              "\"" + law + "\" is a law of spheres; a scene with dimension = 2 has \"linear-spring\" and \"cohesive\"");
 }
 
 void read_contact(const SceneTable& t, const std::vector<Material>& materials, int dimension, SoftLawReader& soft,
@@ -119,8 +119,9 @@ SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materia
   SceneLaws out;
   out.laws = LawSet(static_cast<std::int32_t>(materials.size()));
   SoftLawReader soft(scene, materials, out);
-  for (const SceneTable& t : scene.root().tables("contact")) read_contact(t, materials, dimension, soft, out);
-  soft.require_whole();
+  const SceneTable root = scene.root();
+  for (const SceneTable& t : root.tables("contact")) t.part([&] { read_contact(t, materials, dimension, soft, out); });
+  if (root.sound()) soft.require_whole();
   return out;
 }
 

@@ -9,11 +9,11 @@ Material read_material(const SceneTable& t, const std::string& name, int dimensi
   m.name = name;
   m.rigid = t.flag("rigid", false);
   if (dimension == 2 && t.is_text("density"))
-    t.reject("density", "disks have a mass over their area: a number, kg/m^2");
+    t.mistake("density", "disks have a mass over their area: a number, kg/m^2");
   m.density = t.number("density", dimension == 3 ? Unit::density : Unit::none, Range::positive(), 0.0);
   if (m.rigid) {
     for (const char* key : {"E", "nu"})
-      if (t.has(key)) t.reject(key, "a rigid material has none");
+      if (t.has(key)) t.mistake(key, "a rigid material has none");
     return m;
   }
   if (!t.has("E") && !t.has("nu")) return m;  // enough for laws that need no elasticity
@@ -28,9 +28,10 @@ std::vector<Material> read_materials(const SceneTable& root, int dimension) {
   std::vector<Material> out;
   const SceneTable tables = root.table_or_empty("material");
   for (const std::string& name : tables.keys()) {
-    if (name == "rigid") tables.reject(name, "this name is taken by the rigid material that is always there");
+    if (name == "rigid") tables.mistake(name, "this name is taken by the rigid material that is always there");
     out.push_back(read_material(tables.named(name), name, dimension));
   }
+  if (out.empty() && !root.sound()) root.reject("material", "without any, nothing else can be read");
   Material rigid;
   rigid.name = "rigid";
   rigid.rigid = true;

@@ -159,7 +159,7 @@ void read_extent(const SceneTable& t, SceneTime& out) {
     out.end = t.number("end", Unit::time, Range::positive());
     return;
   }
-  if (t.has("end")) t.reject("steps", "give either end or steps, not both");
+  if (t.has("end")) t.mistake("steps", "give either end or steps, not both");
   out.steps = t.count("steps", 1, static_cast<std::int64_t>(kMostSteps));
   out.end = kForever;
 }
@@ -184,18 +184,24 @@ double shortest_impact(const System<D>& s, double end) {
 }
 
 template <int D>
-SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vector<std::string>& law_description) {
+SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vector<std::string>& law_description,
+                    bool sound) {
   SceneTime out;
   read_extent(t, out);
   const double fraction =
       t.number("step_fraction", Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
+  const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
+  if (!sound || !t.sound()) {
+    if (!automatic) (void)t.number("step", Unit::time, Range::positive());
+    (void)t.count("warm_up_steps", 0, static_cast<std::int64_t>(kMostSteps), 0);
+    return out;
+  }
   const StepLimit limit = step_limit(system);
   out.natural_time = limit.body >= 0 ? limit.natural_time : kForever;
   if (limit.body >= 0) out.limited_by = limit_sentence(limit, system, law_description);
   out.contact_time = shortest_impact(system, out.end);
   out.reach_time = shortest_reach(system, out.end);
   out.stable_step = kForever;
-  const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
   if (automatic)
     choose_step(t, system, fraction, out);
   else
@@ -207,7 +213,7 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
 
 template double shortest_impact<2>(const System<2>&, double);
 template double shortest_impact<3>(const System<3>&, double);
-template SceneTime read_time<2>(const SceneTable&, const System<2>&, const std::vector<std::string>&);
-template SceneTime read_time<3>(const SceneTable&, const System<3>&, const std::vector<std::string>&);
+template SceneTime read_time<2>(const SceneTable&, const System<2>&, const std::vector<std::string>&, bool);
+template SceneTime read_time<3>(const SceneTable&, const System<3>&, const std::vector<std::string>&, bool);
 
 }  // namespace softgrain

@@ -28,9 +28,10 @@ struct SceneTime {
 /// kLargestStableShare of the stable step of the contacts that there are at the start, and divide `end`. Throws
 /// BadInput for steps above kLargestStepFraction of the natural time, of disks 0.2, or that share of the stable step of
 /// the springs alone.
-/// `law_description`: per law, for messages.
+/// `law_description`: per law, for messages. `sound`: the system is that of the scene; else steps are not judged.
 template <int D>
-SceneTime read_time(const SceneTable& time, const System<D>& system, const std::vector<std::string>& law_description);
+SceneTime read_time(const SceneTable& time, const System<D>& system, const std::vector<std::string>& law_description,
+                    bool sound);
 
 /// Duration of the shortest impact between a particle and an equal one at the largest relative speed in sight (present
 /// velocities, free fall through the scene). Hertz [closed form]: h = (5 m12 v^2/(4 K))^(2/5), F = K h^(3/2),

@@ -16,8 +16,9 @@ Vec<D> read_vector(const SceneTable& t, const std::string& key, Unit unit) {
     return t.vector3(key, unit);
   } else {
     const std::vector<double> values = t.numbers(key, unit);
-    if (values.size() != 2) t.reject(key, "must have two components, as the scene has dimension = 2");
-    return {{values[0], values[1]}};
+    if (values.size() == 2) return {{values[0], values[1]}};
+    t.mistake(key, "must have two components, as the scene has dimension = 2");
+    return {};
   }
 }
 template <int D>

@@ -24,7 +24,10 @@ template <int D>
 Vec<D> read_normal(const SceneTable& t) {
   const Vec<D> n = read_vector<D>(t, "normal", Unit::none);
   const double length = norm(n);
-  if (!(length > 0.0) || !std::isfinite(1.0 / length)) t.reject("normal", "must not be the zero vector");
+  if (!(length > 0.0) || !std::isfinite(1.0 / length)) {
+    t.mistake("normal", "must not be the zero vector");
+    return n;
+  }
   return length == 1.0 ? n : n * (1.0 / length);
 }
 
@@ -46,7 +49,7 @@ void read_motion(const SceneTable& t, SceneWall<D>& wall) {
   if (motion == WallMotion::velocity) wall.body.velocity = read_vector<D>(t, "velocity", Unit::velocity);
   if (motion != WallMotion::force) return;
   if (!wall.plane)
-    t.reject("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
+    t.mistake("motion", "\"force\" is for planes: the inside of a sphere is fixed or moves with a velocity");
   wall.load = t.number("force", Unit::force);
   wall.needs_mass = !t.has("mass");
   if (!wall.needs_mass) wall.body.mass = t.number("mass", Unit::mass, Range::positive());
@@ -55,7 +58,7 @@ void read_motion(const SceneTable& t, SceneWall<D>& wall) {
 template <int D>
 void require_new_name(const SceneTable& t, const std::vector<SceneWall<D>>& walls, const std::string& name) {
   const auto same = std::find_if(walls.begin(), walls.end(), [&](const auto& w) { return w.name == name; });
-  if (same != walls.end()) t.reject("name", "another wall is called '" + name + "' (" + same->where + ")");
+  if (same != walls.end()) t.mistake("name", "another wall is called '" + name + "' (" + same->where + ")");
 }
 
 }  // namespace
@@ -67,10 +70,10 @@ std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<M
     SceneWall<D> wall;
     read_shape(t, wall);
     read_motion(t, wall);
-    wall.body.material = material_index(materials, t, "material");
     wall.name = t.text("name", "wall-" + std::to_string(walls.size() + 1));
     require_new_name(t, walls, wall.name);
     wall.where = t.where("shape");
+    t.check([&] { wall.body.material = material_index(materials, t, "material"); });
     walls.push_back(wall);
   }
   return walls;

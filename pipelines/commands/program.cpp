@@ -258,6 +258,10 @@ int run_program(int argc, char** argv) {
   app.footer(kFooter);
   try {
     return parse_and_run_or_explain(app, argc, argv);
+  } catch (const BadScene& e) {
+    std::istringstream mistakes(e.what());
+    for (std::string one; std::getline(mistakes, one);) (void)complain(e.status(), one);
+    return static_cast<int>(e.status());
   } catch (const Error& e) {
     return complain(e.status(), e.what());
   } catch (const std::bad_alloc&) {

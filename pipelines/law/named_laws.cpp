@@ -161,7 +161,7 @@ void require_fraction(const SceneTable& t, const LawSources& sources) {
   try {
     (void)law_entry(sources, 0.0, ignored);
   } catch (const BadInput& e) {
-    t.reject("solid_fraction", e.what());
+    t.mistake("solid_fraction", e.what());
   }
 }
 
@@ -252,7 +252,7 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   read_table_choices(law, out);
   if (!out.table) (void)law.has("form");  // a card has but one
   for (const char* key : kTableKeys)
-    if (!out.table && law.has(key)) law.reject(key, "goes with a law table (key table)");
+    if (!out.table && law.has(key)) law.mistake(key, "goes with a law table (key table)");
   require_fraction(law, out);
   return out;
 }
@@ -281,7 +281,7 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   }
   out.card = load_card(path);
   const auto refuse = [&](const char* key) {
-    root.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
+    root.mistake(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   };
   if (root.has("form") && out.forms.front() != Crowd::pair) refuse("form");
   for (const char* key : kTableKeys)

@@ -36,6 +36,215 @@ TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
   EXPECT_NE(complaint("macro", "microsim").find("softgrain macrosim"), std::string::npos);
 }
 
+/// What the reader of its kind says of a scene.
+std::string mistakes_of(const std::string& text) {
+  const Scene scene = Scene::parse(text, "s");
+  try {
+    kind_of(scene).read(scene);
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+struct Mistaken {
+  const char* scene;
+  const char* message;
+};
+
+/// Values, words, units, unknown keys, missing ones and checks that span keys; of each kind.
+constexpr Mistaken kMistaken[] = {
+    {R"(kind = "soft-particle"
+titel = "x"
+[packing]
+beta = 0.9
+raddius = 1.0
+rmax = "20 mm"
+[material]
+E = "3 m"
+[measure]
+relaxation = "leest-work"
+[measure.soft_solid]
+deltas = [0.1, 0.05]
+angles_deg = [0.0, 200]
+)",
+     R"(s:2: unknown key 'titel' at the top level; nearest known key is 'title'
+s:4: beta = 0.9: must be above 1
+s:5: unknown key 'raddius' in [packing]; known keys are beta, count, exponent, placement, polydispersity, rmax, shell_radius, trials
+s:6: rmax = "20 mm": the shell (shell_radius = 0.016000 m) must be larger than the largest grain
+s:8: E = "3 m": unknown unit 'm', known are Pa, kPa, MPa, GPa, N/m^2, N/mm^2, bar, and must be above 0
+s:10: relaxation = "leest-work": must be "least-work", "slow-dynamics", "damped" or "published"; nearest is "least-work"
+s:12: deltas = [ 0.1, 0.05 ]: values must ascend
+s:13: angles_deg = 200: must be from -90 to 90)"},
+    {R"(kind = "pipeline"
+[measure]
+[calibrate]
+replicates = -3
+[macro]
+bodies = 0
+)",
+     R"(s:2: soft_solid: neither soft_solid nor soft_soft is measured; give at least one
+s:4: replicates = -3: must be a whole number from 0 to 1000000
+s:6: bodies = 0: must be a whole number from 1 to 10000000)"},
+    {R"(kind = "law-table"
+[crowd]
+packings_min = 5
+packings_max = 2
+pionts = 3
+[[configuration]]
+arrangement = "one"
+partner = "plane"
+ratio = 2
+overlap = 0.3
+[[configuration]]
+partner = "solid"
+overlap = 3
+[[variant]]
+packings = 0
+)",
+     R"(s:4: packings_max = 2: must be at least packings_min
+s:5: unknown key 'pionts' in [crowd]; nearest known key is 'points'
+s:9: ratio = 2: a plane has no radius; leave it out
+s:11: missing key 'arrangement' in [[configuration]]
+s:13: overlap = 3: must be above 0 and below 1
+s:15: packings = 0: must be a whole number from 2 to 2)"},
+    {R"(kind = "hierarchy"
+seed = "x"
+[hierarchy]
+levels = 1
+[fixed_point]
+tolerance = 2
+[check]
+overlaps = [0.2, 0.1]
+)",
+     R"(s:2: seed = "x": must be a whole number from 0 to 1000000000000
+s:4: levels = 1: must be a whole number from 2 to 100
+s:6: tolerance = 2: must be above 0 and below 1
+s:8: overlaps = [ 0.2, 0.1 ]: must ascend)"},
+    {R"(kind = "macro"
+seed = -1
+[macro]
+preparation = "lammps"
+construction = "voids"
+strain = 0
+[output]
+snapshot = 3
+)",
+     R"(s:2: seed = -1: must be a whole number from 0 to 1000000000000
+s:4: preparation = "lammps": "lammps" goes with construction "mixed": holes are filled in a packing that is compacted
+s:6: strain = 0: must be above 0 and at most 0.5
+s:8: unknown key 'snapshot' in [output]; nearest known key is 'snapshots')"},
+    {R"(kind = "macro-comparison"
+[macro]
+test = "sheer"
+[[scene]]
+name = "a b"
+[[scene]]
+samples = 0
+[law]
+forms = ["pair", "bog"]
+)",
+     R"(s:3: test = "sheer": must be "oedometric", "isotropic" or "shear"; nearest is "shear"
+s:5: name = "a b": letters, digits and '-' only: it becomes part of file names
+s:7: samples = 0: must be a whole number from 1 to 10000
+s:8: table: give a law table, a law card, or both)"},
+    {R"(kind = "inverse"
+[packing]
+count = 1
+[search]
+mu = [0.6, 0.1]
+beta = [3]
+budgett = 3
+[target]
+delta = [0.1, 0.05, 0.2]
+force = [1, 2]
+)",
+     R"(s:3: count = 1: must be a whole number from 2 to 100000
+s:5: mu = [ 0.6, 0.1 ]: must be a range of two rising values [low, high]
+s:6: beta = [ 3 ]: must be a range of two rising values [low, high]
+s:7: unknown key 'budgett' in [search]; nearest known key is 'budget'
+s:10: force = [ 1, 2 ]: must have as many values as delta (3))"},
+    {R"(kind = "grain-box"
+[material]
+radius_min = "2 mm"
+radius_max = "1 mm"
+[box]
+grains = 3
+[solver]
+method = "fasst"
+refresh = 3
+[loading]
+increment = 0.01
+increments = [0.01]
+)",
+     R"(s:4: radius_max = "1 mm": must not be below radius_min
+s:6: grains = 3: must be a whole number from 8 to 10000000
+s:8: method = "fasst": must be "fast" or "published"; nearest is "fast"
+s:12: increments = [ 0.01 ]: give increment or increments, not both)"},
+    {R"(kind = "cohesive-powder"
+[disks]
+count = 1
+[contact]
+zetta = 3
+[assembly]
+method = 3
+start_speed = 3
+[[variant]]
+name = "a"
+[[variant]]
+name = "a"
+[variant.disks]
+diameter_min = 7
+[variant.published]
+Phi_error = 0.1
+)",
+     R"(s:3: count = 1: must be a whole number from 2 to 1000000 (in the variant "a")
+s:5: unknown key 'zetta' in [contact]; nearest known key is 'zeta' (in the variant "a")
+s:7: method = 3: must be a whole number from 1 to 2 (in the variant "a")
+s:12: name = "a": is used twice
+s:14: diameter_min = 7: must be above 0 and at most 1 (in the variant "a")
+s:16: Phi_error = 0.1: without the value Phi)"},
+    {R"(kind = "particles"
+gravity = [0, 0]
+[material.glass]
+nu = 0.9
+densty = 3
+[[wall]]
+shape = "plain"
+material = "rigid"
+[[contact]]
+pair = ["glass", "glas"]
+[[particle]]
+material = "gless"
+radius = "-1 mm"
+[[particle]]
+material = "glass"
+radius = "1 mm"
+[time]
+end = "0 s"
+[output]
+record = 3
+)",
+     R"(s:2: gravity = [ 0, 0 ]: must have three components
+s:3: missing key 'E' in [material.glass]
+s:4: nu = 0.9: must be above -1 and at most 0.5
+s:5: unknown key 'densty' in [material.glass]; nearest known key is 'density'
+s:7: shape = "plain": must be "plane" or "sphere-inside"; nearest is "plane"
+s:10: pair = [ "glass", "glas" ]: no material 'glas'; nearest is 'glass'
+s:12: material = "gless": no such material; nearest is 'glass'
+s:14: missing key 'position' in [[particle]]
+s:18: end = "0 s": must be above 0
+s:20: record = 3: must be true or false)"}};
+
+TEST(Kinds, SayAllMistakesOfASceneAtOnce) {
+  std::set<std::string> kinds;
+  for (const Mistaken& m : kMistaken) {
+    EXPECT_EQ(mistakes_of(m.scene), m.message);
+    kinds.insert(kind_of(Scene::parse(m.scene, "s")).name);
+  }
+  EXPECT_EQ(kinds.size(), scene_kinds().size()) << "one scene of each kind";
+}
+
 TEST(Kinds, UnknownOnesAreNamedWithTheNearest) {
   EXPECT_NE(complaint("pipline", "run").find("nearest is \"pipeline\""), std::string::npos)
       << complaint("pipline", "run");

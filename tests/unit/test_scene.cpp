@@ -1,6 +1,7 @@
 // Strict reading of scenes: values, messages with file and line, unknown keys, overrides.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -125,6 +126,92 @@ TEST(Scene, WrongTypesAreRefused) {
   EXPECT_NE(message_of([&] { (void)root.text("g"); }), "");
   EXPECT_NE(message_of([&] { (void)root.table("g"); }).find("must be a table [g]"), std::string::npos);
   EXPECT_NE(message_of([&] { (void)root.tables("f"); }).find("[[f]]"), std::string::npos);
+}
+
+/// The message of a scene that is read with all its mistakes.
+template <class Reader>
+std::string mistakes_of(const Scene& scene, Reader reader) {
+  return message_of([&] {
+    (void)scene.read([&](const SceneTable& root) {
+      reader(root);
+      return 0;
+    });
+  });
+}
+
+TEST(SceneMistakes, ComeInTheOrderOfTheFileWithTheCommandLineLast) {
+  const Scene scene = parse("a = -1\n[b]\nc = 2.5\nzz = 1\n", {"d=x"});
+  EXPECT_EQ(mistakes_of(scene,
+                        [](const SceneTable& root) {
+                          (void)root.count("d", 0, 9);
+                          (void)root.table("b").count("c", 0, 9);
+                          EXPECT_EQ(root.number("a", Unit::none, Range::positive(), 4.0), 4.0) << "the fallback";
+                          EXPECT_FALSE(root.sound());
+                        }),
+            "scene.toml:1: a = -1: must be above 0\n"
+            "scene.toml:3: c = 2.5: must be a whole number from 0 to 9\n"
+            "scene.toml:4: unknown key 'zz' in [b]; known keys are c\n"
+            "scene.toml (--set d): d = \"x\": must be a whole number from 0 to 9");
+}
+
+TEST(SceneMistakes, ThatFollowFromOthersAreNotTold) {
+  const Scene scene = parse("[a]\nform = \"rond\"\nradius = 2\nlow = 9\n");
+  EXPECT_EQ(mistakes_of(scene,
+                        [](const SceneTable& root) {
+                          const SceneTable a = root.table("a");
+                          EXPECT_EQ(a.choice("form", {"flat", "round"}), "flat");
+                          (void)a.number("width", Unit::none);  // missing, but a round one has a radius instead
+                          a.mistake("low", "must be below high");
+                          root.check([&] { a.reject("low", "must be below high"); });
+                          const SceneTable b = root.table("b");
+                          (void)b.number("x", Unit::none);
+                          (void)b.table("c").text("y");
+                        }),
+            "scene.toml:1: missing table [b]\n"
+            "scene.toml:2: form = \"rond\": must be \"flat\" or \"round\"; nearest is \"round\"");
+}
+
+TEST(SceneMistakes, OfAPartEndNoMoreThanIt) {
+  const Scene scene = parse("[a]\nx = 1\ny = 2\n[b]\nz = -1\n");
+  EXPECT_EQ(mistakes_of(scene,
+                        [](const SceneTable& root) {
+                          const SceneTable a = root.table("a");
+                          a.part([&] {
+                            (void)a.has("x");
+                            a.reject("x", "does not fit");
+                          });
+                          (void)root.table("b").number("z", Unit::none, Range::positive());
+                        }),
+            "scene.toml:2: x = 1: does not fit\nscene.toml:5: z = -1: must be above 0")
+      << "of a part that was left nothing is unknown";
+}
+
+TEST(SceneMistakes, AMisspeltKeyIsToldOnce) {
+  const Scene scene = parse("raddius = 1.0\n");
+  EXPECT_EQ(mistakes_of(scene, [](const SceneTable& root) { (void)root.number("radius", Unit::length); }),
+            "scene.toml:1: missing key 'radius' at the top level; did 'raddius' at scene.toml:1 mean it?");
+}
+
+TEST(SceneMistakes, AreTwentyAtMost) {
+  std::string many = "a = [-1]\nb = [";
+  for (int k = 0; k < 24; ++k) many += "-1,\n";
+  const Scene scene = parse(many + "]\n");
+  const std::string message = mistakes_of(scene, [](const SceneTable& root) {
+    EXPECT_EQ(root.numbers("a", Unit::none, Range::positive()), std::vector<double>{1.0});
+    EXPECT_EQ(root.numbers("b", Unit::none, Range::positive()).size(), 24U);
+  });
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20) << message;
+  EXPECT_TRUE(message.ends_with("\nscene.toml: 5 more")) << message;
+}
+
+TEST(SceneMistakes, ASceneWithoutAnyIsReadAndTroubleStaysTrouble) {
+  EXPECT_EQ(parse("a = 3\n").read([](const SceneTable& root) { return root.count("a", 0, 9); }), 3);
+  const auto trouble = [](const SceneTable& root) -> int {
+    (void)root.count("a", 0, 9);
+    throw FileTrouble("states.h5: no such file");
+  };
+  EXPECT_THROW((void)parse("a = 3\n").read(trouble), FileTrouble);
+  EXPECT_THROW((void)parse("a = 30\n").read(trouble), BadScene);
 }
 
 TEST(Scene, ChoiceNamesTheWordsAndTheNearest) {

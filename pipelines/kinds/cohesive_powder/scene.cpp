@@ -29,25 +29,28 @@ void read_protocol(const SceneTable& t, PowderSetup& setup) {
   const bool aggregates = p.method == 2;
   p.strain_rate_cap = t.number("strain_rate_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
   for (const char* key : {"aggregation_kappa", "stiffening_time"})
-    if (!aggregates && t.has(key)) t.reject(key, "only method 2 has disks that aggregate first");
+    if (!aggregates && t.has(key)) t.mistake(key, "only method 2 has disks that aggregate first");
   if (!aggregates) return;
   p.aggregation_kappa = t.number("aggregation_kappa", Unit::none, Range::not_negative(), 0.0);
   if (p.aggregation_kappa == 0.0 && t.has("stiffening_time"))
-    t.reject("stiffening_time", "nothing stiffens without an aggregation_kappa");
+    t.mistake("stiffening_time", "nothing stiffens without an aggregation_kappa");
   if (p.aggregation_kappa > 0.0)
     p.stiffening_time = t.number("stiffening_time", Unit::none, Range::positive(), p.stiffening_time);
 }
 
-void read_assembly(const SceneTable& t, PowderSetup& setup) {
+/// `sound`: so is [contact].
+void read_assembly(const SceneTable& t, PowderSetup& setup, bool sound) {
   setup.protocol.method = static_cast<int>(t.count("method", 1, 2, 1));
-  if (!setup.spec.cohesive && t.has("pressure"))
-    t.reject("pressure", "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
-  if (!setup.spec.cohesive && setup.protocol.method == 2) t.reject("method", "disks without cohesion do not aggregate");
+  if (sound && !setup.spec.cohesive && t.has("pressure"))
+    t.mistake("pressure", "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
+  if (sound && !setup.spec.cohesive && setup.protocol.method == 2)
+    t.mistake("method", "disks without cohesion do not aggregate");
   setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
-  if (setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
-    t.reject("pressure", "method 1 starts at rest: without pressure nothing moves");
+  if (sound && setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
+    t.mistake("pressure", "method 1 starts at rest: without pressure nothing moves");
   setup.spec.start_speed =
       setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
+  if (!t.sound()) (void)t.has("start_speed");
   read_protocol(t, setup);
   setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
   setup.options.step = t.number("step", Unit::none, Range::closed(1e-6, 0.5), setup.options.step);
@@ -69,22 +72,24 @@ void read_structure(const SceneTable& t, PowderStructureOptions& o) {
 }  // namespace
 
 PowderSetup read_powder(const Scene& scene) {
-  const SceneTable root = scene.root();
-  (void)root.choice("kind", {"cohesive-powder"});
-  PowderSetup setup;
-  setup.title = root.text("title", "");
-  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-  setup.samples = root.count("samples", 1, 10000, 1);
-  read_disks(root.table_or_empty("disks"), setup.spec);
-  read_contact(root.table_or_empty("contact"), setup.spec);
-  read_assembly(root.table_or_empty("assembly"), setup);
-  const SceneTable analysis = root.table_or_empty("analysis");
-  setup.rigidity = analysis.flag("rigidity", setup.rigidity);
-  setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
-  if (!setup.states.empty()) (void)h5::open_file(setup.states);  // what is not there shows before any work
-  read_structure(analysis, setup.structure);
-  root.finish();
-  return setup;
+  return scene.read([&](const SceneTable& root) {
+    (void)root.choice("kind", {"cohesive-powder"});
+    PowderSetup setup;
+    setup.title = root.text("title", "");
+    setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    setup.samples = root.count("samples", 1, 10000, 1);
+    read_disks(root.table_or_empty("disks"), setup.spec);
+    const SceneTable contact = root.table_or_empty("contact");
+    read_contact(contact, setup.spec);
+    read_assembly(root.table_or_empty("assembly"), setup, contact.sound());
+    const SceneTable analysis = root.table_or_empty("analysis");
+    setup.rigidity = analysis.flag("rigidity", setup.rigidity);
+    setup.states = analysis.has("states") ? scene.resolve(analysis.text("states")) : "";
+    read_structure(analysis, setup.structure);
+    // What is not there shows before any work.
+    if (analysis.sound() && !setup.states.empty()) (void)h5::open_file(setup.states);
+    return setup;
+  });
 }
 
 }  // namespace softgrain

@@ -34,8 +34,8 @@ int read_axis(const SceneTable& t, int fallback) {
 void read_material(const SceneTable& t, GrainBoxMaterial& m) {
   m.radius_min = t.number("radius_min", Unit::length, Range::positive(), m.radius_min);
   m.radius_max = t.number("radius_max", Unit::length, Range::positive(), m.radius_max);
-  if (m.radius_max < m.radius_min) t.reject("radius_max", "must not be below radius_min");
-  if (m.radius_max > 20.0 * m.radius_min) t.reject("radius_max", "must be at most 20 times radius_min");
+  if (m.radius_max < m.radius_min) t.mistake("radius_max", "must not be below radius_min");
+  if (m.radius_max > 20.0 * m.radius_min) t.mistake("radius_max", "must be at most 20 times radius_min");
   m.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), m.youngs_modulus);
   m.youngs_modulus_scatter = t.number("E_sd", Unit::none, kScatter, m.youngs_modulus_scatter);
   m.poisson_ratio = t.number("nu", Unit::none, kPoisson, m.poisson_ratio);
@@ -54,7 +54,7 @@ void read_box(const SceneTable& t, GrainBoxSpec& spec) {
   spec.aspect = t.vector3("aspect", Unit::none, spec.aspect);
   for (int k = 0; k < 3; ++k)
     if (!(spec.aspect[k] > 0.0 && spec.aspect[k] <= 1e6))
-      t.reject("aspect", "the box is not closed: all three sides must be above 0 (and at most 1e6)");
+      t.mistake("aspect", "the box is not closed: all three sides must be above 0 (and at most 1e6)");
   spec.solid_fraction = t.number("solid_fraction", Unit::none, Range::closed(0.01, 0.36), spec.solid_fraction);
 }
 
@@ -97,16 +97,16 @@ void read_solver(const SceneTable& t, LeastWorkOptions& o) {
 /// `increment`, or `increments` with the strain that every stage but the last covers.
 void read_increments(const SceneTable& t, GrainBoxLoading& l) {
   if (t.has("increment")) {
-    if (t.has("increments")) t.reject("increments", "give increment or increments, not both");
+    if (t.has("increments")) t.mistake("increments", "give increment or increments, not both");
     l.increments = {t.number("increment", Unit::none, kIncrement)};
     l.stage_strains.clear();
   } else if (t.has("increments")) {
     l.increments = t.numbers("increments", Unit::none, kIncrement);
     l.stage_strains = t.numbers("stage_strains", Unit::none, Range{0.0, 0.5, true, false}, {});
-    if (l.increments.empty()) t.reject("increments", "at least one value is needed");
+    if (l.increments.empty()) t.mistake("increments", "at least one value is needed");
     if (l.stage_strains.size() + 1 != l.increments.size())
-      t.reject("increments", fmt::format("{} stages need {} stage_strains (the last stage goes on to the end)",
-                                         l.increments.size(), l.increments.size() - 1));
+      t.mistake("increments", fmt::format("{} stages need {} stage_strains (the last stage goes on to the end)",
+                                          l.increments.size(), l.increments.size() - 1));
   }
 }
 
@@ -125,7 +125,7 @@ void read_triaxial(const SceneTable& t, GrainBoxLoading& l) {
   const int axis = read_axis(t, 2);
   l.strain_rate = along(axis, 1.0, 0.0);
   if (t.has("lateral_stress") == t.has("lateral_strain_rate"))
-    t.reject("test", "a triaxial test needs either lateral_stress or lateral_strain_rate");
+    t.mistake("test", "a triaxial test needs either lateral_stress or lateral_strain_rate");
   if (t.has("lateral_strain_rate")) {
     l.strain_rate = along(axis, 1.0, t.number("lateral_strain_rate", Unit::none, Range::closed(-10.0, 10.0)));
     return;
@@ -139,7 +139,7 @@ void read_polyaxial(const SceneTable& t, GrainBoxLoading& l) {
   l.strain_rate = t.vector3("strain_rates", Unit::none);
   double fastest = 0.0;
   for (int k = 0; k < 3; ++k) {
-    if (std::abs(l.strain_rate[k]) > 1e3) t.reject("strain_rates", "each must be from -1000 to 1000");
+    if (std::abs(l.strain_rate[k]) > 1e3) t.mistake("strain_rates", "each must be from -1000 to 1000");
     fastest = std::max(fastest, std::abs(l.strain_rate[k]));
   }
   if (t.has("control")) {
@@ -149,14 +149,14 @@ void read_polyaxial(const SceneTable& t, GrainBoxLoading& l) {
     fastest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (control[k] != "strain" && control[k] != "stress")
-        t.reject("control", "'" + control[k] + "': must be \"strain\" or \"stress\"");
+        t.mistake("control", "'" + control[k] + "': must be \"strain\" or \"stress\"");
       l.control[k] = control[k] == "stress" ? AxisControl::stress : AxisControl::strain;
       if (l.control[k] == AxisControl::stress && !(l.stress.v[k] > 0.0))
-        t.reject("stresses", fmt::format("the stress of {} must be above 0: grains cannot be pulled", "xyz"[k]));
+        t.mistake("stresses", fmt::format("the stress of {} must be above 0: grains cannot be pulled", "xyz"[k]));
       if (l.control[k] == AxisControl::strain) fastest = std::max(fastest, std::abs(l.strain_rate.v[k]));
     }
   }
-  if (!(fastest > 0.0)) t.reject("strain_rates", "at least one axis must be strained");
+  if (!(fastest > 0.0)) t.mistake("strain_rates", "at least one axis must be strained");
 }
 
 void read_loading(const SceneTable& t, GrainBoxLoading& l) {
@@ -175,8 +175,9 @@ void read_loading(const SceneTable& t, GrainBoxLoading& l) {
 std::array<double, 2> read_range(const SceneTable& t, const std::string& key, const std::array<double, 2>& fallback) {
   const std::vector<double> v =
       t.numbers(key, Unit::pressure, Range::positive(), std::vector<double>(fallback.begin(), fallback.end()));
-  if (v.size() != 2 || v[1] <= v[0]) t.reject(key, "must be two ascending stresses");
-  return {v[0], v[1]};
+  if (v.size() == 2 && v[0] < v[1]) return {v[0], v[1]};
+  t.mistake(key, "must be two ascending stresses");
+  return fallback;
 }
 
 void read_fit(const SceneTable& t, GrainBoxFit& fit) {
@@ -188,12 +189,13 @@ void read_fit(const SceneTable& t, GrainBoxFit& fit) {
 void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
   const GrainBoxLoading& l = spec.loading;
   if (!std::isfinite(l.end_stress) && !std::isfinite(l.end_strain))
-    t.reject("end_stress", "the loading has no end: give end_stress or end_strain");
+    t.mistake("end_stress", "the loading has no end: give end_stress or end_strain");
   if (spec.generation.pressure >= l.end_stress)
-    t.reject("end_stress", fmt::format("must be above the generation pressure of {:.4g} Pa", spec.generation.pressure));
+    t.mistake("end_stress",
+              fmt::format("must be above the generation pressure of {:.4g} Pa", spec.generation.pressure));
   const GrainBoxForecast f = forecast(spec);
   if (f.overlap_ratio > 0.5)
-    t.reject(
+    t.mistake(
         "end_stress",
         fmt::format("grains would overlap by about {:.2f} of their radius at the largest stress: beyond what contacts "
                     "of small strain describe (0.5)",
@@ -202,7 +204,7 @@ void require_sense(const SceneTable& t, const GrainBoxSpec& spec) {
       std::max(*std::max_element(l.increments.begin(), l.increments.end()), spec.generation.increment);
   const double most = spec.material.radius_min / f.box_length;
   if (largest >= most)
-    t.reject(
+    t.mistake(
         t.has("increments") ? "increments" : "increment",
         fmt::format("a wall would move more than the smallest grain's radius at once; must be below {:.3g}", most));
 }
@@ -212,13 +214,15 @@ void require_memory(const SceneTable& t, const GrainBoxSpec& spec) {
   const double available = available_memory();
   const double needed = forecast(spec).bytes;
   if (!(available > 0.0) || needed <= available) return;
-  t.reject("grains",
-           fmt::format("a pack of {} grains needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}",
-                       spec.grains, needed / 1e9, available / 1e9,
-                       std::floor(static_cast<double>(spec.grains) * available / needed)));
+  t.mistake(
+      "grains",
+      fmt::format("a pack of {} grains needs about {:.3g} GB of memory, {:.3g} GB are free; allowed: up to {:.0f}",
+                  spec.grains, needed / 1e9, available / 1e9,
+                  std::floor(static_cast<double>(spec.grains) * available / needed)));
 }
 
-GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow) {
+/// `sound`: so is the scene around it.
+GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_follow, bool sound) {
   spec.name = read_variant_name(t);
   spec.grains = t.count("grains", 8, 10000000, spec.grains);
   spec.friction = read_friction(t, "mu", spec.friction);
@@ -228,6 +232,7 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
   read_coulomb(t, spec.solver);
   read_increments(t, spec.loading);
   read_end(t, spec.loading);
+  if (!sound || !t.sound()) return spec;
   require_sense(t, spec);
   require_memory(t, spec);
   return spec;
@@ -236,35 +241,35 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
 }  // namespace
 
 GrainBoxSetup read_grain_box(const Scene& scene) {
-  const SceneTable root = scene.root();
-  GrainBoxSetup setup;
-  (void)root.choice("kind", {"grain-box"});
-  setup.title = root.text("title", "");
-  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-  GrainBoxSpec spec;
-  const SceneTable material = root.table_or_empty("material");
-  read_material(material, spec.material);
-  spec.friction = read_friction(material, "mu", spec.friction);
-  const SceneTable walls = root.table_or_empty("walls");
-  read_walls(walls, spec);
-  read_box(root.table_or_empty("box"), spec);
-  read_generation(root.table_or_empty("generation"), spec.generation);
-  read_solver(root.table_or_empty("solver"), spec.solver);
-  const SceneTable loading = root.table("loading");
-  read_loading(loading, spec.loading);
-  read_fit(root.table_or_empty("fit"), spec.fit);
-  std::set<std::string> names;
-  for (const SceneTable& variant : root.tables("variant")) {
-    setup.packs.push_back(read_variant(variant, spec, !walls.has("mu")));
-    if (!names.insert(setup.packs.back().name).second) variant.reject("name", "is used twice");
-  }
-  if (setup.packs.empty()) {
-    require_sense(loading, spec);
-    require_memory(root.table_or_empty("box"), spec);
+  return scene.read([](const SceneTable& root) {
+    GrainBoxSetup setup;
+    (void)root.choice("kind", {"grain-box"});
+    setup.title = root.text("title", "");
+    setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    GrainBoxSpec spec;
+    const SceneTable material = root.table_or_empty("material");
+    read_material(material, spec.material);
+    spec.friction = read_friction(material, "mu", spec.friction);
+    const SceneTable walls = root.table_or_empty("walls");
+    read_walls(walls, spec);
+    read_box(root.table_or_empty("box"), spec);
+    read_generation(root.table_or_empty("generation"), spec.generation);
+    read_solver(root.table_or_empty("solver"), spec.solver);
+    const SceneTable loading = root.table("loading");
+    loading.part([&] { read_loading(loading, spec.loading); });
+    read_fit(root.table_or_empty("fit"), spec.fit);
+    const bool sound = root.sound();
+    std::set<std::string> names;
+    for (const SceneTable& variant : root.tables("variant")) {
+      setup.packs.push_back(read_variant(variant, spec, !walls.has("mu"), sound));
+      if (!names.insert(setup.packs.back().name).second) variant.mistake("name", "is used twice");
+    }
+    if (!setup.packs.empty()) return setup;
+    if (sound) require_sense(loading, spec);
+    if (root.sound()) require_memory(root.table_or_empty("box"), spec);
     setup.packs.push_back(spec);
-  }
-  root.finish();
-  return setup;
+    return setup;
+  });
 }
 
 }  // namespace softgrain

@@ -44,7 +44,7 @@ void spend_on_resolved(const HierarchySetup& setup, const MeasureTrial& trial, F
 }  // namespace
 
 void check_hierarchy(const Scene& scene, Findings& out) {
-  const HierarchySetup setup = read_hierarchy_setup(scene.root());
+  const HierarchySetup setup = read_hierarchy_setup(scene);
   const auto configurations = static_cast<std::int64_t>(setup.crowd.configurations.size());
   out.facts["levels"] = setup.levels;
   out.facts["levels_max"] = setup.iterations;

@@ -221,7 +221,7 @@ void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& res
 }
 
 ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
-  const HierarchySetup setup = read_hierarchy_setup(scene.root());
+  const HierarchySetup setup = read_hierarchy_setup(scene);
   const Run run(scene, options, "run", setup.crowd.seed);
   HierarchyRun result;
   run.context.guard([&] {
@@ -242,7 +242,7 @@ SceneKind hierarchy_kind() {
           .command = "run",
           .run = run_hierarchy,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_hierarchy(scene, out); },
-          .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene.root()); }};
+          .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene); }};
 }
 
 }  // namespace softgrain

@@ -30,7 +30,7 @@ void read_check(const SceneTable& t, HierarchySetup& out) {
   out.check_overlaps = t.numbers("overlaps", Unit::none, Range{0.0, 1.0, true, true}, {0.15, 0.2, 0.25});
   if (out.check_overlaps.empty() || std::adjacent_find(out.check_overlaps.begin(), out.check_overlaps.end(),
                                                        std::greater_equal<>()) != out.check_overlaps.end())
-    t.reject("overlaps", "must ascend");
+    t.mistake("overlaps", "must ascend");
   out.check_inner = t.count("inner_count", 0, kMany, 0);
 }
 
@@ -42,22 +42,23 @@ bool has_one(const CrowdSetup& setup, PartnerKind kind) {
 
 }  // namespace
 
-HierarchySetup read_hierarchy_setup(const SceneTable& root) {
-  HierarchySetup out;
-  (void)root.choice("kind", {"hierarchy"});
-  out.title = root.text("title", "");
-  out.crowd = read_crowd_setup(root);
-  read_levels(root.table("hierarchy"), out);
-  read_fixed_point(root.table_or_empty("fixed_point"), out);
-  if (root.has("check")) read_check(root.table("check"), out);
-  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft})
-    if (!has_one(out.crowd, kind))
-      root.reject("configuration", "a hierarchy needs a configuration \"one\" with a " + to_string(kind) +
-                                       " partner: inner soft particles meet all three kinds");
-  if (out.crowd.packings_max < CrowdFitOptions{}.min_packings)
-    root.table_or_empty("crowd").reject("packings_max", "fewer than 4: there would be no fit");
-  root.finish();
-  return out;
+HierarchySetup read_hierarchy_setup(const Scene& scene) {
+  return scene.read([](const SceneTable& root) {
+    HierarchySetup out;
+    (void)root.choice("kind", {"hierarchy"});
+    out.title = root.text("title", "");
+    out.crowd = read_crowd_setup(root);
+    read_levels(root.table("hierarchy"), out);
+    read_fixed_point(root.table_or_empty("fixed_point"), out);
+    if (root.has("check")) read_check(root.table("check"), out);
+    for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft})
+      if (!has_one(out.crowd, kind))
+        root.mistake("configuration", "a hierarchy needs a configuration \"one\" with a " + to_string(kind) +
+                                          " partner: inner soft particles meet all three kinds");
+    if (out.crowd.packings_max < CrowdFitOptions{}.min_packings)
+      root.table_or_empty("crowd").mistake("packings_max", "fewer than 4: there would be no fit");
+    return out;
+  });
 }
 
 }  // namespace softgrain

@@ -25,6 +25,6 @@ struct HierarchySetup {
 };
 
 /// Reads a scene of kind "hierarchy" to the last key. Throws BadInput.
-HierarchySetup read_hierarchy_setup(const SceneTable& root);
+HierarchySetup read_hierarchy_setup(const Scene& scene);
 
 }  // namespace softgrain

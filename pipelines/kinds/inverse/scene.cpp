@@ -40,13 +40,15 @@ std::vector<SearchParameter> read_search(const SceneTable& t) {
   for (const KnownParameter& k : known_parameters()) {
     if (!t.has(k.name)) continue;
     const std::vector<double> ends = t.numbers(k.name, Unit::none, k.range);
-    if (ends.size() != 2 || !(ends[0] < ends[1])) t.reject(k.name, "must be a range of two rising values [low, high]");
-    out.push_back({k.name, ends[0], ends[1], k.logarithmic && ends[0] > 0.0});
+    if (ends.size() != 2 || !(ends[0] < ends[1]))
+      t.mistake(k.name, "must be a range of two rising values [low, high]");
+    else
+      out.push_back({k.name, ends[0], ends[1], k.logarithmic && ends[0] > 0.0});
   }
   if (out.empty())
-    t.reject("beta",
-             "nothing is searched: give the range of at least one of beta, trials, mu, nu, rmax_over_shell, "
-             "exponent, polydispersity, e.g. mu = [0.1, 0.6]");
+    t.mistake("beta",
+              "nothing is searched: give the range of at least one of beta, trials, mu, nu, rmax_over_shell, "
+              "exponent, polydispersity, e.g. mu = [0.1, 0.6]");
   return out;
 }
 
@@ -76,7 +78,7 @@ void read_points(const SceneTable& t, InverseSetup& s) {
   const std::size_t n = s.target.delta.size();
   if (s.target.force.size() != n) t.reject("force", fmt::format("must have as many values as delta ({})", n));
   for (std::size_t k = 1; k < n; ++k)
-    if (s.target.delta[k] <= s.target.delta[k - 1]) t.reject("delta", "values must ascend");
+    if (s.target.delta[k] <= s.target.delta[k - 1]) t.mistake("delta", "values must ascend");
   s.target.error.assign(n, 0.0);
   if (!t.has("error")) return;
   s.target.error = t.numbers("error", Unit::force, Range::not_negative());
@@ -160,20 +162,23 @@ SoftParticleSpec spec_at(const InverseSetup& setup, const std::vector<double>& u
 }
 
 InverseSetup read_inverse(const Scene& scene) {
-  const SceneTable root = scene.root();
-  (void)root.choice("kind", {"inverse"});
-  InverseSetup s;
-  s.title = root.text("title", "");
-  s.measure = read_measure_protocols(root, s.relaxation, s.plan);
-  s.packings = root.table_or_empty("packing").count("count", 2, 100000, 8);
-  const SceneTable search = root.table("search");
-  s.search = read_search(search);
-  require_box(search, s);
-  read_budget(search, s);
-  read_target(scene, root.table("target"), s);
-  s.plan.deltas = s.target.delta;
-  root.finish();
-  return s;
+  return scene.read([&](const SceneTable& root) {
+    (void)root.choice("kind", {"inverse"});
+    InverseSetup s;
+    s.title = root.text("title", "");
+    s.measure = read_measure_protocols(root, s.relaxation, s.plan);
+    s.packings = root.table_or_empty("packing").count("count", 2, 100000, 8);
+    const SceneTable search = root.table("search");
+    s.search = read_search(search);
+    search.part([&] {
+      if (root.sound()) require_box(search, s);
+    });
+    read_budget(search, s);
+    const SceneTable target = root.table("target");
+    target.part([&] { read_target(scene, target, s); });
+    s.plan.deltas = s.target.delta;
+    return s;
+  });
 }
 
 }  // namespace softgrain

@@ -19,7 +19,7 @@ void read_crowd(const SceneTable& t, CrowdSetup& setup) {
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
   setup.packings_min = t.count("packings_min", 2, 100000, setup.packings_min);
   setup.packings_max = t.count("packings_max", 2, 100000, std::max(setup.packings_max, setup.packings_min));
-  if (setup.packings_max < setup.packings_min) t.reject("packings_max", "must be at least packings_min");
+  if (setup.packings_max < setup.packings_min) t.mistake("packings_max", "must be at least packings_min");
   setup.target = t.number("target", Unit::none, kShare, setup.target);
   setup.points = t.count("points", 2, 1000, setup.points);
 }
@@ -56,20 +56,20 @@ Wanted read_wanted(const SceneTable& t) {
   w.arrangement = t.choice<Arrangement>("arrangement");
   w.partner = t.choice<PartnerKind>("partner");
   const bool plane = w.partner == PartnerKind::plane;
-  if (plane && t.has("ratio")) t.reject("ratio", "a plane has no radius; leave it out");
+  if (plane && t.has("ratio")) t.mistake("ratio", "a plane has no radius; leave it out");
   if (!plane) w.ratio = t.number("ratio", Unit::none, Range::positive(), 1.0);
   w.overlap = t.number("overlap", Unit::none, kShare);
   if (!plane && w.overlap >= w.ratio)
-    t.reject("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
+    t.mistake("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
   w.path = t.choice<CrowdPath>("path", CrowdPath::together);
   if (w.path == CrowdPath::slide)
     w.slide = t.number("slide", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
   else if (t.has("slide"))
-    t.reject("slide", "only a path that slides has it: path = \"slide\"");
+    t.mistake("slide", "only a path that slides has it: path = \"slide\"");
   if (w.arrangement == Arrangement::beside_five)
     w.shallow = t.number("shallow", Unit::none, Range{0.0, 1.0, true, false}, 0.5);
   else if (t.has("shallow"))
-    t.reject("shallow", "only the arrangement beside-five has a shallow neighbour");
+    t.mistake("shallow", "only the arrangement beside-five has a shallow neighbour");
   return w;
 }
 
@@ -113,7 +113,7 @@ CrowdConfiguration read_configuration(const SceneTable& t) {
   c.centre_free = t.choice<Centre>("centre", Centre::fixed) == Centre::free;
   c.held_out = t.flag("held_out", false);
   c.name = t.text("name", default_name(w, c.centre_free));
-  if (c.name.empty()) t.reject("name", "must not be empty");
+  if (c.name.empty()) t.mistake("name", "must not be empty");
   return c;
 }
 
@@ -121,10 +121,10 @@ void require_packings(const SceneTable& t, const CrowdConfiguration& c, std::int
   const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
                                    [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
   if (softs >= pool)
-    t.reject("partner", std::to_string(softs) +
-                            " soft neighbours and the centre need as many different packings: raise "
-                            "crowd.packings_max to " +
-                            std::to_string(softs + 1) + " or more");
+    t.mistake("partner", std::to_string(softs) +
+                             " soft neighbours and the centre need as many different packings: raise "
+                             "crowd.packings_max to " +
+                             std::to_string(softs + 1) + " or more");
 }
 
 }  // namespace
@@ -137,12 +137,12 @@ CrowdSetup read_crowd_setup(const SceneTable& root) {
   for (const SceneTable& t : root.tables("configuration")) {
     setup.configurations.push_back(read_configuration(t));
     const CrowdConfiguration& c = setup.configurations.back();
-    require_packings(t, c, setup.packings_max);
+    if (root.table_or_empty("crowd").sound()) require_packings(t, c, setup.packings_max);
     for (std::size_t k = 0; k + 1 < setup.configurations.size(); ++k)
       if (setup.configurations[k].name == c.name)
-        t.reject("name", "'" + c.name + "' is there already; give another name");
+        t.mistake("name", "'" + c.name + "' is there already; give another name");
   }
-  if (setup.configurations.empty()) root.reject("configuration", "at least one [[configuration]] is needed");
+  if (setup.configurations.empty()) root.mistake("configuration", "at least one [[configuration]] is needed");
   return setup;
 }
 

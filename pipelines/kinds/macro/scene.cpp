@@ -24,13 +24,13 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
   spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
   spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
-    t.reject("soft_share", "construction \"voids\" needs solid grains: must be below 1");
+    t.mistake("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
   spec.preparation = t.choice<MacroEngine>("preparation", spec.preparation);
   if (spec.preparation == MacroEngine::lammps && spec.construction == Construction::voids)
-    t.reject("preparation",
-             "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
+    t.mistake("preparation",
+              "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
 
@@ -56,8 +56,11 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
   std::vector<Twin> twins;
   for (const std::string& word : t.texts("resolved")) {
     const auto twin = from_word<Twin>(word);
-    if (!twin) t.reject("resolved", "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
-    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.reject("resolved", "'" + word + "' twice");
+    if (!twin) {
+      t.mistake("resolved", "unknown twin '" + word + "'; known are \"shelled\" and \"free\"");
+      continue;
+    }
+    if (std::count(twins.begin(), twins.end(), *twin) > 0) t.mistake("resolved", "'" + word + "' twice");
     twins.push_back(*twin);
   }
   return twins;
@@ -67,7 +70,8 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
   if (setup.spec.preparation == MacroEngine::lammps)
-    macro.reject("preparation", "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
+    macro.mistake("preparation",
+                  "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
 }
 
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults) {
@@ -91,10 +95,10 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
 void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
                             const std::string& law_file) {
   if (setup.twins.empty() || packing_known(spec)) return;
-  macro.reject("resolved",
-               "a resolved twin is filled with grains, and " + law_file +
-                   " does not say what is inside the soft particle that was measured: give resolved = false, or add "
-                   "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
+  macro.mistake("resolved",
+                "a resolved twin is filled with grains, and " + law_file +
+                    " does not say what is inside the soft particle that was measured: give resolved = false, or add "
+                    "exponent, polydispersity, rmax_over_shell, beta and trials to [measurement] of the card");
 }
 
 std::string assumed_text(const MacroSetup& setup) {
@@ -115,10 +119,8 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
 
 namespace {
 
-MacroScene read_with_law(const Scene& scene, const std::string& law_file) {
-  const SceneTable root = scene.root();
+MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   (void)root.choice("kind", {"macro"});
-  (void)root.text("law", "");
   MacroScene out;
   out.title = root.text("title", "");
   out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
@@ -129,22 +131,29 @@ MacroScene read_with_law(const Scene& scene, const std::string& law_file) {
     out.law = read_scene_law(root, law_file);
     out.spec = measured_spec(out.law);
   }
-  out.setup = read_macro_setup(root.table("macro"), out.spec);
-  require_known_contents(root.table("macro"), out.setup, out.spec, law_file);
-  require_macro_memory(root.table("macro"), out.setup, out.spec);
+  const SceneTable macro = root.table("macro");
+  out.setup = read_macro_setup(macro, out.spec);
+  require_known_contents(macro, out.setup, out.spec, law_file);
+  if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
   out.setup.kept_states = read_kept_states(root);
   out.contents = root.count("contents", 1, 100000, out.contents);
-  root.finish();
   return out;
 }
 
 }  // namespace
 
 MacroScene read_macro_scene(const Scene& scene, const std::string& law) {
-  const std::string written = scene.root().text("law", "");
-  return read_with_law(scene, !law.empty() || written.empty() ? law : scene.resolve(written));
+  return scene.read([&](const SceneTable& root) {
+    const std::string written = root.text("law", "");
+    return read_with_law(root, !law.empty() || written.empty() ? law : scene.resolve(written));
+  });
 }
 
-MacroScene read_macro_scene_alone(const Scene& scene) { return read_with_law(scene, ""); }
+MacroScene read_macro_scene_alone(const Scene& scene) {
+  return scene.read([](const SceneTable& root) {
+    (void)root.text("law", "");
+    return read_with_law(root, "");
+  });
+}
 
 }  // namespace softgrain

@@ -23,42 +23,43 @@ bool sound_name(const std::string& name) {
 }
 
 ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const SoftParticleSpec& content,
-                           const std::vector<ComparisonScene>& before) {
+                           const std::vector<ComparisonScene>& before, bool sound) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
   require_own_preparation(t, scene.setup);
-  require_macro_memory(t, scene.setup, content);
+  if (sound) require_macro_memory(t, scene.setup, content);
   std::string name = default_name(scene.setup.spec);
   std::replace(name.begin(), name.end(), '.', '-');
   scene.name = t.text("name", name);
-  if (!sound_name(scene.name)) t.reject("name", "letters, digits and '-' only: it becomes part of file names");
+  if (!sound_name(scene.name)) t.mistake("name", "letters, digits and '-' only: it becomes part of file names");
   for (const ComparisonScene& s : before)
     if (s.name == scene.name)
-      t.reject("name", "another scene is called '" + s.name + "' already; give this one a name");
+      t.mistake("name", "another scene is called '" + s.name + "' already; give this one a name");
   return scene;
 }
 
 }  // namespace
 
 MacroComparisonSetup read_macro_comparison(const Scene& scene) {
-  const SceneTable root = scene.root();
-  (void)root.choice("kind", {"macro-comparison"});
-  MacroComparisonSetup setup;
-  setup.title = root.text("title", "");
-  setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-  setup.spec = read_soft_particle(root);
-  setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
-  MacroSetup base = read_macro_setup(root.table("macro"), setup.spec);
-  require_own_preparation(root.table("macro"), base);
-  if (!root.table("macro").has("resolved")) base.twins = {Twin::shelled, Twin::free};
-  base.kept_states = read_kept_states(root);
-  for (const SceneTable& t : root.tables("scene"))
-    setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes));
-  if (setup.scenes.empty()) root.reject("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
-  const SceneTable law = root.table("law");
-  setup.laws = read_law_sources(scene, law);
-  root.finish();
-  return setup;
+  return scene.read([&](const SceneTable& root) {
+    (void)root.choice("kind", {"macro-comparison"});
+    MacroComparisonSetup setup;
+    setup.title = root.text("title", "");
+    setup.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    setup.spec = read_soft_particle(root);
+    setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
+    const SceneTable macro = root.table("macro");
+    MacroSetup base = read_macro_setup(macro, setup.spec);
+    require_own_preparation(macro, base);
+    if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
+    base.kept_states = read_kept_states(root);
+    for (const SceneTable& t : root.tables("scene"))
+      setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes, root.sound()));
+    if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
+    const SceneTable law = root.table("law");
+    law.part([&] { setup.laws = read_law_sources(scene, law); });
+    return setup;
+  });
 }
 
 }  // namespace softgrain

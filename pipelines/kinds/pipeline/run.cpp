@@ -152,7 +152,7 @@ std::string people_text(const PipelineResult& r) {
 }
 
 ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
-  const PipelineSetup setup = read_pipeline_setup(scene.root());
+  const PipelineSetup setup = read_pipeline_setup(scene);
   const Run run(scene, options, "run", setup.measure.seed);
   PipelineResult result;
   run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
@@ -165,7 +165,7 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
 }
 
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
-  const PipelineSetup setup = read_pipeline_setup(scene.root());
+  const PipelineSetup setup = read_pipeline_setup(scene);
   const MeasureTrial trial = check_measurements(setup.measure, out);
   if (setup.macro) check_macro(*setup.macro, content_of(trial), nullptr, out);
 }
@@ -177,7 +177,7 @@ SceneKind pipeline_kind() {
           .command = "run",
           .run = run_pipeline,
           .check = check_pipeline,
-          .read = [](const Scene& scene) { (void)read_pipeline_setup(scene.root()); }};
+          .read = [](const Scene& scene) { (void)read_pipeline_setup(scene); }};
 }
 
 }  // namespace softgrain

@@ -19,6 +19,6 @@ struct PipelineSetup {
 };
 
 /// Reads a scene of kind "pipeline" to the last key. Throws BadInput.
-PipelineSetup read_pipeline_setup(const SceneTable& root);
+PipelineSetup read_pipeline_setup(const Scene& scene);
 
 }  // namespace softgrain

@@ -26,8 +26,8 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   if (t.has("rmax")) {
     const double rmax = t.number("rmax", Unit::length, Range::positive());
     if (rmax >= spec.shell_radius)
-      t.reject("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
-                           " m) must be larger than the largest grain");
+      t.mistake("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
+                            " m) must be larger than the largest grain");
     spec.rmax_over_shell = rmax / spec.shell_radius;
   } else {
     spec.rmax_over_shell = t.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, true}, spec.rmax_over_shell);
@@ -36,7 +36,7 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
   spec.trials = t.count("trials", 1, 1000000000, spec.trials);
   spec.placement =
       t.choice("placement", {"trials", "voids"}, "trials") == "voids" ? Placement::voids : Placement::trials;
-  require_drawable(t, spec);
+  if (t.sound()) require_drawable(t, spec);
 }
 
 void read_damped(const SceneTable& t, DampedProtocolOptions& o) {
@@ -74,15 +74,15 @@ void read_published(const SceneTable& t, PublishedOptions& o) {
 }
 
 void require_ascending(const SceneTable& t, const std::string& key, const std::vector<double>& values) {
-  if (values.empty()) t.reject(key, "at least one value is needed");
+  if (values.empty()) t.mistake(key, "at least one value is needed");
   for (std::size_t k = 1; k < values.size(); ++k)
-    if (values[k] <= values[k - 1]) t.reject(key, "values must ascend");
+    if (values[k] <= values[k - 1]) t.mistake(key, "values must ascend");
 }
 
 void require_subset(const SceneTable& t, const std::vector<double>& some, const std::vector<double>& all) {
   for (const double x : some)
     if (std::none_of(all.begin(), all.end(), [x](double y) { return std::abs(x - y) < 1e-9; }))
-      t.reject("tangential_deltas", std::to_string(x) + " is not among deltas");
+      t.mistake("tangential_deltas", std::to_string(x) + " is not among deltas");
 }
 
 /// Largest overlap that makes sense: at 1 the plane would have reached the centre of the shell.
@@ -94,10 +94,10 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
   require_ascending(t, "deltas", plan.deltas);
   plan.angles_deg = t.numbers("angles_deg", Unit::angle_degree, Range::closed(-90.0, 90.0), {});
   for (const double a : plan.angles_deg)
-    if (a == 0.0) t.reject("angles_deg", "0 is recorded anyway; leave it out");
+    if (a == 0.0) t.mistake("angles_deg", "0 is recorded anyway; leave it out");
   plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange,
                                      plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
-  require_subset(t, plan.tangential_deltas, plan.deltas);
+  if (t.sound()) require_subset(t, plan.tangential_deltas, plan.deltas);
   return plan;
 }
 
@@ -113,8 +113,8 @@ void require_increments_used(const SceneTable& measure, Relaxation relaxation, b
   if (relaxation != Relaxation::slow_dynamics || least_work_too) return;
   const SceneTable t = measure.table_or_empty("least_work");
   if (t.has("increment_passes") && t.count("increment_passes", 0, kMostPasses) > 0)
-    t.reject("increment_passes",
-             "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
+    t.mistake("increment_passes",
+              "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
 }
 
 MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64_t packings,
@@ -130,7 +130,7 @@ MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64
     series.kinds.push_back(PairKind::soft_soft);
     series.soft_soft = read_plan(t.table("soft_soft"), common);
   }
-  if (series.kinds.empty()) t.reject("soft_solid", "neither soft_solid nor soft_soft is measured; give at least one");
+  if (series.kinds.empty()) t.mistake("soft_solid", "neither soft_solid nor soft_soft is measured; give at least one");
   return series;
 }
 
@@ -148,7 +148,7 @@ void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
   std::ostringstream problem;
   problem << "beta = " << spec.beta << " with rmax_over_shell = " << spec.rmax_over_shell << ", polydispersity = " << p
           << " and exponent = " << b << " draws about " << grains << " grains per packing, allowed are at most 1e7";
-  t.reject(t.has("polydispersity") ? "polydispersity" : "beta", problem.str());
+  t.mistake(t.has("polydispersity") ? "polydispersity" : "beta", problem.str());
 }
 
 std::int64_t MeasureSetup::packings() const {
@@ -190,22 +190,22 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   if (root.has("reference")) {
     const SceneTable reference = root.table("reference");
     const Relaxation other = read_relaxation(reference, Relaxation::published, setup.least_work);
-    if (other == setup.series[0].relaxation)
-      reference.reject("relaxation", "the reference must differ from measure.relaxation");
+    if (measure.sound() && other == setup.series[0].relaxation)
+      reference.mistake("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, other, reference.count("count", 1, 100000, count), common));
   }
-  require_increments_used(measure, setup.series.front().relaxation,
-                          setup.series.back().relaxation == Relaxation::least_work);
+  if (root.sound())
+    require_increments_used(measure, setup.series.front().relaxation,
+                            setup.series.back().relaxation == Relaxation::least_work);
   setup.kept_states = read_kept_states(root);
   return setup;
 }
 
 SoftParticleScene read_soft_particle_scene(const Scene& scene) {
-  const SceneTable root = scene.root();
-  (void)root.choice("kind", {"soft-particle"});
-  SoftParticleScene out{root.text("title", ""), read_measure_setup(root)};
-  root.finish();
-  return out;
+  return scene.read([](const SceneTable& root) {
+    (void)root.choice("kind", {"soft-particle"});
+    return SoftParticleScene{root.text("title", ""), read_measure_setup(root)};
+  });
 }
 
 std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation relaxation) {
