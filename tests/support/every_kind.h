@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "common/core/random.h"
 #include "common/io/text_file.h"
+#include "pipelines/kinds/kinds.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_comparison.h"
@@ -52,6 +54,32 @@ steps = 1
 strain = 0.08
 increments_per_step = 3
 resolved = ["shelled"]
+)";
+
+inline constexpr const char* kTinyInverse = R"(kind = "inverse"
+seed = 1
+[packing]
+trials = 100
+polydispersity = 4.0
+beta = 8.0
+count = 2
+[measure]
+relaxation = "damped"
+[measure.damped]
+increment = 0.02
+tolerance = 1e-2
+[target]
+delta = [0.2, 0.3, 0.4]
+force = ["0.1 N", "0.5 N", "1.4 N"]
+error = ["0.01 N", "0.05 N", "0.14 N"]
+discrepancy = 0.05
+[search]
+mu = [0.05, 0.9]
+budget = 8
+design = 4
+batch = 2
+confirm = 2
+replicates = 20
 )";
 
 inline constexpr const char* kTinyPowder = R"(kind = "cohesive-powder"
@@ -218,17 +246,26 @@ struct KindScene {
 inline void PrintTo(const KindScene& s, std::ostream* out) { *out << s.name; }
 
 inline std::vector<KindScene> every_kind() {
-  return {{"pipeline", "run", kTinyPipeline, 3},
-          {"soft-particle", "microsim", kTinySoftParticle, 0},
-          {"macro", "macrosim", kTinyMacro, 0},
-          {"macro-comparison", "run", kTinyComparison, 0},
-          {"law-table", "run", std::string(kTinyLawTable) + kTinyLawFit, 0},
-          {"hierarchy", "run", kTinyHierarchy, 3},
-          {"particles", "microsim", tiny_particles(), 0},
-          {"disks", "microsim", tiny_disks(), 0},
-          {"powder", "microsim", kTinyPowder, 0},
-          {"powder-variants", "microsim", kTinyPowderVariants, 0},
-          {"grain-box", "microsim", kTinyGrainBox, 0}};
+  std::vector<KindScene> kinds{{"pipeline", "", kTinyPipeline, 3},
+                               {"soft-particle", "", kTinySoftParticle, 0},
+                               {"macro", "", kTinyMacro, 0},
+                               {"macro-comparison", "", kTinyComparison, 0},
+                               {"law-table", "", std::string(kTinyLawTable) + kTinyLawFit, 0},
+                               {"hierarchy", "", kTinyHierarchy, 3},
+                               {"inverse", "", kTinyInverse, 0},
+                               {"particles", "", tiny_particles(), 0},
+                               {"disks", "", tiny_disks(), 0},
+                               {"powder", "", kTinyPowder, 0},
+                               {"powder-variants", "", kTinyPowderVariants, 0},
+                               {"grain-box", "", kTinyGrainBox, 0}};
+  std::set<std::string> found;
+  for (KindScene& k : kinds) {
+    const SceneKind& kind = kind_of(Scene::parse(k.text, k.name));
+    k.command = kind.command;
+    found.insert(kind.name);
+  }
+  EXPECT_EQ(found.size(), scene_kinds().size()) << "every kind of the table needs a tiny scene here";
+  return kinds;
 }
 
 inline bool is_slow(const KindScene& k) { return k.name == "law-table" || k.name == "hierarchy"; }
