@@ -200,6 +200,23 @@ void place_walls(Builder<D>& b) {
   }
 }
 
+template <int D>
+void place_all(Builder<D>& b) {
+  if (b.grains.empty())
+    throw BadInput(b.scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
+  require_distinct_centres(b);
+  place_grains(b, wall_slots(b));
+  place_walls(b);
+}
+
+template <int D>
+void read_grains(Builder<D>& b, const SceneTable& root) {
+  for (const SceneTable& t : root.tables("particle")) t.part([&] { add_table(b, t); });
+  const SceneTable many = root.table_or_empty("particles");
+  many.part([&] { add_file(b, many); });
+  if (root.sound()) root.check([&] { place_all(b); });
+}
+
 }  // namespace
 
 template <int D>
@@ -212,17 +229,7 @@ template <int D>
 SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials) {
   const SceneTable root = scene.root();
   Builder<D> b{scene, materials, read_walls<D>(root, materials), root.sound(), {}, {}, {}};
-  for (const SceneTable& t : root.tables("particle")) t.part([&] { add_table(b, t); });
-  const SceneTable many = root.table_or_empty("particles");
-  many.part([&] { add_file(b, many); });
-  if (!root.sound()) return std::move(b.out);
-  root.check([&] {
-    if (b.grains.empty())
-      throw BadInput(scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
-    require_distinct_centres(b);
-    place_grains(b, wall_slots(b));
-    place_walls(b);
-  });
+  read_grains(b, root);
   return std::move(b.out);
 }
 

@@ -4,16 +4,16 @@
 #include <array>
 #include <vector>
 
-#include "pipelines/kinds/cohesive_powder/run.h"
-#include "pipelines/kinds/grain_box/run.h"
-#include "pipelines/kinds/hierarchy/run.h"
-#include "pipelines/kinds/inverse/run.h"
-#include "pipelines/kinds/law_table/run.h"
-#include "pipelines/kinds/macro/run.h"
-#include "pipelines/kinds/macro_comparison/run.h"
-#include "pipelines/kinds/particles/run.h"
-#include "pipelines/kinds/pipeline/run.h"
-#include "pipelines/kinds/soft_particle/run.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
+#include "pipelines/kinds/grain_box/scene.h"
+#include "pipelines/kinds/hierarchy/scene.h"
+#include "pipelines/kinds/inverse/scene.h"
+#include "pipelines/kinds/law_table/scene.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/macro_comparison/scene.h"
+#include "pipelines/kinds/particles/scene.h"
+#include "pipelines/kinds/pipeline/scene.h"
+#include "pipelines/kinds/soft_particle/scene.h"
 
 namespace softgrain {
 

@@ -11,7 +11,6 @@
 #include "microsim/powder/powder_start.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
 #include "pipelines/kinds/cohesive_powder/report_view.h"
-#include "pipelines/kinds/cohesive_powder/run.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
 #include "pipelines/report/report.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "pipelines/kinds/cohesive_powder/run.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/run/trial_times.h"
 

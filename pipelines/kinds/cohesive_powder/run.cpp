@@ -1,4 +1,4 @@
-#include "pipelines/kinds/cohesive_powder/run.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 #include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
-#include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/kinds/cohesive_powder/variants_run.h"

@@ -7,6 +7,8 @@
 #include "common/io/scene.h"
 #include "microsim/powder/powder_assembly.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
+#include "pipelines/run/findings.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -26,5 +28,15 @@ struct PowderSetup {
 
 /// Reads the scene to the last key. Throws BadInput; FileTrouble when there are no `states` to be read.
 PowderSetup read_powder(const Scene& scene);
+
+/// Runs all samples; writes powder.h5 (final states and the course of each assembly) and summary.json. Status
+/// not_usable when a sample did not come to rest: the summary says which criterion was unmet.
+ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, const RunContext& context);
+
+/// The same from a scene, or each of its variants.
+SceneKind cohesive_powder_kind();
+
+/// What follows from such a scene: phases, time step, steps at most, overlaps, time from a short trial.
+void check_powder(const Scene& scene, Findings& out);
 
 }  // namespace softgrain

@@ -7,7 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "pipelines/kinds/cohesive_powder/run.h"
+#include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/variant_entry.h"
 #include "pipelines/kinds/cohesive_powder/variant_table.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"

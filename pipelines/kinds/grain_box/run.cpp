@@ -1,4 +1,4 @@
-#include "pipelines/kinds/grain_box/run.h"
+#include "pipelines/kinds/grain_box/scene.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,6 @@
 
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
-#include "pipelines/kinds/grain_box/check.h"
-#include "pipelines/kinds/grain_box/scene.h"
 #include "pipelines/kinds/grain_box/summary.h"
 #include "pipelines/run/parallel_tasks.h"
 #include "pipelines/run/run.h"

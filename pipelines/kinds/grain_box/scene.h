@@ -7,6 +7,8 @@
 
 #include "common/io/scene.h"
 #include "microsim/grain_box/spec.h"
+#include "pipelines/run/findings.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -18,5 +20,12 @@ struct GrainBoxSetup {
 
 /// Reads the whole scene. Throws BadInput.
 GrainBoxSetup read_grain_box(const Scene& scene);
+
+/// Runs a scene of kind "grain-box"; writes grain_box.h5, summary.json and report.html. Packs run side by side when
+/// there are threads for it. Status not_usable when a pack could not be brought to its end (what came before is kept).
+SceneKind grain_box_kind();
+
+/// Facts per pack: counts, solid fraction, overlap at the end of the loading, memory, time; and what to mind.
+void check_grain_box(const GrainBoxSetup& setup, Findings& out);
 
 }  // namespace softgrain

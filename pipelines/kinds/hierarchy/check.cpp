@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "pipelines/kinds/hierarchy/run.h"
 #include "pipelines/kinds/hierarchy/scene.h"
 #include "pipelines/kinds/law_table/crowd_check.h"
 

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/hierarchy/run.h"
+#include "pipelines/kinds/hierarchy/scene.h"
 
 #include <fmt/format.h>
 

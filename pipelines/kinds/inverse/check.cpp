@@ -5,7 +5,6 @@
 #include <array>
 
 #include "common/core/error.h"
-#include "pipelines/kinds/inverse/run.h"
 #include "pipelines/kinds/inverse/scene.h"
 #include "pipelines/kinds/soft_particle/cost.h"
 

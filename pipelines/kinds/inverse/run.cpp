@@ -1,4 +1,4 @@
-#include "pipelines/kinds/inverse/run.h"
+#include "pipelines/kinds/inverse/scene.h"
 
 #include <fmt/format.h>
 

@@ -6,6 +6,8 @@
 
 #include "calibrate/inverse_search.h"
 #include "pipelines/kinds/soft_particle/scene.h"
+#include "pipelines/run/findings.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -45,5 +47,12 @@ SoftParticleSpec spec_at(const InverseSetup& setup, const std::vector<double>& u
 
 /// Throws BadInput: nothing to search, ranges that cannot be drawn, a target without points, more...
 InverseSetup read_inverse(const Scene& scene);
+
+/// Searches, measures once more at the answer with other packings, writes measurements.h5 (of that), evaluations.csv,
+/// summary.json and the report. Status 3 when the target is not reached.
+SceneKind inverse_kind();
+
+/// What follows from the scene without running it.
+void check_inverse(const Scene& scene, Findings& out);
 
 }  // namespace softgrain

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "pipelines/kinds/law_table/crowd_check.h"
-#include "pipelines/kinds/law_table/run.h"
 #include "pipelines/kinds/law_table/scene.h"
 
 namespace softgrain {

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/law_table/run.h"
+#include "pipelines/kinds/law_table/scene.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include "pipelines/kinds/law_table/crowd_plan.h"
 #include "pipelines/kinds/law_table/crowd_stage.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
-#include "pipelines/kinds/law_table/scene.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 

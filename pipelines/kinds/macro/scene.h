@@ -8,6 +8,7 @@
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 #include "pipelines/law/named_laws.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -56,5 +57,9 @@ MacroScene read_macro_scene(const Scene& scene, const std::string& law);
 
 /// The scene without its law, whatever it names: twins are not held against what the law says. Throws BadInput.
 MacroScene read_macro_scene_alone(const Scene& scene);
+
+/// Runs all samples by law, in our engine or in LAMMPS, and the twins; writes macro.h5, macro_initial.h5, the kept
+/// states, summary.json and the report. Status not_usable when a curve is not usable or carries no stress.
+SceneKind macro_kind();
 
 }  // namespace softgrain

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "pipelines/kinds/macro/check.h"
-#include "pipelines/kinds/macro_comparison/run.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/soft_particle/check.h"
 

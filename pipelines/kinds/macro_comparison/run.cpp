@@ -1,4 +1,4 @@
-#include "pipelines/kinds/macro_comparison/run.h"
+#include "pipelines/kinds/macro_comparison/scene.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include "macrosim/constructed_packing.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/kinds/macro/stage.h"
-#include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/run_summary.h"
 #include "pipelines/run/text_table.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipelines/kinds/macro/scene.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -26,5 +27,12 @@ struct MacroComparisonSetup {
 /// Reads [material], [packing], [law], [macro] and every [[scene]], whose keys replace those of [macro]. Throws
 /// BadInput, FileTrouble.
 MacroComparisonSetup read_macro_comparison(const Scene& scene);
+
+/// Runs all scenes and writes macro_SCENE.h5, macro_initial_SCENE.h5, comparison.json, table.md, table.csv,
+/// summary.json and the report.
+SceneKind macro_comparison_kind();
+
+/// What every scene asks of its laws, and the time of all. Throws BadInput, FileTrouble.
+void check_macro_comparison(const Scene& scene, Findings& out);
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-#include "pipelines/kinds/particles/run.h"
+#include "pipelines/kinds/particles/scene.h"
 
 #include <filesystem>
 #include <utility>
@@ -9,7 +9,6 @@
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/export/xdmf.h"
-#include "pipelines/kinds/particles/check.h"
 #include "pipelines/kinds/particles/summary.h"
 #include "pipelines/run/run_summary.h"
 

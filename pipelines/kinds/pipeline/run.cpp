@@ -1,4 +1,4 @@
-#include "pipelines/kinds/pipeline/run.h"
+#include "pipelines/kinds/pipeline/scene.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/stage.h"
-#include "pipelines/kinds/pipeline/scene.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/law/law_json.h"

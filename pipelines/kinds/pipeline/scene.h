@@ -8,6 +8,7 @@
 #include "common/io/scene.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -20,5 +21,9 @@ struct PipelineSetup {
 
 /// Reads a scene of kind "pipeline" to the last key. Throws BadInput.
 PipelineSetup read_pipeline_setup(const Scene& scene);
+
+/// Writes measurements.h5, law.toml, law.h5, macro.h5, macro_initial.h5, summary.json and the report. Status not_usable
+/// when points did not converge, a law is not good, or a curve is not usable.
+SceneKind pipeline_kind();
 
 }  // namespace softgrain

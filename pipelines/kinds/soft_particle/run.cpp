@@ -1,4 +1,4 @@
-#include "pipelines/kinds/soft_particle/run.h"
+#include "pipelines/kinds/soft_particle/scene.h"
 
 #include <fmt/format.h>
 

@@ -8,6 +8,7 @@
 #include "common/io/scene.h"
 #include "microsim/measure.h"
 #include "microsim/protocol.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -62,5 +63,9 @@ SoftParticleScene read_soft_particle_scene(const Scene& scene);
 
 /// The protocol of a name.
 std::unique_ptr<Protocol> make_protocol(const MeasureSetup& setup, Relaxation relaxation);
+
+/// Runs a scene of kind "soft-particle"; writes measurements.h5, summary.json and report.html.
+/// Status not_usable when a recorded point did not converge under its own criterion.
+SceneKind soft_particle_kind();
 
 }  // namespace softgrain

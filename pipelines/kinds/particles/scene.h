@@ -1,8 +1,9 @@
-// What follows from a scene of kind "particles" before it runs.
+// A scene of kind "particles": what runs it, and what follows from it before.
 #pragma once
 
 #include "microsim/particles/particles_scene.h"
 #include "pipelines/run/findings.h"
+#include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
 
@@ -10,5 +11,9 @@ namespace softgrain {
 /// memory, disk, expected time from a short trial of the loop; and what to mind.
 template <int D>
 void check_particles(const ParticlesSceneOf<D>& scene, Findings& out);
+
+/// Runs a scene of kind "particles"; writes run.h5 and summary.json, checkpoints on the way.
+/// Status not_usable when a particle was lost or the motion diverged (both files are written and marked).
+SceneKind particles_kind();
 
 }  // namespace softgrain
