@@ -113,7 +113,7 @@ System3 crowd(const AnyLaw& law, bool periodic) {
   const auto places = shaken_lattice<3>({{0.5, 0.5, 0.5}}, 0.24, 4, 9);
   const bool walls = !periodic && !std::holds_alternative<SoftContact>(law);
   for (const Vec3& x : places)
-    add_grain(s.particles, solid_sphere<3>(x, 0.11 + 0.04 * random.uniform(), 2500.0, walls ? 64 : -1));
+    add_grain(s.particles, test_sphere<3>(x, 0.11 + 0.04 * random.uniform(), 2500.0, walls ? 64 : -1));
   if (periodic) {
     s.cell = box_cell<3>({{0.96, 0.96, 0.96}}, {true, true, true});
     s.cell.edges[0][1] = 0.3;

@@ -17,7 +17,7 @@ namespace {
 using test::expect_same_state;
 using test::glass;
 using test::hertz_system;
-using test::solid_sphere;
+using test::test_sphere;
 
 constexpr double kRadius = 0.01;
 
@@ -44,7 +44,7 @@ RelaxationResult relax(System3& s, double tolerance, std::int64_t max_passes = 2
 TEST(DampedRelaxation, AGrainBetweenPlanesGoesToTheMiddle) {
   for (const double start : {0.0093, 0.0097, 0.0099}) {
     System3 s = hertz_system<3>(0.3, 1.0, false);
-    add_grain(s.particles, solid_sphere<3>({{0.0, 0.0, start}}, kRadius, 2500.0));
+    add_grain(s.particles, test_sphere<3>({{0.0, 0.0, start}}, kRadius, 2500.0));
     add_floor_and_ceiling(s, 0.0192);
     const RelaxationResult result = relax(s, 1e-10);
     EXPECT_EQ(result.end, RelaxationEnd::converged);
@@ -57,7 +57,7 @@ TEST(DampedRelaxation, AGrainBetweenPlanesGoesToTheMiddle) {
 TEST(DampedRelaxation, UnderGravityTheFloorCarriesTheWeight) {
   System3 s = hertz_system<3>(0.0, 1.0, false);
   s.gravity[2] = -9.81;
-  const NewBody<3> grain = solid_sphere<3>({{0.0, 0.0, 0.0101}}, kRadius, 2500.0);
+  const NewBody<3> grain = test_sphere<3>({{0.0, 0.0, 0.0101}}, kRadius, 2500.0);
   add_grain(s.particles, grain);
   add_floor_and_ceiling(s, 1.0);
   const double weight = 9.81 * grain.mass;
@@ -128,7 +128,7 @@ TEST(DampedRelaxation, ACappedRunSaysSo) {
 
 TEST(DampedRelaxation, WithoutContactsThereIsNothingToDo) {
   System3 s = hertz_system<3>(0.3, 1.0, false);
-  add_grain(s.particles, solid_sphere<3>({{0.0, 0.0, 0.5}}, kRadius, 2500.0));
+  add_grain(s.particles, test_sphere<3>({{0.0, 0.0, 0.5}}, kRadius, 2500.0));
   add_floor_and_ceiling(s, 1.0);
   const RelaxationResult result = relax(s, 1e-6);
   EXPECT_EQ(result.end, RelaxationEnd::converged);
@@ -138,7 +138,7 @@ TEST(DampedRelaxation, WithoutContactsThereIsNothingToDo) {
 
 TEST(DampedRelaxation, ABrokenStateIsCalledDiverged) {
   System3 s = hertz_system<3>(0.0, 1.0, false);
-  add_grain(s.particles, solid_sphere<3>({{0.0, 0.0, 0.0095}}, kRadius, 2500.0));
+  add_grain(s.particles, test_sphere<3>({{0.0, 0.0, 0.0095}}, kRadius, 2500.0));
   add_floor_and_ceiling(s, 1.0);
   s.gravity[2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(relax(s, 1e-6).end, RelaxationEnd::diverged);
@@ -148,7 +148,7 @@ TEST(DampedRelaxation, ABrokenStateIsCalledDiverged) {
 System3 crowd() {
   System3 s = hertz_system<3>(0.3, 1.0, false);
   for (const Vec3& x : test::shaken_lattice<3>({}, 0.0195, 16, 1))
-    add_grain(s.particles, solid_sphere<3>(x, kRadius, 2500.0));
+    add_grain(s.particles, test_sphere<3>(x, kRadius, 2500.0));
   NewBody<3> plane;
   plane.x[2] = -0.155;
   add_plane(s.particles, plane, Vec3{{0.0, 0.0, 1.0}});

@@ -43,7 +43,7 @@ System3 gas() {
   System3 s = hertz_system<3>(0.0, 1.0, false);
   RandomStream random(11, RandomPurpose::test, 0);
   for (const Vec3& x : shaken_lattice<3>({}, 0.33, 3, 4)) {
-    NewBody<3> grain = solid_sphere<3>(x, 0.14, 2500.0, 27);
+    NewBody<3> grain = test_sphere<3>(x, 0.14, 2500.0, 27);
     for (int k = 0; k < 3; ++k) grain.velocity[k] = 2.0 * random.uniform() - 1.0;
     add_grain(s.particles, grain);
   }

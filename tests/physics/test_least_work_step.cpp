@@ -19,7 +19,7 @@ namespace {
 using test::expect_same_state;
 using test::glass;
 using test::hertz_system;
-using test::solid_sphere;
+using test::test_sphere;
 
 constexpr double kGrainRadius = 0.01;
 
@@ -49,7 +49,7 @@ void add_planes(System3& s, double gap) {
 /// A grain between two planes, overlapping each by 1e-4 m.
 System3 squeezed_grain(double friction) {
   System3 s = hertz_system<3>(friction, 1.0, false);
-  add_grain(s.particles, solid_sphere<3>({{0.0, 0.0, 0.0099}}, kGrainRadius, 2500.0));
+  add_grain(s.particles, test_sphere<3>({{0.0, 0.0, 0.0099}}, kGrainRadius, 2500.0));
   add_planes(s, 0.0198);
   std::vector<Vec3> none;
   EXPECT_EQ(LeastWorkStep(tight()).advance(s, none).end, RelaxationEnd::converged);
@@ -83,7 +83,7 @@ TEST(LeastWorkStep, TheCoulombLimitIsThatOfTheCurrentNormalForce) {
   const double friction = 0.3;
   for (const double slide : {1e-6, 1e-4}) {
     System3 s = hertz_system<3>(friction, 1.0, false);
-    NewBody<3> driven = solid_sphere<3>({{0.0, 0.0, 0.0099}}, kGrainRadius, 0.0);
+    NewBody<3> driven = test_sphere<3>({{0.0, 0.0, 0.0099}}, kGrainRadius, 0.0);
     driven.mass = 0.0;
     driven.inertia = 0.0;
     add_grain(s.particles, driven);

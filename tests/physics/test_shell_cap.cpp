@@ -47,7 +47,7 @@ TEST(ShellCap, AGrainInTheWedgeStays) {
   for (const double friction : {0.0, 0.3, 1.0}) {
     System3 s = hertz_system<3>(friction, 0.5, true);
     const double r = 0.02;
-    add_grain(s.particles, solid_sphere<3>({{std::sqrt(0.978 * 0.978 - 0.57 * 0.57), 0.0, -0.57}}, r, 2500.0, 1));
+    add_grain(s.particles, test_sphere<3>({{std::sqrt(0.978 * 0.978 - 0.57 * 0.57), 0.0, -0.57}}, r, 2500.0, 1));
     NewBody<3> shell;
     shell.r = 1.0;
     add_shell(s.particles, shell);

@@ -37,7 +37,7 @@ System3 groove_system(const Groove& groove) {
   constexpr double kAngle = 1.0;
   System3 s = hertz_system<3>(groove.mu, 0.5, false);
   const double h = groove.orbit();
-  add_grain(s.particles, solid_sphere<3>({{0.0, h * std::sin(kAngle), h * std::cos(kAngle)}}, kSmall, 2500.0));
+  add_grain(s.particles, test_sphere<3>({{0.0, h * std::sin(kAngle), h * std::cos(kAngle)}}, kSmall, 2500.0));
   for (const double side : {-1.0, 1.0}) {
     NewBody<3> large;
     large.r = groove.ratio * kSmall;

@@ -25,7 +25,7 @@ System3 pair_of_springs(double tangential, double damping) {
   s.materials.resize(1);
   s.laws = LawSet(1);
   s.laws.set(0, 0, law);
-  for (const double x : {0.0, 1.9 * kRadius}) add_grain(s.particles, solid_sphere<3>({{x, 0.0, 0.0}}, kRadius, 2500.0));
+  for (const double x : {0.0, 1.9 * kRadius}) add_grain(s.particles, test_sphere<3>({{x, 0.0, 0.0}}, kRadius, 2500.0));
   return s;
 }
 
@@ -73,7 +73,7 @@ System3 lattice(double overlap, double friction, double restitution) {
       const int cell[3] = {n % 3, n / 3 % 3, n / 9};
       Vec3 x;
       for (int k = 0; k < 3; ++k) x[k] = edge * (cell[k] + b[k]);
-      NewBody<3> grain = solid_sphere(x, kRadius, 2500.0);
+      NewBody<3> grain = test::test_sphere(x, kRadius, 2500.0);
       for (double& v : grain.velocity.v) v = 1e-5 * (random.uniform() - 0.5);
       for (double& w : grain.spin.v) w = 1e-3 * (random.uniform() - 0.5);
       add_grain(s.particles, grain);

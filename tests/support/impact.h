@@ -46,15 +46,15 @@ inline System3 impact_system(const ImpactSetup& setup, const AnyLaw& law, const 
   s.laws.set(0, 0, law);
   const double gap = 1e-6 * setup.radius;
   const double rp = setup.ratio * setup.radius;
-  NewBody<3> ball = solid_sphere<3>({{0.0, 0.0, setup.radius + gap}}, setup.radius, material.density);
+  NewBody<3> ball = test_sphere<3>({{0.0, 0.0, setup.radius + gap}}, setup.radius, material.density);
   ball.velocity = {{setup.sliding_speed, 0.0, -setup.speed}};
   ball.spin = setup.spin;
   if (setup.partner == Partner::shell_inside) ball.shell = 1;
   add_grain(s.particles, ball);
   NewBody<3> other;
-  if (setup.partner == Partner::sphere) other = solid_sphere<3>({{0.0, 0.0, -rp}}, rp, material.density);
+  if (setup.partner == Partner::sphere) other = test_sphere<3>({{0.0, 0.0, -rp}}, rp, material.density);
   if (setup.partner == Partner::shell_inside) {
-    if (setup.free_shell) other = solid_sphere<3>({}, rp, material.density);
+    if (setup.free_shell) other = test_sphere<3>({}, rp, material.density);
     other.x = {{0.0, 0.0, rp}};
     other.r = rp;
   }

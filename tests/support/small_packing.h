@@ -15,7 +15,7 @@
 namespace softgrain::test {
 
 template <int D>
-NewBody<D> solid_sphere(const Vec<D>& x, double r, double density, Slot shell = -1) {
+NewBody<D> test_sphere(const Vec<D>& x, double r, double density, Slot shell = -1) {
   NewBody<D> body;
   body.x = x;
   body.r = r;
@@ -62,7 +62,7 @@ System<D> shell_and_plane_system(double friction, double restitution, bool resca
   s.gravity[D - 1] = -9.81;
   RandomStream random(7, RandomPurpose::test, 1);
   const auto add = [&](const Vec<D>& x, Slot shell) {
-    NewBody<D> grain = solid_sphere(x, 0.12 + 0.03 * random.uniform(), 2500.0, shell);
+    NewBody<D> grain = test_sphere(x, 0.12 + 0.03 * random.uniform(), 2500.0, shell);
     for (int k = 0; k < D; ++k) grain.velocity[k] = random.uniform() - 0.5;
     for (double& w : grain.spin.v) w = 4.0 * random.uniform() - 2.0;
     add_grain(s.particles, grain);

@@ -42,7 +42,7 @@ Particles<D> cloud(const Cell<D>& cell, int n, double ratio, std::uint64_t seed)
     Vec<D> fractions;
     for (double& f : fractions.v) f = random.uniform();
     const double r = k < 3 ? 1.0 : std::pow(ratio, -random.uniform());
-    add_grain(p, solid_sphere<D>(cell.edges * fractions, r, 1.0));
+    add_grain(p, test_sphere<D>(cell.edges * fractions, r, 1.0));
   }
   return p;
 }
@@ -81,10 +81,10 @@ TEST(Neighbours, DegenerateArrangements) {
   const Cell<3> cell = open_cell<3>();
   Particles<3> p;
   EXPECT_TRUE(candidate_pairs(p, cell, {}).empty());
-  add_grain(p, solid_sphere<3>({}, 1.0, 1.0));
+  add_grain(p, test_sphere<3>({}, 1.0, 1.0));
   EXPECT_TRUE(candidate_pairs(p, cell, {0.1}).empty());
   for (int k = 1; k < 40; ++k)
-    add_grain(p, solid_sphere<3>({{1.9 * k, 0.0, 0.0}}, k % 2 == 0 ? 1.0 : 1e-3, 1.0));  // a line
+    add_grain(p, test_sphere<3>({{1.9 * k, 0.0, 0.0}}, k % 2 == 0 ? 1.0 : 1e-3, 1.0));  // a line
   const std::vector<double> skin(40, 0.05);
   EXPECT_EQ(sorted(candidate_pairs(p, cell, skin)), sorted(candidate_pairs_brute_force(p, cell, skin)));
 }
@@ -150,7 +150,7 @@ TEST(Neighbours, TheSearchSurvivesPlacesOutsideOfEveryCell) {
 double search_seconds(Slot far, double place) {
   Particles<3> p;
   for (int n = 0; n < 27000; ++n)
-    add_grain(p, solid_sphere<3>({{2.0 * (n % 30), 2.0 * (n / 30 % 30), 2.0 * (n / 900)}}, 1.0, 1.0));
+    add_grain(p, test_sphere<3>({{2.0 * (n % 30), 2.0 * (n / 30 % 30), 2.0 * (n / 900)}}, 1.0, 1.0));
   for (Slot i = 0; i < far; ++i) p.sphere[static_cast<std::size_t>(100 * i)].x = {{place * (1.0 + i), -place, 1.0}};
   const std::vector<double> skin = default_skin(p);
   double best = HUGE_VAL;
@@ -186,8 +186,8 @@ TEST(Neighbours, GrainsComeHomeFromAfar) {
 TEST(Neighbours, ANarrowPeriodicCellIsRefused) {
   const Cell<3> cell = box_cell<3>({{3.9, 10.0, 10.0}}, {true, true, true});
   Particles<3> p;
-  add_grain(p, solid_sphere<3>({{1.0, 1.0, 1.0}}, 1.0, 1.0));
-  add_grain(p, solid_sphere<3>({{1.0, 5.0, 1.0}}, 1.0, 1.0));
+  add_grain(p, test_sphere<3>({{1.0, 1.0, 1.0}}, 1.0, 1.0));
+  add_grain(p, test_sphere<3>({{1.0, 5.0, 1.0}}, 1.0, 1.0));
   EXPECT_THROW((void)candidate_pairs(p, cell, {0.0, 0.0}), BadInput);
 }
 
@@ -230,7 +230,7 @@ void shear_and_watch(double rate) {
   Vec<D> middle;
   for (double& x : middle.v) x = 0.6;
   for (const Vec<D>& x : shaken_lattice<D>(middle, 0.3, 4, 5)) {
-    NewBody<D> grain = solid_sphere<D>(x, 0.05 + 0.08 * random.uniform(), 2500.0);
+    NewBody<D> grain = test_sphere<D>(x, 0.05 + 0.08 * random.uniform(), 2500.0);
     for (double& v : grain.velocity.v) v = 8.0 * random.uniform() - 4.0;
     add_grain(s.particles, grain);
   }
@@ -258,8 +258,8 @@ TEST(Neighbours, NoImageIsMissedWhileACellBesideAWallShrinks) {
   for (const double start : {1.3, 1.4, 1.5}) {
     System3 s = hertz_system<3>(0.0, 1.0, false);
     s.cell = box_cell<3>({{2.0, 2.0, 2.0}}, {true, true, false});
-    add_grain(s.particles, solid_sphere<3>({{0.15, 0.5, 1.0}}, 0.1, 2500.0));
-    add_grain(s.particles, solid_sphere<3>({{start, 0.5, 1.0}}, 0.1, 2500.0));
+    add_grain(s.particles, test_sphere<3>({{0.15, 0.5, 1.0}}, 0.1, 2500.0));
+    add_grain(s.particles, test_sphere<3>({{start, 0.5, 1.0}}, 0.1, 2500.0));
     NewBody<3> plane;
     add_plane(s.particles, plane, Vec3{{0.0, 0.0, 1.0}});
     bool met = false;
@@ -279,8 +279,8 @@ TEST(Neighbours, NoContactIsMissedWhileGrainsFollowAShrinkingCell) {
   for (const double gap : {0.03, 0.05, 0.1}) {
     System3 s = hertz_system<3>(0.0, 1.0, false);
     s.cell = box_cell<3>({{2.0, 2.0, 2.0}}, {true, true, true});
-    add_grain(s.particles, solid_sphere<3>({{0.5, 0.5, 1.0}}, 0.1, 2500.0));
-    add_grain(s.particles, solid_sphere<3>({{0.7 + gap, 0.5, 1.0}}, 0.1, 2500.0));
+    add_grain(s.particles, test_sphere<3>({{0.5, 0.5, 1.0}}, 0.1, 2500.0));
+    add_grain(s.particles, test_sphere<3>({{0.7 + gap, 0.5, 1.0}}, 0.1, 2500.0));
     const auto apart = [&] { return s.particles.sphere[1].x[0] - s.particles.sphere[0].x[0]; };
     update_neighbours(s);
     ASSERT_EQ(s.contacts.size(), 0);
@@ -300,7 +300,7 @@ TEST(Neighbours, ATiltedCellIsReplacedByTheSameLattice) {
   s.cell = cell_of<3>(Box::periodic, 1.2);
   const Matrix<3> before{{{{{1.2, 0.9, 2.9}}, {{0.0, 1.2, 1.7}}, {{0.0, 0.0, 1.2}}}}};
   s.cell.edges = before;
-  add_grain(s.particles, solid_sphere<3>({{0.1, 0.2, 0.3}}, 0.1, 1.0));
+  add_grain(s.particles, test_sphere<3>({{0.1, 0.2, 0.3}}, 0.1, 1.0));
   rebuild_neighbours(s);
   for (int c = 0; c < 3; ++c) {
     Vec3 edge;
@@ -315,8 +315,8 @@ TEST(Neighbours, ATiltedCellIsReplacedByTheSameLattice) {
 TEST(Neighbours, HistorySurvivesARebuildAndAWrap) {
   System3 s = hertz_system<3>(0.5, 1.0, true);
   s.cell = cell_of<3>(Box::periodic, 1.0);
-  add_grain(s.particles, solid_sphere<3>({{0.92, 0.5, 0.5}}, 0.1, 1.0));
-  add_grain(s.particles, solid_sphere<3>({{0.109, 0.5, 0.5}}, 0.1, 1.0));  // touch through the boundary
+  add_grain(s.particles, test_sphere<3>({{0.92, 0.5, 0.5}}, 0.1, 1.0));
+  add_grain(s.particles, test_sphere<3>({{0.109, 0.5, 0.5}}, 0.1, 1.0));  // touch through the boundary
   s.particles.velocity[0] = {{0.0, 0.3, -0.2}};
   force_pass(s, 1e-4);
   s.contacts.commit();
@@ -336,8 +336,8 @@ TEST(Neighbours, HistorySurvivesARebuildAndAWrap) {
 
 TEST(Neighbours, HistoryIsLostOnSeparation) {
   System3 s = hertz_system<3>(0.5, 1.0, true);
-  add_grain(s.particles, solid_sphere<3>({}, 0.1, 1.0));
-  add_grain(s.particles, solid_sphere<3>({{0.199, 0.0, 0.0}}, 0.1, 1.0));
+  add_grain(s.particles, test_sphere<3>({}, 0.1, 1.0));
+  add_grain(s.particles, test_sphere<3>({{0.199, 0.0, 0.0}}, 0.1, 1.0));
   s.particles.velocity[0] = {{0.0, 0.3, -0.2}};
   force_pass(s, 1e-4);
   s.contacts.commit();
@@ -358,7 +358,7 @@ System<2> distant_disks(double gap) {
   s.laws = LawSet(1);
   s.laws.set(0, 0, CohesiveDisk<false, false>{100.0, 0.0, 0.0, 0.0, 1.0, 4.0, 0.0, 0.0});
   s.cell = box_cell<2>({{30.0, 30.0}}, {true, true});
-  for (const double x : {10.0, 12.0 + gap}) add_grain(s.particles, solid_sphere<2>({{x, 15.0}}, 1.0, 1.0));
+  for (const double x : {10.0, 12.0 + gap}) add_grain(s.particles, test_sphere<2>({{x, 15.0}}, 1.0, 1.0));
   rebuild_neighbours(s);
   return s;
 }

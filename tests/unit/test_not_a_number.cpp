@@ -38,7 +38,7 @@ TEST(NotANumber, InAVelocityEndsTheStep) {
 
 TEST(NotANumber, InAPlaceEndsTheNextSteps) {
   System3 s = hertz_system<3>(0.3, 0.8, false);
-  for (const Vec3& x : shaken_lattice<3>({}, 0.19, 3, 1)) add_grain(s.particles, test::solid_sphere(x, 0.1, 2500.0));
+  for (const Vec3& x : shaken_lattice<3>({}, 0.19, 3, 1)) add_grain(s.particles, test::test_sphere(x, 0.1, 2500.0));
   VelocityVerlet<3> integrator(1e-5);
   integrator.initialise(s);
   s.particles.sphere[13].x[0] = kNaN;
@@ -76,7 +76,7 @@ TEST(NotANumber, InAForceIsTheResidualOfAPack) {
 /// A wall that its load moves is no grain: only its guard sees where it is.
 TEST(NotANumber, InTheWayOfAWallStopsTheRun) {
   System3 s = hertz_system<3>(0.3, 0.8, false);
-  add_grain(s.particles, test::solid_sphere<3>({}, 0.1, 2500.0));
+  add_grain(s.particles, test::test_sphere<3>({}, 0.1, 2500.0));
   NewBody<3> lid;
   lid.x = {{0.0, 0.0, 0.2}};
   lid.mass = 1.0;

@@ -104,7 +104,7 @@ System<D> crowd(const Pairing& laws) {
   Vec<D> middle;
   for (double& x : middle.v) x = 0.6;
   for (const Vec<D>& x : shaken_lattice<D>(middle, 0.2, 6, 5)) {
-    NewBody<D> grain = solid_sphere<D>(x, 0.08 + 0.05 * random.uniform(), 2500.0);
+    NewBody<D> grain = test_sphere<D>(x, 0.08 + 0.05 * random.uniform(), 2500.0);
     for (double& v : grain.velocity.v) v = 0.4 * (2.0 * random.uniform() - 1.0);
     for (double& w : grain.spin.v) w = 4.0 * (2.0 * random.uniform() - 1.0);
     grain.material = random.uniform() < 0.5 ? 0 : 1;
@@ -213,8 +213,8 @@ TEST(RenamedPairs, OneByOneAndBack) {
   s.materials = {glass()};
   s.laws = LawSet(1);
   s.laws.set(0, 0, law);
-  add_grain(s.particles, solid_sphere<2>({{0.0, 0.0}}, 0.1, 2500.0));
-  add_grain(s.particles, solid_sphere<2>({{0.15, 0.0}}, 0.1, 2500.0));
+  add_grain(s.particles, test_sphere<2>({{0.0, 0.0}}, 0.1, 2500.0));
+  add_grain(s.particles, test_sphere<2>({{0.15, 0.0}}, 0.1, 2500.0));
   s.particles.spin[0][0] = 3.0;
   force_pass(s, 1e-3, History::advance);
   const double turned = s.contacts.memory[0];

@@ -26,7 +26,7 @@ System<D> sheared_crowd() {
   Vec<D> middle;
   for (double& x : middle.v) x = 0.6;
   for (const Vec<D>& x : shaken_lattice<D>(middle, 0.2, 6, 5)) {
-    NewBody<D> grain = solid_sphere<D>(x, 0.03 + 0.09 * random.uniform(), 2500.0);
+    NewBody<D> grain = test_sphere<D>(x, 0.03 + 0.09 * random.uniform(), 2500.0);
     for (double& v : grain.velocity.v) v = 2.0 * random.uniform() - 1.0;
     add_grain(s.particles, grain);
   }
@@ -140,7 +140,7 @@ TEST(VelocityVerlet, AListFollowsTheFlowOfTheCell) {
   s.cell = box_cell<3>({{20.0, 20.0, 20.0}}, {true, true, true});
   s.cell.velocity_gradient[0][1] = 1.0;
   for (const Vec3& x : shaken_lattice<3>({{10.0, 10.0, 10.0}}, 2.0, 10, 3)) {
-    NewBody<3> grain = solid_sphere<3>(x, 0.4, 2500.0);
+    NewBody<3> grain = test_sphere<3>(x, 0.4, 2500.0);
     grain.velocity[0] = x[1];
     add_grain(s.particles, grain);
   }

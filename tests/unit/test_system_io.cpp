@@ -62,7 +62,7 @@ TEST(SystemIo, RestartIsBitwiseInAShearedPeriodicCell) {
   s.cell.velocity_gradient[0][1] = 3.0;
   RandomStream random(3, RandomPurpose::test, 2);
   for (const Vec3& x : shaken_lattice<3>({{0.6, 0.6, 0.6}}, 0.3, 4, 5)) {
-    NewBody<3> grain = solid_sphere<3>(x, 0.13 + 0.02 * random.uniform(), 2500.0);
+    NewBody<3> grain = test_sphere<3>(x, 0.13 + 0.02 * random.uniform(), 2500.0);
     for (int k = 0; k < 3; ++k) grain.velocity[k] = 4.0 * random.uniform() - 2.0;
     add_grain(s.particles, grain);
   }

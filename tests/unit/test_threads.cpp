@@ -21,7 +21,7 @@ System3 large_packing() {
   const auto places = shaken_lattice<3>({}, 0.2, 16, 6);
   const auto shell = static_cast<Slot>(places.size());
   for (std::size_t k = 0; k < places.size(); ++k) {
-    NewBody<3> grain = solid_sphere<3>(places[k], 0.1 + 0.01 * random.uniform(), 2500.0, k % 2 == 0 ? shell : -1);
+    NewBody<3> grain = test_sphere<3>(places[k], 0.1 + 0.01 * random.uniform(), 2500.0, k % 2 == 0 ? shell : -1);
     for (int d = 0; d < 3; ++d) grain.velocity[d] = 2.0 * random.uniform() - 1.0;
     add_grain(s.particles, grain);
   }
