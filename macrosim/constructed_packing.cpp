@@ -5,7 +5,6 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "common/packing/void_filling.h"
 #include "macrosim/preparation.h"
@@ -20,7 +19,7 @@ constexpr double kFilledTogether = 0.44;
 constexpr double kShareTolerance = 0.02;
 
 std::vector<MacroBody> draw_solids(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, RandomPurpose::macro_radii, sample);
+  RandomStream random(seed, kMacroRadii, sample);
   std::vector<MacroBody> bodies(static_cast<std::size_t>(spec.bodies));
   for (MacroBody& b : bodies)
     b.r = power_law_radius(spec.exponent, spec.solid_radius_max, spec.solid_polydispersity, random.uniform());

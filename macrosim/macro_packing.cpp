@@ -4,7 +4,6 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "macrosim/preparation.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 /// Draws bodies one by one, always of the kind that is behind its share of the volume.
 std::vector<MacroBody> draw_bodies(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, RandomPurpose::macro_radii, sample);
+  RandomStream random(seed, kMacroRadii, sample);
   std::vector<MacroBody> bodies;
   double soft = 0.0;
   double all = 0.0;

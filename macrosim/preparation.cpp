@@ -4,7 +4,6 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "common/io/interrupt.h"
@@ -100,7 +99,7 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample, double fraction) {
   double volume = 0.0;
   for (const MacroBody& b : bodies) volume += kSphereVolume * cube(b.r);
-  RandomStream random(seed, RandomPurpose::macro_positions, sample);
+  RandomStream random(seed, kMacroPositions, sample);
   for (; fraction > 0.05; fraction *= 0.8) {
     const double edge = std::cbrt(volume / fraction);
     if (place(bodies, edge, random)) return {{}, {{edge, edge, edge}}, std::move(bodies)};

@@ -6,10 +6,14 @@
 #include <vector>
 
 #include "common/contact/law_set.h"
+#include "common/core/random.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/macro_spec.h"
 
 namespace softgrain {
+
+inline constexpr RandomPurpose kMacroRadii{4};
+inline constexpr RandomPurpose kMacroPositions{5};
 
 /// Inverse cumulative distribution of P(r) ~ r^-b on [rmax/polydispersity, rmax] at u in (0, 1).
 double power_law_radius(double exponent, double rmax, double polydispersity, double u);

@@ -24,13 +24,14 @@ inline constexpr auto words<Tangential> = word_list<Tangential>({{Tangential::no
                                                                  {Tangential::mindlin, "mindlin"},
                                                                  {Tangential::rescaled, "rescaled"}});
 
-using NamedLaw = std::pair<std::string, AnyLaw>;
+/// Name and law.
+using LawFileEntry = std::pair<std::string, AnyLaw>;
 
 /// TOML with one [[law]] per law. Every number is written so that it reads back to the same bits.
-std::string laws_text(const std::vector<NamedLaw>& laws);
+std::string laws_text(const std::vector<LawFileEntry>& laws);
 
 /// The laws of such a text, in its order; `origin` is what messages call it. Throws BadInput.
-std::vector<NamedLaw> parse_laws(const std::string& text, const std::string& origin);
+std::vector<LawFileEntry> parse_laws(const std::string& text, const std::string& origin);
 
 /// The same law for the bodies in the other order.
 AnyLaw mirrored(const AnyLaw& law);

@@ -223,17 +223,17 @@ AnyLaw read_law(Reader& r) {
 
 }  // namespace
 
-std::vector<NamedLaw> parse_laws(const std::string& text, const std::string& origin) {
+std::vector<LawFileEntry> parse_laws(const std::string& text, const std::string& origin) {
   const toml::table table = parse_toml(text, origin);
   if (table["softgrain_laws"].value<std::int64_t>() != 1)
     throw BadInput(origin + ": no laws file of softgrain (softgrain_laws = 1 is missing)");
   const toml::array* laws = table["law"].as_array();
   if (laws == nullptr || laws->empty()) throw BadInput(origin + ": holds no [[law]]");
-  std::vector<NamedLaw> out;
+  std::vector<LawFileEntry> out;
   for (const auto& node : *laws) {
     if (!node.is_table()) throw BadInput(origin + ": law must be a table");
     Reader reader(*node.as_table(), origin);
-    const auto same = [&](const NamedLaw& other) { return other.first == reader.name; };
+    const auto same = [&](const LawFileEntry& other) { return other.first == reader.name; };
     if (std::any_of(out.begin(), out.end(), same)) reader.fail("name", "is there twice");
     AnyLaw law = read_law(reader);
     reader.finish();

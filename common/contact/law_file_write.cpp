@@ -134,7 +134,7 @@ AnyLaw mirror(SoftCrowd<kCrowd, kUnloading> law) {
 
 }  // namespace
 
-std::string laws_text(const std::vector<NamedLaw>& laws) {
+std::string laws_text(const std::vector<LawFileEntry>& laws) {
   std::string out =
       "# Contact laws of softgrain, numbers as the contact loop takes them [SI].\n"
       "softgrain_laws = 1\n";

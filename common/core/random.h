@@ -10,22 +10,16 @@
 
 namespace softgrain {
 
-/// What a stream is for; streams of different purpose never share numbers.
+/// What a stream is for; streams of different purpose never share numbers. Who needs one more declares
+/// `constexpr RandomPurpose kName{number}` of a number of its own: the test of this header looks that no two are the
+/// same.
 enum class RandomPurpose : std::uint64_t {
   radii = 1,
   positions = 2,
   bootstrap = 3,
-  macro_radii = 4,
-  macro_positions = 5,
   test = 6,
   rotation = 7,
-  directions = 8,
-  grain_box_radii = 20,
-  grain_box_elasticity = 21,
-  grain_box_positions = 22,
-  powder_diameters = 30,
-  powder_positions = 31,
-  powder_velocities = 32
+  directions = 8
 };
 
 /// A sequence of independent numbers keyed by (seed, purpose, index).

@@ -122,7 +122,7 @@ std::string numbers_of(const LawTableEntry& entry, Crowd form);
 struct LawTable {
   int schema = 1;
   std::vector<LawTableEntry> entries;  ///< by solid fraction, ascending
-  std::string table_id{};              ///< of the .h5 that belongs to it; empty in files of before
+  std::string table_id{};              ///< of the .h5 that belongs to it; may be empty
   std::vector<std::string> notes{};    ///< of reading: what of the .h5 does not go with an edited table
 };
 
@@ -133,7 +133,7 @@ std::string law_table_text(const LawTable& table, const Provenance& provenance, 
 /// Reads the card. Throws BadInput with file:line for wrong content, FileTrouble for files.
 LawTable load_law_table(const std::string& toml_path);
 
-/// The entry of the packing that the table was made for. Tables of before do not say it: then the one that was measured
+/// The entry of the packing that the table was made for. Where no entry says so, the one that was measured
 /// with most configurations, of those the one of most packings.
 const LawTableEntry& main_entry(const LawTable& table);
 

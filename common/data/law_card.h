@@ -103,7 +103,7 @@ struct LawCard {
   std::string relaxation;                 ///< which relaxation measured it, or kExperiment
   std::string intervals = kFromPackings;  ///< where the 95 % intervals come from, of all pairs together
   std::vector<PairLaw> pairs;
-  std::string table_id{};            ///< of the .h5 that belongs to the card; empty in files of before
+  std::string table_id{};            ///< of the .h5 that belongs to the card; may be empty
   std::vector<std::string> notes{};  ///< of reading: what of the .h5 does not go with an edited card
 
   [[nodiscard]] const PairLaw* find(PairKind kind) const;

@@ -49,7 +49,7 @@ inline constexpr auto words<MacroTest> = word_list<MacroTest>({{MacroTest::oedom
                                                                {MacroTest::isotropic, "isotropic"},
                                                                {MacroTest::shear, "shear"}});
 
-/// What a curve starts from; runs that are set side by side should agree in it. Zeros: a file of before.
+/// What a curve starts from; runs that are set side by side should agree in it. Zeros: not known.
 struct MacroStart {
   double radius_min = 0.0;      ///< of the bodies [m]
   double radius_max = 0.0;      ///< [m]
@@ -82,7 +82,7 @@ struct MacroCurve {
   std::vector<double> stress_axial_contacts;  ///< from the contact sum, a check on the walls
   std::vector<double> coordination;           ///< contacts per body (engine "law": force-carrying)
   std::vector<double> residual;               ///< largest net force over mean contact force
-  // The rest may be empty: files of before did not record it.
+  // The rest may be empty: not recorded.
   std::vector<double> stress_x;             ///< from wall forces
   std::vector<double> stress_y;             ///< from wall forces
   std::vector<double> stress_deviator;      ///< axial (z) minus x

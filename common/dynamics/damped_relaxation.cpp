@@ -27,14 +27,9 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
   const auto& p = s.particles;
   inverse_mass_.assign(static_cast<std::size_t>(p.size()), 0.0);
   inverse_inertia_.assign(static_cast<std::size_t>(p.size()), 0.0);
-  double sum = 0.0;
-  double radii = 0.0;
-  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
-    if (!(p.inverse_mass[u] > 0.0)) continue;
-    sum += stiffness_.translation[u];
-    radii += p.sphere[u].r;
-  }
-  const PseudoMasses masses(sum, radii, options_.least_stiffness, sum > 0.0 ? 0.0 : worst_net_force(p));
+  const StiffnessSums sums(p, stiffness_);
+  const PseudoMasses masses(sums.stiffness, sums.radii, options_.least_stiffness,
+                            sums.stiffness > 0.0 ? 0.0 : worst_net_force(p));
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     const double r = p.sphere[u].r;
     if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(stiffness_.translation[u], r);

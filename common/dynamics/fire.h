@@ -47,6 +47,23 @@ struct Fire {
   }
 };
 
+/// Sums over the bodies that forces move.
+struct StiffnessSums {
+  double stiffness = 0.0;  ///< of their contacts [N/m]
+  double radii = 0.0;      ///< [m]
+
+  template <class Particles, class Stiffness>
+  StiffnessSums(const Particles& p, const Stiffness& of) {
+    for (std::size_t u = 0; u < p.inverse_mass.size(); ++u) {
+      if (!(p.inverse_mass[u] > 0.0)) continue;
+      stiffness += of.translation[u];
+      radii += p.sphere[u].r;
+    }
+  }
+  /// A share of the mean stiffness per size [Pa]; zero where no body moves.
+  [[nodiscard]] double per_radius(double share) const { return radii > 0.0 ? share * stiffness / radii : 0.0; }
+};
+
 /// Every body weighs as much as its contacts are stiff, so that all relax at one rate whatever their size.
 struct PseudoMasses {
   static constexpr std::int64_t kInterval = 10;  ///< passes between two updates of the masses

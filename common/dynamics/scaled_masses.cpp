@@ -2,26 +2,14 @@
 
 #include <algorithm>
 
+#include "common/dynamics/fire.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {
 
 namespace {
 
-constexpr double kLonelyShare = 0.3;
-
-/// Stiffness per radius that bodies without contacts count with [N/m^2].
-template <int D>
-double lonely_stiffness(const Particles<D>& p, const BodyStiffness& stiffness) {
-  double sum = 0.0;
-  double radii = 0.0;
-  for (std::size_t u = 0; u < stiffness.translation.size(); ++u) {
-    if (!(p.inverse_mass[u] > 0.0)) continue;
-    sum += stiffness.translation[u];
-    radii += p.sphere[u].r;
-  }
-  return radii > 0.0 ? kLonelyShare * sum / radii : 0.0;
-}
+constexpr double kLonelyShare = 0.3;  // of the mean stiffness per radius: what bodies without contacts count with
 
 }  // namespace
 
@@ -33,7 +21,7 @@ ScaledMasses<D>::ScaledMasses(System<D>& system, double dt, double fraction)
   BodyStiffness stiffness;
   force_pass(system, 0.0, stiffness, History::none);
   auto& p = system.particles;
-  const double lonely = lonely_stiffness(p, stiffness);
+  const double lonely = StiffnessSums(p, stiffness).per_radius(kLonelyShare);
   for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
     if (!(inverse_mass_[u] > 0.0)) continue;
     const double k = std::max(stiffness.translation[u], lonely * p.sphere[u].r);

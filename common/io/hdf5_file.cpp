@@ -42,6 +42,11 @@ Handle create_file(const std::string& path) {
 
 }  // namespace
 
+std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 std::string library_message() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, softgrain_note_error, &text);

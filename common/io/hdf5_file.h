@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 namespace softgrain::h5 {
 
 using Shape = std::vector<std::size_t>;
+
+/// The library serves one thread at a time: tasks that run side by side hold this lock around all use of it.
+std::mutex& library_mutex();
 
 /// A group inside an open file. Cheap to copy; keeps the file open.
 class Group {

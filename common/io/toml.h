@@ -7,7 +7,11 @@
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
-#include <cstdint>
+
+/// Found by toml++ before the one of <cmath>: log10(x) where that is a count of digits, 0 elsewhere.
+namespace toml {
+inline double log10(double x) { return x >= 1.0 && std::isfinite(x) ? std::log10(x) : 0.0; }
+}  // namespace toml
 
 namespace softgrain {
 
@@ -15,9 +19,6 @@ namespace softgrain {
 struct TomlAssertion {};
 
 [[noreturn]] inline void toml_assertion_failed() { throw TomlAssertion{}; }
-
-/// log10(x) where that is a count of digits, 0 elsewhere.
-inline double toml_digits(double x) { return x >= 1.0 && std::isfinite(x) ? std::log10(x) : 0.0; }
 
 }  // namespace softgrain
 
@@ -34,14 +35,12 @@ inline double toml_digits(double x) { return x >= 1.0 && std::isfinite(x) ? std:
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE __builtin_unreachable()
 #endif
-#define log10(x) ::softgrain::toml_digits(x)
 #include <toml++/toml.h>
-#undef log10
 #ifdef SOFTGRAIN_TOML_NDEBUG
 #undef SOFTGRAIN_TOML_NDEBUG
 #define NDEBUG
 #endif
-// Everybody else's assertions as they were.
+// Assertions of others.
 #include <cassert>
 
 #include <string>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/dynamics/fire.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
@@ -64,20 +65,13 @@ void LeastWorkStep::precondition(const System3& s) {
   const auto& p = s.particles;
   inverse_translation_.assign(origin_.size(), 0.0);
   inverse_rotation_.assign(origin_.size(), 0.0);
-  double sum = 0.0;
-  double radii = 0.0;
-  for (std::size_t u = 0; u < origin_.size(); ++u) {
-    if (!is_free(p, u)) continue;
-    sum += stiffness_.translation[u];
-    radii += p.sphere[u].r;
-  }
-  const double floor_per_radius = radii > 0.0 ? kDrag * sum / radii : 0.0;
+  const StiffnessSums sums(p, stiffness_);
+  const PseudoMasses masses(sums.stiffness, sums.radii, 0.0, 0.0);
   for (std::size_t u = 0; u < origin_.size(); ++u) {
     if (!is_free(p, u)) continue;
     const double r = p.sphere[u].r;
-    const double floor = std::max(floor_per_radius * r, 1e-300);
-    inverse_translation_[u] = 1.0 / std::max(stiffness_.translation[u], floor);
-    if (p.inverse_inertia[u] > 0.0) inverse_rotation_[u] = 1.0 / std::max(stiffness_.rotation[u], 0.4 * floor * r * r);
+    inverse_translation_[u] = masses.inverse_mass(stiffness_.translation[u], r);
+    if (p.inverse_inertia[u] > 0.0) inverse_rotation_[u] = masses.inverse_inertia(stiffness_.rotation[u], r);
   }
 }
 

@@ -20,6 +20,10 @@ namespace softgrain {
 
 namespace {
 
+constexpr RandomPurpose kGrainRadii{20};
+constexpr RandomPurpose kGrainElasticity{21};
+constexpr RandomPurpose kGrainPositions{22};
+
 constexpr std::int64_t kTrials = 20000;  // per grain
 constexpr double kFirstStep = 1e-2;      // strain of the loose box per step
 constexpr double kDenserThanAny = 0.80;  // solid fraction at which a pack of these grains must long have jammed
@@ -42,8 +46,8 @@ double cut_normal(RandomStream& random) {
 
 void draw_grains(GrainPack& pack, const GrainBoxSpec& spec, std::uint64_t seed) {
   const GrainBoxMaterial& m = spec.material;
-  RandomStream radii(seed, RandomPurpose::grain_box_radii, 0);
-  RandomStream elasticity(seed, RandomPurpose::grain_box_elasticity, 0);
+  RandomStream radii(seed, kGrainRadii, 0);
+  RandomStream elasticity(seed, kGrainElasticity, 0);
   for (std::int64_t n = 0; n < spec.grains; ++n) {
     pack.radius.push_back(m.radius_min + (m.radius_max - m.radius_min) * radii.uniform());
     const double e = m.youngs_modulus * (1.0 + m.youngs_modulus_scatter * cut_normal(elasticity));
@@ -108,7 +112,7 @@ class PlacedGrains {
 };
 
 void place_grains(GrainPack& pack, const Vec3& lengths, std::uint64_t seed) {
-  RandomStream random(seed, RandomPurpose::grain_box_positions, 0);
+  RandomStream random(seed, kGrainPositions, 0);
   PlacedGrains placed(pack, lengths);
   for (std::size_t n = 0; n < pack.radius.size(); ++n) {
     const double r = pack.radius[n];

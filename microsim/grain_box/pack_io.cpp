@@ -1,28 +1,16 @@
-#include "microsim/grain_box/pack_io.h"
-
 #include <span>
 
 #include "common/core/error.h"
 #include "common/data/columns.h"
+#include "microsim/grain_box/record.h"
 
 namespace softgrain {
 
 namespace {
 
-void write_numbers(const h5::Group& g, const std::string& name, const std::string& unit,
-                   const std::vector<double>& values) {
-  g.write(name, std::span<const double>(values));
-  g.attribute_of(name, "unit", unit);
-}
-
-std::vector<double> read_numbers(const h5::Group& g, const std::string& name, std::size_t length) {
-  std::vector<double> values = g.doubles(name);
-  if (values.size() != length) throw FileTrouble("data set '" + name + "' has a wrong length");
-  return values;
-}
-
 constexpr std::size_t kWallNumbers = 3;
 constexpr std::size_t kContactNumbers = 4;
+constexpr const char* kContactUnits = "overlap m, normal force N, contact radius m, torsion N m";
 constexpr std::size_t kContactMarks = 3;
 
 void write_walls(const h5::Group& g, const std::vector<PackWall>& walls) {
@@ -44,7 +32,7 @@ void write_contacts(const h5::Group& g, const std::vector<PackContact>& contacts
     marks.insert(marks.end(), {c.i, c.j, c.sliding ? 1 : 0});
   }
   g.write("contact_numbers", std::span<const double>(numbers), {contacts.size(), kContactNumbers});
-  g.attribute_of("contact_numbers", "unit", "overlap m, normal force N, contact radius m, torsion N m");
+  g.attribute_of("contact_numbers", "unit", kContactUnits);
   g.write("contact_pair_sliding", std::span<const std::int64_t>(marks), {contacts.size(), kContactMarks});
 }
 
@@ -63,7 +51,7 @@ void read_walls(const h5::Group& g, GrainPack& pack) {
 void read_contacts(const h5::Group& g, GrainPack& pack) {
   const std::vector<std::int64_t> marks = g.integers("contact_pair_sliding");
   const std::vector<double> numbers =
-      read_numbers(g, "contact_numbers", marks.size() / kContactMarks * kContactNumbers);
+      read_numbers(g, "contact_numbers", kContactUnits, {marks.size() / kContactMarks, kContactNumbers});
   pack.contacts.resize(marks.size() / kContactMarks);
   read_vectors(g, "contact_normal", "1", pack.contacts, [](PackContact& c, const Vec3& a) { c.normal = a; });
   read_vectors(g, "contact_tangential_force", "N", pack.contacts,
@@ -89,9 +77,9 @@ void read_contacts(const h5::Group& g, GrainPack& pack) {
 
 void write_pack(const h5::Group& g, const GrainPack& pack) {
   write_vectors(g, "position", "m", pack.position, [](const Vec3& a) { return a; });
-  write_numbers(g, "radius", "m", pack.radius);
-  write_numbers(g, "youngs_modulus", "Pa", pack.youngs_modulus);
-  write_numbers(g, "poisson_ratio", "1", pack.poisson_ratio);
+  write_column(g, "radius", "m", pack.radius, [](double x) { return x; });
+  write_column(g, "youngs_modulus", "Pa", pack.youngs_modulus, [](double x) { return x; });
+  write_column(g, "poisson_ratio", "1", pack.poisson_ratio, [](double x) { return x; });
   g.attribute("friction", pack.friction);
   write_walls(g, pack.walls);
   write_contacts(g, pack.contacts);
@@ -102,8 +90,8 @@ GrainPack read_pack(const h5::Group& g) {
   pack.radius = g.doubles("radius");
   pack.position.resize(pack.radius.size());
   read_vectors(g, "position", "m", pack.position, [](Vec3& x, const Vec3& a) { x = a; });
-  pack.youngs_modulus = read_numbers(g, "youngs_modulus", pack.radius.size());
-  pack.poisson_ratio = read_numbers(g, "poisson_ratio", pack.radius.size());
+  pack.youngs_modulus = read_numbers(g, "youngs_modulus", "Pa", {pack.radius.size()});
+  pack.poisson_ratio = read_numbers(g, "poisson_ratio", "1", {pack.radius.size()});
   pack.friction = g.number("friction");
   read_walls(g, pack);
   read_contacts(g, pack);

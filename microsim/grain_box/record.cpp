@@ -8,7 +8,6 @@
 #include "common/core/error.h"
 #include "common/data/columns.h"
 #include "common/data/spec_io.h"
-#include "microsim/grain_box/pack_io.h"
 
 namespace softgrain {
 

@@ -94,4 +94,9 @@ void save_grain_boxes(const std::string& path, const std::vector<GrainBoxResult>
 /// What a report needs: of the spec only what the file holds (name, friction, pressure, test, increments, fit ranges).
 [[nodiscard]] std::vector<GrainBoxResult> load_grain_boxes(const std::string& path);
 
+/// A pack between plain walls (no symmetry planes, no gravity), bit for bit.
+void write_pack(const h5::Group& group, const GrainPack& pack);
+/// Throws FileTrouble when lengths or indices do not fit each other, or numbers are not finite.
+[[nodiscard]] GrainPack read_pack(const h5::Group& group);
+
 }  // namespace softgrain

@@ -13,6 +13,10 @@ namespace softgrain {
 
 namespace {
 
+constexpr RandomPurpose kDiameters{30};
+constexpr RandomPurpose kPositions{31};
+constexpr RandomPurpose kVelocities{32};
+
 template <bool kFriction, bool kRolling>
 AnyLaw law_of(const PowderSpec& spec) {
   CohesiveDisk<kFriction, kRolling> law;
@@ -28,7 +32,7 @@ AnyLaw law_of(const PowderSpec& spec) {
 }
 
 std::vector<double> draw_diameters(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, RandomPurpose::powder_diameters, sample);
+  RandomStream random(seed, kDiameters, sample);
   std::vector<double> d;
   for (std::int64_t k = 0; k < spec.disks; ++k)
     d.push_back(spec.diameter_min + (1.0 - spec.diameter_min) * random.uniform());
@@ -88,7 +92,7 @@ Vec<2> normal_pair(RandomStream& random) {
 }
 
 void set_velocities(System<2>& s, const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, RandomPurpose::powder_velocities, sample);
+  RandomStream random(seed, kVelocities, sample);
   auto& p = s.particles;
   Vec<2> momentum{};
   double mass = 0.0;
@@ -125,7 +129,7 @@ System<2> make_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t 
   s.laws = LawSet(1);
   s.laws.set(0, 0, powder_law(spec));
   s.cell = box_cell<2>({{edge, edge}}, {true, true});
-  RandomStream random(seed, RandomPurpose::powder_positions, sample);
+  RandomStream random(seed, kPositions, sample);
   PlacedDisks placed(edge, spec.cohesive ? spec.range : 0.0);
   for (const double d : diameters) {
     NewBody<2> disk;

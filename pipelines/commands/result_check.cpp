@@ -16,8 +16,8 @@
 #include "common/io/text_file.h"
 #include "microsim/grain_box/record.h"
 #include "pipelines/commands/law_check.h"
-#include "pipelines/report/powder_data.h"
 #include "pipelines/run/run_context.h"
+#include "pipelines/snapshots/powder_data.h"
 #include "pipelines/snapshots/snapshots.h"
 #include "pipelines/snapshots/snapshots_of_kinds.h"
 
@@ -77,9 +77,9 @@ void check_grain_box_file(const std::string& path, Findings& out) {
 }
 
 void check_powder_file(const std::string& path, Findings& out) {
-  const report::PowderRun run = report::load_powder(path);
+  const PowderRun run = load_powder(path);
   const auto unusable =
-      std::count_if(run.samples.begin(), run.samples.end(), [](const report::PowderSample& s) { return !s.usable; });
+      std::count_if(run.samples.begin(), run.samples.end(), [](const PowderSample& s) { return !s.usable; });
   out.add("kind", "powders", fmt::format("cohesive powders: {} samples", run.samples.size()));
   if (unusable > 0) out.warn(fmt::format("{} samples did not come to rest", unusable));
 }

@@ -14,7 +14,7 @@
 #include "common/data/measurements.h"
 #include "microsim/grain_box/record.h"
 #include "pipelines/compare/measured_stiffness.h"
-#include "pipelines/report/powder_data.h"
+#include "pipelines/snapshots/powder_data.h"
 
 namespace softgrain::report {
 

@@ -1,8 +1,10 @@
 #include "pipelines/run/parallel_tasks.h"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <numeric>
 
 namespace softgrain {
 
@@ -26,6 +28,14 @@ void parallel_tasks(std::int64_t count, const std::function<void(std::int64_t)>&
     }
   }
   if (first) std::rethrow_exception(first);
+}
+
+void parallel_tasks(const std::vector<double>& costs, const std::function<void(std::size_t)>& task) {
+  std::vector<std::size_t> order(costs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
+  parallel_tasks(static_cast<std::int64_t>(costs.size()),
+                 [&](std::int64_t k) { task(order[static_cast<std::size_t>(k)]); });
 }
 
 }  // namespace softgrain

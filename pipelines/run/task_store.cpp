@@ -6,11 +6,6 @@
 
 namespace softgrain {
 
-std::mutex& hdf5_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
 TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_t seed, const std::string& beside)
     : context_(context),
       directory_(context.path("work")),
@@ -23,12 +18,12 @@ TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_
 }
 
 void TaskStore::save(const std::string& task, const std::function<void(const h5::Group&)>& content) const {
-  const std::lock_guard lock(hdf5_mutex());
+  const std::lock_guard lock(h5::library_mutex());
   write_checkpoint(file(task), fingerprint_, content);
 }
 
 bool TaskStore::load(const std::string& task, const std::function<void(const h5::Group&)>& read) const {
-  const std::lock_guard lock(hdf5_mutex());
+  const std::lock_guard lock(h5::library_mutex());
   std::string note;
   std::optional<h5::Group> group;
   try {

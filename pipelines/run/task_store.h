@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -11,9 +10,6 @@
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {
-
-/// The HDF5 library is not thread-safe here: all access of a run goes through this one lock.
-std::mutex& hdf5_mutex();
 
 class TaskStore {
  public:

@@ -16,7 +16,7 @@ enum class SnapshotChoice {
 
 /// What is where: run.h5 (particles: every recorded frame), states_*.h5 (soft particles, macro runs and their twins),
 /// powder.h5 (also one level below, of variants), grain_box.h5. A directory: all of them, a file: that one.
-/// Empty for a directory without any, as older runs left it. Throws FileTrouble (missing, damaged), BadInput for a file
+/// Empty for a directory without any. Throws FileTrouble (missing, damaged), BadInput for a file
 /// of another kind.
 std::vector<Snapshot> read_snapshots(const std::string& run, SnapshotChoice choice = SnapshotChoice::all);
 

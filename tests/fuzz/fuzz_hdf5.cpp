@@ -18,9 +18,9 @@
 #include "pipelines/export/export.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/report/packing_data.h"
-#include "pipelines/report/powder_data.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/run/run_summary.h"
+#include "pipelines/snapshots/powder_data.h"
 #include "pipelines/snapshots/snapshots.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/support/hdf5_edit.h"
@@ -149,7 +149,7 @@ void read(const std::string& path, bool fit) {
     if (root.has("sample_0"))
       attempt([&] {
         report::RunData run = run_of(path);
-        run.powder = report::load_powder(path);
+        run.powder = load_powder(path);
         (void)report::powder_section(run);
         use_states(path);
       });

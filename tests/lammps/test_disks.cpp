@@ -22,7 +22,7 @@ constexpr double kStep = 1e-5;
 constexpr double kDensity = 1000.0;
 constexpr std::size_t kClusters = 300;
 
-std::vector<NamedLaw> disk_laws() {
+std::vector<LawFileEntry> disk_laws() {
   return {{"plain", CohesiveDisk<false, false>{1e4, 0.0, 0.0, 0.1, 5.0, 2e-3, 0.0, 0.0}},
           {"sliding", CohesiveDisk<true, false>{1e4, 7e3, 0.3, 0.1, 5.0, 2e-3, 0.0, 0.0}},
           {"rolling", CohesiveDisk<true, true>{1e4, 7e3, 0.3, 0.1, 5.0, 2e-3, 0.5, 1e-3}}};

@@ -96,7 +96,7 @@ std::vector<Family> families() {
 struct Clusters {
   System3 system;
   std::vector<int> type;
-  std::vector<NamedLaw> laws;
+  std::vector<LawFileEntry> laws;
   Vec3 high{};
 };
 

@@ -85,7 +85,8 @@ TEST_F(CrowdStage, AnInnerLevelIsAnotherMeasurement) {
   EXPECT_TRUE(std::filesystem::exists(options_.out + "/level.h5"));
   EXPECT_GT(cached(), plain_files);
   const CrowdConfiguration& one = setup_.configurations[0];
-  EXPECT_GT(end_force(one, {filled.runs[0], filled.runs[1]}).mean, end_force(one, {plain.runs[0], plain.runs[1]}).mean);
+  EXPECT_GT(mean_end_force(one, {filled.runs[0], filled.runs[1]}).mean,
+            mean_end_force(one, {plain.runs[0], plain.runs[1]}).mean);
   const long all_files = cached();
   const CrowdMeasurements again = measure(&level);
   EXPECT_EQ(cached(), all_files);

@@ -10,7 +10,7 @@
 namespace softgrain {
 namespace {
 
-std::vector<NamedLaw> every_law() {
+std::vector<LawFileEntry> every_law() {
   const Material m{"m", 2500.0, 5e5, 0.3, false};
   SoftContact soft;
   soft.normal = {0.8, 3.1, -0.8 * std::pow(0.075, 3.1)};

@@ -30,7 +30,7 @@ void place_by_testing_all(std::vector<MacroBody>& bodies, double edge, RandomStr
 }
 
 std::vector<MacroBody> some_bodies(std::size_t count, double exponent, double polydispersity) {
-  RandomStream random(5, RandomPurpose::macro_radii, 0);
+  RandomStream random(5, RandomPurpose::radii, 0);
   std::vector<MacroBody> bodies(count);
   for (MacroBody& b : bodies) b.r = power_law_radius(exponent, 0.016, polydispersity, random.uniform());
   std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
@@ -52,7 +52,7 @@ TEST(PlacedSpheres, PlacesAreThoseOfTestingAllBodies) {
   for (const Case& c : {Case{1500, 3.5, 2.0}, Case{1500, 3.5, 30.0}, Case{800, 1.2, 100.0}, Case{1, 3.5, 2.0}}) {
     std::vector<MacroBody> expected = some_bodies(c.count, c.exponent, c.polydispersity);
     const MacroPacking packing = place_loosely(expected, 3, 1, 0.25);
-    RandomStream random(3, RandomPurpose::macro_positions, 1);
+    RandomStream random(3, kMacroPositions, 1);
     place_by_testing_all(expected, edge_of(expected, 0.25), random);
     ASSERT_EQ(packing.high[0], edge_of(expected, 0.25)) << "placed in a larger box: the case is no test";
     for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(packing.bodies[k].x, expected[k].x) << k;
@@ -63,7 +63,7 @@ TEST(PlacedSpheres, PlacesAreThoseOfTestingAllBodies) {
 TEST(PlacedSpheres, AnswersAreThoseOfTestingAllBodies) {
   std::vector<MacroBody> bodies = some_bodies(400, 2.0, 20.0);
   const double edge = edge_of(bodies, 0.1);
-  RandomStream random(9, RandomPurpose::macro_positions, 0);
+  RandomStream random(9, RandomPurpose::positions, 0);
   std::vector<double> radii;
   for (const MacroBody& b : bodies) radii.push_back(b.r);
   PlacedSpheres placed(edge, radii);

@@ -125,8 +125,8 @@ TEST(PowderPlots, AHistogramIsADensity) {
   EXPECT_DOUBLE_EQ(s.x[7], 1.0);
 }
 
-report::PowderSample pair_across_the_boundary(double overlap, double force) {
-  report::PowderSample sample;
+PowderSample pair_across_the_boundary(double overlap, double force) {
+  PowderSample sample;
   sample.packing = {0.0, {{4.0, 4.0}}, {{{{0.1, 2.0}}, 0.5}, {{{3.1, 2.0}}, 0.5}, {{{2.0, 0.7}}, 0.4}}};
   ContactRecord<2> c;
   c.i = 0;
@@ -167,7 +167,7 @@ TEST(PowderView, DrawsBothSidesInTheColoursOfTheForces) {
 }
 
 TEST(PowderPlots, ForcesAreSplitIntoNormalRatioAndAngle) {
-  report::PowderRun run;
+  PowderRun run;
   run.samples = {pair_across_the_boundary(1e-4, -2.0), pair_across_the_boundary(-1e-4, -0.5),
                  pair_across_the_boundary(1e-4, 1e-6)};
   const report::PowderForces f = report::powder_forces(run);

@@ -4,6 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <string>
+
+#include "common/io/text_file.h"
 
 namespace {
 
@@ -20,6 +26,22 @@ TEST(RandomStream, UniformNumbersAreAboveZeroAndBelowOne) {
     EXPECT_GT(u, last) << k;
     last = u;
   }
+}
+
+/// Every purpose in the sources has a number of its own.
+TEST(RandomStream, PurposesDiffer) {
+  namespace fs = std::filesystem;
+  std::map<std::string, std::string> holder{{"1", ""}, {"2", ""}, {"3", ""}, {"6", ""}, {"7", ""}, {"8", ""}};
+  const std::size_t shared = holder.size();
+  const std::regex declared(R"(RandomPurpose (k\w+)\{(\d+)\})");
+  for (const char* layer : {"common", "microsim", "calibrate", "macrosim", "pipelines"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(SOFTGRAIN_SOURCE_DIR) / layer)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      const std::string text = read_text(entry.path().string());
+      for (std::sregex_iterator at(text.begin(), text.end(), declared), end; at != end; ++at)
+        EXPECT_TRUE(holder.emplace((*at)[2], (*at)[1]).second) << entry.path() << ": " << (*at)[0];
+    }
+  EXPECT_GE(holder.size() - shared, 8U);
 }
 
 /// Numbers of seeds in use must never change.

@@ -38,7 +38,7 @@ double imposed_pressure(const std::vector<PowderPhase>& phases, const PowderStat
 
 /// The sample of this number of an earlier run. Throws BadInput when that run was of other disks.
 void take_state(const PowderSetup& setup, std::int64_t number, PowderState& state) {
-  const std::lock_guard lock(hdf5_mutex());
+  const std::lock_guard lock(h5::library_mutex());
   const h5::Group file = h5::open_file(setup.states);
   const std::string sample = fmt::format("sample_{}", number);
   if (!file.has("spec") || !file.has(sample)) throw BadInput(fmt::format("{}: has no {}", setup.states, sample));

@@ -32,7 +32,7 @@ void describe_inner(LevelContents& contents, const std::vector<ShellPacking>& po
 }
 
 /// Sum over neighbours of the last loading point of a run, -1 when it is not there.
-double end_force(const CrowdRun& run) {
+double summed_end_force(const CrowdRun& run) {
   const CrowdPoint* last = nullptr;
   for (const CrowdPoint& p : run.points)
     if (p.stage == 0) last = &p;
@@ -49,8 +49,8 @@ LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& be
   for (const CrowdRun& a : data.runs)
     for (const CrowdRun& b : below.runs)
       if (a.configuration == configuration && b.configuration == configuration && a.packing == b.packing) {
-        const double here = end_force(a);
-        const double there = end_force(b);
+        const double here = summed_end_force(a);
+        const double there = summed_end_force(b);
         if (here >= 0.0 && there >= 0.0) pairs.emplace_back(here, there);
       }
   LevelChange change{data.configurations[static_cast<std::size_t>(configuration)].name, 1.0, 0.0};

@@ -68,7 +68,7 @@ std::optional<CrowdRun> CrowdCache::find(const std::string& key) const {
   const std::string path = directory_.empty() ? "" : file(key);
   if (path.empty() || !std::filesystem::exists(path)) return std::nullopt;
   try {
-    const std::lock_guard lock(hdf5_mutex());
+    const std::lock_guard lock(h5::library_mutex());
     if (check_seal(path) != Seal::sound) throw FileTrouble(path + ": damaged, or written by an earlier version");
     const h5::Group root = h5::open_file(path);
     require_format(root, kFormat, path);
@@ -87,7 +87,7 @@ void CrowdCache::keep(const std::string& key, const CrowdRun& run) const {
   // Other processes may keep the same run: each writes a file of its own, the last one to finish stays.
   const std::string own = file(key) + "." + std::to_string(::getpid());
   {
-    const std::lock_guard lock(hdf5_mutex());
+    const std::lock_guard lock(h5::library_mutex());
     h5::AtomicFile out(own, false, true);
     write_format(out.root(), kFormat);
     out.root().attribute("key", key);

@@ -66,14 +66,10 @@ class CrowdRunner {
                         (1.0 + static_cast<double>(soft_count(*t.configuration))));
       total += weights.back();
     }
-    std::vector<std::size_t> order(tasks.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
     Progress progress(what, total, run_.context.quiet());
     std::vector<CrowdRun> runs(tasks.size());
     std::vector<std::string> broke_off(tasks.size());
-    parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
-      const std::size_t t = order[static_cast<std::size_t>(k)];
+    parallel_tasks(weights, [&](std::size_t t) {
       try {
         runs[t] = known_or_measured(tasks[t], options, weights[t], progress);
       } catch (const NotUsable& e) {
@@ -236,7 +232,7 @@ class Batches {
     for (CrowdRun& run : runs) runs_[static_cast<std::size_t>(run.configuration)].push_back(std::move(run));
     tried_ = wanted_;
     for (std::size_t c = 0; c < runs_.size(); ++c)
-      if (!met(end_force(setup_.configurations[c], runs_[c]), setup_.target))
+      if (!met(mean_end_force(setup_.configurations[c], runs_[c]), setup_.target))
         wanted_[c] = std::min(setup_.packings_max, tried_[c] + kBatch);
   }
   void require_enough_left(const CrowdRunner& runner) const {

@@ -101,7 +101,7 @@ json cost_json(const Cost& cost) {
 }
 
 json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>& runs, double target) {
-  const MeanForce force = end_force(c, runs);
+  const MeanForce force = mean_end_force(c, runs);
   const Convergence points = convergence(runs);
   json out = cost_json(cost_of(runs));
   out["name"] = c.name;
@@ -120,7 +120,7 @@ json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>
 
 }  // namespace
 
-MeanForce end_force(const CrowdConfiguration& configuration, const std::vector<CrowdRun>& runs) {
+MeanForce mean_end_force(const CrowdConfiguration& configuration, const std::vector<CrowdRun>& runs) {
   std::vector<double> values;
   for (const CrowdRun& run : runs)
     if (const CrowdPoint* p = last_of(run, last_loading(configuration)); p != nullptr)
@@ -150,7 +150,7 @@ std::vector<std::string> crowd_remarks(const CrowdMeasurements& data, double tar
   for (std::size_t k = 0; k < data.configurations.size(); ++k) {
     const std::vector<CrowdRun> runs = runs_of(data, k);
     const std::string& name = data.configurations[k].name;
-    const MeanForce force = end_force(data.configurations[k], runs);
+    const MeanForce force = mean_end_force(data.configurations[k], runs);
     if (!met(force, target))
       missed.push_back(
           fmt::format("{}: standard error {:.1f} % of the mean force after {} packings, {:.1f} % was wanted", name,
@@ -173,7 +173,7 @@ std::string crowd_text(const CrowdMeasurements& data) {
   for (std::size_t k = 0; k < data.configurations.size(); ++k) {
     const CrowdConfiguration& c = data.configurations[k];
     const std::vector<CrowdRun> runs = runs_of(data, k);
-    const MeanForce f = end_force(c, runs);
+    const MeanForce f = mean_end_force(c, runs);
     text += fmt::format("  {:<28} {:>3} packings  onset {:.3f}  F/(E Rs^2) {:.5f} +- {:.5f}{}\n", c.name, f.runs,
                         onset(runs), f.mean, f.standard_error, c.held_out ? "  (held out)" : "");
   }

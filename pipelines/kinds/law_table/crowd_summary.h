@@ -18,7 +18,7 @@ struct MeanForce {
 };
 
 /// At the end of the loading that the configuration begins with (its largest overlap).
-MeanForce end_force(const CrowdConfiguration& configuration, const std::vector<CrowdRun>& runs);
+MeanForce mean_end_force(const CrowdConfiguration& configuration, const std::vector<CrowdRun>& runs);
 
 /// Whether the standard error is within `target` times the mean.
 bool met(const MeanForce& force, double target);

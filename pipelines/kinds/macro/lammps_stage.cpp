@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Materials of make_law_system().
-std::vector<NamedLaw> laws_of(const MacroSpec& spec, const SoftLaws& soft) {
+std::vector<LawFileEntry> laws_of(const MacroSpec& spec, const SoftLaws& soft) {
   const MacroSystem empty = make_law_system(spec, {}, soft, 1.0);
   const LawSet& laws = empty.system.laws;
   const auto law = [&](std::int32_t a, std::int32_t b) { return laws.law(laws.index(a, b)); };

@@ -39,7 +39,7 @@ void KeptStates::add(Snapshot snapshot, std::int64_t point) {
 
 void save_kept_states(const std::vector<Snapshot>& states, const std::string& path, const Provenance& provenance) {
   if (!states.empty()) {
-    const std::lock_guard lock(hdf5_mutex());
+    const std::lock_guard lock(h5::library_mutex());
     save_snapshots(states, path, provenance);
     write_states_xdmf(path);
     return;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <numeric>
 
 #include "common/core/stopwatch.h"
 #include "common/data/fields.h"
@@ -46,14 +47,6 @@ std::vector<Task> list_tasks(const MeasureSetup& setup) {
     for (const PairKind kind : series.kinds)
       for (std::int64_t k = 0; k < series.packings; ++k) tasks.push_back({&series, kind, k});
   return tasks;
-}
-
-std::vector<std::size_t> longest_first(const std::vector<Task>& tasks) {
-  std::vector<std::size_t> order(tasks.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return tasks[a].weight() > tasks[b].weight(); });
-  return order;
 }
 
 void write_run(const h5::Group& group, const MeasurementState& state) {
@@ -218,9 +211,9 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run) {
   result.packing_seconds = start.seconds();
 
   const auto tasks = list_tasks(setup);
-  const auto order = longest_first(tasks);
-  double total = 0.0;
-  for (const Task& t : tasks) total += t.weight();
+  std::vector<double> costs;
+  for (const Task& t : tasks) costs.push_back(t.weight());
+  const double total = std::accumulate(costs.begin(), costs.end(), 0.0);
   Progress progress("measuring", total, run.context.quiet());
   Measurements& data = result.data;
   data.spec = setup.spec;
@@ -229,10 +222,7 @@ MeasureResult run_measure_stage(const MeasureSetup& setup, const Run& run) {
   for (const ShellPacking& p : result.packings) data.packings.push_back(describe(p, setup.spec));
   const Stage stage{setup, run.store, result.packings, second, progress};
   std::vector<TaskOutcome> outcomes(tasks.size());
-  parallel_tasks(static_cast<std::int64_t>(tasks.size()), [&](std::int64_t k) {
-    const std::size_t t = order[static_cast<std::size_t>(k)];
-    outcomes[t] = run_task(stage, tasks[t]);
-  });
+  parallel_tasks(costs, [&](std::size_t t) { outcomes[t] = run_task(stage, tasks[t]); });
   progress.finish();
   std::vector<std::vector<Snapshot>> states;
   for (TaskOutcome& o : outcomes) states.push_back(std::move(o.states));

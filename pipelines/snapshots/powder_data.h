@@ -1,4 +1,4 @@
-// What powder.h5 holds for a report: final packings with their contacts, courses, snapshots, scattered intensity.
+// What powder.h5 holds: final packings with their contacts, courses, snapshots, scattered intensity.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 #include "common/dynamics/force_pass.h"
 #include "microsim/powder/powder_snapshots.h"
 
-namespace softgrain::report {
+namespace softgrain {
 
 /// One row of the course of an assembly.
 struct PowderMoment {
@@ -48,4 +48,4 @@ struct PowderRun {
 /// Throws FileTrouble.
 PowderRun load_powder(const std::string& path);
 
-}  // namespace softgrain::report
+}  // namespace softgrain

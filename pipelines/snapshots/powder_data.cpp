@@ -1,11 +1,11 @@
-#include "pipelines/report/powder_data.h"
+#include "pipelines/snapshots/powder_data.h"
 
 #include <fmt/format.h>
 
 #include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 
-namespace softgrain::report {
+namespace softgrain {
 namespace {
 
 constexpr std::size_t kCourseColumns = 7;
@@ -56,4 +56,4 @@ PowderRun load_powder(const std::string& path) {
   return run;
 }
 
-}  // namespace softgrain::report
+}  // namespace softgrain
