@@ -1,5 +1,7 @@
 #include "calibrate/bootstrap.h"
 
+#include <gsl/gsl_statistics_double.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,6 +10,7 @@
 #include "calibrate/residual_draws.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
+#include "common/core/statistics.h"
 #include "common/io/interrupt.h"
 
 namespace softgrain {
@@ -94,39 +97,21 @@ BootstrapResult residual_bootstrap(const BootstrapInput& input, const std::vecto
 
 std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>>& replicates) {
   std::vector<double> out(49, 0.0);
-  const auto n = static_cast<double>(replicates.size());
-  if (replicates.size() < 2) return out;
-  std::array<double, 7> mean{};
-  for (const auto& r : replicates)
-    for (std::size_t i = 0; i < 7; ++i) mean[i] += r[i] / n;
-  for (const auto& r : replicates)
-    for (std::size_t i = 0; i < 7; ++i)
-      for (std::size_t j = 0; j < 7; ++j) out[i * 7 + j] += (r[i] - mean[i]) * (r[j] - mean[j]) / (n - 1.0);
+  const std::size_t n = replicates.size();
+  if (n < 2) return out;
+  const double* first = replicates.front().data();
+  for (std::size_t i = 0; i < 7; ++i)
+    for (std::size_t j = 0; j < 7; ++j) out[i * 7 + j] = gsl_stats_covariance(first + i, 7, first + j, 7, n);
   return out;
 }
 
 double scatter_of(const std::vector<double>& values) {
-  if (values.size() < 2) return std::numeric_limits<double>::infinity();
-  const auto n = static_cast<double>(values.size());
-  double sum = 0.0;
-  double square = 0.0;
-  for (const double v : values) sum += v;
-  for (const double v : values) square += (v - sum / n) * (v - sum / n);
-  return std::sqrt(square / (n - 1.0));
+  return values.size() < 2 ? kInfinity : mean_error(values).deviation;
 }
 
-std::pair<double, double> interval95(std::vector<double> values) {
-  constexpr double kTail = 0.025;
+std::pair<double, double> interval95(const std::vector<double>& values) {
   if (values.empty()) return {-kInfinity, kInfinity};
-  std::sort(values.begin(), values.end());
-  const auto quantile = [&](double p) {
-    const double last = static_cast<double>(values.size() - 1);
-    const double at = std::clamp(p * static_cast<double>(values.size() + 1) - 1.0, 0.0, last);
-    const auto k = static_cast<std::size_t>(at);
-    const double next = k + 1 < values.size() ? values[k + 1] : values[k];
-    return values[k] + (at - static_cast<double>(k)) * (next - values[k]);
-  };
-  return {quantile(kTail), quantile(1.0 - kTail)};
+  return {quantile(values, 0.025), quantile(values, 0.975)};
 }
 
 }  // namespace softgrain

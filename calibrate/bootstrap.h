@@ -43,7 +43,7 @@ std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>
 /// Quantiles 2.5 % and 97.5 %; infinite when there are no values. Linear between order statistics x_1..x_n at p (n +
 /// 1): one more value would be between them with a probability of 95 % from n = 39 on, with fewer the ends are the
 /// extremes.
-std::pair<double, double> interval95(std::vector<double> values);
+std::pair<double, double> interval95(const std::vector<double>& values);
 
 /// Fewer replicates than this say nothing of an interval.
 inline constexpr std::size_t kEnoughReplicates = 10;

@@ -12,6 +12,7 @@
 #include "calibrate/crowd_side_fits.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "common/data/crowd_replicates.h"
 
 namespace softgrain {
@@ -264,16 +265,11 @@ void require_data(const CrowdMeasurements& data, const std::vector<CrowdStates>&
 }
 
 void describe_packings(const CrowdMeasurements& data, LawTableEntry& entry) {
-  double sum = 0.0;
-  double square = 0.0;
-  const auto n = static_cast<double>(data.packings.size());
-  for (const PackingInfo& p : data.packings) {
-    sum += p.solid_fraction;
-    square += p.solid_fraction * p.solid_fraction;
-  }
-  entry.solid_fraction = sum / n;
-  entry.solid_fraction_error =
-      std::sqrt(std::max(square / n - entry.solid_fraction * entry.solid_fraction, 0.0) / (n - 1.0));
+  Tally fractions;
+  for (const PackingInfo& p : data.packings) fractions.add(p.solid_fraction);
+  const MeanError m = fractions.statistics();
+  entry.solid_fraction = m.mean;
+  entry.solid_fraction_error = m.error;
   entry.packings = static_cast<int>(data.packings.size());
 }
 

@@ -9,6 +9,7 @@
 #include "calibrate/bootstrap.h"
 #include "calibrate/least_squares.h"
 #include "common/core/random.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 
@@ -24,26 +25,20 @@ Estimate guessed(double value) { return {value, kUnknown, -kUnknown, kUnknown}; 
 /// Taken over from another kind of neighbour: nothing is known of how far it is off.
 SlideLaw borrowed(const SlideLaw& from) { return {guessed(from.kt_ratio.value), guessed(from.friction.value), false}; }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
 /// Mean over configurations; each draw takes as many of its own with replacement. `of` finds the values by
 /// configuration.
 template <class Of>
 Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& drawn, std::uint64_t seed,
                      const Of& of) {
-  Estimate out = guessed(mean_of(of(measured)));
+  Estimate out = guessed(mean_error(of(measured)).mean);
   std::vector<double> means;
   for (std::size_t r = 0; r < drawn.size(); ++r) {
     const std::vector<double>& values = of(drawn[r]);
     if (values.empty()) continue;
     RandomStream random(seed, RandomPurpose::bootstrap, kSideStream + static_cast<std::uint64_t>(r));
-    double sum = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) sum += values[random.below(values.size())];
-    means.push_back(sum / static_cast<double>(values.size()));
+    Tally sample;
+    for (std::size_t k = 0; k < values.size(); ++k) sample.add(values[random.below(values.size())]);
+    means.push_back(sample.mean());
   }
   if (means.size() < kEnoughReplicates) return out;
   std::tie(out.low, out.high) = interval95(means);

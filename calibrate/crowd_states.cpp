@@ -3,36 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/statistics.h"
 #include "common/data/slide_direction.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Mean and standard error of a weighted sample; weights count repetitions.
-class Mean {
- public:
-  void add(double x, double weight) {
-    n_ += weight;
-    sum_ += weight * x;
-    square_ += weight * x * x;
-  }
-  [[nodiscard]] double mean() const { return sum_ / n_; }
-  [[nodiscard]] double error() const {
-    const double m = mean();
-    return n_ > 1.0 ? std::sqrt(std::max(square_ / n_ - m * m, 0.0) / (n_ - 1.0)) : 0.0;
-  }
-
- private:
-  double n_ = 0.0;
-  double sum_ = 0.0;
-  double square_ = 0.0;
-};
-
 struct Sums {
-  std::vector<Mean> overlap;
-  std::vector<Mean> force;
-  Mean tangential;
+  std::vector<Tally> overlap;
+  std::vector<Tally> force;
+  Tally tangential;
 };
 
 /// What holds the first neighbour back on its slide, over E Rs^2.
@@ -51,7 +32,7 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
     if (!(w > 0.0)) continue;
     for (std::size_t k = 0; k < run.points.size(); ++k) {
       if (k >= sums.size()) {
-        sums.push_back({std::vector<Mean>(neighbours), std::vector<Mean>(neighbours), {}});
+        sums.push_back({std::vector<Tally>(neighbours), std::vector<Tally>(neighbours), {}});
         out.states.emplace_back();
       }
       const CrowdPoint& point = run.points[k];
@@ -74,7 +55,7 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
     for (std::size_t j = 0; j < neighbours; ++j) {
       state.overlap.push_back(sums[k].overlap[j].mean());
       state.mean.push_back(sums[k].force[j].mean());
-      state.error.push_back(sums[k].force[j].error());
+      state.error.push_back(sums[k].force[j].statistics().error_or_zero());
     }
     state.tangential = sums[k].tangential.mean();
   }

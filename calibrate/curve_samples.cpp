@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibrate/tangential_stiffness.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 
@@ -74,24 +75,13 @@ CurveMeans means_of(const CurveSamples& samples, std::span<const int> multiplici
   CurveMeans out;
   out.delta = samples.delta;
   for (std::size_t k = 0; k < samples.delta.size(); ++k) {
-    double n = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < samples.packings; ++i) {
-      const double x = samples.at(i, k);
-      if (std::isnan(x)) continue;
-      const double times = multiplicity.empty() ? 1.0 : multiplicity[i];
-      n += times;
-      sum += times * x;
-    }
-    const double mean = n > 0.0 ? sum / n : 0.0;
-    for (std::size_t i = 0; i < samples.packings; ++i) {
-      const double x = samples.at(i, k);
-      if (!std::isnan(x)) squares += (multiplicity.empty() ? 1.0 : multiplicity[i]) * (x - mean) * (x - mean);
-    }
-    out.count.push_back(n);
-    out.mean.push_back(mean);
-    out.deviation.push_back(n > 1.0 ? std::sqrt(squares / (n - 1.0)) : 0.0);
+    Tally sample;
+    for (std::size_t i = 0; i < samples.packings; ++i)
+      if (!std::isnan(samples.at(i, k))) sample.add(samples.at(i, k), multiplicity.empty() ? 1.0 : multiplicity[i]);
+    const MeanError m = sample.statistics();
+    out.count.push_back(static_cast<double>(m.n));
+    out.mean.push_back(m.n > 0 ? m.mean : 0.0);
+    out.deviation.push_back(m.deviation_or_zero());
   }
   return out;
 }

@@ -12,6 +12,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
+#include "common/core/statistics.h"
 #include "common/io/interrupt.h"
 
 namespace softgrain {
@@ -22,28 +23,12 @@ namespace {
 constexpr std::uint64_t kReplicateStream = std::uint64_t{3} << 32;
 constexpr std::uint64_t kShiftStream = std::uint64_t{4} << 32;
 
-/// MeanForce and error of the mean over packings at one Delta.
-struct MeanForce {
-  double value = kNaN;
-  double error = 0.0;
-};
-
-MeanForce mean_at(const InverseEvaluation& e, std::size_t j, std::size_t deltas, const std::vector<int>& times) {
-  double n = 0.0;
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t k = 0; k < e.packings; ++k) {
-    const double f = e.force[k * deltas + j];
-    if (std::isnan(f)) continue;
-    const double w = times.empty() ? 1.0 : times[k];
-    n += w;
-    sum += w * f;
-    squares += w * f * f;
-  }
-  if (n <= 0.0) return {};
-  const double mean = sum / n;
-  const double variance = n > 1.0 ? std::max(squares / n - mean * mean, 0.0) * n / (n - 1.0) : 0.0;
-  return {mean, std::sqrt(variance / n)};
+/// Mean force over packings at one Delta.
+MeanError mean_at(const InverseEvaluation& e, std::size_t j, std::size_t deltas, const std::vector<int>& times) {
+  Tally sample;
+  for (std::size_t k = 0; k < e.packings; ++k)
+    if (const double f = e.force[k * deltas + j]; !std::isnan(f)) sample.add(f, times.empty() ? 1.0 : times[k]);
+  return sample.statistics();
 }
 
 /// Everything that surfaces are laid through: values g(mean), errors of the target in the same terms.
@@ -84,7 +69,7 @@ std::vector<double> total_errors(const std::vector<InverseEvaluation>& done, con
     double variance =
         t.error[j] * t.error[j] + std::pow(t.discrepancy * std::max(std::abs(t.force[j]), 0.02 * largest), 2);
     for (const InverseEvaluation* e : nearest)
-      variance += std::pow(mean_at(*e, j, n, times).error, 2) / static_cast<double>(nearest.size());
+      variance += std::pow(mean_at(*e, j, n, times).error_or_zero(), 2) / static_cast<double>(nearest.size());
     out.push_back(std::sqrt(variance));
   }
   return out;
@@ -104,8 +89,8 @@ Prepared prepare(const std::vector<InverseEvaluation>& done, const InverseTarget
     std::vector<double> row;
     double chi2 = 0.0;
     for (std::size_t j = 0; j < n; ++j) {
-      double mean = mean_at(e, j, n, times).value;
-      if (std::isnan(mean)) mean = mean_at(e, j, n, {}).value;  // a draw without any packing that has this force
+      double mean = mean_at(e, j, n, times).mean;
+      if (std::isnan(mean)) mean = mean_at(e, j, n, {}).mean;  // a draw without any packing that has this force
       row.push_back(g(mean, out.scale[j]));
       chi2 += std::pow((row.back() - out.target[j]) / out.error[j], 2);
     }
@@ -194,7 +179,7 @@ Place locate(const Prepared& p) {
 
 bool InverseEvaluation::usable(std::size_t deltas) const {
   for (std::size_t j = 0; j < deltas; ++j)
-    if (std::isnan(mean_at(*this, j, deltas, {}).value)) return false;
+    if (std::isnan(mean_at(*this, j, deltas, {}).mean)) return false;
   return packings > 0;
 }
 
@@ -204,9 +189,9 @@ double misfit_of(const InverseEvaluation& e, const InverseTarget& t) {
   const double largest = *std::max_element(t.force.begin(), t.force.end());
   double sum = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
-    const MeanForce m = mean_at(e, j, n, {});
+    const MeanError m = mean_at(e, j, n, {});
     const double off = t.discrepancy * std::max(std::abs(t.force[j]), 0.02 * largest);
-    sum += std::pow(m.value - t.force[j], 2) / (t.error[j] * t.error[j] + m.error * m.error + off * off);
+    sum += std::pow(m.mean - t.force[j], 2) / (t.error[j] * t.error[j] + std::pow(m.error_or_zero(), 2) + off * off);
   }
   return sum / static_cast<double>(n);
 }

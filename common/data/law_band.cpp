@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/statistics.h"
+
 namespace softgrain {
 
 namespace {
 
-constexpr double kNormal95 = 1.959963984540054;  // 97.5 % quantile of the normal distribution
 constexpr std::size_t kParameters = kLawParameterNames.size();
 
 using Gradient = std::array<double, 3>;  ///< by a, b and delta

@@ -7,6 +7,7 @@
 
 #include "common/core/limits.h"
 #include "common/core/solid_sphere.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 
@@ -16,18 +17,6 @@ constexpr double kNear = 0.1;
 constexpr double kJammed = 0.63;
 constexpr double kContacts = 6.0;
 constexpr double kBytesPerGrain = 11000.0;  // a process with 2740 grains had 31 MB
-
-/// Mean and standard error; NaN with fewer than 3 values.
-std::pair<double, double> mean_error(const std::vector<double>& values) {
-  if (values.size() < 3) return {kNaN, kNaN};
-  const auto n = static_cast<double>(values.size());
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  const double mean = sum / n;
-  double square = 0.0;
-  for (const double v : values) square += (v - mean) * (v - mean);
-  return {mean, std::sqrt(square / (n - 1.0) / n)};
-}
 
 double mean_radius_cubed(const GrainBoxMaterial& m) {
   const double a = m.radius_min;
@@ -72,9 +61,12 @@ ModuliAt moduli_at(const GrainBoxResult& result, double pressure) {
     if (std::isfinite(p->bulk)) bulk.push_back(p->bulk);
     if (std::isfinite(p->shear_modulus)) shear.push_back(p->shear_modulus);
   }
-  const auto [k, k_error] = mean_error(bulk);
-  const auto [g, g_error] = mean_error(shear);
-  return {pressure, k, k_error, g, g_error, bulk.size()};
+  const auto known = [](const std::vector<double>& values) {
+    return values.size() < 3 ? MeanError{values.size(), kNaN, kNaN, kNaN} : mean_error(values);
+  };
+  const MeanError k = known(bulk);
+  const MeanError g = known(shear);
+  return {pressure, k.mean, k.error, g.mean, g.error, k.n};
 }
 
 std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results) {

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
-#include "pipelines/compare/statistics.h"
 
 namespace softgrain {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "common/data/macro_result.h"
-#include "pipelines/compare/statistics.h"
 
 namespace softgrain {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "common/core/statistics.h"
 #include "common/data/law_card.h"
 #include "common/data/measurements.h"
 #include "pipelines/compare/measured_stiffness.h"
-#include "pipelines/compare/statistics.h"
 
 namespace softgrain {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/statistics.h"
 #include "common/data/macro_result.h"
-#include "pipelines/compare/statistics.h"
 
 namespace softgrain {
 

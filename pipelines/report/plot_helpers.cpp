@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipelines/compare/statistics.h"
+#include "common/core/statistics.h"
 #include "pipelines/report/number_format.h"
 
 namespace softgrain::report {

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/macro_scores.h"
-#include "pipelines/compare/statistics.h"
 #include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipelines/compare/statistics.h"
+#include "common/core/statistics.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"

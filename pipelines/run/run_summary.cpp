@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "common/data/law_remarks.h"
 #include "microsim/protocol.h"
 #include "pipelines/compare/compare_measurements.h"
@@ -17,20 +18,10 @@ namespace {
 
 using nlohmann::json;
 
-struct MeanDeviation {
-  double mean = 0.0;
-  double deviation = 0.0;
-};
-
-MeanDeviation mean_deviation(const std::vector<PackingInfo>& packings,
-                             const std::function<double(const PackingInfo&)>& value) {
-  MeanDeviation out;
-  const auto n = static_cast<double>(packings.size());
-  for (const PackingInfo& p : packings) out.mean += value(p) / n;
-  double squares = 0.0;
-  for (const PackingInfo& p : packings) squares += (value(p) - out.mean) * (value(p) - out.mean);
-  out.deviation = packings.size() > 1 ? std::sqrt(squares / (n - 1.0)) : 0.0;
-  return out;
+MeanError over(const std::vector<PackingInfo>& packings, const std::function<double(const PackingInfo&)>& value) {
+  Tally sample;
+  for (const PackingInfo& p : packings) sample.add(value(p));
+  return sample.statistics();
 }
 
 json rows_json(const std::vector<RatioRow>& rows) {
@@ -67,18 +58,18 @@ json to_json(const RelaxationComparison& c) {
 }  // namespace
 
 json packings_json(const Measurements& data) {
-  const auto phi = mean_deviation(data.packings, [](const PackingInfo& p) { return p.solid_fraction; });
-  const auto b = mean_deviation(data.packings, [](const PackingInfo& p) { return p.exponent; });
-  const auto z = mean_deviation(data.packings, [](const PackingInfo& p) { return p.contacts_per_grain; });
-  const auto n = mean_deviation(data.packings, [](const PackingInfo& p) { return static_cast<double>(p.grains); });
+  const auto phi = over(data.packings, [](const PackingInfo& p) { return p.solid_fraction; });
+  const auto b = over(data.packings, [](const PackingInfo& p) { return p.exponent; });
+  const auto z = over(data.packings, [](const PackingInfo& p) { return p.contacts_per_grain; });
+  const auto n = over(data.packings, [](const PackingInfo& p) { return static_cast<double>(p.grains); });
   return {{"count", data.packings.size()},
           {"solid_fraction", phi.mean},
-          {"solid_fraction_deviation", phi.deviation},
+          {"solid_fraction_deviation", phi.deviation_or_zero()},
           {"exponent", b.mean},
-          {"exponent_deviation", b.deviation},
+          {"exponent_deviation", b.deviation_or_zero()},
           {"contacts_per_grain", z.mean},
           {"grains", n.mean},
-          {"grains_deviation", n.deviation}};
+          {"grains_deviation", n.deviation_or_zero()}};
 }
 
 json measurement_json(const Measurements& data, const std::string& relaxation) {

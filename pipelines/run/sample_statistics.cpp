@@ -4,6 +4,8 @@
 #include <map>
 #include <string>
 
+#include "common/core/statistics.h"
+
 namespace softgrain {
 
 namespace {
@@ -21,15 +23,10 @@ void collect(const json& object, const std::string& path, Values& values) {
 }
 
 json statistics_of(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  json out{{"mean", nullptr}, {"deviation", nullptr}, {"samples", values.size()}};
-  if (values.empty()) return out;
-  double mean = 0.0;
-  for (const double x : values) mean += x / n;
-  double square = 0.0;
-  for (const double x : values) square += (x - mean) * (x - mean);
-  out["mean"] = mean;
-  if (values.size() > 1) out["deviation"] = std::sqrt(square / (n - 1.0));
+  const MeanError m = mean_error(values);
+  json out{{"mean", nullptr}, {"deviation", nullptr}, {"samples", m.n}};
+  if (m.n > 0) out["mean"] = m.mean;
+  if (m.n > 1) out["deviation"] = m.deviation;
   return out;
 }
 

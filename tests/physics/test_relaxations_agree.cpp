@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "calibrate/tangential_stiffness.h"
+#include "common/core/statistics.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"
-#include "pipelines/compare/statistics.h"
 
 namespace softgrain {
 namespace {

@@ -156,24 +156,6 @@ TEST(CompareCurves, WhatIsRelativeToZeroIsUndefined) {
   EXPECT_EQ(text.find("inf"), std::string::npos) << text;
 }
 
-TEST(Statistics, MeanDeviationAndErrorOfThreeNumbers) {
-  const MeanError m = mean_error(Values{1.0, 2.0, 6.0});
-  EXPECT_DOUBLE_EQ(m.mean, 3.0);
-  EXPECT_NEAR(m.deviation, std::sqrt(7.0), 1e-14);
-  EXPECT_NEAR(m.error, std::sqrt(7.0 / 3.0), 1e-14);
-  EXPECT_TRUE(std::isnan(mean_error(Values{2.0}).error));
-  EXPECT_TRUE(std::isnan(mean_error(Values{}).mean));
-}
-
-TEST(Statistics, JackknifeOfARatio) {
-  EXPECT_NEAR(paired_ratio(Values{2, 4, 6}, Values{1, 2, 3}).ratio, 2.0, 1e-14);
-  EXPECT_NEAR(paired_ratio(Values{2, 4, 6}, Values{1, 2, 3}).error, 0.0, 1e-14);
-  // with a constant reference the jackknife error is the standard error of the mean, over the reference
-  const Values a{1.0, 2.0, 6.0};
-  EXPECT_NEAR(paired_ratio(a, Values{2, 2, 2}).error, 0.5 * mean_error(a).error, 1e-14);
-  EXPECT_THROW(paired_ratio(a, Values{1, 2}), BadInput);
-}
-
 TEST(CompareRelaxations, FindsTheFactorThatWasPutIn) {
   const auto data = synthetic::measurements();
   const auto c = compare_relaxations(data, "published", "damped", PairKind::soft_solid);

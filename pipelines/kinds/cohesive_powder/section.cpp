@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/statistics.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
 #include "pipelines/kinds/cohesive_powder/report_view.h"
 #include "pipelines/report/html.h"
@@ -83,13 +84,9 @@ std::vector<Column> structure_columns() {
 /// Mean of the values with the sample deviation in brackets.
 std::string mean_text(const std::vector<double>& values, int digits) {
   if (values.empty()) return "–";
-  double mean = 0.0;
-  for (const double v : values) mean += v / static_cast<double>(values.size());
-  if (values.size() < 2) return format_number(mean, digits);
-  double square = 0.0;
-  for (const double v : values) square += (v - mean) * (v - mean);
-  return fmt::format("{} ({})", format_number(mean, digits),
-                     format_number(std::sqrt(square / static_cast<double>(values.size() - 1)), 2));
+  const MeanError m = mean_error(values);
+  if (m.n < 2) return format_number(m.mean, digits);
+  return fmt::format("{} ({})", format_number(m.mean, digits), format_number(m.deviation, 2));
 }
 
 std::string cell_text(double value, const Column& column) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
 
 namespace softgrain {
@@ -66,21 +68,16 @@ json holes_json(const PowderHoles& holes) {
 /// Adds mean, sample deviation and number of the values that exist.
 void add_mean(json& out, const std::string& name, const PowderStructures& all, const std::vector<bool>& usable,
               const std::function<double(const PowderStructure&)>& get) {
-  double n = 0.0;
-  double sum = 0.0;
-  double square = 0.0;
+  Tally sample;
   for (std::size_t k = 0; k < all.samples.size(); ++k) {
-    const double x = usable[k] ? get(all.samples[k]) : std::nan("");
-    if (!std::isfinite(x)) continue;
-    n += 1.0;
-    sum += x;
-    square += x * x;
+    const double x = usable[k] ? get(all.samples[k]) : kNaN;
+    if (std::isfinite(x)) sample.add(x);
   }
-  if (n == 0.0) return;
-  const double mean = sum / n;
-  out[name] = mean;
-  out[name + "_deviation"] = n > 1.0 ? std::sqrt(std::max(square - n * mean * mean, 0.0) / (n - 1.0)) : 0.0;
-  out[name + "_samples"] = static_cast<std::int64_t>(n);
+  const MeanError m = sample.statistics();
+  if (m.n == 0) return;
+  out[name] = m.mean;
+  out[name + "_deviation"] = m.deviation_or_zero();
+  out[name + "_samples"] = static_cast<std::int64_t>(m.n);
 }
 
 /// A value of a fit that may be relied on.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/statistics.h"
 #include "common/io/json_number.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/inverse/stage.h"
@@ -31,19 +32,12 @@ struct Curve {
 Curve curve_of(const InverseEvaluation& e, std::size_t deltas) {
   Curve out;
   for (std::size_t j = 0; j < deltas; ++j) {
-    double n = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t k = 0; k < e.packings; ++k) {
-      const double f = e.force[k * deltas + j];
-      if (std::isnan(f)) continue;
-      n += 1.0;
-      sum += f;
-      squares += f * f;
-    }
-    const double mean = sum / n;
-    out.mean.push_back(mean);
-    out.error.push_back(n > 1.0 ? std::sqrt(std::max(squares / n - mean * mean, 0.0) / (n - 1.0)) : 0.0);
+    Tally sample;
+    for (std::size_t k = 0; k < e.packings; ++k)
+      if (const double f = e.force[k * deltas + j]; !std::isnan(f)) sample.add(f);
+    const MeanError m = sample.statistics();
+    out.mean.push_back(m.mean);
+    out.error.push_back(m.error_or_zero());
   }
   return out;
 }

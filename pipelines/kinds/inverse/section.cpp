@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/statistics.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
@@ -13,8 +14,6 @@ namespace softgrain::report {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kNormal95 = 1.959963984540054;  // 97.5 % quantile of the normal distribution
 
 double number_at(const json& entry, const std::string& path) { return find_number(entry, path).value_or(NAN); }
 

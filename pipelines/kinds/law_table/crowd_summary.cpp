@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
+
 namespace softgrain {
 
 namespace {
@@ -20,11 +23,7 @@ std::int64_t last_loading(const CrowdConfiguration& c) {
   return last;
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
+double mean_of(const std::vector<double>& values) { return values.empty() ? 0.0 : mean_error(values).mean; }
 
 /// The last recorded point of a stage; nullptr when there is none.
 const CrowdPoint* last_of(const CrowdRun& run, std::int64_t stage) {
@@ -35,13 +34,8 @@ const CrowdPoint* last_of(const CrowdRun& run, std::int64_t stage) {
 }
 
 MeanForce statistics(const std::vector<double>& values) {
-  MeanForce f{mean_of(values), std::numeric_limits<double>::infinity(), static_cast<std::int64_t>(values.size())};
-  if (values.size() < 2) return f;
-  double sum = 0.0;
-  for (const double v : values) sum += (v - f.mean) * (v - f.mean);
-  const auto n = static_cast<double>(values.size());
-  f.standard_error = std::sqrt(sum / (n - 1.0) / n);
-  return f;
+  const MeanError m = mean_error(values);
+  return {m.n > 0 ? m.mean : 0.0, m.n > 1 ? m.error : kInfinity, static_cast<std::int64_t>(m.n)};
 }
 
 std::vector<CrowdRun> runs_of(const CrowdMeasurements& data, std::size_t configuration) {

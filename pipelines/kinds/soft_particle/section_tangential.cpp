@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "pipelines/compare/statistics.h"
+#include "common/core/statistics.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"

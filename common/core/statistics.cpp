@@ -1,5 +1,8 @@
-#include "pipelines/compare/statistics.h"
+#include "common/core/statistics.h"
 
+#include <gsl/gsl_statistics_double.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -13,17 +16,34 @@ double sum(std::span<const double> values) { return std::accumulate(values.begin
 
 double quotient(double numerator, double denominator) { return denominator == 0.0 ? kNaN : numerator / denominator; }
 
+/// `squares`: sum of squares about the mean.
+MeanError from_squares(double n, double mean, double squares) {
+  const double deviation = n > 1.0 ? std::sqrt(squares / (n - 1.0)) : kNaN;
+  return {static_cast<std::size_t>(n), mean, deviation, deviation / std::sqrt(n)};
+}
+
 }  // namespace
 
 MeanError mean_error(std::span<const double> values) {
-  const auto n = static_cast<double>(values.size());
   if (values.empty()) return {0, kNaN, kNaN, kNaN};
-  const double mean = sum(values) / n;
-  if (values.size() < 2) return {1, mean, kNaN, kNaN};
-  double squares = 0.0;
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  const double deviation = std::sqrt(squares / (n - 1.0));
-  return {values.size(), mean, deviation, deviation / std::sqrt(n)};
+  const double mean = gsl_stats_mean(values.data(), 1, values.size());
+  return from_squares(static_cast<double>(values.size()), mean, gsl_stats_tss_m(values.data(), 1, values.size(), mean));
+}
+
+MeanError mean_error(std::span<const double> values, std::span<const double> repetitions) {
+  const double n = sum(repetitions);
+  if (!(n > 0.0)) return {0, kNaN, kNaN, kNaN};
+  const double mean = gsl_stats_wmean(repetitions.data(), 1, values.data(), 1, values.size());
+  return from_squares(n, mean, gsl_stats_wtss_m(repetitions.data(), 1, values.data(), 1, values.size(), mean));
+}
+
+double quantile(std::vector<double> values, double p) {
+  if (values.empty()) return kNaN;
+  std::sort(values.begin(), values.end());
+  // GSL interpolates at f (n - 1), counted from 0.
+  const auto last = static_cast<double>(values.size() - 1);
+  const double at = std::clamp(p * static_cast<double>(values.size() + 1) - 1.0, 0.0, last);
+  return gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), last > 0.0 ? at / last : 0.0);
 }
 
 RatioError paired_ratio(std::span<const double> candidate, std::span<const double> reference) {
