@@ -1,10 +1,12 @@
-// One contact of the least-work solver [QS 2.1]: Hertz force, tangential force with stick and slip, torsion, and their
-// stiffness. Value structs and inline evaluations; no storage.
+// One contact of the least-work solver [QS 2.1]: the Hertz force of the dynamics, tangential force with stick and slip,
+// torsion, and their stiffness. Value structs and inline evaluations; no storage.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "common/contact/hertz_mindlin.h"
 #include "common/core/vec.h"
 #include "common/statics/least_work.h"
 
@@ -12,7 +14,7 @@ namespace softgrain::statics {
 
 /// What the normal force needs.
 struct NormalConstants {
-  double hertz = 0.0;        ///< 4/3 E* sqrt(R*) [Pa m^(1/2)]
+  double modulus = 0.0;      ///< 4/3 E* [Pa]
   double root_radius = 0.0;  ///< sqrt(R*)
 };
 
@@ -62,9 +64,13 @@ struct NormalForce {
   double work = 0.0;
 };
 inline NormalForce hertz_force(const NormalConstants& c, double overlap) {
-  const double slope = c.hertz * std::sqrt(overlap);
-  const double force = slope * overlap;
-  return {force, 1.5 * slope, 0.4 * force * overlap};
+  HertzMindlin<Tangential::none, false> law;
+  law.k.inverse_d = c.modulus;
+  ContactState<3> state;
+  state.overlap = overlap;
+  state.constants.a = c.root_radius;
+  const auto response = law.evaluate(state);
+  return {response.elastic_force, response.normal_stiffness, 0.4 * response.elastic_force * overlap};
 }
 
 /// u_s = T (u_i - u_j) + Omega_i x R_ij - Omega_j x R_ji.
@@ -189,6 +195,69 @@ inline TorsionMoment torsion_moment(const FrictionConstants& c, double radius, d
     // With k' of the published rule, k' Omega_t = Mp - M.
     out.work = -0.5 * turned * (c.torsion0 + out.moment);
     out.stiffness = 0.0;
+  }
+  return out;
+}
+
+struct FrictionlessLaw {
+  static constexpr bool friction = false;
+  static constexpr bool torsion = false;
+  static constexpr int stride = 3;
+  static constexpr CoulombRule rule = CoulombRule::reference;
+};
+
+template <CoulombRule kRule, bool kTorsion>
+struct FrictionLaw {
+  static constexpr bool friction = true;
+  static constexpr bool torsion = kTorsion;
+  static constexpr int stride = 6;
+  static constexpr CoulombRule rule = kRule;
+};
+
+/// Everything a closed contact answers.
+struct ContactResponse {
+  NormalForce normal;
+  TangentialForce tangential;
+  TorsionMoment torsion;
+};
+
+template <class Law>
+TorsionMoment torsion_response(const FrictionConstants& c, const NormalForce& normal, double root_radius,
+                               const ContactPlace& place, const Vec3& turn_i, const Vec3& turn_j) {
+  constexpr double kShare = 3.0 * std::numbers::pi / 16.0;
+  const double turned = dot(turn_i - turn_j, place.normal);
+  if constexpr (Law::rule == CoulombRule::reference) {
+    const double limit = kShare * c.contact_radius0 * limit_by_reference(c, normal.force);
+    return torsion_moment(c, c.contact_radius0, limit, turned);
+  } else {
+    if (c.friction == 0.0) return {};
+    const double radius = root_radius * std::sqrt(place.overlap);
+    const double limit = kShare * radius * c.friction * normal.force;
+    if (!c.fresh) return torsion_moment(c, c.contact_radius0, limit, turned);
+    const double part = place.overlap / (place.overlap - c.overlap0);
+    TorsionMoment out = torsion_moment(c, radius, limit, turned * part);
+    out.stiffness *= part;
+    return out;
+  }
+}
+
+/// `slid`: u_s; `friction` may be null when the law has none. `turn`: Omega.
+template <class Law>
+ContactResponse respond(const NormalConstants& constants, const FrictionConstants* friction, const ContactPlace& place,
+                        const Vec3& moved, const Vec3& turn_i, const Vec3& turn_j) {
+  ContactResponse out;
+  out.normal = hertz_force(constants, place.overlap);
+  if constexpr (Law::friction) {
+    const Vec3 slid = sliding_displacement(place, moved, turn_i, turn_j);
+    const Vec3 pushed = turned_force(friction->tangential0, place.normal);
+    if constexpr (Law::rule == CoulombRule::reference) {
+      out.tangential = tangential_by_reference(*friction, out.normal.force, pushed, slid);
+    } else {
+      out.tangential =
+          tangential_by_current(*friction, out.normal.force, place.overlap, constants.root_radius, pushed, slid);
+    }
+    if constexpr (Law::torsion)
+      out.torsion = torsion_response<Law>(*friction, out.normal, constants.root_radius, place, turn_i, turn_j);
   }
   return out;
 }

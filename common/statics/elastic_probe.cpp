@@ -2,10 +2,9 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/statics/block_jacobi.h"
-#include "common/statics/krylov.h"
 #include "common/statics/least_work.h"
 #include "common/statics/stiffness.h"
+#include "common/statics/unknowns.h"
 
 namespace softgrain {
 

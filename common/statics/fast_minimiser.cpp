@@ -8,12 +8,9 @@
 #include <cmath>
 
 #include "common/io/interrupt.h"
-#include "common/statics/anderson.h"
-#include "common/statics/block_jacobi.h"
-#include "common/statics/krylov.h"
 #include "common/statics/minimiser.h"
-#include "common/statics/rattlers.h"
 #include "common/statics/stiffness.h"
+#include "common/statics/unknowns.h"
 
 namespace softgrain::statics {
 

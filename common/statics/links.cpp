@@ -15,28 +15,18 @@ namespace {
 /// How far a grain may move, in its radius, before the search is repeated.
 constexpr double kSkin = 0.04;
 
-struct Body {
-  double normal_compliance;  ///< (1 - nu^2)/E [1/Pa]
-  double shear_compliance;   ///< 1/G = 2 (1 + nu)/E [1/Pa]
-  double poisson_ratio;
-};
+Material material_of(double youngs_modulus, double nu) { return {"", 0.0, youngs_modulus, nu}; }
 
-Body body_of(double youngs_modulus, double nu) {
-  return {(1.0 - nu * nu) / youngs_modulus, 2.0 * (1.0 + nu) / youngs_modulus, nu};
-}
+/// 1/G [1/Pa]
+double shear_compliance(const Material& m) { return 2.0 * (1.0 + m.poisson_ratio) / m.youngs_modulus; }
 
-NormalConstants normal_constants(const Body& a, const Body& b, double effective_radius) {
-  const double root = std::sqrt(effective_radius);
-  return {4.0 / 3.0 / (a.normal_compliance + b.normal_compliance) * root, root};
-}
-
-FrictionConstants friction_constants(const Body& a, const Body& b, double friction) {
+FrictionConstants friction_constants(const Material& a, const Material& b, const HertzCoefficients& k) {
   FrictionConstants f;
-  f.friction = friction;
+  f.friction = k.friction;
   f.fresh = true;
-  if (friction == 0.0) return f;
-  f.shear = 8.0 / ((2.0 - a.poisson_ratio) * a.shear_compliance + (2.0 - b.poisson_ratio) * b.shear_compliance);
-  f.twist = 16.0 / 3.0 / (a.shear_compliance + b.shear_compliance);
+  if (f.friction == 0.0) return f;
+  f.shear = k.shear;
+  f.twist = 16.0 / 3.0 / (shear_compliance(a) + shear_compliance(b));
   return f;
 }
 
@@ -127,14 +117,16 @@ void fill_constants(Links& links, const GrainPack& pack) {
     const auto i = static_cast<std::size_t>(links.i[c]);
     const bool wall = links.j[c] >= n;
     const auto j = static_cast<std::size_t>(wall ? links.j[c] - n : links.j[c]);
-    const Body a = body_of(pack.youngs_modulus[i], pack.poisson_ratio[i]);
-    const Body b = wall ? body_of(pack.walls[j].youngs_modulus, pack.walls[j].poisson_ratio)
-                        : body_of(pack.youngs_modulus[j], pack.poisson_ratio[j]);
+    const Material a = material_of(pack.youngs_modulus[i], pack.poisson_ratio[i]);
+    const Material b = wall ? material_of(pack.walls[j].youngs_modulus, pack.walls[j].poisson_ratio)
+                            : material_of(pack.youngs_modulus[j], pack.poisson_ratio[j]);
+    require(a.normal_compliance() + b.normal_compliance() > 0.0,
+            "pack: a contact of two rigid bodies has no finite stiffness");
+    const auto k = HertzCoefficients::of(a, b, wall ? pack.walls[j].friction : pack.friction, 1.0);
     const double ri = pack.radius[i];
-    links.normal[c] = normal_constants(a, b, wall ? ri : ri * pack.radius[j] / (ri + pack.radius[j]));
-    require(std::isfinite(links.normal[c].hertz), "pack: a contact of two rigid bodies has no finite stiffness");
+    links.normal[c] = {k.inverse_d, std::sqrt(PairBodies{ri, wall ? 0.0 : pack.radius[j]}.effective_radius())};
     if (!friction) continue;
-    links.friction[c] = friction_constants(a, b, wall ? pack.walls[j].friction : pack.friction);
+    links.friction[c] = friction_constants(a, b, k);
     while (contact != pack.contacts.end() && before(*contact, links.i[c], links.j[c])) ++contact;
     const bool known = contact != pack.contacts.end() && contact->i == links.i[c] && contact->j == links.j[c];
     if (known && contact->overlap > 0.0) {

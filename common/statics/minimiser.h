@@ -29,4 +29,12 @@ double longest_step(const Unknowns& step, const GrainPack& pack, int stride, dou
 LeastWorkResult minimise_published(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options);
 LeastWorkResult minimise_fast(PackProblem& problem, Unknowns& theta, const LeastWorkOptions& options);
 
+/// Rattlers open, close and slide for many steps that the rest of the pack does not need: they are relaxed one by one.
+/// Moves grains towards their own balance, the others held, one after the other in ascending order: those that carry
+/// next to nothing (less than ten times `least_force` [N]), and those whose net force stands out from all others', when
+/// their residual is above `tolerance` (of their largest contact force, or of `least_force`). `forces`: those at theta;
+/// they are out of date when the call returns true. Does nothing between symmetry planes.
+bool relax_rattlers(PackProblem& problem, const PackForces& forces, double least_force, double tolerance,
+                    Unknowns& theta);
+
 }  // namespace softgrain::statics

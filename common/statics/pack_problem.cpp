@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/core/error.h"
-#include "common/statics/contact_response.h"
+#include "common/statics/contact_law.h"
 
 namespace softgrain::statics {
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/core/cost.h"
 #include "common/statics/links.h"
 #include "common/statics/symmetry_planes.h"
 #include "common/statics/unknowns.h"
@@ -46,11 +47,6 @@ struct GrainForces {
   double largest2 = 0.0;  ///< square of its largest contact force [N^2]
   std::vector<std::size_t> links;
   std::vector<LinkTangent> tangents;  ///< of `links`
-};
-
-struct Cost {
-  std::int64_t loop_passes = 0;
-  std::int64_t contact_evaluations = 0;
 };
 
 class PackProblem {

@@ -1,4 +1,5 @@
-// The linearised forces of a pack as an operator on displacements, contact by contact; nothing is assembled.
+// The linearised forces of a pack as an operator on displacements, contact by contact, nothing assembled;
+// and the inverse of every grain's own block of it.
 #pragma once
 
 #include "common/statics/pack_problem.h"
@@ -21,5 +22,29 @@ class Stiffness {
   const std::vector<LinkTangent>& tangents_;
   Sliding sliding_;
 };
+
+/// A preconditioner: one symmetric positive block per grain, the inverse of its own contact stiffness. Rows of a grain
+/// without stiffness get the mean of the pack.
+class BlockJacobi {
+ public:
+  /// `tangents`: symmetric ones. `floor`: added to every diagonal entry, in the largest diagonal entry of the block;
+  /// keeps free turns in place.
+  void build(const PackProblem& problem, const std::vector<LinkTangent>& tangents, double floor);
+  /// out = inverse * in
+  void apply(const Unknowns& in, Unknowns& out) const;
+
+  /// Per unknown, the largest diagonal entry of its grain's own stiffness [N/m].
+  [[nodiscard]] Unknowns stiffness() const;
+  /// out += share * (largest diagonal entry of the grain's own stiffness) * in
+  void add_diagonal(const Unknowns& in, double share, Unknowns& out) const;
+
+ private:
+  int width_ = 6;
+  std::vector<double> largest_;  ///< per grain, largest diagonal entry
+  std::vector<double> inverse_;  ///< per grain, width x width
+};
+
+/// The step of grain g alone that its own stiffness calls for; zero without contacts. `floor` as in build().
+void own_step(const PackProblem& problem, std::size_t g, const GrainForces& grain, double floor, Unknowns& step);
 
 }  // namespace softgrain::statics

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "common/statics/krylov.h"
 #include "common/statics/stiffness.h"
+#include "common/statics/unknowns.h"
 #include "tests/support/grain_packs.h"
 
 namespace {
