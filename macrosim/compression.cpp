@@ -8,7 +8,7 @@
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
 #include "common/io/interrupt.h"
-#include "common/io/short_hash.h"
+#include "common/io/text_file.h"
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/curve_notes.h"

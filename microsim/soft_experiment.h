@@ -5,6 +5,7 @@
 
 #include "common/data/measurements.h"
 #include "common/data/shell_packing.h"
+#include "common/data/snapshot.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -49,5 +50,9 @@ double natural_time(const SoftParticleSpec& spec);
 SoftExperiment make_soft_solid(const SoftParticleSpec& spec, const ShellPacking& packing, bool damped_contacts);
 SoftExperiment make_soft_soft(const SoftParticleSpec& spec, const ShellPacking& first, const ShellPacking& second,
                               bool damped_contacts);
+
+/// Grains with the soft particle they are inside (body 0, and 1 of a pair), shells as walls with their body, the plane
+/// with none. Label, series and frame are for the caller. Changes nothing.
+Snapshot soft_snapshot(const SoftExperiment& experiment);
 
 }  // namespace softgrain

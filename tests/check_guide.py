@@ -29,8 +29,8 @@ PAGES = {
         {"material", "packing"}, set()),
     "scene_particles.md": (
         ["microsim/particles/guards.cpp", "microsim/particles/particles_scene.cpp", "microsim/particles/scene_bodies.cpp",
-         "microsim/particles/scene_cell.cpp", "microsim/particles/scene_contacts.cpp",
-         "microsim/particles/scene_materials.cpp", "microsim/particles/scene_soft_laws.cpp", "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
+         "microsim/particles/scene_contacts.cpp",
+         "microsim/particles/scene_soft_laws.cpp", "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
         {"beyond"}, {"energy_unwatched", "entry"}),
     "scene_powder.md": (
         ["pipelines/kinds/cohesive_powder/scene.cpp", "pipelines/kinds/cohesive_powder/variants.cpp", "pipelines/run/variant_name.cpp"],

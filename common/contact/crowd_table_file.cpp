@@ -9,7 +9,6 @@
 #include "common/data/crowd_replicates.h"
 #include "common/data/law_card_format.h"
 #include "common/data/spec_io.h"
-#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

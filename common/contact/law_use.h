@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "common/core/larger_or_nan.h"
 #include "common/core/law_range.h"
+#include "common/core/limits.h"
 
 namespace softgrain {
 

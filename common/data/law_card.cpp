@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "common/data/law_card_format.h"
-#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "common/data/fields.h"
-#include "common/data/packing_io.h"
 #include "common/data/spec_io.h"
 
 namespace softgrain {

@@ -1,5 +1,8 @@
-// The specification of a soft particle as attributes of an HDF5 group; shared by measurements and law tables.
+// The specification of a soft particle as attributes of an HDF5 group, and what is reported of packings as a group:
+// shared by measurements and law tables.
 #pragma once
+
+#include <vector>
 
 #include "common/data/measurements.h"
 #include "common/io/hdf5_file.h"
@@ -15,5 +18,10 @@ SoftParticleSpec read_spec(const h5::Group& root);
 void require_format(const h5::Group& root, const std::string& format, const std::string& path);
 /// Marks a file as such.
 void write_format(const h5::Group& root, const std::string& format);
+
+/// Writes the group "packings": one row per packing, radii [m] one after the other.
+void write_packings(const h5::Group& root, const std::vector<PackingInfo>& packings);
+/// Reads it back. Throws FileTrouble when columns are missing or do not fit together.
+std::vector<PackingInfo> read_packings(const h5::Group& root);
 
 }  // namespace softgrain

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "common/dynamics/force_pass.h"
 
 namespace softgrain {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "common/dynamics/block_loop.h"
 #include "common/neighbours/verlet_list.h"
 

@@ -1,11 +1,13 @@
 #include "common/io/text_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <climits>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -140,6 +142,15 @@ void require_writable_directory(const std::string& path) {
   const std::string probe = path + "/.write-test-" + std::to_string(::getpid());
   write_file(probe, "test\n");
   fs::remove(probe, trouble);
+}
+
+std::string short_hash(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3U;
+  }
+  return fmt::format("{:016x}", hash);
 }
 
 }  // namespace softgrain

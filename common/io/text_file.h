@@ -47,4 +47,7 @@ void require_readable_file(const std::string& path);
 /// Creates the directory (and parents) and proves that a file can be written there. Throws FileTrouble.
 void require_writable_directory(const std::string& path);
 
+/// 64-bit FNV-1a as 16 hexadecimal digits: the same on every machine. Not for security.
+std::string short_hash(const std::string& text);
+
 }  // namespace softgrain

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "common/statics/stiffness.h"
 
 namespace softgrain::statics {

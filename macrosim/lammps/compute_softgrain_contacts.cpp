@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "atom.h"
-#include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "error.h"
 #include "force.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"

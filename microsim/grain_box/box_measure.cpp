@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "common/core/solid_sphere.h"
 #include "common/statics/least_work.h"
 

@@ -6,7 +6,6 @@
 
 #include "common/core/error.h"
 #include "common/core/in_space.h"
-#include "common/core/larger_or_nan.h"
 #include "common/core/limits.h"
 #include "common/dynamics/verlet.h"
 #include "microsim/particles/scene_vector.h"

@@ -12,7 +12,7 @@
 #include "common/core/error.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
-#include "common/io/short_hash.h"
+#include "common/io/text_file.h"
 #include "common/neighbours/spatial_order.h"
 #include "common/state/checkpoint.h"
 #include "common/state/system_io.h"

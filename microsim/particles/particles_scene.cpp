@@ -11,10 +11,10 @@
 #include "common/data/snapshot.h"
 #include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/scene_bodies.h"
-#include "microsim/particles/scene_cell.h"
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_vector.h"
+#include "microsim/particles/scene_walls.h"
 
 namespace softgrain {
 

@@ -7,7 +7,7 @@
 
 #include "common/core/particles.h"
 #include "common/io/scene.h"
-#include "microsim/particles/scene_materials.h"
+#include "microsim/particles/scene_contacts.h"
 
 namespace softgrain {
 

@@ -1,6 +1,7 @@
-// The contact laws of a scene of explicit particles.
+// Materials and contact laws of a scene of explicit particles.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,13 @@
 #include "common/io/scene.h"
 
 namespace softgrain {
+
+/// The tables [material.NAME], and "rigid", which is always there (last) for walls. Densities are per volume, in two
+/// dimensions per area. Throws BadInput.
+std::vector<Material> read_materials(const SceneTable& root, int dimension);
+
+/// Index of the material that `key` of `table` names; throws BadInput with the nearest name.
+std::int32_t material_index(const std::vector<Material>& materials, const SceneTable& table, const std::string& key);
 
 /// What a law may meet: what it says of the other body holds for grains or walls alone.
 enum class Serves { any, grains, walls };

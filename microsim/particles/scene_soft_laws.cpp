@@ -12,7 +12,7 @@
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 #include "common/io/text_file.h"
-#include "microsim/particles/scene_materials.h"
+#include "microsim/particles/scene_contacts.h"
 
 namespace softgrain {
 

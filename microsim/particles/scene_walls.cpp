@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "common/core/error.h"
 #include "microsim/particles/scene_vector.h"
 
 namespace softgrain {
@@ -81,5 +83,76 @@ std::vector<SceneWall<D>> read_walls(const SceneTable& root, const std::vector<M
 
 template std::vector<SceneWall<2>> read_walls<2>(const SceneTable&, const std::vector<Material>&);
 template std::vector<SceneWall<3>> read_walls<3>(const SceneTable&, const std::vector<Material>&);
+
+namespace {
+
+/// The box on the first line of the file with the particles; `known`: that could be read.
+template <int D>
+Vec<D> size_in_file(const SceneTable& t, const SceneBodies<D>& bodies, bool known) {
+  if (bodies.many_file.empty()) t.reject("size", "\"file\" needs [particles] file, whose first line gives the box");
+  Vec<D> size;
+  for (int k = 0; k < D; ++k) {
+    if (known && !(bodies.many_box[k] > 0.0))
+      throw BadInput(bodies.many_file + ":1: " + (D == 3 ? "Lx Ly Lz" : "Lx Ly") +
+                     " must be above 0 for a cell with size = \"file\"");
+    size[k] = bodies.many_box[k];
+  }
+  return size;
+}
+
+template <int D>
+Vec<D> read_size(const SceneTable& t, const SceneBodies<D>& bodies, bool known) {
+  if (t.is_text("size")) {
+    (void)t.choice("size", {"file"});
+    return size_in_file(t, bodies, known);
+  }
+  const Vec<D> size = read_vector<D>(t, "size", Unit::length);
+  for (int k = 0; k < D; ++k)
+    if (!(size[k] > 0.0)) t.reject("size", "every component must be above 0");
+  return size;
+}
+
+}  // namespace
+
+template <int D>
+Cell<D> read_cell(const SceneTable& root, const SceneBodies<D>& bodies) {
+  if (!root.has("cell")) return open_cell<D>();
+  const SceneTable t = root.table("cell");
+  Vec<D> size;
+  for (int k = 0; k < D; ++k) size[k] = 1.0;
+  t.check([&] { size = read_size(t, bodies, root.table_or_empty("particles").sound()); });
+  const std::vector<bool> periodic = t.flags("periodic");
+  if (periodic.size() != static_cast<std::size_t>(D))
+    t.reject("periodic", D == 3 ? "must have three flags" : "must have two flags, as the scene has dimension = 2");
+  std::array<bool, D> along{};
+  std::copy(periodic.begin(), periodic.end(), along.begin());
+  Cell<D> cell = box_cell<D>(size, along);
+  const double rate = t.number("shear_rate", Unit::frequency, Range::any(), 0.0);
+  if (rate != 0.0 && !(periodic[0] && periodic[1]))
+    t.mistake("shear_rate", "needs a cell that is periodic along x and y");
+  cell.velocity_gradient[0][1] = rate;
+  return cell;
+}
+
+template <int D>
+void require_wide_cell(const SceneTable& root, const Particles<D>& p, const Cell<D>& cell) {
+  if (!cell.any_periodic()) return;
+  double largest = 0.0;
+  for (Slot i = 0; i < p.grains; ++i) largest = std::max(largest, p.sphere[static_cast<std::size_t>(i)].r);
+  // Shear does not bring images nearer: beyond half an edge the cell is replaced by the one that leans the other way.
+  for (int k = 0; k < D; ++k) {
+    if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
+    const double width = cell.edges[k][k];
+    if (width >= 4.0 * largest) continue;
+    root.table("cell").mistake("size", "the periodic axis " + std::string(1, "xyz"[k]) + " is " +
+                                           std::to_string(width) + " m wide; allowed: at least " +
+                                           std::to_string(4.0 * largest) + " m, two diameters of the largest particle");
+  }
+}
+
+template Cell<2> read_cell<2>(const SceneTable&, const SceneBodies<2>&);
+template Cell<3> read_cell<3>(const SceneTable&, const SceneBodies<3>&);
+template void require_wide_cell<2>(const SceneTable&, const Particles<2>&, const Cell<2>&);
+template void require_wide_cell<3>(const SceneTable&, const Particles<3>&, const Cell<3>&);
 
 }  // namespace softgrain

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "microsim/powder/powder_contacts.h"
-#include "microsim/powder/powder_forces.h"
 #include "microsim/powder/powder_percolation.h"
 #include "microsim/powder/powder_rigidity.h"
 #include "microsim/powder/powder_start.h"

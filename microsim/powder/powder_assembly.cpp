@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "common/core/error.h"
-#include "common/core/larger_or_nan.h"
 #include "common/core/limits.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"

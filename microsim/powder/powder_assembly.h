@@ -8,8 +8,8 @@
 
 #include "common/dynamics/stress_cell.h"
 #include "microsim/powder/powder_contacts.h"
-#include "microsim/powder/powder_snapshots.h"
 #include "microsim/powder/powder_start.h"
+#include "microsim/powder/powder_state_io.h"
 
 namespace softgrain {
 

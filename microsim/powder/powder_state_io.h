@@ -1,10 +1,37 @@
-// A sample under way, to files and back: everything a run needs to go on with the same bits.
+// Powders in files: what one is made of, and a sample under way with everything that a run needs to go on with the same
+// bits; where its disks were at moments of its assembly.
 #pragma once
 
+#include <vector>
+
 #include "common/io/hdf5_file.h"
-#include "microsim/powder/powder_assembly.h"
+#include "common/system.h"
+#include "microsim/powder/powder_start.h"
 
 namespace softgrain {
+
+struct PowderState;
+
+struct PowderSnapshot {
+  double time = 0.0;             ///< [T0]
+  Vec<2> lengths{};              ///< of the periodic cell [a]
+  std::vector<Sphere<2>> disks;  ///< centres as they are, not folded into the cell
+};
+
+PowderSnapshot powder_snapshot(const System<2>& system);
+
+/// Group "snapshots" with a group 0, 1, ... for each, in the order of time: data sets positions (N x 2), radii (N) and
+/// cell (2) [a], attribute time [T0].
+void write_snapshots(const h5::Group& group, const std::vector<PowderSnapshot>& snapshots);
+
+/// What write_snapshots wrote; empty without such a group. Throws FileTrouble when shapes do not fit.
+std::vector<PowderSnapshot> read_snapshots(const h5::Group& group);
+
+/// Every member of the specification as an attribute of `group`, by its name.
+void write_powder_spec(const h5::Group& group, const PowderSpec& spec);
+
+/// Throws FileTrouble when an attribute is missing.
+PowderSpec read_powder_spec(const h5::Group& group);
 
 /// Into `group`: data set "course" (columns named in its attribute), groups "progress" (attributes), "snapshots" and
 /// "system".

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "microsim/powder/powder_interactions.h"
-#include "microsim/powder/sparse_entries.h"
+#include "microsim/powder/sparse_rank.h"
 
 namespace softgrain {
 

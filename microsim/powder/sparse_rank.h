@@ -1,11 +1,48 @@
-// Rank of a sparse matrix by QR factorisations that are checked for what they may have missed.
+// Sparse matrices as lists of entries, their QR factorisation with SuiteSparseQR, and their rank by factorisations that
+// are checked for what they may have missed.
 #pragma once
 
 #include <cstdint>
-
-#include "microsim/powder/sparse_entries.h"
+#include <utility>
+#include <vector>
 
 namespace softgrain {
+
+/// At most one entry per place.
+struct SparseEntries {
+  struct Entry {
+    std::int64_t row = 0;
+    std::int64_t column = 0;
+    double value = 0.0;
+  };
+  std::int64_t rows = 0;
+  std::int64_t columns = 0;
+  std::vector<Entry> entries;
+
+  [[nodiscard]] SparseEntries transposed() const {
+    SparseEntries out = *this;
+    std::swap(out.rows, out.columns);
+    for (Entry& e : out.entries) std::swap(e.row, e.column);
+    return out;
+  }
+};
+
+/// The independent part of R in A P = Q R: upper triangular, rank x rank, by columns; the diagonal ends its column.
+struct TriangularFactor {
+  std::int64_t rank = 0;
+  std::vector<std::int64_t> start;  ///< rank + 1 places in `row` and `value`
+  std::vector<std::int64_t> row;
+  std::vector<double> value;
+  std::vector<std::int64_t> column_of;  ///< column of A, per column of the factor
+  double dropped = 0.0;                 ///< Frobenius norm of what was set to zero: bounds singular value rank + 1 of A
+
+  /// x <- (R^T R)^-1 x.
+  void solve_normal(std::vector<double>& x) const;
+};
+
+/// Householder QR with an ordering that keeps R sparse. Heath's rule: a column whose part independent of the columns
+/// before it is shorter than `tolerance` is left out of the factor. Throws std::runtime_error when memory runs out.
+TriangularFactor sparse_qr(const SparseEntries& matrix, double tolerance);
 
 /// What was found, and how clear the decision was.
 struct SparseRank {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "calibrate/tangential_stiffness.h"
+#include "calibrate/curve_samples.h"
 
 namespace softgrain {
 namespace {

@@ -13,7 +13,6 @@
 #include "common/data/card_text.h"
 #include "common/data/law_remarks.h"
 #include "common/dynamics/force_pass.h"
-#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 #include "pipelines/run/run_files.h"
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 
 namespace softgrain {

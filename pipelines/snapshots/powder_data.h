@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/scattering_model.h"
+#include "calibrate/scattering_fit.h"
 #include "common/data/scattering_curve.h"
 #include "common/dynamics/force_pass.h"
-#include "microsim/powder/powder_snapshots.h"
+#include "microsim/powder/powder_state_io.h"
 
 namespace softgrain {
 

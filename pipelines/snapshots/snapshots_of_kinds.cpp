@@ -8,8 +8,6 @@
 #include "common/core/error.h"
 #include "common/dynamics/system_snapshot.h"
 #include "microsim/grain_box/record.h"
-#include "microsim/powder/powder_snapshots.h"
-#include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 
 namespace softgrain {

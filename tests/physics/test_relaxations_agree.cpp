@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/tangential_stiffness.h"
+#include "calibrate/curve_samples.h"
 #include "common/core/statistics.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"

@@ -11,7 +11,6 @@
 #include "common/state/system_io.h"
 #include "microsim/grain_box/record.h"
 #include "microsim/particles/particles_run.h"
-#include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_law.h"

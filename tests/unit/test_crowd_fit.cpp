@@ -6,7 +6,6 @@
 
 #include "calibrate/crowd_fit.h"
 #include "calibrate/crowd_form_fit.h"
-#include "calibrate/crowd_problem.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"

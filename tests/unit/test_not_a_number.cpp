@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/core/error.h"
-#include "common/core/larger_or_nan.h"
+#include "common/core/limits.h"
 #include "common/dynamics/verlet.h"
 #include "common/statics/minimiser.h"
 #include "microsim/particles/guards.h"

@@ -12,7 +12,7 @@
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
-#include "microsim/particles/contact_totals.h"
+#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/particles_run.h"
 #include "tests/support/disks.h"
 #include "tests/support/small_packing.h"

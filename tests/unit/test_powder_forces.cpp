@@ -1,5 +1,5 @@
 // Pairs of a powder one by one, distributions of their forces, and what follows from a whole state.
-#include "microsim/powder/powder_forces.h"
+#include "microsim/powder/powder_contacts.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,8 @@
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
-#include "microsim/powder/powder_snapshots.h"
-#include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_start.h"
+#include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
 #include "pipelines/kinds/cohesive_powder/report_view.h"
 #include "pipelines/kinds/cohesive_powder/scene.h"

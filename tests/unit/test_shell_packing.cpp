@@ -14,7 +14,6 @@
 
 #include "common/core/error.h"
 #include "common/core/random.h"
-#include "microsim/shell_placement.h"
 #include "common/packing/size_distribution.h"
 
 namespace softgrain {

@@ -1,5 +1,5 @@
 // kt from forces under rotation, on curves whose slope is known.
-#include "calibrate/tangential_stiffness.h"
+#include "calibrate/curve_samples.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
-#include "microsim/powder/powder_spec_io.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"

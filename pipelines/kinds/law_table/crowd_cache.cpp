@@ -8,7 +8,7 @@
 #include "common/core/error.h"
 #include "common/data/spec_io.h"
 #include "common/io/file_seal.h"
-#include "common/io/short_hash.h"
+#include "common/io/text_file.h"
 #include "pipelines/run/task_store.h"
 
 namespace softgrain {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/crowd_problem.h"
+#include "calibrate/crowd_form_fit.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/data/law_remarks.h"

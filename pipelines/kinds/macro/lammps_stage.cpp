@@ -10,7 +10,6 @@
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/progress.h"
-#include "common/io/short_hash.h"
 #include "common/io/text_file.h"
 #include "macrosim/compression.h"
 #include "macrosim/curve_notes.h"

@@ -13,7 +13,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/time_step.h"
 #include "common/dynamics/verlet.h"
-#include "microsim/particles/contact_totals.h"
+#include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/run/trial_times.h"
 

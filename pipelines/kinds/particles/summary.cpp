@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/dynamics/verlet.h"
-#include "microsim/particles/contact_totals.h"
+#include "microsim/particles/frame_contacts.h"
 
 namespace softgrain {
 

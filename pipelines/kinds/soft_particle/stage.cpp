@@ -14,7 +14,7 @@
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "microsim/shell_packing.h"
-#include "microsim/soft_snapshot.h"
+#include "microsim/soft_experiment.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/parallel_tasks.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "microsim/particles/contact_totals.h"
+#include "microsim/particles/frame_contacts.h"
 #include "tests/verification/cases/closed_forms.h"
 #include "tests/verification/cases/outside_run.h"
 #include "tests/verification/cases/scene_text.h"
