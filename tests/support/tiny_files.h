@@ -11,6 +11,7 @@
 #include "common/state/system_io.h"
 #include "microsim/grain_box/record.h"
 #include "microsim/particles/particles_run.h"
+#include "microsim/powder/powder_assembly.h"
 #include "microsim/powder/powder_state_io.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_law.h"
