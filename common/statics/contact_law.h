@@ -14,7 +14,7 @@ namespace softgrain::statics {
 
 /// What the normal force needs.
 struct NormalConstants {
-  double modulus = 0.0;      ///< 4/3 E* [Pa]
+  double hertz = 0.0;        ///< 4/3 E* sqrt(R*) [Pa m^(1/2)]
   double root_radius = 0.0;  ///< sqrt(R*)
 };
 
@@ -65,10 +65,10 @@ struct NormalForce {
 };
 inline NormalForce hertz_force(const NormalConstants& c, double overlap) {
   HertzMindlin<Tangential::none, false> law;
-  law.k.inverse_d = c.modulus;
+  law.k.inverse_d = 1.0;
   ContactState<3> state;
   state.overlap = overlap;
-  state.constants.a = c.root_radius;
+  state.constants.a = c.hertz;  // the modulus with the radius: one product for each state less
   const auto response = law.evaluate(state);
   return {response.elastic_force, response.normal_stiffness, 0.4 * response.elastic_force * overlap};
 }

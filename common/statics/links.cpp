@@ -20,12 +20,17 @@ Material material_of(double youngs_modulus, double nu) { return {"", 0.0, youngs
 /// 1/G [1/Pa]
 double shear_compliance(const Material& m) { return 2.0 * (1.0 + m.poisson_ratio) / m.youngs_modulus; }
 
-FrictionConstants friction_constants(const Material& a, const Material& b, const HertzCoefficients& k) {
+NormalConstants normal_constants(const Material& a, const Material& b, const PairBodies& bodies) {
+  const double root = std::sqrt(bodies.effective_radius());
+  return {4.0 / 3.0 / (a.normal_compliance() + b.normal_compliance()) * root, root};
+}
+
+FrictionConstants friction_constants(const Material& a, const Material& b, double friction) {
   FrictionConstants f;
-  f.friction = k.friction;
+  f.friction = friction;
   f.fresh = true;
-  if (f.friction == 0.0) return f;
-  f.shear = k.shear;
+  if (friction == 0.0) return f;
+  f.shear = 8.0 / ((2.0 - a.poisson_ratio) * shear_compliance(a) + (2.0 - b.poisson_ratio) * shear_compliance(b));
   f.twist = 16.0 / 3.0 / (shear_compliance(a) + shear_compliance(b));
   return f;
 }
@@ -120,13 +125,11 @@ void fill_constants(Links& links, const GrainPack& pack) {
     const Material a = material_of(pack.youngs_modulus[i], pack.poisson_ratio[i]);
     const Material b = wall ? material_of(pack.walls[j].youngs_modulus, pack.walls[j].poisson_ratio)
                             : material_of(pack.youngs_modulus[j], pack.poisson_ratio[j]);
-    require(a.normal_compliance() + b.normal_compliance() > 0.0,
-            "pack: a contact of two rigid bodies has no finite stiffness");
-    const auto k = HertzCoefficients::of(a, b, wall ? pack.walls[j].friction : pack.friction, 1.0);
     const double ri = pack.radius[i];
-    links.normal[c] = {k.inverse_d, std::sqrt(PairBodies{ri, wall ? 0.0 : pack.radius[j]}.effective_radius())};
+    links.normal[c] = normal_constants(a, b, {ri, wall ? 0.0 : pack.radius[j]});
+    require(std::isfinite(links.normal[c].hertz), "pack: a contact of two rigid bodies has no finite stiffness");
     if (!friction) continue;
-    links.friction[c] = friction_constants(a, b, k);
+    links.friction[c] = friction_constants(a, b, wall ? pack.walls[j].friction : pack.friction);
     while (contact != pack.contacts.end() && before(*contact, links.i[c], links.j[c])) ++contact;
     const bool known = contact != pack.contacts.end() && contact->i == links.i[c] && contact->j == links.j[c];
     if (known && contact->overlap > 0.0) {

@@ -12,7 +12,7 @@ using namespace softgrain::statics;
 
 /// Two spheres of 1 mm, E = 70 GPa, nu = 0.2, 10 um deep; the reference state carries Q0 and a moment.
 struct Sample {
-  NormalConstants normal{4.0 / 3.0 * 70e9 / (2.0 * 0.96), std::sqrt(0.5e-3)};
+  NormalConstants normal{4.0 / 3.0 * 70e9 / (2.0 * 0.96) * std::sqrt(0.5e-3), std::sqrt(0.5e-3)};
   FrictionConstants friction;
   ContactPlace place = place_of_spheres({{1.99e-3, 0.0, 0.0}}, 1.99e-3, 1e-3, 1e-3);
 
