@@ -249,7 +249,7 @@ TEST_F(BadResults, MacroCurvesAndGrainBoxes) {
   };
   boxes([](Hdf5Edit& f) { f.set("packs/pack_000/points/phase", 0, 9); }, {"a phase that is not known"});
   boxes([](Hdf5Edit& f) { f.set("packs/pack_000/pack/contact_pair_sliding", 1, 99); }, {"a body that is not there"});
-  boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/pack/wall_E_nu_mu", 9); }, {"'wall_point' has a wrong length"});
+  boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/pack/wall_E_nu_mu", 9); }, {"'wall_point' has a wrong shape"});
   boxes([](Hdf5Edit& f) { f.resize("packs/pack_000/fits/ranges", 3); }, {"'ranges' has a wrong length"});
   boxes([](Hdf5Edit& f) { f.set_attribute("packs/pack_000", "phase", -1LL); }, {"a phase that is not known"});
 }
