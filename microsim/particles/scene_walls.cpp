@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/core/error.h"
+#include "common/data/snapshot.h"
 #include "microsim/particles/scene_vector.h"
 
 namespace softgrain {
