@@ -115,11 +115,11 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   return curve;
 }
 
-void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer,
-              double checkpoint_seconds) {
+void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control) {
+  constexpr const char* kDoing = "straining; all up to here is saved";
   DampedRelaxation<3> relaxation(relaxation_options(spec, state.macro));
   const std::int64_t points = recorded_points(spec);
-  CheckpointClock due(checkpoint_seconds);
+  RunKeeper keeper(control);
   const auto share = [&](std::int64_t point) {
     const auto way = static_cast<double>(state.increments) / static_cast<double>(spec.increments_per_step);
     return (static_cast<double>(point) + way) / static_cast<double>(points);
@@ -133,18 +133,15 @@ void compress(CompressionState& state, const MacroSpec& spec, const CompressionO
       rest = counted_step(relaxation, state, strain_increment(spec, point, state.increments + 1));
       ++state.increments;
       // After the last one the point is recorded, which needs what the relaxation said.
-      if (state.increments == spec.increments_per_step || !(interrupt_requested() || due.due())) continue;
-      observer(state, share(point));
-      stop_if_interrupted("straining; all up to here is saved");
+      if (state.increments < spec.increments_per_step) keeper.between_points(state, share(point), kDoing);
     }
     state.increments = 0;
     record(state, spec, strain_at(spec, point), rest);
     const LawUse use = watch(state);
     const bool last = point + 1 == points;
     if (last || use.refused > 0) note_law_use(state.curve, use, strain_at(spec, point));
-    observer(state, share(point + 1));
+    keeper.at_point(state, share(point + 1), kDoing);
     if (use.refused > 0) return;
-    stop_if_interrupted("straining; all up to here is saved");
   }
 }
 

@@ -1,10 +1,8 @@
 // Oedometric, isotropic and shear tests of a macro system, law-based or resolved, by relaxed strain increments.
 #pragma once
 
-#include <functional>
-
 #include "common/data/macro_result.h"
-#include "common/state/checkpoint.h"
+#include "common/state/run_control.h"
 #include "macrosim/macro_system.h"
 #include "macrosim/test_protocol.h"
 
@@ -17,10 +15,6 @@ struct CompressionState {
   std::int64_t increments = 0;  ///< done since, on the way to the next point
 };
 
-/// Called after each recorded point, and between two of them when that takes long or a signal came: to save, to report
-/// progress (the share of the test done).
-using CompressionObserver = std::function<void(const CompressionState&, double share_done)>;
-
 /// Strains the box step by step to spec.strain_end, relaxing every increment. Oedometric: the z planes move, four
 /// stand; isotropic: all six; shear: all six to the nominal strain `preload`, then z shortens and x lengthens by equal
 /// logarithmic strains while y stands. Records strain (nominal from the start; in shear logarithmic from the end of
@@ -28,9 +22,7 @@ using CompressionObserver = std::function<void(const CompressionState&, double s
 /// forces between bodies of the last point.
 /// Points that did not converge make the curve not usable, with a note; so does a law asked beyond its range that does
 /// not allow it, and the test ends there. Throws NotUsable (lost grain) and Interrupted.
-/// Between two recorded points the observer is called after `checkpoint_seconds` of wall time, or for a signal.
-void compress(CompressionState& state, const MacroSpec& spec, const CompressionObserver& observer,
-              double checkpoint_seconds = kCheckpointSeconds);
+void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control = {});
 
 /// A curve with the facts of the packing filled in.
 MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,

@@ -2,14 +2,13 @@
 // are pressed in along a given path while the grains come to rest.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "common/contact/law_set.h"
 #include "common/data/crowd_measurements.h"
 #include "common/data/shell_packing.h"
 #include "common/data/slide_direction.h"
-#include "common/state/checkpoint.h"
+#include "common/state/run_control.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -92,9 +91,6 @@ CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguratio
                            const SoftContent& centre, const std::vector<const SoftContent*>& others,
                            const InnerLaws* laws = nullptr);
 
-/// Called after each recorded point.
-using CrowdObserver = std::function<void(const CrowdPoint&)>;
-
 /// Prescribed position: overlaps and slide [Rs].
 struct CrowdTarget {
   std::vector<double> overlap;
@@ -111,18 +107,17 @@ struct CrowdPlace {
   CrowdTarget leg_from;         ///< where the leg began
 };
 
-/// How a run that takes long is kept from being lost. `save` is called between increments, now and then and when a
-/// signal came; `start` is where an earlier run was saved, with the experiment as it was then.
-struct CrowdKeeper {
-  CrowdPlace start;
-  std::function<void(const CrowdPlace&, const CrowdExperiment&)> save;
-  double seconds = kCheckpointSeconds;  ///< of wall time between two calls
+/// What a run needs to go on: its place, and the experiment as it is there.
+struct CrowdUnderWay {
+  const CrowdPlace& place;
+  const CrowdExperiment& experiment;
 };
 
-/// Goes through all stages: straight lines in overlap, a relaxation after each increment. Throws NotUsable (a grain is
-/// lost), Interrupted and what the observer throws. `configuration` and `packing` of the run are left to the caller.
+/// Goes through all stages from `start` on: straight lines in overlap, a relaxation after each increment. The state is
+/// saved between increments; progress is told after each recorded point. Throws NotUsable (a grain is lost),
+/// Interrupted and what the control throws. `configuration` and `packing` of the run are left to the caller.
 CrowdRun run_crowd(CrowdExperiment& experiment, const CrowdPlan& plan, const CrowdOptions& options,
-                   const CrowdObserver& observer = {}, const CrowdKeeper& keeper = {});
+                   const RunControl<CrowdUnderWay>& control = {}, CrowdPlace start = {});
 
 /// Number of relaxations of a path, for progress.
 std::int64_t count_increments(const CrowdConfiguration& configuration, const CrowdPlan& plan,

@@ -61,13 +61,14 @@ void require_plan(const CrowdConfiguration& c, const CrowdPlan& plan) {
 /// Goes on from a place in the plan, which is after an increment or at the very beginning.
 class CrowdWalk {
  public:
-  CrowdWalk(CrowdExperiment& e, const CrowdPlan& plan, const CrowdOptions& options, const CrowdKeeper& keeper)
-      : e_(e), plan_(plan), options_(options), keeper_(keeper), at_(keeper.start), due_(keeper.seconds) {}
+  CrowdWalk(CrowdExperiment& e, const CrowdPlan& plan, const CrowdOptions& options,
+            const RunControl<CrowdUnderWay>& control, CrowdPlace start)
+      : e_(e), plan_(plan), options_(options), control_(control), at_(std::move(start)), due_(control.seconds) {}
 
-  CrowdRun run(const CrowdObserver& observer) {
+  CrowdRun run() {
     for (; at_.stage < plan_.size(); ++at_.stage, at_.leg = 0) {
       if (at_.leg == 0 && at_.increments == 0) at_.stage_from = {e_.overlap, e_.slide};
-      walk_stage(observer);
+      walk_stage();
     }
     count_time();
     at_.run.cost.loop_passes = e_.system.cost.loop_passes;
@@ -77,7 +78,7 @@ class CrowdWalk {
 
  private:
   /// A leg to each recorded point and one to the end, which is empty when the end was recorded.
-  void walk_stage(const CrowdObserver& observer) {
+  void walk_stage() {
     const Target to = end_of(e_.configuration.stages[at_.stage], at_.stage_from.slide);
     const std::vector<double>& shares = plan_[at_.stage];
     for (; at_.leg <= shares.size(); ++at_.leg, at_.increments = 0) {
@@ -86,7 +87,7 @@ class CrowdWalk {
       walk_leg(last ? to : between(at_.stage_from, to, shares[at_.leg]));
       if (last) continue;
       at_.run.points.push_back(recorded(e_, options_, at_.stage));
-      if (observer) observer(at_.run.points.back());
+      if (control_.progress) control_.progress({at_, e_}, share_done());
     }
   }
   void walk_leg(const Target& to) {
@@ -103,11 +104,17 @@ class CrowdWalk {
     }
   }
   void pause_if_asked() {
-    if (keeper_.save && (interrupt_requested() || due_.due())) {
+    if (control_.save && (interrupt_requested() || due_.due())) {
       count_time();
-      keeper_.save(at_, e_);
+      control_.save({at_, e_});
     }
     stop_if_interrupted("pressing a soft particle");
+  }
+  /// By recorded points.
+  [[nodiscard]] double share_done() const {
+    std::size_t points = 0;
+    for (const auto& shares : plan_) points += shares.size();
+    return static_cast<double>(at_.run.points.size()) / static_cast<double>(points);
   }
   void count_time() {
     const auto now = std::chrono::steady_clock::now();
@@ -118,7 +125,7 @@ class CrowdWalk {
   CrowdExperiment& e_;
   const CrowdPlan& plan_;
   const CrowdOptions& options_;
-  const CrowdKeeper& keeper_;
+  const RunControl<CrowdUnderWay>& control_;
   CrowdPlace at_;
   CheckpointClock due_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
@@ -127,9 +134,9 @@ class CrowdWalk {
 }  // namespace
 
 CrowdRun run_crowd(CrowdExperiment& e, const CrowdPlan& plan, const CrowdOptions& options,
-                   const CrowdObserver& observer, const CrowdKeeper& keeper) {
+                   const RunControl<CrowdUnderWay>& control, CrowdPlace start) {
   require_plan(e.configuration, plan);
-  return CrowdWalk(e, plan, options, keeper).run(observer);
+  return CrowdWalk(e, plan, options, control, std::move(start)).run();
 }
 
 std::int64_t count_increments(const CrowdConfiguration& configuration, const CrowdPlan& plan,

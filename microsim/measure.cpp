@@ -91,8 +91,9 @@ bool is_among(const std::vector<double>& values, double x) {
 }  // namespace
 
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
-             const MeasurementObserver& observer, double checkpoint_seconds, const PointPicture& picture) {
-  CheckpointClock due(checkpoint_seconds);
+             const RunControl<MeasurementState>& control, const PointPicture& picture) {
+  constexpr const char* kDoing = "measuring; measured points are saved";
+  RunKeeper keeper(control);
   const auto share = [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(plan.deltas.size()); };
   for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
     const double delta = plan.deltas[k];
@@ -100,13 +101,11 @@ void measure(MeasurementState& state, const MeasurementPlan& plan, const Protoco
     if (picture) look = [&](const SoftExperiment& e) { picture(e, k); };
     if (!state.rotating) state.rotating = normal_state(state, delta, protocol, look);
     if (is_among(plan.tangential_deltas, delta))
-      rotate_through(state, delta, plan, protocol, [&] {
-        if (interrupt_requested() || due.due()) observer(state, share(k));
-      });
+      rotate_through(state, delta, plan, protocol, [&] { keeper.between_points(state, share(k), kDoing); });
     const SettleResult rest = *state.rotating;
     state.rotating.reset();
     state.run.normal.push_back({delta, rest.force[0], rest.residual, rest.max_overlap, rest.converged});
-    observer(state, share(k + 1));
+    keeper.at_point(state, share(k + 1), kDoing);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/data/measurements.h"
-#include "common/state/checkpoint.h"
+#include "common/state/run_control.h"
 #include "microsim/protocol.h"
 #include "microsim/soft_experiment.h"
 
@@ -33,17 +33,12 @@ struct MeasurementState {
   std::optional<SettleResult> rotating;
 };
 
-/// Called after each recorded overlap with its tangential points, and between two rotations when that takes long or a
-/// signal came: to save, to report progress (the share of the plan done).
-using MeasurementObserver = std::function<void(const MeasurementState&, double share_done)>;
-
 /// Is shown the relaxed state at overlap number `point` of the plan, as recorded, before any rotation.
 using PointPicture = std::function<void(const SoftExperiment&, std::size_t point)>;
 
-/// Goes through the plan from where `state` stands. Between two rotations the observer is called after
-/// `checkpoint_seconds` of wall time, or for a signal. Throws NotUsable (lost grain...) and Interrupted.
+/// Goes through the plan from where `state` stands. A point is a recorded overlap with its tangential points; between
+/// two of them the state is saved before rotations. Throws NotUsable (lost grain...) and Interrupted.
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
-             const MeasurementObserver& observer, double checkpoint_seconds = kCheckpointSeconds,
-             const PointPicture& picture = {});
+             const RunControl<MeasurementState>& control = {}, const PointPicture& picture = {});
 
 }  // namespace softgrain

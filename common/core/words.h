@@ -1,4 +1,4 @@
-// The words of a choice: one table beside each enum, which scenes, command line, files and texts all go by.
+// Names in scenes, files and texts: the words of a choice in one table beside each enum, and whose fields() name what.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
@@ -50,5 +50,9 @@ std::vector<const char*> all_words() {
   for (const Word<Enum>& w : words<Enum>) out.push_back(w.text);
   return out;
 }
+
+/// A record, to read or to write: void fields(auto&& visit, Of<Point> auto& p) { visit("force", p.force); }
+template <class T, class R>
+concept Of = std::is_same_v<std::remove_const_t<T>, R>;
 
 }  // namespace softgrain

@@ -128,10 +128,6 @@ void read_vectors(const h5::Group& group, const std::string& name, const std::st
     set(records[k], Vec3{{flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]}});
 }
 
-/// A record, to read or to write.
-template <class T, class Record>
-concept Of = std::is_same_v<std::remove_const_t<T>, Record>;
-
 /// One column of a list of records: numbers with a fraction, or whole ones.
 struct StoredColumn {
   std::string name;

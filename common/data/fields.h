@@ -1,7 +1,8 @@
 // The members of records, each with its name and unit once: fields(visit, record) calls visit(name, member, unit,
-// limits), in the order in which rows hold them. Columns of files and rows of checkpoints go by it.
+// limits), in the order in which rows hold them. Columns of files, rows of checkpoints and JSON go by it.
 #pragma once
 
+#include "common/core/statistics.h"
 #include "common/data/columns.h"
 #include "common/data/crowd_measurements.h"
 #include "common/data/measurements.h"
@@ -29,6 +30,12 @@ void fields(auto&& visit, Of<Cost> auto& c, const std::string& prefix = "") {
   visit(prefix + "loop_passes", c.loop_passes, "1", Limits::not_negative());
   visit(prefix + "contact_evaluations", c.contact_evaluations, "1", Limits::not_negative());
   visit(prefix + "seconds", c.seconds, "s", Limits::not_negative());
+}
+
+void fields(auto&& visit, Of<MeanError> auto& m) {
+  visit("mean", m.mean);
+  visit("standard_error", m.error);
+  visit("n", m.n);
 }
 
 void fields(auto&& visit, Of<PackingInfo> auto& p) {

@@ -34,4 +34,21 @@ class Progress {
   std::mutex mutex_;
 };
 
+/// One of the tasks behind a progress bar; it stands for so much of the whole.
+class TaskProgress {
+ public:
+  explicit TaskProgress(Progress& whole, double weight = 1.0) : whole_(whole), weight_(weight) {}
+  /// Share of the task that is done, 0 to 1; what lies behind is passed over.
+  void reach(double share) {
+    if (share <= done_) return;
+    whole_.advance((share - done_) * weight_);
+    done_ = share;
+  }
+
+ private:
+  Progress& whole_;
+  double weight_;
+  double done_ = 0.0;
+};
+
 }  // namespace softgrain

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/core/words.h"
 #include "common/io/hdf5_file.h"
 
 namespace softgrain {
@@ -19,6 +20,16 @@ struct Provenance {
   std::string command;  ///< command line as given
   std::string scene;    ///< whole scene, overrides applied
 };
+
+void fields(auto&& visit, Of<Provenance> auto& p) {
+  visit("version", p.version);
+  visit("commit", p.commit);
+  visit("compiler", p.compiler);
+  visit("threads", p.threads);
+  visit("seed", p.seed);
+  visit("command", p.command);
+  visit("scene", p.scene);
+}
 
 /// Version, commit, compiler and flags are filled in; the rest is the caller's.
 Provenance build_provenance();

@@ -29,12 +29,13 @@ constexpr double kStrainPower = 2.0 / 3.0;
 
 class GrainBoxRun {
  public:
-  GrainBoxRun(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState&& state, const GrainBoxControl& control)
+  GrainBoxRun(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState&& state,
+              const RunControl<GrainBoxState>& control)
       : spec_(spec),
         seed_(seed),
         state_(std::move(state)),
         control_(control),
-        due_(control.checkpoint_seconds),
+        due_(control.seconds),
         started_(Clock::now()) {}
 
   GrainBoxResult run();
@@ -71,7 +72,7 @@ class GrainBoxRun {
   std::uint64_t seed_;
   GrainBoxState state_;
   SafePoint safe_;
-  const GrainBoxControl& control_;
+  const RunControl<GrainBoxState>& control_;
   CheckpointClock due_;
   Clock::time_point started_;
 };
@@ -389,7 +390,7 @@ double increment_at(const GrainBoxLoading& loading, double strain) {
 }
 
 GrainBoxResult run_grain_box(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState state,
-                             const GrainBoxControl& control) {
+                             const RunControl<GrainBoxState>& control) {
   return GrainBoxRun(spec, seed, std::move(state), control).run();
 }
 

@@ -1,27 +1,17 @@
 // The run of one pack: generation (a) and (b), then loading [QS 2.3].
 #pragma once
 
-#include <functional>
-
-#include "common/state/checkpoint.h"
+#include "common/state/run_control.h"
 #include "microsim/grain_box/record.h"
 
 namespace softgrain {
 
-/// What the caller provides; all may be empty.
-struct GrainBoxControl {
-  std::function<void(const GrainBoxState&)> save;              ///< writes a checkpoint
-  std::function<void(const GrainBoxState&, double)> progress;  ///< after every equilibrium: share of the run, 0 to 1
-  std::function<void(const std::string&)> say;                 ///< a line for people
-  double checkpoint_seconds = kCheckpointSeconds;
-};
-
 /// Goes on from `state` (a fresh one starts at the beginning) to the end. Depends on spec, seed and state alone: a run
 /// that was stopped and went on ends in the same bits. What cannot be done (an increment without equilibrium, a stress
 /// out of reach, a pack that does not jam) ends the run: usable is false, everything before it is kept.
-/// Throws BadInput, and Interrupted after saving.
+/// Progress is told after every equilibrium. Throws BadInput, and Interrupted after saving.
 [[nodiscard]] GrainBoxResult run_grain_box(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState state,
-                                           const GrainBoxControl& control);
+                                           const RunControl<GrainBoxState>& control);
 
 /// End of phase (b): over the last two windows of increments the mean sliding share changed by no more than
 /// `saturation`, and the mean G of the later window is larger than that of the earlier one: sliding has saturated and G

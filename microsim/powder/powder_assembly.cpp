@@ -95,6 +95,8 @@ std::vector<double> drag_of(const System<2>& s, double drag, bool rolling) {
   return out;
 }
 
+constexpr const char* kDoing = "bringing disks together";
+
 class Phase {
  public:
   Phase(PowderState& state, const PowderSpec& spec, const PowderPhase& phase, const PowderOptions& options)
@@ -106,11 +108,11 @@ class Phase {
         integrator_(time_step(state, options), control_) {}
 
   /// Empty when the phase came to rest, else why not.
-  std::string run(const std::function<void(const PowderState&)>& observer) {
+  std::string run(const RunKeeper<PowderState>& keeper, std::size_t phases) {
     integrator_.initialise(state_.system);
     double next = state_.points.empty() ? 0.0 : state_.points.back().time + options_.record_every;
     for (;;) {
-      stop_if_interrupted("bringing disks together");
+      stop_if_interrupted(kDoing);
       look();
       if (!std::isfinite(residual_.kinetic)) throw NotUsable("powder: the motion diverged in phase " + phase_.name);
       const bool done = elapsed() > 0.0 && !stiffening() && at_rest();
@@ -118,7 +120,7 @@ class Phase {
       if ((state_.system.time >= next || done) && !recorded()) {
         state_.points.push_back(point_of(state_, spec_, integrator_.stress()));
         next = state_.system.time + options_.record_every;
-        observer(state_);
+        keeper.at_point(state_, share_done(phases), kDoing);
         integrator_.initialise(state_.system);  // as a run does that goes on from here
       }
       if (done) return "";
@@ -147,6 +149,10 @@ class Phase {
   [[nodiscard]] bool recorded() const {
     return !state_.points.empty() && state_.points.back().phase == state_.phase &&
            state_.points.back().time == state_.system.time;
+  }
+  [[nodiscard]] double share_done(std::size_t phases) const {
+    constexpr double kUsual = 150.0;  // [T0] most phases take about so long
+    return (static_cast<double>(state_.phase) + elapsed() / (elapsed() + kUsual)) / static_cast<double>(phases);
   }
   [[nodiscard]] double elapsed() const { return state_.system.time - state_.phase_start; }
   [[nodiscard]] bool stiffening() const { return state_.stiffness != phase_.stiffness; }
@@ -304,13 +310,14 @@ bool one_aggregate(const System<2>& s) {
 }
 
 PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::vector<PowderPhase>& phases,
-                        const PowderOptions& options, const std::function<void(const PowderState&)>& observer) {
+                        const PowderOptions& options, const RunControl<PowderState>& control) {
+  const RunKeeper keeper(control);
   PowderResult result;
   install_law(state, spec, state.stiffness);  // a saved state knows its stiffness, not the law
   while (result.reason.empty() && state.phase < static_cast<std::int64_t>(phases.size())) {
     const PowderPhase& now = phases[static_cast<std::size_t>(state.phase)];
     if (now.stiffening == 0.0 && state.stiffness != now.stiffness) set_stiffness(state, spec, now.stiffness);
-    result.reason = Phase(state, spec, now, options).run(observer);
+    result.reason = Phase(state, spec, now, options).run(keeper, phases.size());
     if (!result.reason.empty()) break;
     ++state.phase;
     state.phase_start = state.still_since = state.system.time;

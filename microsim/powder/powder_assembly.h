@@ -2,11 +2,11 @@
 // [CP 3.2, 3.3].
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "common/dynamics/stress_cell.h"
+#include "common/state/run_control.h"
 #include "microsim/powder/powder_contacts.h"
 #include "microsim/powder/powder_start.h"
 #include "microsim/powder/powder_state_io.h"
@@ -116,9 +116,9 @@ bool one_aggregate(const System<2>& system);
 /// Gives all contacts another stiffness (K_T and K_r follow); springs keep their force, not their length.
 void set_stiffness(PowderState& state, const PowderSpec& spec, double kappa);
 
-/// Goes through the phases from where the state stands (all done: only looks at it); `observer` after each recorded
-/// point (to save; may throw).
+/// Goes through the phases from where the state stands (all done: only looks at it). Saved after each recorded point.
+/// Nobody knows when a phase comes to rest: the share done takes what most take. Throws NotUsable, Interrupted.
 PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::vector<PowderPhase>& phases,
-                        const PowderOptions& options, const std::function<void(const PowderState&)>& observer);
+                        const PowderOptions& options, const RunControl<PowderState>& control = {});
 
 }  // namespace softgrain

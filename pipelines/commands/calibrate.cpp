@@ -88,7 +88,7 @@ ExitStatus command_calibrate(const CommonOptions& options) {
   if (are_curve_files(options)) return calibrate_curves(options);
   if (are_crowd_files(options.inputs)) return calibrate_crowd(options);
   const Scene settings = Scene::parse("", "calibrate", options.overrides);
-  FitOptions fit = read_options(settings.root());
+  FitOptions fit = settings.read(read_options);
   const Measurements data = load_all(options.inputs);
   const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
   fit.seed = run.seed(fit.seed);
@@ -102,7 +102,7 @@ ExitStatus command_calibrate(const CommonOptions& options) {
   for (const FitReport& report : reports) people += people_line(report, card.spec);
   people += "law card: " + run.path("law.toml") + "\n";
   json summary = {{"status", good ? "good" : "not usable"}, {"inputs", options.inputs},
-                  {"relaxation", card.relaxation},          {"laws", laws_json(card)},
+                  {"relaxation", card.relaxation},          {"laws", json_of(summary_of(card))},
                   {"fits", reports_json(reports)},          {"options", options_json(fit)}};
   run.finish(std::move(summary), people);
   return good ? ExitStatus::good : ExitStatus::not_usable;

@@ -10,7 +10,7 @@
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/report/report.h"
-#include "pipelines/run/run_summary.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain {
 
@@ -39,10 +39,9 @@ void keep_for_report(const CrowdMeasurements& data, const std::string& source, c
 }
 
 nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurements>& data,
-                         const CrowdSettings& settings, const CommonOptions& options, const RunContext& context,
-                         const Provenance& provenance) {
+                         const CrowdSettings& settings, const CommonOptions& options, const RunContext& context) {
   nlohmann::json summary;
-  summary["status"] = fit.usable ? "good" : "not usable";
+  summary["status"] = to_string(fit.usable ? RunStatus::good : RunStatus::not_usable);
   summary["inputs"] = options.inputs;
   summary["crowd"] = crowd_json(data.front(), settings.target);
   summary["entries"] = entries_json(fit.table);
@@ -55,7 +54,6 @@ nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurem
   summary["remarks"] = fit.remarks;
   for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5", "report.html"})
     summary["files"][file] = context.path(file);
-  summary["provenance"] = provenance_json(provenance);
   return summary;
 }
 
@@ -78,7 +76,7 @@ bool are_crowd_files(const std::vector<std::string>& files) {
 
 ExitStatus calibrate_crowd(const CommonOptions& options) {
   const Scene scene = Scene::parse("", "calibrate", options.overrides);
-  CrowdSettings settings = read_settings(scene.root());
+  CrowdSettings settings = scene.read(read_settings);
   std::vector<CrowdMeasurements> data;
   for (const std::string& file : options.inputs) data.push_back(load_crowd(file));
   const RunContext context(options, "calibrate", fs::path(options.inputs.front()).stem().string());
@@ -93,7 +91,7 @@ ExitStatus calibrate_crowd(const CommonOptions& options) {
   });
   save_law_table(fit.table, context.path("law_table.toml"), provenance);
   keep_for_report(data.front(), options.inputs.front(), context, provenance);
-  context.finish(summarise(fit, data, settings, options, context, provenance), people_text(fit, context));
+  context.finish(summarise(fit, data, settings, options, context), provenance, people_text(fit, context));
   write_report(context.directory());
   return fit.usable ? ExitStatus::good : ExitStatus::not_usable;
 }

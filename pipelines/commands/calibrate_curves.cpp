@@ -8,16 +8,13 @@
 
 #include "calibrate/experiment_fit.h"
 #include "common/io/text_file.h"
+#include "pipelines/law/experiment_summary.h"
 #include "pipelines/law/fit_settings.h"
-#include "pipelines/law/law_json.h"
 #include "pipelines/report/report.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
 namespace {
-
-using nlohmann::json;
 
 bool is_curve_file(const std::string& path) {
   const auto form = file_form(path);
@@ -60,8 +57,6 @@ CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   return s;
 }
 
-json error_or_null(double error) { return std::isfinite(error) ? json(error) : json(nullptr); }
-
 /// More points than these in all are not drawn, nor more samples: a page must open, and nobody sees them one by one.
 constexpr std::size_t kMostDrawn = 4000;
 constexpr std::size_t kMostSamples = 100;
@@ -89,37 +84,36 @@ std::vector<std::size_t> drawn_points(const std::vector<ForcePoint>& points, std
   return out;
 }
 
-json sample_json(const ForceCurves& kind, const ForceCurve& s, std::size_t most) {
-  json one = {{"kind", to_string(kind.kind)}, {"name", s.name}, {"delta", json::array()}, {"force", json::array()}};
+DrawnSample drawn(const ForceCurves& kind, const ForceCurve& s, std::size_t most) {
+  DrawnSample one{kind.kind, s.name, {}, {}, {}, s.normal.size(), s.tangential.size()};
   for (const std::size_t k : drawn_points(s.normal, most)) {
     const ForcePoint& p = s.normal[k];
-    one["delta"].push_back(p.delta);
-    one["force"].push_back(p.force);
-    if (kind.has_errors) one["error"].push_back(error_or_null(p.error));
+    one.delta.push_back(p.delta);
+    one.force.push_back(p.force);
+    if (kind.has_errors) one.error.push_back(p.error);
   }
-  one["points"] = s.normal.size();
-  one["tangential_points"] = s.tangential.size();
   return one;
 }
 
 /// The measured points as the report draws them; each sample says how many it has.
-json samples_json(const std::vector<ForceCurves>& curves) {
+std::vector<DrawnSample> drawn_samples(const std::vector<ForceCurves>& curves) {
   std::size_t samples = 0;
   for (const ForceCurves& kind : curves) samples += kind.samples.size();
-  const std::size_t drawn = std::min(samples, kMostSamples);
-  json out = json::array();
+  const std::size_t most = std::min(samples, kMostSamples);
+  std::vector<DrawnSample> out;
   std::size_t number = 0;
   for (const ForceCurves& kind : curves)
     for (const ForceCurve& s : kind.samples) {
-      const bool chosen = number * drawn / samples != (number + 1) * drawn / samples;  // evenly spread
+      const bool chosen = number * most / samples != (number + 1) * most / samples;  // evenly spread
       ++number;
-      if (chosen) out.push_back(sample_json(kind, s, kMostDrawn / drawn));
+      if (chosen) out.push_back(drawn(kind, s, kMostDrawn / most));
     }
   return out;
 }
 
 /// How many of the measured points the summary and the report hold, when not all.
-void note_thinned(const std::vector<ForceCurves>& curves, const json& drawn, std::vector<std::string>& remarks) {
+void note_thinned(const std::vector<ForceCurves>& curves, const std::vector<DrawnSample>& drawn,
+                  std::vector<std::string>& remarks) {
   std::size_t points = 0;
   std::size_t samples = 0;
   std::size_t kept = 0;
@@ -127,7 +121,7 @@ void note_thinned(const std::vector<ForceCurves>& curves, const json& drawn, std
     samples += kind.samples.size();
     for (const ForceCurve& s : kind.samples) points += s.normal.size();
   }
-  for (const json& one : drawn) kept += one["delta"].size();
+  for (const DrawnSample& one : drawn) kept += one.delta.size();
   if (kept < points)
     remarks.push_back(
         fmt::format("{} of {} points (of {} of {} samples) are drawn and in the summary; the fit is to all", kept,
@@ -179,7 +173,7 @@ bool are_curve_files(const CommonOptions& options) {
 
 ExitStatus calibrate_curves(const CommonOptions& options) {
   const Scene scene = Scene::parse("", "calibrate", options.overrides);
-  CurveSettings settings = read_settings(scene.root(), options);
+  CurveSettings settings = scene.read([&](const SceneTable& root) { return read_settings(root, options); });
   const std::vector<ForceCurves> curves = read_force_curve_files(options.inputs, settings.curves);
   const RunContext run(options, "calibrate", std::filesystem::path(options.inputs.front()).stem().string());
   settings.fit.seed = run.seed(settings.fit.seed);
@@ -187,32 +181,29 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   const Provenance provenance = run.provenance(scene, settings.fit.seed);
   save_card(fit.card, run.path("law.toml"), provenance);
 
-  std::vector<std::string> remarks = fit.remarks;
+  ExperimentSummary summary;
+  std::vector<std::string>& remarks = summary.head.remarks;
+  remarks = fit.remarks;
   add_missing_kind(fit, remarks);
-  bool good = true;  // of what was measured; a law by symmetry says itself that it was not
   std::string people;
   for (const FitReport& r : fit.reports) {
-    good = good && (r.law.status == LawStatus::good || r.law.points == 0);
-    if (r.law.status != LawStatus::good && r.law.points > 0)
-      remarks.insert(remarks.begin(),
-                     fmt::format("{} law: {}: {}", to_string(r.law.kind), to_string(r.law.status), r.law.reason));
     people += force_line(r, fit.card.spec);
+    if (r.law.status == LawStatus::good || r.law.points == 0) continue;  // a law by symmetry says itself what it is
+    summary.head.status = RunStatus::not_usable;
+    remarks.insert(remarks.begin(),
+                   fmt::format("{} law: {}: {}", to_string(r.law.kind), to_string(r.law.status), r.law.reason));
   }
-  json samples = samples_json(curves);
-  note_thinned(curves, samples, remarks);
+  summary.experiment = drawn_samples(curves);
+  note_thinned(curves, summary.experiment, remarks);
   for (const std::string& remark : remarks) people += "note: " + remark + "\n";
   people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
-  json summary = {{"status", good ? "good" : "not usable"},
-                  {"inputs", options.inputs},
-                  {"relaxation", fit.card.relaxation},
-                  {"intervals", fit.card.intervals},
-                  {"laws", laws_json(fit.card)},
-                  {"experiment", std::move(samples)},
-                  {"remarks", remarks},
-                  {"provenance", provenance_json(provenance)}};
-  run.finish(std::move(summary), people);
+  summary.inputs = options.inputs;
+  summary.relaxation = fit.card.relaxation;
+  summary.intervals = fit.card.intervals;
+  summary.laws = summary_of(fit.card);
+  run.finish(json_of(summary), provenance, people);
   write_report(run.directory());
-  return good ? ExitStatus::good : ExitStatus::not_usable;
+  return summary.head.status == RunStatus::good ? ExitStatus::good : ExitStatus::not_usable;
 }
 
 }  // namespace softgrain

@@ -205,7 +205,9 @@ json head_json(const LawOptions& o, const LawFile& file) {
             {"command", file.origin.command}}}};
 }
 
-json parameters_json(const LawFile& file) { return file.card ? laws_json(*file.card) : law_table_json(*file.table); }
+json parameters_json(const LawFile& file) {
+  return file.card ? json_of(summary_of(*file.card)) : law_table_json(*file.table);
+}
 
 /// Refused values are no result to go on with.
 ExitStatus status_of(const std::vector<ValueTable>& tables) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "common/data/fields.h"
+#include "common/io/json_record.h"
 #include "pipelines/compare/compare_inputs.h"
 
 namespace softgrain {
@@ -10,10 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Values that are not finite become null: JSON knows no NaN.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json number(double value) { return json_of(value); }
 
-json to_json(const MeanError& m) { return {{"mean", number(m.mean)}, {"standard_error", number(m.error)}, {"n", m.n}}; }
+json to_json(const MeanError& m) { return json_of(m); }
 
 json to_json(const SampleComparison& s) {
   return {{"test", to_string(s.test)},

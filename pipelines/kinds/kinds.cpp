@@ -43,6 +43,15 @@ std::span<const SceneKind> scene_kinds() {
   return kinds;
 }
 
+const std::vector<KindResults>& results_of_kinds() {
+  static const std::vector<KindResults> results = [] {
+    std::vector<KindResults> all;
+    for (const SceneKind& kind : scene_kinds()) all.push_back(kind.results);
+    return all;
+  }();
+  return results;
+}
+
 const SceneKind& kind_of(const Scene& scene) { return *find(scene.root().choice("kind", names_of(""))); }
 
 const SceneKind& kind_of(const Scene& scene, const std::string& command) {

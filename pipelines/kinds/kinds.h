@@ -1,4 +1,5 @@
-// All kinds of scenes.
+// The kind of a scene. The table scene_kinds() is made here: a kind is added to it and in its folder; commands,
+// `check`, report, export, tests and fuzzer go through it.
 #pragma once
 
 #include <span>
@@ -7,7 +8,6 @@
 
 namespace softgrain {
 
-/// A kind is added here and in its folder; commands, `check`, tests and fuzzer go through this table.
 std::span<const SceneKind> scene_kinds();
 
 /// The kind that the scene names. Throws BadInput.

@@ -2,25 +2,103 @@
 // measured, and dimensionless.
 #pragma once
 
+#include <array>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
+#include "common/core/limits.h"
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
+#include "common/io/json_record.h"
 
 namespace softgrain {
 
-/// { "soft-solid": { "status", "reason", "normal": {...}, "tangential": {...}, "tangential_secant": {...},
-/// "dimensionless": {...},
-///   "delta_range", "packings", "points", "max_overlap", "chi2_per_dof", "quality" }, "soft-soft": ... }
-/// Laws read F(D) = a D^b + c above delta, D = hn/Rs. Normal: a, c in N (times E Rs^2). Tangential: kt with a, c in N/m
-/// (times E Rs), and a_per_degree, c_per_degree in N per degree of rotation (times pi Rs/180); "tangential" is the
-/// initial slope. Every parameter x comes with x_standard_error and x_interval = [low, high] (95 %, bootstrap over
-/// packings); null: not known. A law that was not fitted is null.
-nlohmann::json laws_json(const LawCard& card);
+/// Every estimate x comes with x_standard_error and x_interval = [low, high] (95 %); null: not known.
+void estimate_fields(auto&& visit, const std::string& name, auto& e) {
+  visit(name, e.value);
+  visit(name + "_standard_error", e.standard_error);
+  range_field(visit, name + "_interval", e.low, e.high);
+}
+
+/// F(D) = a D^b + c above delta, D = hn/Rs, with a and c in `unit`. Stiffnesses also per degree of rotation (times
+/// pi Rs/180).
+struct LawNumbers {
+  static constexpr Estimate kUnknown{kNaN, kNaN, kNaN, kNaN};
+  Estimate a = kUnknown;
+  Estimate b = kUnknown;
+  Estimate c = kUnknown;
+  Estimate delta = kUnknown;
+  std::string unit;
+  struct PerDegree {
+    Estimate a;
+    Estimate c;
+    double angle_deg = 0.0;  ///< that it was measured over
+    std::string meaning;     ///< initial slope or secant
+  };
+  std::optional<PerDegree> per_degree;
+};
+
+void fields(auto&& visit, Of<LawNumbers> auto& s) {
+  estimate_fields(visit, "a", s.a);
+  estimate_fields(visit, "b", s.b);
+  estimate_fields(visit, "c", s.c);
+  estimate_fields(visit, "delta", s.delta);
+  visit("unit", s.unit);
+  if (!s.per_degree) return;
+  estimate_fields(visit, "a_per_degree", s.per_degree->a);
+  estimate_fields(visit, "c_per_degree", s.per_degree->c);
+  visit("unit_per_degree", std::string("N/degree"));
+  visit("angle_deg", s.per_degree->angle_deg);
+  visit("meaning", s.per_degree->meaning);
+}
+
+/// The laws of one kind of contact; empty: not fitted. "tangential" is the initial slope.
+struct LawParts {
+  std::optional<LawNumbers> normal;
+  std::optional<LawNumbers> tangential;
+  std::optional<LawNumbers> tangential_secant;
+};
+
+void fields(auto&& visit, Of<LawParts> auto& s) {
+  visit("normal", s.normal);
+  visit("tangential", s.tangential);
+  visit("tangential_secant", s.tangential_secant);
+}
+
+struct PairLawSummary {
+  LawStatus status = LawStatus::not_run;
+  std::string reason;
+  LawParts parts;  ///< in N (times E Rs^2) and N/m (times E Rs)
+  LawParts dimensionless;
+  std::array<double, 2> delta_range{};
+  double max_overlap = 0.0;
+  int packings = 0;
+  int points = 0;
+  double chi2_per_dof = 0.0;
+  double quality = 0.0;
+};
+
+void fields(auto&& visit, Of<PairLawSummary> auto& s) {
+  visit("status", s.status);
+  visit("reason", s.reason);
+  fields(visit, s.parts);
+  visit("dimensionless", s.dimensionless);
+  visit("delta_range", s.delta_range);
+  visit("max_overlap", s.max_overlap);
+  visit("packings", s.packings);
+  visit("points", s.points);
+  visit("chi2_per_dof", s.chi2_per_dof);
+  visit("quality", s.quality);
+}
+
+/// By the kind of contact.
+std::map<std::string, PairLawSummary> summary_of(const LawCard& card);
 
 /// { "entries": [ { "solid_fraction", "packings", "best", "volume_max", "overlap_max", "beyond", "retreat", "slides",
 /// "laws": [ { "form", "status", "a", ..., "partners", "error_fitted", ... } ] } ] }, dimensionless; estimates as in
-/// laws_json().
+/// estimate_fields().
 nlohmann::json law_table_json(const LawTable& table);
 
 /// What every list of laws says of one: form, status, errors.

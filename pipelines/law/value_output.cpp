@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "common/io/json_number.h"
+#include "common/io/json_record.h"
 #include "pipelines/law/terminal_plot.h"
 
 namespace softgrain::law {
@@ -77,10 +77,9 @@ std::string origin_of(const ValueTable& t) {
 }
 
 void put(json& out, const std::string& name, const std::optional<Quantity>& q, double unit) {
-  out[name] = q ? number_or_null(q->value * unit) : json(nullptr);
+  out[name] = q ? json_of(q->value * unit) : json(nullptr);
   out[name + "_interval"] =
-      q && q->interval ? json{number_or_null(q->interval->low * unit), number_or_null(q->interval->high * unit)}
-                       : json(nullptr);
+      q && q->interval ? json{json_of(q->interval->low * unit), json_of(q->interval->high * unit)} : json(nullptr);
 }
 
 void add_cells(std::string& line, const std::optional<Quantity>& q, double unit) {

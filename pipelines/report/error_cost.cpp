@@ -85,7 +85,7 @@ std::vector<ErrorCost> error_costs(const RunData& run) {
   std::map<std::string, std::vector<MacroCurve>> tests;
   for (const MacroCurve& c : run.macro) tests[to_string(c.test)].push_back(c);
   for (const auto& [test, curves] : tests) add_scene(test, curves, out);
-  for (const MacroScene& scene : run.macro_scenes) add_scene(scene.name, scene.curves, out);
+  for (const ComparedCurves& scene : run.macro_scenes) add_scene(scene.name, scene.curves, out);
   if (run.measurements)
     for (const PairKind kind : kPairKinds) add_relaxation(run, kind, out);
   std::erase_if(out, [](const ErrorCost& p) { return !(p.error > 0.0) || !std::isfinite(p.cost); });

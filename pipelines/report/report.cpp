@@ -1,36 +1,40 @@
 #include "pipelines/report/report.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include "common/io/text_file.h"
 #include "pipelines/report/figures.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/sections.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain {
 
+namespace {
+
+using namespace report;
+
+/// Those of no kind in particular, and those of every kind, in the order of their places.
+std::string sections_of(const RunData& run) {
+  std::vector<ReportSection> sections{{Place::own_data, own_data_section}, {Place::laws, laws_section},
+                                      {Place::packing, packing_section},   {Place::radii, radii_section},
+                                      {Place::cost, cost_section},         {Place::provenance, provenance_section}};
+  for (const KindResults& kind : results_of_kinds())
+    sections.insert(sections.end(), kind.sections.begin(), kind.sections.end());
+  std::sort(sections.begin(), sections.end(),
+            [](const ReportSection& a, const ReportSection& b) { return a.place < b.place; });
+  std::string body;
+  for (const ReportSection& section : sections) body += section.html(run);
+  return body;
+}
+
+}  // namespace
+
 void write_report(const std::string& run_directory) {
-  using namespace report;
   const RunData run = load_run(run_directory);
-  std::string body = own_data_section(run);
-  body += inverse_section(run);
-  body += law_table_section(run);
-  body += hierarchy_section(run);
-  body += normal_section(run);
-  body += tangential_section(run);
-  body += stiffness_section(run);
-  body += laws_section(run);
-  body += relaxations_section(run);
-  body += macro_section(run);
-  body += macro_scenes_section(run);
-  body += packing_section(run);
-  body += radii_section(run);
-  body += particles_section(run);
-  body += grain_box_section(run);
-  body += powder_variants_section(run);
-  body += powder_section(run);
-  body += cost_section(run);
-  body += provenance_section(run);
+  std::string body = sections_of(run);
   body = heading_section(run) + contents(body) + remarks_section(run) + body;
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
   std::filesystem::create_directories(run_directory + "/figures");

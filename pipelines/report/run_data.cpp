@@ -1,9 +1,11 @@
 #include "pipelines/report/run_data.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
+#include "pipelines/results/result_files.h"
 
 namespace softgrain::report {
 namespace {
@@ -16,16 +18,25 @@ nlohmann::json parse_summary(const std::string& path) {
   return summary;
 }
 
+/// A scene of comparison.json and the file of its curves.
+struct NamedCurves {
+  std::string name;
+  std::string file;
+};
+void fields(auto&& visit, Of<NamedCurves> auto& s) {
+  visit("name", s.name);
+  visit("file", s.file);
+}
+
 /// The scenes that a comparison names; a file that is not there is trouble, as the comparison says it is.
-std::vector<MacroScene> load_scenes(const std::string& directory) {
+std::vector<ComparedCurves> load_scenes(const std::string& directory) {
   const nlohmann::json root = parse_summary(directory + "/comparison.json");
-  std::vector<MacroScene> scenes;
-  const auto* list = find_value(root, "scenes");
-  if (list == nullptr || !list->is_array()) throw FileTrouble(directory + "/comparison.json: has no scenes");
-  for (const auto& one : *list) {
-    const std::string name = find_text(one, "name");
-    scenes.push_back({name, load_macro(directory + "/" + fs::path(find_text(one, "file")).filename().string())});
-  }
+  std::vector<NamedCurves> named;
+  if (!root.contains("scenes") || !read_json(root["scenes"], named))
+    throw FileTrouble(directory + "/comparison.json: has no scenes");
+  std::vector<ComparedCurves> scenes;
+  for (const NamedCurves& one : named)
+    scenes.push_back({one.name, load_macro(directory + "/" + fs::path(one.file).filename().string())});
   return scenes;
 }
 
@@ -66,37 +77,10 @@ RunData load_run(const std::string& directory) {
   if (exists("law_table.toml")) run.law_table = load_law_table(file("law_table.toml")), any = true;
   if (exists("macro.h5")) run.macro = load_macro(file("macro.h5")), any = true;
   if (exists("comparison.json")) run.macro_scenes = load_scenes(directory), any = true;
-  if (exists("grain_box.h5")) run.grain_boxes = load_grain_boxes(file("grain_box.h5")), any = true;
-  if (exists("powder.h5")) run.powder = load_powder(file("powder.h5")), any = true;
-  if (!any)
-    throw FileTrouble(directory +
-                      ": holds none of summary.json, measurements.h5, law.toml, macro.h5, grain_box.h5, powder.h5");
+  any = any || std::any_of(fs::directory_iterator(directory), fs::directory_iterator(),
+                           [](const fs::directory_entry& entry) { return is_result_file(entry.path()); });
+  if (!any) throw FileTrouble(directory + ": no run directory: neither summary.json nor a file of results is in it");
   return run;
-}
-
-const nlohmann::json* find_value(const nlohmann::json& root, const std::string& path) {
-  const nlohmann::json* at = &root;
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string key = path.substr(begin, end - begin);
-    if (!at->is_object() || !at->contains(key)) return nullptr;
-    at = &(*at)[key];
-    begin = end + 1;
-  }
-  return at;
-}
-
-std::optional<double> find_number(const nlohmann::json& root, const std::string& path) {
-  const nlohmann::json* found = find_value(root, path);
-  if (found == nullptr || !found->is_number()) return std::nullopt;
-  return found->get<double>();
-}
-
-std::string find_text(const nlohmann::json& root, const std::string& path) {
-  const nlohmann::json* found = find_value(root, path);
-  if (found == nullptr || found->is_null()) return "";
-  if (found->is_string()) return found->get<std::string>();
-  return found->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace softgrain::report

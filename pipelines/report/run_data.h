@@ -1,6 +1,9 @@
 // Everything a run directory holds that a report can show.
 #pragma once
 
+#include <filesystem>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,14 +15,13 @@
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
-#include "microsim/grain_box/record.h"
+#include "common/io/json_record.h"
 #include "pipelines/compare/measured_stiffness.h"
-#include "pipelines/snapshots/powder_data.h"
 
 namespace softgrain::report {
 
 /// One scene of a comparison of laws with twins.
-struct MacroScene {
+struct ComparedCurves {
   std::string name;
   std::vector<MacroCurve> curves;
 };
@@ -32,28 +34,43 @@ struct RunData {
   std::optional<CrowdMeasurements> crowd;
   std::optional<LawTable> law_table;
   std::vector<MacroCurve> macro;
-  std::vector<MacroScene> macro_scenes;
-  std::vector<GrainBoxResult> grain_boxes;
-  std::optional<PowderRun> powder;
+  std::vector<ComparedCurves> macro_scenes;
 
+  /// The summary, or what there is of it, as a record of a kind; members that it does not hold keep their defaults.
+  template <class Summary>
+  [[nodiscard]] Summary summary_as() const {
+    return record_of<Summary>(summary);
+  }
+  /// What `load` makes of a file of the directory, read once; null when there is none. For what one kind alone keeps.
+  template <class T>
+  const T* file(const std::string& name, T (*load)(const std::string& path)) const {
+    const auto known = files_.find(name);
+    if (known != files_.end()) return static_cast<const T*>(known->second.get());
+    const std::string path = directory + "/" + name;
+    if (!std::filesystem::exists(path)) return nullptr;
+    hold(name, load(path));
+    return static_cast<const T*>(files_[name].get());
+  }
+  /// Stands for that file from here on.
+  template <class T>
+  void hold(const std::string& name, T content) const {
+    files_[name] = std::make_shared<T>(std::move(content));
+  }
   /// Law of a pair kind, if it was fitted and is usable for drawing.
   [[nodiscard]] const PairLaw* law(PairKind kind) const;
   /// The relaxation that the main figures show: that of the card, else the first measured; empty without runs.
   [[nodiscard]] std::string relaxation(PairKind kind) const;
   /// Angles that define the stiffnesses: those of the card, else the defaults.
   [[nodiscard]] StiffnessAngles angles(PairKind kind) const;
+
+ private:
+  mutable std::map<std::string, std::shared_ptr<const void>> files_;
 };
 
-/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5, comparison.json
-/// (and the curves that it names), grain_box.h5 and powder.h5. Throws FileTrouble when the directory is missing, holds
-/// none of them, or one of them is damaged.
+/// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5 and
+/// comparison.json (with the curves that it names). Throws FileTrouble when the directory is missing, holds no results
+/// of any kind, or one of these files is damaged.
 RunData load_run(const std::string& directory);
-
-/// Lookups that never throw: a path of keys "measurement.points"; absent or of another type gives nothing.
-const nlohmann::json* find_value(const nlohmann::json& root, const std::string& path);
-std::optional<double> find_number(const nlohmann::json& root, const std::string& path);
-std::string find_text(const nlohmann::json& root,
-                      const std::string& path);  ///< empty when absent; numbers and flags as text
 
 /// Band that was read with the card when it is there, else from the covariance of the parameters by linearised error
 /// propagation; empty when neither exists.

@@ -1,11 +1,14 @@
 // What each stage cost, and the speed-ups.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/sections.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain::report {
 namespace {
@@ -43,37 +46,38 @@ void add_macro(HtmlTable& table, const std::vector<MacroCurve>& macro) {
   }
 }
 
-std::string count_text(const nlohmann::json& part, const std::string& key) {
-  const auto value = find_number(part, key);
-  return value ? format_count(static_cast<std::int64_t>(*value)) : "–";
+/// Stages whose data lie elsewhere, from the summary.
+struct StageCosts {
+  std::optional<MeasurementSummary> measurement;
+  std::optional<EngineSummary> macro;
+  std::optional<EngineSummary> resolved;
+  std::optional<ComparisonSummary> comparison;
+};
+
+void fields(auto&& visit, Of<StageCosts> auto& s) {
+  visit("measurement", s.measurement);
+  visit("macro", s.macro);
+  visit("resolved", s.resolved);
+  visit("comparison", s.comparison);
 }
 
-/// Stages that only the summary knows.
-void add_summary(HtmlTable& table, const RunData& run) {
-  for (const char* stage : {"measurement", "calibration", "macro", "resolved"}) {
-    const auto* part = find_value(run.summary, stage);
-    const bool shown = (std::string(stage) == "measurement" && run.measurements) ||
-                       (std::string(stage) != "calibration" && !run.macro.empty());
-    if (part == nullptr || !part->is_object() || shown) continue;
-    const auto seconds = find_number(*part, "seconds");
-    const bool has_points = find_number(*part, "points").has_value();
-    const bool has_bodies = find_number(*part, "bodies").has_value();
-    const std::string points = has_points   ? count_text(*part, "points") + " points"
-                               : has_bodies ? count_text(*part, "bodies") + " bodies"
-                                            : "–";
-    table.row({stage, points, count_text(*part, "loop_passes"), count_text(*part, "contact_evaluations"),
-               seconds ? format_seconds(*seconds) : "–"});
-  }
+void add_summary(HtmlTable& table, const RunData& run, const StageCosts& stages) {
+  if (stages.measurement && !run.measurements)
+    add_row(table, "measurement", format_count(stages.measurement->points) + " points", stages.measurement->cost);
+  if (!run.macro.empty()) return;
+  for (const auto& [name, engine] : {std::pair("macro", &stages.macro), std::pair("resolved", &stages.resolved)})
+    if (*engine) add_row(table, name, format_count((*engine)->bodies) + " bodies", (*engine)->cost);
 }
 
-std::string speedups(const nlohmann::json& summary) {
+std::string speedups(const std::optional<ComparisonSummary>& comparison) {
+  if (!comparison) return "";
   std::string out;
-  if (const auto s = find_number(summary, "comparison.speedup_seconds"))
-    out += "speed-up in seconds " + format_number(*s, 3) + "; ";
-  if (const auto s = find_number(summary, "comparison.speedup_contact_evaluations"))
-    out += "in contact evaluations " + format_number(*s, 3) + "; ";
-  if (const auto s = find_number(summary, "comparison.stress_error"))
-    out += "at a stress difference of " + format_number(100.0 * *s, 3) + " %; ";
+  if (const double s = comparison->speedup_seconds; !std::isnan(s))
+    out += "speed-up in seconds " + format_number(s, 3) + "; ";
+  if (const double s = comparison->speedup_contact_evaluations; !std::isnan(s))
+    out += "in contact evaluations " + format_number(s, 3) + "; ";
+  if (const double s = comparison->stress_error; !std::isnan(s))
+    out += "at a stress difference of " + format_number(100.0 * s, 3) + " %; ";
   return out.empty() ? "" : paragraph("Law against resolved twin: " + out.substr(0, out.size() - 2) + ".");
 }
 
@@ -83,8 +87,9 @@ std::string cost_section(const RunData& run) {
   HtmlTable table({"stage", "work", "loop passes", "contact evaluations", "time"}, 2);
   if (run.measurements) add_measurements(table, *run.measurements);
   add_macro(table, run.macro);
-  add_summary(table, run);
-  const std::string tail = speedups(run.summary);
+  const auto stages = run.summary_as<StageCosts>();
+  add_summary(table, run, stages);
+  const std::string tail = speedups(stages.comparison);
   // comparisons of laws show it first thing
   const std::string plot = run.macro_scenes.empty() ? error_cost_figure(run) : "";
   const std::string figures = plot.empty() ? "" : figure_row({plot});

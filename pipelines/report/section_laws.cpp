@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "pipelines/law/law_json.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
@@ -86,26 +87,27 @@ std::string card_tables(const LawCard& card) {
   return out;
 }
 
-std::string summary_interval(const nlohmann::json& law, const std::string& name) {
-  const auto* found = find_value(law, name + "_interval");
-  if (found == nullptr || !found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
-      !(*found)[1].is_number())
-    return "–";
-  return format_number((*found)[0].get<double>()) + " .. " + format_number((*found)[1].get<double>());
+void add_numbers(HtmlTable& table, const std::string& kind, const char* part, const std::optional<LawNumbers>& law) {
+  if (!law) return;
+  for (const auto& [name, e] :
+       {std::pair("a", law->a), std::pair("b", law->b), std::pair("c", law->c), std::pair("delta", law->delta)})
+    if (!std::isnan(e.value))
+      table.row({kind, part, name, format_number(e.value, 5),
+                 std::isnan(e.low) ? "–" : format_number(e.low) + " .. " + format_number(e.high)});
 }
 
 /// Laws as the summary gives them, for runs whose card is elsewhere.
-std::string summary_table(const nlohmann::json& summary) {
+struct SummaryLaws {
+  std::map<std::string, PairLawSummary> laws;
+};
+void fields(auto&& visit, Of<SummaryLaws> auto& s) { visit("laws", s.laws); }
+
+std::string summary_table(const SummaryLaws& summary) {
   HtmlTable table({"pair", "law", "parameter", "value", "95 % interval"}, 3);
-  for (const char* kind : {"soft-solid", "soft-soft"}) {
-    for (const char* part : {"normal", "tangential", "tangential_secant"}) {
-      const auto* law = find_value(summary, fmt::format("laws.{}.{}", kind, part));
-      if (law == nullptr || !law->is_object()) continue;
-      for (const char* name : {"a", "b", "c", "delta"}) {
-        if (const auto value = find_number(*law, name))
-          table.row({kind, part, name, format_number(*value, 5), summary_interval(*law, name)});
-      }
-    }
+  for (const auto& [kind, law] : summary.laws) {
+    add_numbers(table, kind, "normal", law.parts.normal);
+    add_numbers(table, kind, "tangential", law.parts.tangential);
+    add_numbers(table, kind, "tangential_secant", law.parts.tangential_secant);
   }
   return table.empty() ? "" : table.html();
 }
@@ -113,7 +115,8 @@ std::string summary_table(const nlohmann::json& summary) {
 }  // namespace
 
 std::string laws_section(const RunData& run) {
-  const std::string body = run.card && !run.card->pairs.empty() ? card_tables(*run.card) : summary_table(run.summary);
+  const std::string body =
+      run.card && !run.card->pairs.empty() ? card_tables(*run.card) : summary_table(run.summary_as<SummaryLaws>());
   return section("laws", "Laws: parameters", body);
 }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "pipelines/law/experiment_summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
@@ -12,28 +14,17 @@
 namespace softgrain::report {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::array kMarkers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond, Marker::hollow};
 
-std::vector<double> numbers_of(const json& entry, const char* key) {
-  std::vector<double> out;
-  const json* list = find_value(entry, key);
-  if (list == nullptr || !list->is_array()) return out;
-  for (const json& x : *list) out.push_back(x.is_number() ? x.get<double>() : 0.0);
-  return out;
-}
-
 /// Samples of one kind as markers; error bars where errors were given.
-std::vector<Series> sample_series(const json& samples, const std::string& kind) {
+std::vector<Series> sample_series(const std::vector<DrawnSample>& samples, PairKind kind) {
   std::vector<Series> out;
-  for (const json& sample : samples) {
-    if (find_text(sample, "kind") != kind) continue;
-    const std::string name = "sample " + find_text(sample, "name");
-    Series s{.label = name, .hover = name, .x = numbers_of(sample, "delta"), .y = numbers_of(sample, "force")};
-    if (s.x.size() != s.y.size()) continue;
-    s.y_error = numbers_of(sample, "error");
-    if (s.y_error.size() != s.x.size()) s.y_error.clear();
+  for (const DrawnSample& sample : samples) {
+    if (sample.kind != kind || sample.delta.size() != sample.force.size()) continue;
+    const std::string name = "sample " + sample.name;
+    Series s{.label = name, .hover = name, .x = sample.delta, .y = sample.force};
+    if (sample.error.size() == s.x.size())
+      for (const double e : sample.error) s.y_error.push_back(std::isnan(e) ? 0.0 : e);
     s.style = {.color = palette::cycle(out.size() + 1),
                .width = 0.0,
                .marker = kMarkers[out.size() % kMarkers.size()],
@@ -43,7 +34,7 @@ std::vector<Series> sample_series(const json& samples, const std::string& kind) 
   return out;
 }
 
-void add_samples(Plot& plot, const json& samples, const std::string& kind) {
+void add_samples(Plot& plot, const std::vector<DrawnSample>& samples, PairKind kind) {
   constexpr std::size_t kInLegend = 8;
   std::size_t n = 0;
   for (Series& s : sample_series(samples, kind)) {
@@ -55,36 +46,35 @@ void add_samples(Plot& plot, const json& samples, const std::string& kind) {
 double force_unit(const SoftParticleSpec& spec) { return spec.youngs_modulus * spec.shell_radius * spec.shell_radius; }
 
 /// "Points as measured", or how many of them are drawn: of every stretch the lowest and the highest.
-std::string points_text(const json& samples, const std::string& kind) {
-  double all = 0.0;
-  double drawn = 0.0;
-  for (const json& sample : samples) {
-    if (find_text(sample, "kind") != kind) continue;
-    const auto n = static_cast<double>(numbers_of(sample, "delta").size());
-    drawn += n;
-    all += find_number(sample, "points").value_or(n);
+std::string points_text(const std::vector<DrawnSample>& samples, PairKind kind) {
+  std::size_t all = 0;
+  std::size_t drawn = 0;
+  for (const DrawnSample& sample : samples) {
+    if (sample.kind != kind) continue;
+    drawn += sample.delta.size();
+    all += sample.points.value_or(sample.delta.size());
   }
   if (drawn >= all) return "Points as measured";
   return fmt::format("{} of {} measured points, of every stretch the lowest and the highest force (the fit is to all)",
                      format_count(static_cast<std::int64_t>(drawn)), format_count(static_cast<std::int64_t>(all)));
 }
 
-std::string curve_figure(const RunData& run, const json& samples, const PairLaw& law) {
+std::string curve_figure(const RunData& run, const std::vector<DrawnSample>& samples, const PairLaw& law) {
   const std::string kind = to_string(law.kind);
   Plot plot({.id = "own-" + kind,
              .title = "Fn(Δ), " + describe(law.kind) + ", as measured",
              .x = {.label = "normal overlap Δ = hn/Rs", .low = 0.0},
              .y = {.label = "normal force Fn [N]"}});
-  add_samples(plot, samples, kind);
+  add_samples(plot, samples, law.kind);
   const double unit = force_unit(run.card->spec);
   add_law(plot, law, LawPart::normal, unit, "fitted law", palette::blue);
   const bool measured = law.points > 0;
-  return figure(plot.svg(), measured ? points_text(samples, kind) + "; the law is continuous and zero below δ."
+  return figure(plot.svg(), measured ? points_text(samples, law.kind) + "; the law is continuous and zero below δ."
                                      : "No points: this law follows from the other kind by symmetry.");
 }
 
 /// Distance of every point from the law: what the law does not say shows here first.
-std::string residual_figure(const RunData& run, const json& samples, const PairLaw& law) {
+std::string residual_figure(const RunData& run, const std::vector<DrawnSample>& samples, const PairLaw& law) {
   const std::string kind = to_string(law.kind);
   Plot plot({.id = "own-residual-" + kind,
              .title = "Measured force minus law",
@@ -94,7 +84,7 @@ std::string residual_figure(const RunData& run, const json& samples, const PairL
   Series zero{.label = "", .hover = "law", .x = {0.0, law.delta_max}, .y = {0.0, 0.0}};
   zero.style = {.color = palette::blue, .width = 1.2};
   plot.add(std::move(zero));
-  for (Series& s : sample_series(samples, kind)) {
+  for (Series& s : sample_series(samples, law.kind)) {
     for (std::size_t k = 0; k < s.x.size(); ++k) s.y[k] -= unit * law.normal.value(s.x[k]);
     s.label.clear();
     plot.add(std::move(s));
@@ -105,18 +95,18 @@ std::string residual_figure(const RunData& run, const json& samples, const PairL
 }  // namespace
 
 std::string own_data_section(const RunData& run) {
-  const json* samples = find_value(run.summary, "experiment");
-  if (samples == nullptr || !samples->is_array() || !run.card) return "";
+  const auto summary = run.summary_as<ExperimentSummary>();
+  if (summary.experiment.empty() || !run.card) return "";
   std::string body;
   for (const PairLaw& law : run.card->pairs) {
-    std::vector<std::string> figures{curve_figure(run, *samples, law)};
-    if (law.points > 0 && has_part(law, LawPart::normal)) figures.push_back(residual_figure(run, *samples, law));
+    std::vector<std::string> figures{curve_figure(run, summary.experiment, law)};
+    if (law.points > 0 && has_part(law, LawPart::normal))
+      figures.push_back(residual_figure(run, summary.experiment, law));
     body += "<h3>" + escape(describe(law.kind)) + "</h3>\n" + figure_row(figures);
   }
-  const std::string origin = find_text(run.summary, "intervals");
-  body += paragraph(
-      fmt::format("Measured outside, made dimensionless with Rs = {} m and E = {} Pa. 95 % intervals: {}.",
-                  format_number(run.card->spec.shell_radius), format_number(run.card->spec.youngs_modulus), origin));
+  body += paragraph(fmt::format(
+      "Measured outside, made dimensionless with Rs = {} m and E = {} Pa. 95 % intervals: {}.",
+      format_number(run.card->spec.shell_radius), format_number(run.card->spec.youngs_modulus), summary.intervals));
   return section("own-data", "Measured curves", body);
 }
 

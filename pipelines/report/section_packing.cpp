@@ -33,8 +33,8 @@ std::optional<std::string> three_js() {
 }  // namespace
 
 std::string packing_section(const RunData& run) {
-  if (run.powder) return "";  // has pictures of its own
   std::vector<PackingSeries> series = packing_series_of(run.directory, kStates);
+  std::erase_if(series, [](const PackingSeries& s) { return s.kind == SnapshotKind::powder; });  // has its own pictures
   if (series.empty()) return "";
   const std::optional<std::string> three = three_js();
   const std::string heading = "Packing in 3D";

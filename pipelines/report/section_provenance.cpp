@@ -1,45 +1,51 @@
 // Where the numbers came from: program, seeds, command and the whole scene.
+#include <fmt/format.h>
+
 #include "pipelines/report/html.h"
 #include "pipelines/report/sections.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain::report {
 namespace {
 
-/// "LAMMPS 29 Sep 2021, 4 ranks", where it was not our own engine.
-std::string engine_of(const nlohmann::json& summary) {
-  const auto* engine = find_value(summary, "engine");
-  if (engine == nullptr || find_text(*engine, "name") != "lammps") return "";
-  const auto* ranks = find_value(*engine, "ranks");
-  return "LAMMPS " + find_text(*engine, "lammps") + ", ranks: " + (ranks != nullptr ? ranks->dump() : "unknown");
+/// "LAMMPS 29 Sep 2021, ranks: 4", where it was not our own engine.
+std::string engine_of(const std::optional<EngineUse>& engine) {
+  if (!engine || engine->name != MacroEngine::lammps) return "";
+  return fmt::format("LAMMPS {}, ranks: {}", engine->release, engine->ranks);
 }
 
-std::string rows(const nlohmann::json& provenance, const std::string& engine) {
+std::string rows(const AnySummary& summary, const std::string& engine) {
   HtmlTable table({"what", "value"}, 2);
-  for (const char* key : {"version", "commit", "compiler", "threads", "seed", "command"}) {
-    const std::string value = find_text(provenance, key);
-    if (!value.empty()) table.row({key, value});
+  const auto add = [&](const char* what, const std::string& value) {
+    if (!value.empty()) table.row({what, value});
+  };
+  const Provenance p =
+      summary.provenance.value_or(Provenance{summary.version, summary.commit, "", 0, 0, summary.command, ""});
+  add("version", p.version);
+  add("commit", p.commit);
+  add("compiler", p.compiler);
+  if (summary.provenance) {
+    add("threads", std::to_string(p.threads));
+    add("seed", std::to_string(p.seed));
   }
-  if (!engine.empty()) table.row({"engine", engine});
+  add("command", p.command);
+  add("engine", engine);
   return table.empty() ? "" : table.html();
 }
 
-std::string files(const nlohmann::json& summary) {
-  const auto* list = find_value(summary, "files");
-  if (list == nullptr || !list->is_object() || list->empty()) return "";
+std::string files(const AnySummary& summary) {
   HtmlTable table({"file", "path"}, 2);
-  for (const auto& [name, path] : list->items())
-    table.row({name, path.is_string() ? path.get<std::string>() : path.dump()});
-  return table.html();
+  for (const auto& [name, path] : summary.files) table.row({name, path});
+  return table.empty() ? "" : table.html();
 }
 
 }  // namespace
 
 std::string provenance_section(const RunData& run) {
-  const auto* found = find_value(run.summary, "provenance");
-  const nlohmann::json& provenance = found != nullptr ? *found : run.summary;
-  std::string body = rows(provenance, engine_of(run.summary)) + files(run.summary);
-  const std::string scene = find_text(provenance, "scene");
-  if (!scene.empty()) body += "<h3>Scene</h3>\n<pre>" + escape(scene) + "</pre>\n";
+  const auto summary = run.summary_as<AnySummary>();
+  std::string body = rows(summary, engine_of(summary.engine)) + files(summary);
+  if (summary.provenance && !summary.provenance->scene.empty())
+    body += "<h3>Scene</h3>\n<pre>" + escape(summary.provenance->scene) + "</pre>\n";
   return section("provenance", "Provenance", body);
 }
 

@@ -8,6 +8,7 @@
 #include "pipelines/report/html.h"
 #include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/sections.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain::report {
 namespace {
@@ -75,17 +76,11 @@ void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
   if (use_pair_law(macro)) remarks.push_back(pair_law_remark() + ".");
 }
 
-const nlohmann::json* summary_remarks(const RunData& run) {
-  const auto* list = find_value(run.summary, "remarks");
-  return list != nullptr && list->is_array() ? list : nullptr;
-}
-
 /// A run states its own remarks in its summary; without such a list they follow from the data.
-void add_stated_or_derived(const RunData& run, Remarks& remarks) {
-  if (const auto* list = summary_remarks(run)) {
-    for (const auto& one : *list) {
-      if (one.is_string()) remarks.push_back(one.get<std::string>());
-    }
+void add_stated_or_derived(const RunData& run, const AnySummary& summary, Remarks& remarks) {
+  if (summary.remarks) {
+    for (const std::string& one : *summary.remarks)
+      if (!one.empty()) remarks.push_back(one);
     return;
   }
   if (run.measurements) add_convergence(*run.measurements, remarks);
@@ -97,9 +92,10 @@ void add_stated_or_derived(const RunData& run, Remarks& remarks) {
 
 std::string remarks_section(const RunData& run) {
   Remarks remarks;
-  const std::string status = find_text(run.summary, "status");
-  if (!status.empty() && status != "good") remarks.push_back("The status of the run is \"" + status + "\".");
-  add_stated_or_derived(run, remarks);
+  const auto summary = run.summary_as<AnySummary>();
+  if (!summary.status.empty() && !is_good(summary.status))
+    remarks.push_back("The status of the run is \"" + summary.status + "\".");
+  add_stated_or_derived(run, summary, remarks);
   if (run.measurements) add_packings(*run.measurements, remarks);
   if (remarks.empty()) return "";
   std::string items;

@@ -29,13 +29,16 @@ class Run {
   Run(const Scene& scene, const CommonOptions& options, const std::string& command, std::uint64_t scene_seed,
       const RunInputs& inputs = {});
 
+  /// The same in a directory that is held already: a part of another run.
+  Run(RunContext held, const Scene& scene, std::uint64_t scene_seed, const std::string& text = "");
+
   [[nodiscard]] std::string path(const std::string& file) const { return context.path(file); }
   /// Wall time since the beginning [s].
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
 
-  /// Ends the run: writes the summary ("seconds" and "provenance" added) and the report, says `people`, how long it
-  /// took and where the report is, and removes the kept tasks. Status not_usable unless the summary's "status" is
-  /// "good".
+  /// Ends the run: writes the summary ("provenance" added, and "seconds" unless it says itself what took how long) and
+  /// the report, says `people`, how long it took and where the report is, and removes the kept tasks. Status not_usable
+  /// unless the summary's "status" is "good".
   ExitStatus finish(nlohmann::json summary, const std::string& people) const;
 
  private:

@@ -11,7 +11,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/io/json_record.h"
 #include "common/io/text_file.h"
+#include "pipelines/results/summary.h"
 #include "pipelines/run/run_files.h"
 
 namespace softgrain {
@@ -135,11 +137,17 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
   write_standard_output(shown);
 }
 
+void RunContext::finish(nlohmann::json summary, const Provenance& provenance, const std::string& people) const {
+  summary["provenance"] = json_of(provenance);
+  finish(std::move(summary), people);
+}
+
 void RunContext::guard(const std::function<void()>& work) const {
   try {
     work();
   } catch (const NotUsable& e) {
-    finish({{"status", "not usable"}, {"remarks", {e.what()}}}, "not usable: " + std::string(e.what()));
+    finish({{"status", to_string(RunStatus::not_usable)}, {"remarks", {e.what()}}},
+           "not usable: " + std::string(e.what()));
     throw;
   }
 }

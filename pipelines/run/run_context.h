@@ -20,19 +20,6 @@ class logger;
 
 namespace softgrain {
 
-/// What a summary says of its run.
-enum class RunStatus { good, not_usable, not_run };
-
-template <>
-inline constexpr auto words<RunStatus> = word_list<RunStatus>({{RunStatus::good, "good"},
-                                                               {RunStatus::not_usable, "not usable"},
-                                                               {RunStatus::not_run, "not run"}});
-
-/// Whether a summary, or the entry of a variant, says this of its run.
-inline bool has_status(const nlohmann::json& summary, RunStatus status) {
-  return from_word<RunStatus>(summary.value("status", "")) == status;
-}
-
 /// Options of the command line that every command takes.
 struct CommonOptions {
   std::vector<std::string> inputs;  ///< positional arguments
@@ -103,6 +90,8 @@ class RunContext {
   /// standard output with --json, else prints `people` (a few lines: what was found, how sure, where the files are) on
   /// standard output.
   void finish(nlohmann::json summary, const std::string& people) const;
+  /// With "provenance".
+  void finish(nlohmann::json summary, const Provenance& provenance, const std::string& people) const;
 
   /// Runs `work`; when it ends with NotUsable (a lost grain, a preparation that does not jam...) a summary that says so
   /// is written before the error goes on, so that the directory never looks like a run that is still going.

@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "common/core/error.h"
-#include "common/io/hdf5_file.h"
 #include "macrosim/lammps_run/points_file.h"
+#include "pipelines/results/result_files.h"
 
 namespace softgrain {
 
@@ -17,27 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that nobody else gives to a file in a run directory, whatever the kind of run.
-const std::regex& run_file_names() {
+/// Those that every kind of run leaves.
+const std::regex& common_names() {
   static const std::regex names(
-      "summary\\.json|report\\.html|comparison\\.json|table\\.(md|csv)|evaluations\\.csv|"
-      "measurements\\.h5|law\\.(toml|h5)|law_table(_level_[0-9]+)?\\.(toml|h5)|crowd(_(variant|level)_[0-9]+)?\\.h5|"
-      "macro(_initial)?\\.h5|states_(macro|measurements)\\.h5|run\\.(h5|xdmf)|run_contacts\\.xdmf|grain_box\\.h5|"
-      "powder\\.h5|"
-      "checkpoint\\.h5(\\.previous)?|work|lammps-[0-9]+|\\.run");
+      "summary\\.json|report\\.html|table\\.(md|csv)|checkpoint\\.h5(\\.previous)?|work|\\.run");
   return names;
-}
-
-/// Those that hold the name of a scene: the file itself must say that this program wrote it.
-bool is_scene_file(const fs::path& path) {
-  static const std::regex names("(macro|states_macro)_.+\\.h5");
-  if (!std::regex_match(path.filename().string(), names)) return false;
-  try {
-    const h5::Group root = h5::open_file(path);
-    return root.has("provenance") && root.open("provenance").text("program") == "softgrain";
-  } catch (const Error&) {
-    return false;
-  }
 }
 
 /// Of the names, those that say how a run went, and those that a command writes anew in any case.
@@ -101,7 +85,7 @@ void remove_earlier_run(const std::string& directory, const std::string& command
     const std::string name = entry.path().filename();
     if (is_input(entry.path(), inputs)) {
       reads_from_here = true;
-    } else if (std::regex_match(name, run_file_names()) || is_scene_file(entry.path())) {
+    } else if (std::regex_match(name, common_names()) || is_result_file(entry.path())) {
       found.push_back(entry.path());
       if (!is_rewritten(name, command)) lost.push_back(entry.path());
     }

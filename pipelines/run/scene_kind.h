@@ -1,7 +1,10 @@
 // What a kind of scene is to the commands: the table in kinds/kinds.h lists them all.
 #pragma once
 
+#include <string>
+
 #include "common/io/scene.h"
+#include "pipelines/results/kind_results.h"
 #include "pipelines/run/findings.h"
 #include "pipelines/run/run_context.h"
 
@@ -17,6 +20,7 @@ struct SceneKind {
   /// Reads the scene to its last key, but no file that it names (a law, states): what a reader makes of any text.
   /// Throws BadInput.
   void (*read)(const Scene& scene) = nullptr;
+  KindResults results{};
   bool takes_law = false;  ///< whether --law goes with it
 };
 

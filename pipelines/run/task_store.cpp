@@ -13,12 +13,13 @@ TaskStore::TaskStore(const RunContext& context, const Scene& scene, std::uint64_
   context.begin(scene, seed, beside);
   std::error_code error;
   if (!context.resume()) std::filesystem::remove_all(directory_, error);
-  std::filesystem::create_directories(directory_, error);
-  if (error) throw FileTrouble(directory_ + ": cannot be created: " + error.message());
 }
 
 void TaskStore::save(const std::string& task, const std::function<void(const h5::Group&)>& content) const {
   const std::lock_guard lock(h5::library_mutex());
+  std::error_code error;
+  std::filesystem::create_directories(directory_, error);
+  if (error) throw FileTrouble(directory_ + ": cannot be created: " + error.message());
   write_checkpoint(file(task), fingerprint_, content);
 }
 

@@ -6,31 +6,21 @@
 
 #include "common/core/error.h"
 #include "common/data/snapshot_io.h"
-#include "pipelines/snapshots/snapshots_of_kinds.h"
+#include "pipelines/results/result_files.h"
 
 namespace softgrain {
 
 namespace {
 
 namespace fs = std::filesystem;
-using Visit = std::function<void(const Snapshot&)>;
-
-constexpr const char* kPowderFile = "powder.h5";
+using Visit = VisitSnapshot;
 
 bool is_states_file(const std::string& name) { return name.starts_with("states") && name.ends_with(".h5"); }
 
-/// Files of kinds that keep states in a form of their own.
-struct KindFile {
-  const char* name;
-  void (*visit)(const std::string& path, SnapshotChoice choice, const Visit& visit);
-};
-constexpr KindFile kKindFiles[] = {
-    {"run.h5", visit_particles}, {kPowderFile, visit_powder}, {"grain_box.h5", visit_grain_boxes}};
-
-const KindFile* kind_file(const std::string& name) {
-  const auto at =
-      std::find_if(std::begin(kKindFiles), std::end(kKindFiles), [&](const auto& f) { return f.name == name; });
-  return at == std::end(kKindFiles) ? nullptr : at;
+/// Of a kind that keeps states in a form of its own; null: no such file.
+const ResultFile* kind_file(const std::string& name) {
+  const ResultFile* file = result_file(name);
+  return file == nullptr || file->visit == nullptr ? nullptr : file;
 }
 
 /// The states of a file made by save_snapshots(); of a series only its last, when that is asked for.
@@ -60,7 +50,7 @@ void visit_file(const std::string& path, const std::string& prefix, SnapshotChoi
   };
   try {
     if (is_states_file(name)) return visit_states(path, choice, renamed);
-    if (const KindFile* file = kind_file(name)) return file->visit(path, choice, renamed);
+    if (const ResultFile* file = kind_file(name)) return file->visit(path, choice, renamed);
   } catch (const FileTrouble& e) {
     const std::string text = e.what();
     if (!reading) throw;
@@ -80,12 +70,12 @@ std::vector<std::string> files_of(const fs::path& directory) {
   return files;
 }
 
-/// Variants of a powder lie in directories of their own.
+/// Variants lie in directories of their own.
 std::vector<std::string> variants_of(const fs::path& directory) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (entry.is_directory() && fs::exists(entry.path() / kPowderFile))
-      files.push_back((entry.path() / kPowderFile).string());
+    if (entry.is_directory() && fs::exists(entry.path() / "summary.json"))
+      for (const std::string& file : files_of(entry.path())) files.push_back(file);
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -6,16 +6,12 @@
 #include <vector>
 
 #include "common/data/snapshot.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain {
 
-enum class SnapshotChoice {
-  all,
-  last  ///< of every series the last state
-};
-
-/// What is where: run.h5 (particles: every recorded frame), states_*.h5 (soft particles, macro runs and their twins),
-/// powder.h5 (also one level below, of variants), grain_box.h5. A directory: all of them, a file: that one.
+/// What is where: states_*.h5 (soft particles, macro runs and their twins), and the files in which kinds keep states in
+/// a form of their own (also one level below, of variants). A directory: all of them, a file: that one.
 /// Empty for a directory without any. Throws FileTrouble (missing, damaged), BadInput for a file
 /// of another kind.
 std::vector<Snapshot> read_snapshots(const std::string& run, SnapshotChoice choice = SnapshotChoice::all);

@@ -24,7 +24,7 @@ const PowderState& pack() {
     PowderState s = start_powder(spec, 1, 0);
     PowderOptions options;
     options.time_max = 60.0;
-    (void)run_powder(s, spec, powder_phases(spec, {}), options, [](const PowderState&) {});
+    (void)run_powder(s, spec, powder_phases(spec, {}), options);
     return s;
   }();
   return state;

@@ -16,11 +16,17 @@
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/export/export.h"
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
+#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/grain_box/results.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/results.h"
+#include "pipelines/kinds/macro/results.h"
+#include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/packing_data.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/report/sections.h"
-#include "pipelines/run/run_summary.h"
-#include "pipelines/snapshots/powder_data.h"
+#include "pipelines/results/summary.h"
 #include "pipelines/snapshots/snapshots.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/support/hdf5_edit.h"
@@ -141,7 +147,7 @@ void read(const std::string& path, bool fit) {
     if (root.has("packs"))
       attempt([&] {
         report::RunData run = run_of(path);
-        run.grain_boxes = load_grain_boxes(path);
+        run.hold("grain_box.h5", load_grain_boxes(path));
         (void)report::grain_box_section(run);
         use_states(path);
       });
@@ -149,7 +155,7 @@ void read(const std::string& path, bool fit) {
     if (root.has("sample_0"))
       attempt([&] {
         report::RunData run = run_of(path);
-        run.powder = load_powder(path);
+        run.hold("powder.h5", load_powder(path));
         (void)report::powder_section(run);
         use_states(path);
       });

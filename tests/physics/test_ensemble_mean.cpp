@@ -28,7 +28,7 @@ double force_of(const SoftParticleSpec& spec, std::uint64_t index) {
   const auto protocol = make_published_protocol(options);
   MeasurementState state;
   state.experiment = make_soft_solid(spec, generate_shell_packing(spec, 21, index), true);
-  measure(state, {{kDelta}, {}, {}, 0.01, true}, *protocol, [](const MeasurementState&, double) {});
+  measure(state, {{kDelta}, {}, {}, 0.01, true}, *protocol);
   return state.run.normal.at(0).force / (spec.youngs_modulus * spec.shell_radius * spec.shell_radius);
 }
 

@@ -289,7 +289,7 @@ MacroCurve compressed(const MacroSpec& spec, MacroSystem macro, const MacroPacki
   CompressionState state;
   state.curve = begin_curve(spec, packing, macro, engine, 0);
   state.macro = std::move(macro);
-  compress(state, spec, [](const CompressionState&, double) {});
+  compress(state, spec);
   if (end != nullptr) *end = state.macro;
   return state.curve;
 }

@@ -122,7 +122,7 @@ CompressionState tested(const MacroSpec& spec, const MacroPacking& packing, Macr
   CompressionState state;
   state.curve = begin_curve(spec, packing, macro, engine, 0);
   state.macro = std::move(macro);
-  compress(state, spec, [](const CompressionState&, double) {});
+  compress(state, spec);
   return state;
 }
 

@@ -49,7 +49,7 @@ PackingRun run(const SoftParticleSpec& spec, PairKind kind, MakeProtocol make, c
   state.experiment = kind == PairKind::soft_solid
                          ? make_soft_solid(spec, first, protocol->damped_contacts())
                          : make_soft_soft(spec, first, generate_shell_packing(spec, 9, 1), protocol->damped_contacts());
-  measure(state, plan, *protocol, [](const MeasurementState&, double) {});
+  measure(state, plan, *protocol);
   return state.run;
 }
 

@@ -18,8 +18,6 @@ PowderSpec small(double kappa) {
   return spec;
 }
 
-const auto kWatch = [](const PowderState&) {};
-
 double coordination(const PowderState& s, const PowderSpec& spec) {
   return powder_contacts(s.system, spec.zero_force(), spec.cohesive).coordination;
 }
@@ -90,11 +88,11 @@ TEST(PowderAssembly, TheDragChangesTheTimeNotTheResult) {
   for (const std::uint64_t sample : {0, 1, 2, 3}) {
     PowderState a = start_powder(spec, 3, sample);
     PowderState b = start_powder(spec, 3, sample);
-    const PowderResult fast = run_powder(a, spec, phases, options, kWatch);
-    (void)run_powder(b, spec, phases, published, kWatch);
+    const PowderResult fast = run_powder(a, spec, phases, options);
+    (void)run_powder(b, spec, phases, published);
     time[0] += a.system.time;
     time[1] += b.system.time;
-    const PowderResult slow = run_powder(b, spec, phases, options, kWatch);  // what rings still comes to rest
+    const PowderResult slow = run_powder(b, spec, phases, options);  // what rings still comes to rest
     ASSERT_TRUE(fast.usable) << fast.reason;
     ASSERT_TRUE(slow.usable) << slow.reason;
     EXPECT_NEAR(fast.fraction, slow.fraction, 3e-4);
@@ -112,7 +110,7 @@ TEST(PowderAssembly, DisksAggregateInAFixedCellBeforeItIsFreed) {
   PowderState s = start_powder(spec, 1, 0);
   const auto phases = powder_phases(spec, method(2));
   ASSERT_EQ(phases.size(), 3u);
-  const PowderResult r = run_powder(s, spec, phases, {}, kWatch);
+  const PowderResult r = run_powder(s, spec, phases, {});
   ASSERT_TRUE(r.usable) << r.reason;
   EXPECT_TRUE(one_aggregate(s.system));
   EXPECT_NEAR(r.stress[0], 0.01, 1e-4);
@@ -148,7 +146,7 @@ TEST(PowderAssembly, StiffeningSlowerChangesLittle) {
   for (const int slow : {0, 1}) {
     protocol.stiffening_time = slow == 1 ? 80.0 : 20.0;
     PowderState s = start_powder(spec, 1, 0);
-    const PowderResult r = run_powder(s, spec, powder_phases(spec, protocol), {}, kWatch);
+    const PowderResult r = run_powder(s, spec, powder_phases(spec, protocol), {});
     ASSERT_TRUE(r.usable) << r.reason;
     EXPECT_EQ(s.stiffness, 1e3);
     fraction[slow] = r.fraction;
@@ -163,7 +161,7 @@ TEST(PowderAssembly, AnotherStiffnessLeavesTangentialForcesAndMoments) {
   PowderState s = start_powder(spec, 1, 0);
   PowderOptions options;
   options.time_max = 60.0;
-  (void)run_powder(s, spec, powder_phases(spec, method(2)), options, kWatch);
+  (void)run_powder(s, spec, powder_phases(spec, method(2)), options);
   const auto before = contact_records(s.system);
   set_stiffness(s, spec, 2e3);
   const auto after = contact_records(s.system);
@@ -191,19 +189,19 @@ TEST(PowderAssembly, ARunTakenUpAgainHasTheSameBits) {
   protocol.stiffening_time = 30.0;
   const auto phases = powder_phases(spec, protocol);
   PowderState whole = start_powder(spec, 2, 0);
-  const PowderResult r = run_powder(whole, spec, phases, {}, kWatch);
+  const PowderResult r = run_powder(whole, spec, phases, {});
   ASSERT_TRUE(r.usable) << r.reason;
   for (const std::size_t stop : {std::size_t{2}, whole.points.size() / 2, whole.points.size() - 2}) {
     PowderState first = start_powder(spec, 2, 0);
     PowderState saved;
-    EXPECT_THROW((void)run_powder(first, spec, phases, {},
-                                  [&](const PowderState& now) {
-                                    if (now.points.size() < stop) return;
-                                    saved = now;
-                                    throw Stop();
-                                  }),
-                 Stop);
-    const PowderResult again = run_powder(saved, spec, phases, {}, kWatch);
+    RunControl<PowderState> control;
+    control.save = [&](const PowderState& now) {
+      if (now.points.size() < stop) return;
+      saved = now;
+      throw Stop();
+    };
+    EXPECT_THROW((void)run_powder(first, spec, phases, {}, control), Stop);
+    const PowderResult again = run_powder(saved, spec, phases, {});
     EXPECT_TRUE(again.usable);
     expect_same_bits(whole, saved);
     EXPECT_EQ(whole.snapshots.size(), saved.snapshots.size());
@@ -214,9 +212,9 @@ TEST(PowderAssembly, AStateAtItsEndIsOnlyLookedAt) {
   const PowderSpec spec = small(1e3);
   const auto phases = powder_phases(spec, method(1));
   PowderState s = start_powder(spec, 3, 0);
-  const PowderResult r = run_powder(s, spec, phases, {}, kWatch);
+  const PowderResult r = run_powder(s, spec, phases, {});
   const PowderState copy = s;
-  const PowderResult again = run_powder(s, spec, phases, {}, [](const PowderState&) { FAIL(); });
+  const PowderResult again = run_powder(s, spec, phases, {}, {.save = [](const PowderState&) { FAIL(); }});
   expect_same_bits(copy, s);
   EXPECT_TRUE(again.usable);
   EXPECT_EQ(again.fraction, r.fraction);

@@ -21,7 +21,7 @@ Means method1(const PowderSpec& spec, int samples) {
   Means m;
   for (int k = 0; k < samples; ++k) {
     PowderState s = start_powder(spec, 11, static_cast<std::uint64_t>(k));
-    const PowderResult r = run_powder(s, spec, powder_phases(spec, {}), options, [](const PowderState&) {});
+    const PowderResult r = run_powder(s, spec, powder_phases(spec, {}), options);
     EXPECT_TRUE(r.usable) << r.reason;
     m.fraction += r.fraction / samples;
     const PowderContacts c = powder_contacts(s.system, spec.zero_force(), spec.cohesive);

@@ -32,7 +32,7 @@ PackingRun run(const SoftParticleSpec& spec, std::uint64_t index, const Measurem
                const Protocol& protocol) {
   MeasurementState state;
   state.experiment = make_soft_solid(spec, generate_shell_packing(spec, 17, index), protocol.damped_contacts());
-  measure(state, plan, protocol, [](const MeasurementState&, double) {});
+  measure(state, plan, protocol);
   return state.run;
 }
 

@@ -241,9 +241,10 @@ TEST(SoftExperiment, AMeasurementRecordsItsPlan) {
   const MeasurementPlan plan{{0.10, 0.20}, {0.20}, {-0.1, 0.1}, 0.01, true};
   int seen = 0;
   constexpr double kNever = 1e9;  // seconds between saves: at recorded points alone, however slow the machine is
-  measure(
-      state, plan, *make_damped_protocol({}),
-      [&](const MeasurementState&, double share) { EXPECT_DOUBLE_EQ(share, 0.5 * ++seen); }, kNever);
+  RunControl<MeasurementState> control{.seconds = kNever};
+  control.progress = [&](const MeasurementState&, double share) { EXPECT_DOUBLE_EQ(share, 0.5 * ++seen); };
+  measure(state, plan, *make_damped_protocol({}), control);
+  EXPECT_EQ(seen, 2);
   ASSERT_EQ(state.run.normal.size(), 2U);
   EXPECT_EQ(state.run.normal[1].delta, 0.20);
   EXPECT_GT(state.run.normal[1].force, state.run.normal[0].force);
@@ -262,8 +263,7 @@ TEST(SoftExperiment, AnAngleDoesNotFeelTheOneBefore) {
     state.experiment = make_soft_solid(small_spec(), small_packing(0), false);
     MeasurementPlan plan{{0.25}, {0.25}, angles, 0.01, true};
     plan.cumulative = cumulative;
-    measure(
-        state, plan, *make_damped_protocol({.increment = 0.02}), [](const MeasurementState&, double) {}, 1e9);
+    measure(state, plan, *make_damped_protocol({.increment = 0.02}));
     return state.run.tangential.back();
   };
   const TangentialPoint alone = at_the_last_angle({0.2}, false);

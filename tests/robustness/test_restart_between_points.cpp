@@ -25,15 +25,14 @@ TEST(RestartBetweenPoints, ACrowdGoesOnFromEveryIncrement) {
   options.increment = 0.02;
   const CrowdExperiment start = make_crowd(spec, c, content_of(spec, 0), {});
   std::vector<std::pair<CrowdPlace, CrowdExperiment>> saved;
-  CrowdKeeper keeper;
-  keeper.seconds = 0.0;
-  keeper.save = [&](const CrowdPlace& place, const CrowdExperiment& e) { saved.emplace_back(place, e); };
+  RunControl<CrowdUnderWay> control{.seconds = 0.0};
+  control.save = [&](const CrowdUnderWay& now) { saved.emplace_back(now.place, now.experiment); };
   CrowdExperiment whole = start;
-  const CrowdRun run = run_crowd(whole, plan, options, {}, keeper);
+  const CrowdRun run = run_crowd(whole, plan, options, control);
   ASSERT_EQ(run.points.size(), 3U);
   ASSERT_EQ(saved.size(), 16U);  // ten increments in, six out
   for (auto& [place, e] : saved) {
-    const CrowdRun resumed = run_crowd(e, plan, options, {}, {place, {}, 0.0});
+    const CrowdRun resumed = run_crowd(e, plan, options, {}, place);
     expect_equal(run.points, resumed.points);
     expect_same(run.cost, resumed.cost);
     EXPECT_EQ(e.overlap, whole.overlap);
@@ -64,13 +63,13 @@ TEST(RestartBetweenPoints, AMeasurementGoesOnFromEveryRotation) {
     std::vector<MeasurementState> saved;
     MeasurementState whole;
     whole.experiment = make_soft_solid(spec, generate_shell_packing(spec, 1, 0), false);
-    const auto keep = [&](const MeasurementState& s, double) { saved.push_back(s); };
-    measure(whole, plan, *protocol, keep, 0.0);
+    RunControl<MeasurementState> control{.seconds = 0.0};
+    control.save = [&](const MeasurementState& s) { saved.push_back(s); };
+    measure(whole, plan, *protocol, control);
     ASSERT_EQ(whole.run.tangential.size(), 5U);
     EXPECT_EQ(saved.size(), cumulative ? 4U : 6U);  // two overlaps, before each angle or each sign
     for (MeasurementState& state : saved) {
-      measure(
-          state, plan, *protocol, [](const MeasurementState&, double) {}, 0.0);
+      measure(state, plan, *protocol);
       expect_same(whole.run, state.run);
     }
   }
@@ -89,12 +88,12 @@ TEST(RestartBetweenPoints, ACompressionGoesOnFromEveryIncrement) {
   whole.macro = make_shelled_system(spec, packing, {generate_shell_packing(inside, 1, 0)}, 1, 0);
   whole.curve = begin_curve(spec, packing, whole.macro, "shelled", 0);
   std::vector<CompressionState> saved;
-  compress(
-      whole, spec, [&](const CompressionState& s, double) { saved.push_back(s); }, 0.0);
+  RunControl<CompressionState> control{.seconds = 0.0};
+  control.save = [&](const CompressionState& s) { saved.push_back(s); };
+  compress(whole, spec, control);
   ASSERT_EQ(saved.size(), 7U);  // three points, twice two increments between
   for (CompressionState& state : saved) {
-    compress(
-        state, spec, [](const CompressionState&, double) {}, 0.0);
+    compress(state, spec);
     EXPECT_EQ(whole.curve.strain, state.curve.strain);
     EXPECT_EQ(whole.curve.stress_axial, state.curve.stress_axial);
     EXPECT_EQ(whole.curve.stress_lateral, state.curve.stress_lateral);

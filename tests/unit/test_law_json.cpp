@@ -27,7 +27,7 @@ PairLaw example() {
 TEST(LawJson, UnitsAreNewtonsAndNewtonsPerMetreAndPerDegree) {
   LawCard card;
   card.pairs.push_back(example());
-  const auto j = laws_json(card)["soft-solid"];
+  const auto j = json_of(summary_of(card))["soft-solid"];
   EXPECT_NEAR(j["normal"]["a"].get<double>(), 0.5755 * 128.0, 1e-12);  // E Rs^2 = 128 N
   EXPECT_NEAR(j["normal"]["a_interval"][1].get<double>(), 0.60 * 128.0, 1e-12);
   EXPECT_NEAR(j["normal"]["c"].get<double>(), -0.0003 * 128.0, 1e-12);
@@ -49,7 +49,7 @@ TEST(LawJson, UnknownIsNullAndStaysValidJson) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   law.normal.a = {0.5755, kInfinity, -kInfinity, kInfinity};
   card.pairs.push_back(law);
-  const auto j = nlohmann::json::parse(laws_json(card).dump())["soft-soft"];
+  const auto j = nlohmann::json::parse(json_of(summary_of(card)).dump())["soft-soft"];
   EXPECT_TRUE(j["normal"]["a_standard_error"].is_null());
   EXPECT_TRUE(j["normal"]["a_interval"][0].is_null());
   EXPECT_FALSE(j["normal"]["a"].is_null());
@@ -61,11 +61,11 @@ TEST(LawJson, NoCrossingHasNoLaw) {
   PairLaw law;
   law.status = LawStatus::no_threshold_crossing;
   card.pairs.push_back(law);
-  const auto j = laws_json(card)["soft-solid"];
+  const auto j = json_of(summary_of(card))["soft-solid"];
   EXPECT_EQ(j["status"], "no threshold crossing");
   EXPECT_TRUE(j["normal"].is_null());
 }
 
-TEST(LawJson, EmptyCardIsAnEmptyObject) { EXPECT_TRUE(laws_json({}).is_object()); }
+TEST(LawJson, EmptyCardIsAnEmptyObject) { EXPECT_TRUE(json_of(summary_of(LawCard{})).is_object()); }
 
 }  // namespace

@@ -6,9 +6,12 @@
 #include <functional>
 
 #include "common/data/law_remarks.h"
+#include "pipelines/kinds/law_table/results.h"
+#include "pipelines/kinds/macro/results.h"
+#include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/report/sections.h"
-#include "pipelines/run/run_summary.h"
+#include "pipelines/results/summary.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"

@@ -52,10 +52,12 @@ PowderState assemble_in_a_moment(const PowderSpec& spec, const std::vector<Powde
   PowderOptions options = setup.options;
   options.record_every = std::min(options.record_every, PowderOptions{}.record_every);  // when it is looked at
   const double start = thread_seconds();
+  RunControl<PowderState> control;
+  control.save = [&](const PowderState&) {
+    if (thread_seconds() - start > kBudget) throw TrialOver{};
+  };
   try {
-    (void)run_powder(state, spec, phases, options, [&](const PowderState&) {
-      if (thread_seconds() - start > kBudget) throw TrialOver{};
-    });
+    (void)run_powder(state, spec, phases, options, control);
   } catch (const TrialOver&) {
   } catch (const NotUsable&) {  // the run will say so
   }

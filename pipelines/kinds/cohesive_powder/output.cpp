@@ -3,37 +3,13 @@
 #include <array>
 #include <utility>
 
+#include "pipelines/kinds/cohesive_powder/summary.h"
+
 namespace softgrain {
 
 namespace {
 
 using nlohmann::json;
-
-json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
-json rank_json(const SparseRank& rank) {
-  return {{"rank", rank.rank}, {"smallest_kept", rank.smallest_kept}, {"largest_dropped", rank.largest_dropped}};
-}
-
-json rigidity_json(const Rigidity& r) {
-  return {{"freedoms", r.freedoms},
-          {"constraints", r.constraints},
-          {"h", r.indeterminacy},
-          {"k", r.floppy},
-          {"identity_holds", r.identity_holds()},
-          {"of_matrix", rank_json(r.of_matrix)},
-          {"of_transpose", rank_json(r.of_transpose)},
-          {"positive_definite", r.stiffness.positive},
-          {"smallest_pivot", or_null(r.stiffness.smallest_pivot)}};
-}
-json rigidity_json(const std::optional<Rigidity>& r) { return r ? rigidity_json(*r) : json(nullptr); }
-
-json rigidity_json(const PowderRigidity& r) {
-  return {{"fixed", rigidity_json(r.fixed)},
-          {"free", rigidity_json(r.free)},
-          {"backbone", rigidity_json(r.backbone)},
-          {"backbone_free", rigidity_json(r.backbone_free)}};
-}
 
 constexpr std::array kHistograms{std::pair{"normal", &PowderForces::normal},
                                  std::pair{"normal_over_mean", &PowderForces::normal_over_mean},
@@ -69,19 +45,6 @@ void write_pairs(const h5::Group& group, const std::vector<PowderInteraction>& p
 
 }  // namespace
 
-json analysis_json(const PowderAnalysis& a) {
-  return {{"zero_force", a.zero},
-          {"zero_share", or_null(a.forces.zero_share)},
-          {"F_perc",
-           {{"x", or_null(a.percolation.x)},
-            {"y", or_null(a.percolation.y)},
-            {"either", or_null(a.percolation.either)},
-            {"both", or_null(a.percolation.both)}}},
-          {"rumpf_ratio", or_null(a.rumpf_ratio)},
-          {"solid_fraction_3d", a.solid_fraction_3d},
-          {"rigidity", a.rigidity ? rigidity_json(*a.rigidity) : json(nullptr)}};
-}
-
 json histograms_json(const std::vector<const PowderForces*>& samples) {
   PowderForces sum;
   json out = json::object();
@@ -97,7 +60,7 @@ void write_analysis(const h5::Group& group, const PowderAnalysis& analysis) {
   write_pairs(group, analysis.pairs);
   const h5::Group histograms = group.create("histograms");
   for (const auto& [name, member] : kHistograms) write_histogram(histograms.create(name), analysis.forces.*member);
-  group.attribute("scalars", analysis_json(analysis).dump());
+  group.attribute("scalars", json_of(analysis).dump());
 }
 
 }  // namespace softgrain

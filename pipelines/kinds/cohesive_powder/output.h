@@ -9,9 +9,6 @@
 
 namespace softgrain {
 
-/// Scalars of the forces, percolation and rigidity; what is undefined is null.
-nlohmann::json analysis_json(const PowderAnalysis& analysis);
-
 /// Histograms of several samples, their counts added up.
 nlohmann::json histograms_json(const std::vector<const PowderForces*>& samples);
 

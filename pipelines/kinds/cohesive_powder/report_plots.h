@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
 #include "pipelines/report/svg_plot.h"
-#include "pipelines/snapshots/powder_data.h"
 
 namespace softgrain::report {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/snapshots/powder_data.h"
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
 
 namespace softgrain::report {
 

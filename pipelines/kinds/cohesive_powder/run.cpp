@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "common/core/error.h"
 #include "common/core/stopwatch.h"
@@ -11,13 +10,13 @@
 #include "common/io/progress.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
-#include "pipelines/kinds/cohesive_powder/structure.h"
+#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/kinds/cohesive_powder/variants_run.h"
 #include "pipelines/run/parallel_tasks.h"
-#include "pipelines/run/run_summary.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/sample_statistics.h"
-#include "pipelines/run/task_store.h"
 
 namespace softgrain {
 
@@ -56,69 +55,51 @@ Sample run_sample(const PowderSetup& setup, std::uint64_t seed, std::int64_t num
   else
     take_state(setup, number, sample.state);
   const auto phases = setup.phases();
-  double reported = 0.0;
+  TaskProgress mine(progress);
   const Stopwatch watch;
   const double seconds_before = sample.state.system.cost.seconds;
-  sample.result = run_powder(sample.state, setup.spec, phases, setup.options, [&](const PowderState& now) {
-    sample.state.system.cost.seconds = seconds_before + watch.seconds();
+  const auto count_time = [&] { sample.state.system.cost.seconds = seconds_before + watch.seconds(); };
+  RunControl<PowderState> control;
+  control.save = [&](const PowderState& now) {
+    count_time();
     store.save(task, [&](const h5::Group& g) { write_powder_state(g, now); });
-    // Nobody knows when a phase comes to rest; most take about kUsual.
-    constexpr double kUsual = 150.0;
-    const double elapsed = now.system.time - now.phase_start;
-    const double share =
-        (static_cast<double>(now.phase) + elapsed / (elapsed + kUsual)) / static_cast<double>(phases.size());
-    progress.advance(std::max(share - reported, 0.0));
-    reported = std::max(share, reported);
-    if (interrupt_requested()) throw Interrupted("stopped by a signal; go on with --resume");
-  });
-  sample.state.system.cost.seconds = seconds_before + watch.seconds();
+  };
+  control.progress = [&](const PowderState&, double share) { mine.reach(share); };
+  sample.result = run_powder(sample.state, setup.spec, phases, setup.options, control);
+  count_time();
   stop_if_interrupted("analysing packs");
   sample.analysis =
       analyse_powder(sample.state.system, setup.spec, imposed_pressure(phases, sample.state), setup.rigidity);
-  progress.advance(1.0 - reported);
+  mine.reach(1.0);
   return sample;
 }
 
-json sample_json(const Sample& s) {
-  const PowderContacts& c = s.analysis.contacts;
-  json out{{"usable", s.result.usable},
-           {"reason", s.result.reason},
-           {"time", s.state.system.time},
-           {"steps", s.state.system.step},
-           {"loop_passes", s.state.system.cost.loop_passes},
-           {"contact_evaluations", s.state.system.cost.contact_evaluations},
-           {"Phi", s.result.fraction},
-           {"z", c.coordination},
-           {"z_star", c.coordination_backbone},
-           {"shares", c.shares},
-           {"contacts", c.contacts},
-           {"distant", c.distant},
-           {"rattlers", c.rattlers},
-           {"repulsive", c.repulsive},
-           {"tensile", c.tensile},
-           {"unstressed", c.unstressed},
-           {"mean_normal", c.mean_normal},
-           {"mean_repulsive", c.mean_repulsive},
-           {"mean_tensile", c.mean_tensile},
-           {"quadratic_mean_normal", c.square_mean_normal},
-           {"rumpf_pressure", c.rumpf_pressure},
-           {"branch_pressure", c.branch_pressure},
-           {"stress", {s.result.stress[0], s.result.stress[1]}}};
-  out.update(analysis_json(s.analysis));
+PackSummary summary_of(const Sample& s) {
+  PackSummary out;
+  out.usable = s.result.usable;
+  out.reason = s.result.reason;
+  out.time = s.state.system.time;
+  out.steps = s.state.system.step;
+  out.loop_passes = s.state.system.cost.loop_passes;
+  out.contact_evaluations = s.state.system.cost.contact_evaluations;
+  out.fraction = s.result.fraction;
+  out.stress = {s.result.stress[0], s.result.stress[1]};
+  out.contacts = s.analysis.contacts;
+  out.analysis = s.analysis;
   return out;
 }
 
 /// Means over the samples that came to rest, and their histograms added up.
-void add_statistics(const std::vector<Sample>& samples, json& summary) {
+void add_statistics(const std::vector<Sample>& samples, PowderSummary& summary) {
   std::vector<json> scalars;
   std::vector<const PowderForces*> forces;
   for (const Sample& s : samples) {
     if (!s.result.usable) continue;
-    scalars.push_back(sample_json(s));
+    scalars.push_back(json_of(summary_of(s)));
     forces.push_back(&s.analysis.forces);
   }
-  summary["statistics"] = sample_statistics(scalars);
-  summary["histograms"] = histograms_json(forces);
+  summary.statistics = sample_statistics(scalars);
+  summary.histograms = histograms_json(forces);
 }
 
 /// Which samples count in the mean.
@@ -151,45 +132,41 @@ void save_samples(const std::string& path, const std::vector<Sample>& samples, c
   file.commit();
 }
 
-std::vector<Sample> run_samples(const PowderSetup& setup, std::uint64_t seed, const TaskStore& store,
-                                const RunContext& context) {
+std::vector<Sample> run_samples(const PowderSetup& setup, const Run& run) {
   std::vector<Sample> samples(static_cast<std::size_t>(setup.samples));
-  Progress progress("powders", static_cast<double>(setup.samples), context.quiet());
+  Progress progress("powders", static_cast<double>(setup.samples), run.context.quiet());
   parallel_tasks(setup.samples, [&](std::int64_t k) {
-    samples[static_cast<std::size_t>(k)] = run_sample(setup, seed, k, store, progress);
+    samples[static_cast<std::size_t>(k)] = run_sample(setup, run.seed, k, run.store, progress);
   });
   progress.finish();
   return samples;
 }
 
-/// {"samples", "seconds", "remarks", "status"}: what came out of each.
-void add_samples(const std::vector<Sample>& samples, const PowderStructures& structures, json& summary) {
-  bool usable = true;
+/// What came out of each.
+void add_samples(const std::vector<Sample>& samples, const PowderStructures& structures, PowderSummary& summary) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    summary["samples"].push_back(sample_json(samples[k]));
-    if (k < structures.samples.size()) summary["samples"].back().update(structure_json(structures.samples[k]));
-    summary["seconds"].push_back(samples[k].state.system.cost.seconds);
-    usable = usable && samples[k].result.usable;
+    summary.samples.push_back(summary_of(samples[k]));
+    if (k < structures.samples.size()) add_structure(summary.samples.back(), structures.samples[k]);
+    summary.seconds.push_back(samples[k].state.system.cost.seconds);
     if (!samples[k].result.usable)
-      summary["remarks"].push_back(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
+      summary.head.reject(fmt::format("sample {} is not at rest: {}", k, samples[k].result.reason));
   }
-  summary["status"] = usable ? "good" : "not usable";
-  for (const std::string& remark : structure_remarks(structures)) summary["remarks"].push_back(remark);
+  for (const std::string& remark : structure_remarks(structures)) summary.head.remarks.push_back(remark);
 }
 
 /// Means over samples that came to rest; returns the line about them for people.
 std::string add_means(const PowderSetup& setup, const std::vector<Sample>& samples, const PowderStructures& structures,
-                      json& summary) {
+                      PowderSummary& summary) {
   add_statistics(samples, summary);
   const json none{{"mean", nullptr}, {"deviation", nullptr}};  // no sample came to rest
-  const json fraction = summary["statistics"].value("Phi", none);
-  const json z = summary["statistics"].value("z", none);
-  summary["mean"] = {{"Phi", fraction["mean"]},
-                     {"Phi_deviation", fraction["deviation"]},
-                     {"z", z["mean"]},
-                     {"z_deviation", z["deviation"]}};
-  summary["mean"].update(structure_means_json(structures, usable_samples(samples)));
-  if (structures.mean_curve) summary["scattering"] = ensemble_fit_json(structures);
+  const json fraction = summary.statistics.value("Phi", none);
+  const json z = summary.statistics.value("z", none);
+  summary.mean = {{"Phi", fraction["mean"]},
+                  {"Phi_deviation", fraction["deviation"]},
+                  {"z", z["mean"]},
+                  {"z_deviation", z["deviation"]}};
+  summary.mean.update(structure_means_json(structures, usable_samples(samples)));
+  if (structures.mean_curve) summary.scattering = {structures.fit, structures.other_ranges};
   const auto text = [](const json& x, int digits) {
     return x.is_null() ? std::string("-") : fmt::format("{:.{}f}", x.get<double>(), digits);
   };
@@ -200,23 +177,19 @@ std::string add_means(const PowderSetup& setup, const std::vector<Sample>& sampl
 
 }  // namespace
 
-ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, const RunContext& context) {
-  const std::uint64_t seed = context.seed(setup.seed);
-  const TaskStore store(context, scene, seed);
-  const Provenance provenance = context.provenance(scene, seed);
+ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   std::vector<Sample> samples;
-  context.guard([&] { samples = run_samples(setup, seed, store, context); });
+  run.context.guard([&] { samples = run_samples(setup, run); });
   const PowderStructures structures = structures_of(samples, setup.structure);
-  save_samples(context.path("powder.h5"), samples, structures, setup.spec, provenance);
-  json summary{{"kind", "cohesive-powder"}, {"title", setup.title}, {"remarks", json::array()}};
+  save_samples(run.path("powder.h5"), samples, structures, setup.spec, run.provenance);
+  PowderSummary summary;
+  summary.kind = "cohesive-powder";
+  summary.head.title = setup.title;
+  summary.head.files = {{"powder.h5", run.path("powder.h5")}, {"report", run.path("report.html")}};
   add_samples(samples, structures, summary);
   std::string people = add_means(setup, samples, structures, summary);
-  summary["files"] = {{"powder.h5", context.path("powder.h5")}};
-  summary["provenance"] = provenance_json(provenance);
-  for (const auto& remark : summary["remarks"]) people += "note: " + remark.get<std::string>() + "\n";
-  context.finish(summary, people + "data: " + context.path("powder.h5"));
-  store.clear();
-  return has_status(summary, RunStatus::good) ? ExitStatus::good : ExitStatus::not_usable;
+  for (const std::string& remark : summary.head.remarks) people += "note: " + remark + "\n";
+  return run.finish(json_of(summary), people + "data: " + run.path("powder.h5") + "\n");
 }
 
 namespace {
@@ -224,8 +197,7 @@ namespace {
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   if (has_powder_variants(scene)) return run_powder_variants(scene, options);
   const PowderSetup setup = read_powder(scene);
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string(), {setup.states});
-  return run_powder_ensemble(setup, scene, context);
+  return run_powder_ensemble(setup, Run(scene, options, "microsim", setup.seed, {.files = {setup.states}}));
 }
 
 void read_any_powder(const Scene& scene) {
@@ -242,7 +214,8 @@ SceneKind cohesive_powder_kind() {
           .command = "microsim",
           .run = run_powder_scene,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_powder(scene, out); },
-          .read = read_any_powder};
+          .read = read_any_powder,
+          .results = powder_results()};
 }
 
 }  // namespace softgrain

@@ -8,6 +8,7 @@
 #include "microsim/powder/powder_assembly.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
 #include "pipelines/run/findings.h"
+#include "pipelines/run/run.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -31,7 +32,7 @@ PowderSetup read_powder(const Scene& scene);
 
 /// Runs all samples; writes powder.h5 (final states and the course of each assembly) and summary.json. Status
 /// not_usable when a sample did not come to rest: the summary says which criterion was unmet.
-ExitStatus run_powder_ensemble(const PowderSetup& setup, const Scene& scene, const RunContext& context);
+ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run);
 
 /// The same from a scene, or each of its variants.
 SceneKind cohesive_powder_kind();

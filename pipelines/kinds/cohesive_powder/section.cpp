@@ -3,82 +3,97 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "common/core/statistics.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
 #include "pipelines/kinds/cohesive_powder/report_view.h"
+#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 
 namespace softgrain::report {
 
 namespace {
 
-using nlohmann::json;
-
 /// Width of one small picture [px], and how many of them stand in the row.
 constexpr double kSnapshotWidth = 260.0;
 constexpr std::size_t kSnapshots = 6;
 
-/// A column of the table: where its value stands in the summary of a sample.
+/// A column of the table. A sample without the value gives NaN.
 struct Column {
   std::string header;
-  std::string path;
+  std::function<double(const PackSummary&)> of;
   int digits = 4;
   bool yes_no = false;  ///< a flag, shown as a word; its mean is how many say yes
 };
 
-std::optional<double> value_of(const json& sample, const Column& column) {
-  if (!column.yes_no) return find_number(sample, column.path);
-  const json* flag = find_value(sample, column.path);
-  if (flag == nullptr || !flag->is_boolean()) return std::nullopt;
-  return flag->get<bool>() ? 1.0 : 0.0;
-}
-
 std::vector<Column> contact_columns() {
-  return {{"Phi", "Phi"},
-          {"Phi in 3D", "solid_fraction_3d"},
-          {"z", "z"},
-          {"z*", "z_star"},
-          {"repulsive", "repulsive"},
-          {"tensile", "tensile"},
-          {"unstressed", "unstressed"},
-          {"distant", "distant"},
-          {"rattlers", "rattlers"}};
+  const auto count = [](std::int64_t PowderContacts::*member) {
+    return [member](const PackSummary& s) { return static_cast<double>(s.contacts.*member); };
+  };
+  return {{"Phi", [](const PackSummary& s) { return s.fraction; }},
+          {"Phi in 3D", [](const PackSummary& s) { return s.analysis.solid_fraction_3d; }},
+          {"z", [](const PackSummary& s) { return s.contacts.coordination; }},
+          {"z*", [](const PackSummary& s) { return s.contacts.coordination_backbone; }},
+          {"repulsive", count(&PowderContacts::repulsive)},
+          {"tensile", count(&PowderContacts::tensile)},
+          {"unstressed", count(&PowderContacts::unstressed)},
+          {"distant", count(&PowderContacts::distant)},
+          {"rattlers", count(&PowderContacts::rattlers)}};
 }
 
 std::vector<Column> force_columns() {
-  return {{"<N>", "mean_normal", 3},
-          {"<N> repulsive", "mean_repulsive", 3},
-          {"<N> tensile", "mean_tensile", 3},
-          {"sqrt <N²>", "quadratic_mean_normal", 3},
-          {"share without force", "zero_share", 3},
-          {"P of Rumpf", "rumpf_pressure", 3},
-          {"over the imposed", "rumpf_ratio", 4},
-          {"F_perc", "F_perc.either", 3}};
+  return {{"<N>", [](const PackSummary& s) { return s.contacts.mean_normal; }, 3},
+          {"<N> repulsive", [](const PackSummary& s) { return s.contacts.mean_repulsive; }, 3},
+          {"<N> tensile", [](const PackSummary& s) { return s.contacts.mean_tensile; }, 3},
+          {"sqrt <N²>", [](const PackSummary& s) { return s.contacts.square_mean_normal; }, 3},
+          {"share without force", [](const PackSummary& s) { return s.analysis.forces.zero_share.value_or(kNaN); }, 3},
+          {"P of Rumpf", [](const PackSummary& s) { return s.contacts.rumpf_pressure; }, 3},
+          {"over the imposed", [](const PackSummary& s) { return s.analysis.rumpf_ratio.value_or(kNaN); }, 4},
+          {"F_perc", [](const PackSummary& s) { return s.analysis.percolation.either.value_or(kNaN); }, 3}};
+}
+
+/// h, k and definiteness of one matrix, which `find` gives; null: there is none.
+void add_rigidity(std::vector<Column>& columns, const std::string& which,
+                  const Rigidity* (*find)(const PowderRigidity&)) {
+  const auto of = [find](double (*value)(const Rigidity&)) {
+    return [find, value](const PackSummary& s) {
+      const Rigidity* matrix = s.analysis.rigidity ? find(*s.analysis.rigidity) : nullptr;
+      return matrix != nullptr ? value(*matrix) : kNaN;
+    };
+  };
+  columns.push_back({"h" + which, of([](const Rigidity& r) { return static_cast<double>(r.indeterminacy); })});
+  columns.push_back({"k" + which, of([](const Rigidity& r) { return static_cast<double>(r.floppy); })});
+  columns.push_back(
+      {"positive definite" + which, of([](const Rigidity& r) { return r.stiffness.positive ? 1.0 : 0.0; }), 0, true});
 }
 
 std::vector<Column> rigidity_columns() {
-  return {{"h", "rigidity.fixed.h"},
-          {"k", "rigidity.fixed.k"},
-          {"positive definite", "rigidity.fixed.positive_definite", 0, true},
-          {"h, free cell", "rigidity.free.h"},
-          {"k, free cell", "rigidity.free.k"},
-          {"positive definite, free cell", "rigidity.free.positive_definite", 0, true},
-          {"h, backbone", "rigidity.backbone.h"},
-          {"k, backbone", "rigidity.backbone.k"},
-          {"positive definite, backbone", "rigidity.backbone.positive_definite", 0, true}};
+  std::vector<Column> columns;
+  add_rigidity(columns, "", [](const PowderRigidity& r) { return &r.fixed; });
+  add_rigidity(columns, ", free cell", [](const PowderRigidity& r) { return r.free ? &*r.free : nullptr; });
+  add_rigidity(columns, ", backbone", [](const PowderRigidity& r) { return r.backbone ? &*r.backbone : nullptr; });
+  return columns;
 }
 
 std::vector<Column> structure_columns() {
-  return {{"dF", "scattering.dF", 3},
-          {"error of dF", "scattering.dF_error", 2},
-          {"xi [a]", "scattering.xi", 3},
-          {"error of xi", "scattering.xi_error", 2},
-          {"<R>_w [a]", "holes.mean_radius", 4},
-          {"largest hole [a]", "holes.largest_radius", 4},
-          {"holes", "holes.count"}};
+  // A fit that is not usable must not stand in a table as if it were.
+  const auto fitted = [](double (*value)(const ScatteringFit&)) {
+    return [value](const PackSummary& s) { return s.scattering && s.scattering->usable ? value(*s.scattering) : kNaN; };
+  };
+  const auto hole = [](double (*value)(const PowderHoles&)) {
+    return [value](const PackSummary& s) { return s.holes ? value(*s.holes) : kNaN; };
+  };
+  return {{"dF", fitted([](const ScatteringFit& f) { return f.dimension.value; }), 3},
+          {"error of dF", fitted([](const ScatteringFit& f) { return f.dimension.error; }), 2},
+          {"xi [a]", fitted([](const ScatteringFit& f) { return f.length.value; }), 3},
+          {"error of xi", fitted([](const ScatteringFit& f) { return f.length.error; }), 2},
+          {"<R>_w [a]", hole([](const PowderHoles& h) { return h.mean_radius; })},
+          {"largest hole [a]", hole([](const PowderHoles& h) { return h.largest_radius; })},
+          {"holes", hole([](const PowderHoles& h) { return static_cast<double>(h.count); })}};
 }
 
 /// Mean of the values with the sample deviation in brackets.
@@ -99,22 +114,10 @@ std::string summary_text(const std::vector<double>& values, const Column& column
   return fmt::format("{} of {}", std::count(values.begin(), values.end(), 1.0), values.size());
 }
 
-/// A fit that is not usable must not stand in a table as if it were.
-bool counts(const json& sample, const Column& column) {
-  if (!column.path.starts_with("scattering.")) return true;
-  const json* usable = find_value(sample, "scattering.usable");
-  return usable != nullptr && usable->is_boolean() && usable->get<bool>();
-}
-
-bool is_usable(const json& sample) {
-  const json* usable = find_value(sample, "usable");
-  return usable != nullptr && usable->is_boolean() && usable->get<bool>();
-}
-
 /// One row per sample and one of means over usable samples; columns without any value are left out.
-std::string table_of(const json& samples, std::vector<Column> columns) {
+std::string table_of(const std::vector<PackSummary>& samples, std::vector<Column> columns) {
   std::erase_if(columns, [&](const Column& c) {
-    return std::none_of(samples.begin(), samples.end(), [&](const json& s) { return value_of(s, c).has_value(); });
+    return std::all_of(samples.begin(), samples.end(), [&](const PackSummary& s) { return std::isnan(c.of(s)); });
   });
   if (columns.empty()) return "";
   std::vector<std::string> header{"sample"};
@@ -122,11 +125,11 @@ std::string table_of(const json& samples, std::vector<Column> columns) {
   HtmlTable table(header);
   std::vector<std::vector<double>> values(columns.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    std::vector<std::string> row{fmt::format("{}{}", k, is_usable(samples[k]) ? "" : " (not at rest)")};
+    std::vector<std::string> row{fmt::format("{}{}", k, samples[k].usable ? "" : " (not at rest)")};
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      const auto value = counts(samples[k], columns[c]) ? value_of(samples[k], columns[c]) : std::nullopt;
-      row.push_back(value ? cell_text(*value, columns[c]) : "–");
-      if (value && is_usable(samples[k])) values[c].push_back(*value);
+      const double value = columns[c].of(samples[k]);
+      row.push_back(std::isnan(value) ? "–" : cell_text(value, columns[c]));
+      if (!std::isnan(value) && samples[k].usable) values[c].push_back(value);
     }
     table.row(std::move(row));
   }
@@ -136,74 +139,55 @@ std::string table_of(const json& samples, std::vector<Column> columns) {
   return table.html();
 }
 
-/// Shares x_k of disks with k interactions, as columns.
-std::string shares_table(const json& samples) {
-  json rows = json::array();
+/// Shares x_k of disks with k interactions, as columns. A sample without disks of k neighbours has the share 0, not
+/// none.
+std::string shares_table(const std::vector<PackSummary>& samples) {
   std::size_t most = 0;
-  for (const json& s : samples) {
-    json row = json::object();
-    row["usable"] = is_usable(s);
-    if (const json* shares = find_value(s, "shares"); shares != nullptr && shares->is_array()) {
-      most = std::max(most, shares->size());
-      for (std::size_t k = 0; k < shares->size(); ++k) row[fmt::format("x{}", k)] = (*shares)[k];
-    }
-    rows.push_back(row);
-  }
-  // A sample without disks of k neighbours has the share 0, not none.
+  for (const PackSummary& s : samples) most = std::max(most, s.contacts.shares.size());
   std::vector<Column> columns;
-  for (std::size_t k = 0; k < most; ++k) {
-    const std::string name = fmt::format("x{}", k);
-    for (json& row : rows)
-      if (!row.contains(name)) row[name] = 0.0;
-    columns.push_back({fmt::format("x_{}", k), name, 3});
-  }
-  return table_of(rows, columns);
+  for (std::size_t k = 0; k < most; ++k)
+    columns.push_back({fmt::format("x_{}", k),
+                       [k](const PackSummary& s) { return k < s.contacts.shares.size() ? s.contacts.shares[k] : 0.0; },
+                       3});
+  return table_of(samples, columns);
 }
 
-std::string fit_text(const json& fit) {
-  const auto number = [&](const char* key) { return find_number(fit, key).value_or(std::nan("")); };
-  const json* range = find_value(fit, "k_range");
-  const double last = range != nullptr && range->is_array() && range->size() == 2 && (*range)[1].is_number()
-                          ? (*range)[1].get<double>()
-                          : std::nan("");
-  const json* usable = find_value(fit, "usable");
-  if (usable == nullptr || !usable->is_boolean() || !usable->get<bool>())
-    return "not to be relied on (" + find_text(fit, "reason") + ")";
-  return fmt::format("up to k a = {}: dF = {}, xi = {} a, chi² per degree {}", format_number(last, 3),
-                     format_with_error(number("dF"), number("dF_error")),
-                     format_with_error(number("xi"), number("xi_error")), format_number(number("chi2_per_degree"), 2));
+std::string fit_text(const ScatteringFit& fit) {
+  if (!fit.usable) return "not to be relied on (" + fit.reason + ")";
+  return fmt::format("up to k a = {}: dF = {}, xi = {} a, chi² per degree {}", format_number(fit.k_high, 3),
+                     format_with_error(fit.dimension.value, fit.dimension.error),
+                     format_with_error(fit.length.value, fit.length.error), format_number(fit.chi2_per_degree, 2));
 }
 
 /// One fit to all samples, and what other ends of the fitted range make of it.
-std::string common_fit(const json& summary) {
-  const json* fit = find_value(summary, "scattering");
-  if (fit == nullptr || !fit->is_object()) return "";
-  std::string out = paragraph("One fit to all samples, " + fit_text(*fit) + ".");
-  const json* others = find_value(*fit, "other_ranges");
-  if (others == nullptr || !others->is_array()) return out;
-  for (const json& other : *others) out += paragraph("Another end of the range: " + fit_text(other) + ".");
+std::string common_fit(const std::optional<EnsembleFit>& ensemble) {
+  if (!ensemble) return "";
+  std::string out = paragraph("One fit to all samples, " + fit_text(ensemble->fit) + ".");
+  for (const ScatteringFit& other : ensemble->other_ranges)
+    out += paragraph("Another end of the range: " + fit_text(other) + ".");
   return out;
 }
 
 std::string tables(const RunData& run) {
-  const json* samples = find_value(run.summary, "samples");
-  if (samples == nullptr || !samples->is_array() || samples->empty()) return "";
-  return table_of(*samples, contact_columns()) + table_of(*samples, force_columns()) +
+  const auto summary = run.summary_as<PowderSummary>();
+  const std::vector<PackSummary>& samples = summary.samples;
+  if (samples.empty()) return "";
+  return table_of(samples, contact_columns()) + table_of(samples, force_columns()) +
          paragraph(
              "Lengths in a (largest diameter), forces in F0 (adhesion; without it P a). Interactions are contacts "
              "and distant pairs; unstressed ones are below the published threshold. F_perc: largest force whose "
              "contacts "
              "still reach across the cell. Phi in 3D: the equivalent 0.752 Phi^1.5.") +
-         shares_table(*samples) + paragraph("x_k: share of disks with k interactions.") +
-         table_of(*samples, rigidity_columns()) +
+         shares_table(samples) + paragraph("x_k: share of disks with k interactions.") +
+         table_of(samples, rigidity_columns()) +
          paragraph(
              "h: self-stresses, k: motions without force, of the rigidity matrix with fixed cell, with its two strains "
              "free, and without rattlers (where there is no cohesion). Positive definite: the springs alone hold it.") +
-         table_of(*samples, structure_columns()) +
+         table_of(samples, structure_columns()) +
          paragraph(
              "dF, xi: fit of I(k), with its standard error; values of fits that cannot be relied on are left "
              "out. <R>_w: radii of holes, weighted by their areas.") +
-         common_fit(run.summary);
+         common_fit(summary.scattering);
 }
 
 /// At most kSnapshots of them, the first and the last among them.
@@ -248,8 +232,9 @@ std::string packings(const PowderRun& run) {
 }  // namespace
 
 std::string powder_section(const RunData& run) {
-  if (!run.powder) return "";
-  const PowderRun& powder = *run.powder;
+  const PowderRun* found = run.file("powder.h5", load_powder);
+  if (found == nullptr) return "";
+  const PowderRun& powder = *found;
   const std::string scattering = scattering_figure(powder);
   return section("powder", "Packings", packings(powder) + snapshots(powder)) +
          section("powder-course", "Assembly", course_figures(powder)) +

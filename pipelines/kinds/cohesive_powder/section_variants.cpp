@@ -5,48 +5,42 @@
 #include <array>
 #include <cmath>
 
+#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain::report {
 
 namespace {
 
-using nlohmann::json;
-
-double number(const json& entry, const std::string& path) { return find_number(entry, path).value_or(std::nan("")); }
-
 /// Mean with its standard error.
-std::string ours(const json& entry, const std::string& quantity) {
-  return format_with_error(number(entry, "values." + quantity + ".mean"),
-                           number(entry, "values." + quantity + ".error"));
+std::string ours(const VariantEntry& entry, const std::string& quantity) {
+  return format_with_error(entry.ours(quantity).mean, entry.ours(quantity).error);
 }
 
 /// As printed: a published value without an error keeps its own digits.
-std::string theirs(const json& entry, const std::string& quantity) {
-  return format_with_error(number(entry, "published." + quantity + ".value"),
-                           number(entry, "published." + quantity + ".error"));
+std::string theirs(const VariantEntry& entry, const std::string& quantity) {
+  return format_with_error(entry.theirs(quantity).value, entry.theirs(quantity).error);
 }
 
-std::string difference(const json& entry, const std::string& quantity) {
-  const double value = number(entry, "difference." + quantity + ".value");
-  const double errors = number(entry, "difference." + quantity + ".in_errors");
-  if (!std::isfinite(errors)) return format_number(value, 2);
-  return fmt::format("{} ({} errors)", format_number(value, 2), format_fixed(errors, 1));
+std::string difference(const VariantEntry& entry, const std::string& quantity) {
+  const PublishedDifference off = entry.off(quantity);
+  if (!std::isfinite(off.in_errors)) return format_number(off.value, 2);
+  return fmt::format("{} ({} errors)", format_number(off.value, 2), format_fixed(off.in_errors, 1));
 }
 
-std::string status_text(const json& entry) {
-  return fmt::format("{}, {} of {}", find_text(entry, "status"), find_text(entry, "usable_samples"),
-                     find_text(entry, "samples"));
+std::string status_text(const VariantEntry& entry) {
+  return fmt::format("{}, {} of {}", to_string(entry.status), entry.usable_samples, entry.samples);
 }
 
-std::string comparison_table(const json& entries) {
+std::string comparison_table(const std::vector<VariantEntry>& entries) {
   HtmlTable table({"variant", "samples at rest", "Phi", "published", "difference", "z", "published", "difference"});
-  for (const json& e : entries)
-    table.row({find_text(e, "name"), status_text(e), ours(e, "Phi"), theirs(e, "Phi"), difference(e, "Phi"),
-               ours(e, "z"), theirs(e, "z"), difference(e, "z")});
+  for (const VariantEntry& e : entries)
+    table.row({e.name, status_text(e), ours(e, "Phi"), theirs(e, "Phi"), difference(e, "Phi"), ours(e, "z"),
+               theirs(e, "z"), difference(e, "z")});
   return table.html();
 }
 
@@ -54,25 +48,24 @@ std::string comparison_table(const json& entries) {
 using Quantity = std::pair<const char*, const char*>;
 
 /// Means and standard errors, one row per variant; columns without any value are left out.
-std::string quantity_table(const json& entries, std::vector<Quantity> quantities) {
+std::string quantity_table(const std::vector<VariantEntry>& entries, std::vector<Quantity> quantities) {
   std::erase_if(quantities, [&](const Quantity& q) {
-    const std::string path = std::string("values.") + q.first + ".mean";
     return std::none_of(entries.begin(), entries.end(),
-                        [&](const json& e) { return find_number(e, path).has_value(); });
+                        [&](const VariantEntry& e) { return e.values.contains(q.first); });
   });
   if (quantities.empty()) return "";
   std::vector<std::string> header{"variant"};
   for (const Quantity& q : quantities) header.emplace_back(q.second);
   HtmlTable table(header);
-  for (const json& e : entries) {
-    std::vector<std::string> row{find_text(e, "name")};
+  for (const VariantEntry& e : entries) {
+    std::vector<std::string> row{e.name};
     for (const Quantity& q : quantities) row.push_back(ours(e, q.first));
     table.row(std::move(row));
   }
   return table.html();
 }
 
-std::string tables(const json& entries) {
+std::string tables(const std::vector<VariantEntry>& entries) {
   return comparison_table(entries) +
          paragraph(
              "Mean over samples ± standard error; the difference to the published value also in combined standard "
@@ -128,21 +121,21 @@ SeriesStyle point_style(std::size_t index) {
           .marker_size = 4.0};
 }
 
-std::string comparison_figure(const json& entries, const std::string& quantity) {
+std::string comparison_figure(const std::vector<VariantEntry>& entries, const std::string& quantity) {
   Plot plot({.id = "powder-published-" + quantity,
              .title = quantity + ", here and published",
              .x = {.label = quantity + ", published"},
              .y = {.label = quantity + ", here"}});
   Extent extent;
   std::vector<Series> points;
-  for (const json& e : entries) {
-    const double published = number(e, "published." + quantity + ".value");
-    const double here = number(e, "values." + quantity + ".mean");
+  for (const VariantEntry& e : entries) {
+    const double published = e.theirs(quantity).value;
+    const double here = e.ours(quantity).mean;
     if (!std::isfinite(published) || !std::isfinite(here)) continue;
     extent.add(published);
     extent.add(here);
-    Series s{.label = find_text(e, "name"), .hover = "", .x = {published}, .y = {here}};
-    const double error = number(e, "values." + quantity + ".error");
+    Series s{.label = e.name, .hover = "", .x = {published}, .y = {here}};
+    const double error = e.ours(quantity).error;
     if (std::isfinite(error)) s.y_error = {error};
     s.style = point_style(points.size());
     points.push_back(std::move(s));
@@ -153,10 +146,10 @@ std::string comparison_figure(const json& entries, const std::string& quantity) 
   return figure(plot.svg(), "Mean over samples with its standard error; dashed: no difference.");
 }
 
-std::string links(const json& entries) {
+std::string links(const std::vector<VariantEntry>& entries) {
   std::string names;
-  for (const json& e : entries)
-    if (find_text(e, "status") != "not run") names += (names.empty() ? "" : ", ") + find_text(e, "name");
+  for (const VariantEntry& e : entries)
+    if (e.status != RunStatus::not_run) names += (names.empty() ? "" : ", ") + e.name;
   if (names.empty()) return "";
   return paragraph("Each variant has a directory of its own with all its data: " + names +
                    "; softgrain report on that directory shows its packings.");
@@ -165,13 +158,14 @@ std::string links(const json& entries) {
 }  // namespace
 
 std::string powder_variants_section(const RunData& run) {
-  const json* entries = find_value(run.summary, "variants");
-  if (find_text(run.summary, "kind") != "cohesive-powder" || entries == nullptr || !entries->is_array()) return "";
+  const auto summary = run.summary_as<PowderVariantsSummary>();
+  if (summary.kind != "cohesive-powder" || summary.variants.empty()) return "";
+  const std::vector<VariantEntry>& entries = summary.variants;
   std::vector<std::string> figures;
   for (const char* quantity : {"Phi", "z"})
-    if (std::string drawn = comparison_figure(*entries, quantity); !drawn.empty()) figures.push_back(std::move(drawn));
+    if (std::string drawn = comparison_figure(entries, quantity); !drawn.empty()) figures.push_back(std::move(drawn));
   return section("powder-variants", "Variants",
-                 tables(*entries) + (figures.empty() ? "" : figure_row(figures)) + links(*entries));
+                 tables(entries) + (figures.empty() ? "" : figure_row(figures)) + links(entries));
 }
 
 }  // namespace softgrain::report

@@ -50,13 +50,6 @@ void write_structure(const h5::Group& group, const PowderStructure& structure);
 /// The mean curve and the common fit: group "scattering".
 void write_structures(const h5::Group& root, const PowderStructures& structures);
 
-/// {usable, reason, dF, dF_error, dF_interval, xi, ..., amplitude, ..., c, ..., k_range, bins, chi2_per_degree};
-/// without numbers when there was no fit.
-nlohmann::json fit_json(const ScatteringFit& fit);
-/// The common fit, and in "other_ranges" those with other upper ends of k.
-nlohmann::json ensemble_fit_json(const PowderStructures& structures);
-/// {scattering: fit_json, holes: {count, fragments, mean_radius, ...}}; a radius is null when a hole percolates.
-nlohmann::json structure_json(const PowderStructure& structure);
 /// {dF, dF_deviation, xi, xi_deviation, R_w, R_w_deviation, hole_count, ...}: means and sample deviations over usable
 /// samples whose value exists, with their number ("dF_samples").
 nlohmann::json structure_means_json(const PowderStructures& structures, const std::vector<bool>& usable);

@@ -6,7 +6,7 @@
 
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
-#include "pipelines/kinds/cohesive_powder/structure.h"
+#include "pipelines/kinds/cohesive_powder/summary.h"
 
 namespace softgrain {
 
@@ -49,22 +49,6 @@ void write_holes(const h5::Group& group, const PowderHoles& holes) {
   group.attribute("mean_radius", holes.mean_radius);
 }
 
-void add_estimate(json& out, const std::string& name, const ScatteringEstimate& e) {
-  out[name] = e.value;
-  out[name + "_error"] = e.error;
-  out[name + "_interval"] = {e.low, e.high};
-}
-
-json holes_json(const PowderHoles& holes) {
-  return {{"count", holes.count},
-          {"fragments", holes.fragments},
-          {"mean_radius", holes.mean_radius},
-          {"largest_radius", holes.largest_radius},
-          {"largest_share", holes.largest_share},
-          {"void_fraction", holes.void_fraction},
-          {"percolating", holes.percolating}};
-}
-
 /// Adds mean, sample deviation and number of the values that exist.
 void add_mean(json& out, const std::string& name, const PowderStructures& all, const std::vector<bool>& usable,
               const std::function<double(const PowderStructure&)>& get) {
@@ -96,31 +80,10 @@ void write_structures(const h5::Group& root, const PowderStructures& s) {
   if (s.mean_curve) write_curve(root.create("scattering"), *s.mean_curve, s.fit);
 }
 
-json fit_json(const ScatteringFit& fit) {
-  json out{{"usable", fit.usable}, {"reason", fit.reason}, {"bins", fit.bins}};
-  if (fit.covariance.empty()) return out;
-  out["k_range"] = {fit.k_low, fit.k_high};
-  out["chi2_per_degree"] = fit.chi2_per_degree;
-  add_estimate(out, "dF", fit.dimension);
-  add_estimate(out, "xi", fit.length);
-  add_estimate(out, "amplitude", fit.amplitude);
-  add_estimate(out, "c", fit.background);
-  return out;
-}
-
-json ensemble_fit_json(const PowderStructures& s) {
-  json out = fit_json(s.fit);
-  out["other_ranges"] = json::array();
-  for (const ScatteringFit& fit : s.other_ranges) out["other_ranges"].push_back(fit_json(fit));
-  return out;
-}
-
-json structure_json(const PowderStructure& s) {
-  json out = json::object();
-  out["mesh"] = {s.nx, s.ny};
-  if (s.curve) out["scattering"] = fit_json(s.fit);
-  if (s.holes) out["holes"] = holes_json(*s.holes);
-  return out;
+void add_structure(PackSummary& sample, const PowderStructure& s) {
+  sample.mesh = {{s.nx, s.ny}};
+  if (s.curve) sample.scattering = s.fit;
+  sample.holes = s.holes;
 }
 
 json structure_means_json(const PowderStructures& all, const std::vector<bool>& usable) {

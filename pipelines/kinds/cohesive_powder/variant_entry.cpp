@@ -1,101 +1,133 @@
 #include "pipelines/kinds/cohesive_powder/variant_entry.h"
 
+#include <array>
 #include <cmath>
 
-#include "pipelines/run/run_context.h"
-#include "pipelines/run/sample_statistics.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 
 namespace {
 
-using nlohmann::json;
-
-/// The number at the path, null where there is none.
-json number_at(const json& sample, const std::string& path) {
-  const json::json_pointer pointer(path);
-  if (!sample.contains(pointer)) return nullptr;
-  const json& value = sample.at(pointer);
-  return value.is_number() ? value : json(nullptr);
-}
+/// A number of a sample; NaN where there is none.
+struct Quantity {
+  const char* name;
+  double (*of)(const PackSummary&);
+};
 
 /// Shares beyond the last that is given are 0.
-json share_at(const json& sample, const std::string& path) {
-  const bool known = sample.contains("shares") && sample["shares"].is_array();
-  return known && !sample["shares"].empty() && number_at(sample, path).is_null() ? json(0.0) : number_at(sample, path);
+template <std::size_t kNeighbours>
+double share(const PackSummary& s) {
+  const std::vector<double>& shares = s.contacts.shares;
+  if (shares.empty()) return kNaN;
+  return kNeighbours < shares.size() ? shares[kNeighbours] : 0.0;
+}
+
+/// h or k of one of the matrices.
+template <std::int64_t Rigidity::*kMember, std::optional<Rigidity> PowderRigidity::*kMatrix>
+double rigidity(const PackSummary& s) {
+  if (!s.analysis.rigidity) return kNaN;
+  const auto& matrix = (*s.analysis.rigidity).*kMatrix;
+  return matrix ? static_cast<double>((*matrix).*kMember) : kNaN;
+}
+
+template <std::int64_t Rigidity::*kMember>
+double rigidity_fixed(const PackSummary& s) {
+  return s.analysis.rigidity ? static_cast<double>(s.analysis.rigidity->fixed.*kMember) : kNaN;
 }
 
 /// A fit that is not usable must not count in a mean.
-bool fit_usable(const json& sample) {
-  const json::json_pointer pointer("/scattering/usable");
-  return sample.contains(pointer) && sample.at(pointer) == true;
+template <ScatteringEstimate ScatteringFit::*kEstimate>
+double fitted(const PackSummary& s) {
+  return s.scattering && s.scattering->usable ? ((*s.scattering).*kEstimate).value : kNaN;
 }
 
-json scalars_of(const json& sample) {
-  json out = json::object();
-  for (const auto& [name, path] : kPowderQuantities) {
-    const std::string where = path;
-    if (where.starts_with("/scattering/") && !fit_usable(sample)) continue;
-    out[name] = where.starts_with("/shares/") ? share_at(sample, where) : number_at(sample, where);
+constexpr auto kH = &Rigidity::indeterminacy;
+constexpr auto kK = &Rigidity::floppy;
+constexpr auto kFree = &PowderRigidity::free;
+constexpr auto kBackbone = &PowderRigidity::backbone;
+
+constexpr std::array kQuantities{
+    Quantity{"Phi", [](const PackSummary& s) { return s.fraction; }},
+    Quantity{"z", [](const PackSummary& s) { return s.contacts.coordination; }},
+    Quantity{"z_star", [](const PackSummary& s) { return s.contacts.coordination_backbone; }},
+    Quantity{"x_0", share<0>},
+    Quantity{"x_1", share<1>},
+    Quantity{"x_2", share<2>},
+    Quantity{"x_3", share<3>},
+    Quantity{"x_4", share<4>},
+    Quantity{"x_5", share<5>},
+    Quantity{"x_6", share<6>},
+    Quantity{"mean_normal", [](const PackSummary& s) { return s.contacts.mean_normal; }},
+    Quantity{"mean_repulsive", [](const PackSummary& s) { return s.contacts.mean_repulsive; }},
+    Quantity{"mean_tensile", [](const PackSummary& s) { return s.contacts.mean_tensile; }},
+    Quantity{"quadratic_mean_normal", [](const PackSummary& s) { return s.contacts.square_mean_normal; }},
+    Quantity{"repulsive", [](const PackSummary& s) { return static_cast<double>(s.contacts.repulsive); }},
+    Quantity{"tensile", [](const PackSummary& s) { return static_cast<double>(s.contacts.tensile); }},
+    Quantity{"unstressed", [](const PackSummary& s) { return static_cast<double>(s.contacts.unstressed); }},
+    Quantity{"distant", [](const PackSummary& s) { return static_cast<double>(s.contacts.distant); }},
+    Quantity{"rattlers", [](const PackSummary& s) { return static_cast<double>(s.contacts.rattlers); }},
+    Quantity{"zero_share", [](const PackSummary& s) { return s.analysis.forces.zero_share.value_or(kNaN); }},
+    Quantity{"rumpf_ratio", [](const PackSummary& s) { return s.analysis.rumpf_ratio.value_or(kNaN); }},
+    Quantity{"F_perc", [](const PackSummary& s) { return s.analysis.percolation.either.value_or(kNaN); }},
+    Quantity{"solid_fraction_3d", [](const PackSummary& s) { return s.analysis.solid_fraction_3d; }},
+    Quantity{"h", rigidity_fixed<kH>},
+    Quantity{"k", rigidity_fixed<kK>},
+    Quantity{"h_free", rigidity<kH, kFree>},
+    Quantity{"k_free", rigidity<kK, kFree>},
+    Quantity{"h_backbone", rigidity<kH, kBackbone>},
+    Quantity{"k_backbone", rigidity<kK, kBackbone>},
+    Quantity{"dF", fitted<&ScatteringFit::dimension>},
+    Quantity{"xi", fitted<&ScatteringFit::length>},
+    Quantity{"R_w", [](const PackSummary& s) { return s.holes ? s.holes->mean_radius : kNaN; }},
+    Quantity{"loop_passes", [](const PackSummary& s) { return static_cast<double>(s.loop_passes); }}};
+
+constexpr const char* kSeconds = "seconds";  // stands beside the samples
+
+void add_mean(VariantEntry& entry, const char* name, const std::vector<double>& values) {
+  Tally sample;
+  for (const double x : values)
+    if (std::isfinite(x)) sample.add(x);
+  const MeanError m = sample.statistics();
+  if (m.n > 0) entry.values[name] = {m.mean, m.deviation, m.n, m.error};
+}
+
+/// Over the samples at rest.
+void add_values(VariantEntry& entry, const PowderSummary& powder) {
+  std::vector<const PackSummary*> usable;
+  std::vector<double> seconds;
+  for (std::size_t k = 0; k < powder.samples.size(); ++k) {
+    if (!powder.samples[k].usable) continue;
+    usable.push_back(&powder.samples[k]);
+    if (k < powder.seconds.size()) seconds.push_back(powder.seconds[k]);
   }
-  return out;
-}
-
-std::vector<json> usable_scalars(const json& summary) {
-  std::vector<json> out;
-  if (!summary.contains("samples")) return out;
-  for (std::size_t k = 0; k < summary["samples"].size(); ++k) {
-    json sample = summary["samples"][k];
-    if (sample.value("usable", false) == false) continue;
-    sample["seconds"] = number_at(summary, "/seconds/" + std::to_string(k));
-    out.push_back(scalars_of(sample));
+  entry.usable_samples = usable.size();
+  for (const Quantity& q : kQuantities) {
+    std::vector<double> values;
+    for (const PackSummary* s : usable) values.push_back(q.of(*s));
+    add_mean(entry, q.name, values);
   }
-  return out;
+  add_mean(entry, kSeconds, seconds);
 }
 
-/// Statistics with the standard error of the mean; without samples of it, a quantity is left out.
-json values_of(const std::vector<json>& scalars) {
-  const json statistics = sample_statistics(scalars);
-  json out = json::object();
-  for (const auto& [name, s] : statistics.items()) {
-    if (s["mean"].is_null()) continue;
-    out[name] = s;
-    out[name]["error"] = nullptr;
-    if (s["deviation"].is_number())
-      out[name]["error"] = s["deviation"].get<double>() / std::sqrt(s["samples"].get<double>());
+/// One side's error alone would flatter or blame, so it takes both for the difference in errors.
+void add_published(VariantEntry& entry, const std::vector<PublishedValue>& values) {
+  for (const PublishedValue& v : values) {
+    entry.published[v.quantity] = {v.value, v.error.value_or(kNaN)};
+    if (!entry.values.contains(v.quantity)) continue;
+    const QuantityMean ours = entry.ours(v.quantity);
+    PublishedDifference& off = entry.difference[v.quantity];
+    off.value = ours.mean - v.value;
+    if (const double combined = std::hypot(ours.error, v.error.value_or(kNaN)); combined > 0.0)
+      off.in_errors = off.value / combined;
   }
-  return out;
 }
 
-json published_json(const std::vector<PublishedValue>& values) {
-  json out = json::object();
-  for (const PublishedValue& v : values)
-    out[v.quantity] = {{"value", v.value}, {"error", v.error ? json(*v.error) : json(nullptr)}};
-  return out;
-}
-
-/// Ours minus the published. One side's error alone would flatter or blame, so it takes both for the difference in
-/// errors.
-json differences(const json& values, const json& published) {
-  json out = json::object();
-  for (const auto& [name, theirs] : published.items()) {
-    if (!values.contains(name)) continue;
-    const double difference = values[name]["mean"].get<double>() - theirs["value"].get<double>();
-    out[name] = {{"value", difference}, {"in_errors", nullptr}};
-    const json& ours = values[name]["error"];
-    if (!ours.is_number() || !theirs["error"].is_number()) continue;
-    const double combined = std::hypot(ours.get<double>(), theirs["error"].get<double>());
-    if (combined > 0.0) out[name]["in_errors"] = difference / combined;
-  }
-  return out;
-}
-
-std::string reason_of(const json& summary) {
-  if (has_status(summary, RunStatus::good) || !summary.contains("remarks")) return "";
+std::string reason_of(const VariantRun& ended) {
+  if (is_good(ended.run.status)) return "";
   std::string out;
-  for (const json& remark : summary["remarks"]) {
-    const std::string text = remark.get<std::string>();
-    const bool tells = !summary.contains("samples") || text.find("not at rest") != std::string::npos;
+  for (const std::string& text : ended.run.remarks.value_or(std::vector<std::string>{})) {
+    const bool tells = ended.powder.samples.empty() || text.find("not at rest") != std::string::npos;
     if (tells) out += (out.empty() ? "" : "; ") + text;
   }
   return out;
@@ -103,22 +135,30 @@ std::string reason_of(const json& summary) {
 
 }  // namespace
 
-json powder_variant_entry(const PowderVariant& variant, const json& summary) {
-  const bool ran = summary.is_object();
-  const std::vector<json> scalars = ran ? usable_scalars(summary) : std::vector<json>{};
-  const json values = values_of(scalars);
-  const json published = published_json(variant.published);
-  return {{"name", variant.name},
-          {"title", variant.setup.title},
-          {"status", ran ? summary.value("status", "not usable") : "not run"},
-          {"reason", ran ? reason_of(summary) : ""},
-          {"commit", ran ? summary.value("commit", "") : ""},
-          {"disks", variant.setup.spec.disks},
-          {"samples", variant.setup.samples},
-          {"usable_samples", scalars.size()},
-          {"values", values},
-          {"published", published},
-          {"difference", differences(values, published)}};
+const std::vector<const char*>& powder_quantities() {
+  static const std::vector<const char*> names = [] {
+    std::vector<const char*> out;
+    for (const Quantity& q : kQuantities) out.push_back(q.name);
+    out.push_back(kSeconds);
+    return out;
+  }();
+  return names;
+}
+
+VariantEntry powder_variant_entry(const PowderVariant& variant, const VariantRun* ended) {
+  VariantEntry entry;
+  entry.name = variant.name;
+  entry.title = variant.setup.title;
+  entry.disks = variant.setup.spec.disks;
+  entry.samples = variant.setup.samples;
+  if (ended != nullptr) {
+    entry.status = ended->powder.head.status;
+    entry.reason = reason_of(*ended);
+    entry.commit = ended->run.commit;
+    add_values(entry, ended->powder);
+  }
+  add_published(entry, variant.published);
+  return entry;
 }
 
 }  // namespace softgrain

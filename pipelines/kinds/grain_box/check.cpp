@@ -33,7 +33,7 @@ PackTrial try_pack(const GrainBoxSpec& spec, std::uint64_t seed) {
   const double start = thread_seconds();
   double loading = 0.0;  // when it begins
   double done = 0.0;
-  GrainBoxControl control;
+  RunControl<GrainBoxState> control;
   control.progress = [&](const GrainBoxState& state, double) {
     if (state.phase == BoxPhase::loading && loading == 0.0)
       loading = thread_seconds();

@@ -6,10 +6,11 @@
 
 #include "common/io/progress.h"
 #include "microsim/grain_box/grain_box_run.h"
+#include "pipelines/kinds/grain_box/results.h"
 #include "pipelines/kinds/grain_box/summary.h"
+#include "pipelines/results/summary.h"
 #include "pipelines/run/parallel_tasks.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
@@ -19,21 +20,16 @@ namespace {
 GrainBoxResult run_pack(const GrainBoxSpec& spec, const Run& run, Progress& progress) {
   GrainBoxState state;
   run.store.load(spec.name, [&](const h5::Group& group) { state = read_state(group); });
-  double reported = 0.0;
-  GrainBoxControl control;
-  control.checkpoint_seconds = run.store.seconds();
+  TaskProgress mine(progress);
+  RunControl<GrainBoxState> control{.seconds = run.store.seconds()};
   control.save = [&](const GrainBoxState& now) {
     run.store.save(spec.name, [&](const h5::Group& group) { write_state(group, now); });
   };
   control.say = [&](const std::string& line) { run.context.say(line); };
-  control.progress = [&](const GrainBoxState&, double share) {
-    if (share <= reported) return;
-    progress.advance(share - reported);
-    reported = share;
-  };
+  control.progress = [&](const GrainBoxState&, double share) { mine.reach(share); };
   GrainBoxResult result = run_grain_box(spec, run.seed, std::move(state), control);
   if (result.usable) control.save(result.state);
-  progress.advance(1.0 - reported);
+  mine.reach(1.0);
   return result;
 }
 
@@ -88,7 +84,8 @@ SceneKind grain_box_kind() {
           .run = run_grain_box_scene,
           .check = [](const Scene& scene, const std::string&,
                       Findings& out) { check_grain_box(read_grain_box(scene), out); },
-          .read = [](const Scene& scene) { (void)read_grain_box(scene); }};
+          .read = [](const Scene& scene) { (void)read_grain_box(scene); },
+          .results = grain_box_results()};
 }
 
 }  // namespace softgrain

@@ -7,9 +7,10 @@
 #include "microsim/grain_box/analysis.h"
 #include "microsim/grain_box/box_measure.h"
 #include "pipelines/kinds/grain_box/curves.h"
+#include "pipelines/kinds/grain_box/results.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 
 namespace softgrain::report {
 
@@ -228,8 +229,9 @@ std::string effort_table(const Packs& packs) {
 }  // namespace
 
 std::string grain_box_section(const RunData& run) {
-  if (run.grain_boxes.empty()) return "";
-  const Packs& packs = run.grain_boxes;
+  const Packs* found = run.file("grain_box.h5", load_grain_boxes);
+  if (found == nullptr || found->empty()) return "";
+  const Packs& packs = *found;
   const std::string view = pack_view(packs.front());
   return section("grain-boxes", "Packs", generation_table(packs) + end_table(packs) + stress_figures(packs)) +
          section(

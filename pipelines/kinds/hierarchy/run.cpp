@@ -9,17 +9,14 @@
 
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/crowd_table_file.h"
-#include "pipelines/kinds/hierarchy/level.h"
-#include "pipelines/kinds/hierarchy/resolved_levels.h"
+#include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
 namespace {
-
-using nlohmann::json;
 
 struct HierarchyRun {
   std::vector<HierarchyLevel> levels;  ///< the finest first
@@ -66,7 +63,7 @@ void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& resul
 }
 
 /// Forces of one plane and of six, per plane, over overlap.
-json curves_json(const HierarchyLevel& level, Crowd form) {
+LevelCurves curves_of(const HierarchyLevel& level, Crowd form) {
   const CrowdModel model = crowd_model(*level.entry.find(form));
   std::vector<CrowdPartner> cube;
   for (int k = 0; k < 6; ++k) {
@@ -74,67 +71,42 @@ json curves_json(const HierarchyLevel& level, Crowd form) {
     plane.direction[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
     cube.push_back(plane);
   }
-  json out{{"overlap", json::array()}, {"one", json::array()}, {"cube", json::array()}};
+  LevelCurves out;
   for (int k = 1; k <= 50; ++k) {
     const double x = level.entry.overlap_max * k / 50.0;
-    out["overlap"].push_back(x);
-    out["one"].push_back(crowd_forces(model, {cube[0]}, {x})[0]);
-    out["cube"].push_back(crowd_forces(model, cube, std::vector<double>(6, x))[0]);
+    out.overlap.push_back(x);
+    out.one.push_back(crowd_forces(model, {cube[0]}, {x})[0]);
+    out.cube.push_back(crowd_forces(model, cube, std::vector<double>(6, x))[0]);
   }
   return out;
 }
 
-json level_json(const HierarchyLevel& level, Crowd form) {
+LevelSummary summary_of(const HierarchyLevel& level, Crowd form) {
   const CrowdLaw& law = *level.entry.find(form);
-  json out{{"level", level.number},
-           {"inner",
-            {{"mean", level.inner_mean},
-             {"radius_low", level.inner_low},
-             {"radius_high", level.inner_high},
-             {"volume_percent", 100.0 * level.inner_volume}}},
-           {"law", {{"status", to_string(law.status)}, {"error_cross", law.error_cross}}},
-           {"resolved_grains", level.grains},
-           {"loop_passes", level.cost.loop_passes},
-           {"contact_evaluations", level.cost.contact_evaluations},
-           {"seconds", level.seconds},
-           {"curves", curves_json(level, form)}};
-  for (const CrowdParameterName& p : kCrowdParameters) out["law"][p.key] = (law.*p.estimate).value;
-  if (level.number == 0) {
-    out.erase("inner");
-    return out;
-  }
-  out["distance_percent"] = 100.0 * level.distance;
-  out["noise_percent"] = 100.0 * level.distance_noise;
-  for (const LevelChange& c : level.changes)
-    out["changes"].push_back({{"configuration", c.configuration}, {"ratio", c.ratio}, {"error", c.error}});
+  LevelSummary out;
+  out.level = level.number;
+  out.law = {law.status, law.error_cross, {}};
+  for (std::size_t k = 0; k < kCrowdParameters.size(); ++k)
+    out.law.parameters[k] = (law.*kCrowdParameters[k].estimate).value;
+  out.resolved_grains = level.grains;
+  out.cost = level.cost;
+  out.cost.seconds = level.seconds;
+  out.curves = curves_of(level, form);
+  if (level.number == 0) return out;
+  out.inner = {level.inner_mean, level.inner_low, level.inner_high, 100.0 * level.inner_volume};
+  out.distance_percent = 100.0 * level.distance;
+  out.noise_percent = 100.0 * level.distance_noise;
+  out.changes = level.changes;
   return out;
 }
 
-json check_json(const CheckResult& check) {
-  json out{{"packings", check.packings},
-           {"inner", check.inner},
-           {"grains", check.grains},
-           {"law_contact_evaluations", check.law_cost.contact_evaluations},
-           {"resolved_contact_evaluations", check.resolved_cost.contact_evaluations},
-           {"law_seconds", check.law_cost.seconds},
-           {"resolved_seconds", check.resolved_cost.seconds},
-           {"converged", check.converged}};
-  for (const CheckPoint& p : check.points)
-    out["points"].push_back({{"overlap", p.overlap},
-                             {"law", p.law},
-                             {"law_error", p.law_error},
-                             {"resolved", p.resolved},
-                             {"resolved_error", p.resolved_error},
-                             {"ratio", p.ratio},
-                             {"ratio_error", p.ratio_error},
-                             {"empty", p.empty}});
-  out["text"] = fmt::format(
+std::string check_text(const CheckResult& check) {
+  return fmt::format(
       "Two decades checked with all their grains: {:.0f} inner soft particles, {:.0f} grains on average, {} packings; "
       "{:.0f} times fewer contact evaluations by law.",
       check.inner, check.grains, check.packings,
       static_cast<double>(check.resolved_cost.contact_evaluations) /
           static_cast<double>(std::max<std::int64_t>(check.law_cost.contact_evaluations, 1)));
-  return out;
 }
 
 /// Radii from the largest grain of the coarsest level down to the smallest of the finest one, largest over smallest.
@@ -161,28 +133,22 @@ std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& result) 
                             100.0 * result.levels.back().distance);
 }
 
-json summarise(const HierarchySetup& setup, const HierarchyRun& result, const Run& run) {
-  json s;
-  s["status"] = result.usable ? "good" : "not usable";
-  s["title"] = setup.title;
+HierarchySummary summarise(const HierarchySetup& setup, const HierarchyRun& result, const Run& run) {
+  HierarchySummary s;
+  s.head = {result.usable ? RunStatus::good : RunStatus::not_usable, setup.title, result.remarks, {}};
+  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s.head.files[file] = run.path(file);
   double evaluations = 0.0;
   for (const HierarchyLevel& l : result.levels) {
-    s["levels"].push_back(level_json(l, setup.form));
+    s.levels.push_back(summary_of(l, setup.form));
     evaluations += static_cast<double>(l.cost.contact_evaluations);
   }
   const HierarchyLevel& finest = result.levels.front();
   const HierarchyLevel& coarsest = result.levels[static_cast<std::size_t>(setup.levels - 1)];
-  s["four_decades"] = {{"levels", setup.levels},
-                       {"radius_span", span(setup, result, setup.levels)},
-                       {"resolved_grains", coarsest.grains},
-                       {"resolved_contact_evaluations",
-                        static_cast<double>(finest.cost.contact_evaluations) * coarsest.grains / finest.grains},
-                       {"contact_evaluations", evaluations}};
-  s["fixed_point"] = {{"reached", result.fixed.has_value()}, {"text", fixed_text(setup, result)}};
-  if (result.fixed) s["fixed_point"]["level"] = *result.fixed;
-  if (result.check) s["check"] = check_json(*result.check);
-  s["remarks"] = result.remarks;
-  for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s["files"][file] = run.path(file);
+  s.four_decades = {setup.levels, span(setup, result, setup.levels), coarsest.grains,
+                    static_cast<double>(finest.cost.contact_evaluations) * coarsest.grains / finest.grains,
+                    evaluations};
+  s.fixed_point = {result.fixed.has_value(), fixed_text(setup, result), result.fixed};
+  if (result.check) s.check = {*result.check, check_text(*result.check)};
   return s;
 }
 
@@ -198,7 +164,7 @@ std::string people_text(const HierarchySetup& setup, const HierarchyRun& result)
     text += "\n";
   }
   if (result.check) {
-    text += check_json(*result.check)["text"].get<std::string>() + "\n";
+    text += check_text(*result.check) + "\n";
     for (const CheckPoint& p : result.check->points)
       text += fmt::format("  h/Rs = {:.3f}: law over resolved {:.3f}({:.3f})\n", p.overlap, p.ratio, p.ratio_error);
   }
@@ -232,7 +198,13 @@ ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
     result.usable = false;
     result.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
   }
-  return run.finish(summarise(setup, result, run), people_text(setup, result));
+  return run.finish(json_of(summarise(setup, result, run)), people_text(setup, result));
+}
+
+std::vector<HeadLine> lines_of(const report::RunData& run) {
+  const auto levels = run.summary_as<HierarchySummary>().fixed_point;
+  if (!levels) return {};
+  return {{"Levels", levels->text}};
 }
 
 }  // namespace
@@ -242,7 +214,8 @@ SceneKind hierarchy_kind() {
           .command = "run",
           .run = run_hierarchy,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_hierarchy(scene, out); },
-          .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene); }};
+          .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene); },
+          .results = {.sections = {{Place::levels, report::hierarchy_section}}, .lines = lines_of}};
 }
 
 }  // namespace softgrain

@@ -1,90 +1,82 @@
 // Soft particles in soft particles: the law from level to level, from the summary of a hierarchy run.
-#include <fmt/format.h>
+#include <cmath>
 
-#include "common/contact/crowd_from_table.h"
+#include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain::report {
 namespace {
 
-using nlohmann::json;
+std::string number_of(const std::optional<double>& x, int digits = 3) { return format_number(x.value_or(NAN), digits); }
 
-std::string number_of(const json& at, const char* path, int digits = 3) {
-  const auto x = find_number(at, path);
-  return x ? format_number(*x, digits) : "–";
-}
-
-std::string level_table(const json& levels) {
+std::string level_table(const std::vector<LevelSummary>& levels) {
   HtmlTable table({"level (0: grains only)", "soft particles inside", "radii over Rs", "volume share [%]", "a", "b",
                    "delta", "distance to the level below [%]", "noise [%]", "grains if resolved", "contact evaluations",
                    "seconds"});
-  for (const json& l : levels)
-    table.row({number_of(l, "level"), number_of(l, "inner.mean"),
-               number_of(l, "inner.radius_low") + "–" + number_of(l, "inner.radius_high"),
-               number_of(l, "inner.volume_percent"), number_of(l, "law.a"), number_of(l, "law.b"),
-               number_of(l, "law.delta"), number_of(l, "distance_percent"), number_of(l, "noise_percent"),
-               number_of(l, "resolved_grains"), number_of(l, "contact_evaluations"), number_of(l, "seconds")});
+  for (const LevelSummary& l : levels) {
+    const InnerSummary inner = l.inner.value_or(InnerSummary{NAN, NAN, NAN, NAN});
+    table.row({std::to_string(l.level), number_of(inner.mean),
+               number_of(inner.radius_low) + "–" + number_of(inner.radius_high), number_of(inner.volume_percent),
+               number_of(l.law.parameters[0]), number_of(l.law.parameters[1]), number_of(l.law.parameters[2]),
+               number_of(l.distance_percent), number_of(l.noise_percent), number_of(l.resolved_grains),
+               number_of(static_cast<double>(l.cost.contact_evaluations)), number_of(l.cost.seconds)});
+  }
   return table.html();
 }
 
-std::string change_table(const json& levels) {
+std::string change_table(const std::vector<LevelSummary>& levels) {
   HtmlTable table({"level", "configuration", "force over that of the level below", "standard error"});
-  for (const json& l : levels) {
-    const json* changes = find_value(l, "changes");
-    if (changes == nullptr) continue;
-    for (const json& c : *changes)
-      table.row(
-          {number_of(l, "level"), find_text(c, "configuration"), number_of(c, "ratio", 4), number_of(c, "error", 2)});
-  }
+  for (const LevelSummary& l : levels)
+    for (const LevelChange& c : l.changes)
+      table.row({std::to_string(l.level), c.configuration, number_of(c.ratio, 4), number_of(c.error, 2)});
   return table.empty() ? "" : table.html();
 }
 
 /// One plane alone and six planes, law of every level.
-std::string law_figure(const json& levels, const char* key, const char* title) {
+std::string law_figure(const std::vector<LevelSummary>& levels, std::vector<double> LevelCurves::*forces,
+                       const char* key, const char* title) {
   Plot plot({std::string("hierarchy-") + key,
              title,
              {"overlap h/Rs", Scale::linear, {}, {}},
              {"force per plane F/(E Rs²)", Scale::logarithmic, {}, {}},
              {}});
   std::size_t color = 0;
-  for (const json& l : levels) {
-    const json* x = find_value(l, std::string("curves.overlap"));
-    const json* y = find_value(l, std::string("curves.") + key);
-    if (x == nullptr || y == nullptr) continue;
+  for (const LevelSummary& l : levels) {
     Series s;
-    s.label = "level " + number_of(l, "level");
-    s.x = x->get<std::vector<double>>();
-    s.y = y->get<std::vector<double>>();
+    s.label = "level " + std::to_string(l.level);
+    s.x = l.curves.overlap;
+    s.y = l.curves.*forces;
+    if (s.x.empty() || s.x.size() != s.y.size()) continue;
     s.style.color = palette::cycle(color++);
     plot.add(s);
   }
   return plot.empty() ? "" : figure(plot.svg(), "The law of each level; level 0 holds grains only.");
 }
 
-std::string check_table(const json& check) {
+std::string check_table(const std::vector<CheckPoint>& points) {
   HtmlTable table({"h/Rs", "by law [F/(E Rs²)]", "standard error", "all grains", "standard error", "law over resolved",
                    "standard error"});
-  for (const json& p : check)
-    table.row({number_of(p, "overlap"), number_of(p, "law", 4), number_of(p, "law_error", 2),
-               number_of(p, "resolved", 4), number_of(p, "resolved_error", 2), number_of(p, "ratio", 4),
-               number_of(p, "ratio_error", 2)});
+  for (const CheckPoint& p : points)
+    table.row({number_of(p.overlap), number_of(p.law, 4), number_of(p.law_error, 2), number_of(p.resolved, 4),
+               number_of(p.resolved_error, 2), number_of(p.ratio, 4), number_of(p.ratio_error, 2)});
   return table.html();
 }
 
 }  // namespace
 
 std::string hierarchy_section(const RunData& run) {
-  const json* levels = find_value(run.summary, "levels");
-  if (levels == nullptr || !levels->is_array() || find_value(run.summary, "fixed_point") == nullptr) return "";
-  std::string body = paragraph(find_text(run.summary, "fixed_point.text"));
-  body += level_table(*levels);
-  body += figure_row({law_figure(*levels, "one", "One plane"), law_figure(*levels, "cube", "Six planes")});
-  body += change_table(*levels);
-  if (const json* check = find_value(run.summary, "check.points"); check != nullptr)
-    body += paragraph(find_text(run.summary, "check.text")) + check_table(*check);
+  const auto summary = run.summary_as<HierarchySummary>();
+  if (!summary.fixed_point) return "";
+  const std::vector<LevelSummary>& levels = summary.levels;
+  std::string body = paragraph(summary.fixed_point->text);
+  body += level_table(levels);
+  body += figure_row({law_figure(levels, &LevelCurves::one, "one", "One plane"),
+                      law_figure(levels, &LevelCurves::cube, "cube", "Six planes")});
+  body += change_table(levels);
+  if (summary.check) body += paragraph(summary.check->text) + check_table(summary.check->result.points);
   return section("hierarchy", "Level upon level", body);
 }
 

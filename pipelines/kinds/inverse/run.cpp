@@ -6,17 +6,13 @@
 #include <cmath>
 
 #include "common/core/statistics.h"
-#include "common/io/json_number.h"
 #include "common/io/text_file.h"
-#include "pipelines/kinds/inverse/stage.h"
+#include "pipelines/kinds/inverse/summary.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
 namespace {
-
-using nlohmann::json;
 
 /// Above this misfit per Delta the curve at the answer is not the target.
 constexpr double kReached = 4.0;
@@ -24,55 +20,43 @@ constexpr double kReached = 4.0;
 constexpr double kAlike = 0.9;
 
 /// Mean and standard error over packings at each Delta; NaN where no packing gave a force.
-struct Curve {
-  std::vector<double> mean;
-  std::vector<double> error;
-};
-
-Curve curve_of(const InverseEvaluation& e, std::size_t deltas) {
-  Curve out;
+ConfirmedCurve curve_of(const InverseEvaluation& e, std::size_t deltas) {
+  ConfirmedCurve out;
   for (std::size_t j = 0; j < deltas; ++j) {
     Tally sample;
     for (std::size_t k = 0; k < e.packings; ++k)
       if (const double f = e.force[k * deltas + j]; !std::isnan(f)) sample.add(f);
     const MeanError m = sample.statistics();
-    out.mean.push_back(m.mean);
+    out.force.push_back(m.mean);
     out.error.push_back(m.error_or_zero());
   }
   return out;
 }
 
-json numbers(const std::vector<double>& values) {
-  json out = json::array();
-  for (const double x : values) out.push_back(number_or_null(x));
-  return out;
-}
-
-json parameters_json(const InverseSetup& setup, const InverseAnswer& a) {
-  json out = json::array();
+std::vector<FoundParameter> parameters_of(const InverseSetup& setup, const InverseAnswer& a) {
+  std::vector<FoundParameter> out;
   for (std::size_t k = 0; k < setup.search.size(); ++k) {
     const SearchParameter& p = setup.search[k];
     // The slope of the parameter over its coordinate turns the error of one into that of the other.
     const double slope = p.logarithmic ? p.value(a.u[k]) * std::log(p.high / p.low) : p.high - p.low;
-    out.push_back({{"name", p.name},
-                   {"value", p.value(a.u[k])},
-                   {"interval", {p.value(a.low[k]), p.value(a.high[k])}},
-                   {"standard_error", slope * a.standard_error[k]},
-                   {"closed", !a.open[k]},
-                   {"range", {p.low, p.high}},
-                   {"logarithmic", p.logarithmic}});
+    out.push_back({p.name,
+                   p.value(a.u[k]),
+                   {p.value(a.low[k]), p.value(a.high[k])},
+                   slope * a.standard_error[k],
+                   !a.open[k],
+                   {p.low, p.high},
+                   p.logarithmic});
   }
   return out;
 }
 
-json evaluations_json(const InverseSetup& setup, const InverseResult& r) {
-  json out = json::array();
+std::vector<EvaluationSummary> evaluations_of(const InverseSetup& setup, const InverseResult& r) {
+  std::vector<EvaluationSummary> out;
   for (const InverseEvaluation& e : r.evaluations) {
-    json values = json::array();
-    for (std::size_t k = 0; k < setup.search.size(); ++k) values.push_back(setup.search[k].value(e.u[k]));
-    out.push_back({{"values", values},
-                   {"misfit", number_or_null(misfit_of(e, setup.target))},
-                   {"force", numbers(curve_of(e, setup.target.delta.size()).mean)}});
+    EvaluationSummary& one = out.emplace_back();
+    for (std::size_t k = 0; k < setup.search.size(); ++k) one.values.push_back(setup.search[k].value(e.u[k]));
+    one.misfit = misfit_of(e, setup.target);
+    one.force = curve_of(e, setup.target.delta.size()).force;
   }
   return out;
 }
@@ -86,7 +70,7 @@ std::string evaluations_table(const InverseSetup& setup, const InverseResult& r)
   for (const InverseEvaluation& e : r.evaluations) {
     for (std::size_t k = 0; k < setup.search.size(); ++k) text += fmt::format("{:.9g},", setup.search[k].value(e.u[k]));
     text += fmt::format("{:.6g}", misfit_of(e, setup.target));
-    for (const double f : curve_of(e, setup.target.delta.size()).mean) text += fmt::format(",{:.9g}", f);
+    for (const double f : curve_of(e, setup.target.delta.size()).force) text += fmt::format(",{:.9g}", f);
     text += "\n";
   }
   return text;
@@ -122,27 +106,20 @@ std::vector<std::string> remarks_of(const InverseSetup& setup, const InverseResu
   return out;
 }
 
-json inverse_json(const InverseSetup& setup, const InverseResult& r, double misfit) {
-  const Curve check = curve_of(r.check, setup.target.delta.size());
-  return {
-      {"contact", to_string(setup.kind)},
-      {"parameters", parameters_json(setup, r.answer)},
-      {"correlation", r.answer.correlation},
-      {"target", {{"delta", setup.target.delta}, {"force", setup.target.force}, {"error", setup.target.error}}},
-      {"discrepancy", setup.target.discrepancy},
-      {"surface",
-       {{"force", numbers(r.answer.predicted)}, {"misfit", r.answer.misfit}, {"lack_of_fit", r.answer.lack_of_fit}}},
-      {"confirmed",
-       {{"force", numbers(check.mean)},
-        {"error", numbers(check.error)},
-        {"packings", r.check.packings},
-        {"misfit", number_or_null(misfit)}}},
-      {"packings", setup.packings},
-      {"replicates", r.answer.replicates},
-      {"evaluations", evaluations_json(setup, r)},
-      {"loop_passes", r.cost.loop_passes},
-      {"contact_evaluations", r.cost.contact_evaluations},
-      {"core_seconds", r.cost.seconds}};
+SearchSummary search_of(const InverseSetup& setup, const InverseResult& r, double misfit) {
+  ConfirmedCurve confirmed = curve_of(r.check, setup.target.delta.size());
+  confirmed.packings = r.check.packings;
+  confirmed.misfit = misfit;
+  return {setup.kind,
+          parameters_of(setup, r.answer),
+          r.answer.correlation,
+          setup.target,
+          {r.answer.predicted, r.answer.misfit, r.answer.lack_of_fit},
+          std::move(confirmed),
+          setup.packings,
+          r.answer.replicates,
+          evaluations_of(setup, r),
+          r.cost};
 }
 
 std::string people_text(const InverseSetup& setup, const InverseResult& r, double misfit) {
@@ -171,28 +148,28 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   write_text_atomic(run.path("evaluations.csv"), evaluations_table(setup, result));
 
   const double misfit = misfit_of(result.check, setup.target);
-  const std::vector<std::string> remarks = remarks_of(setup, result, misfit);
-  json summary;
-  summary["status"] = misfit <= kReached ? "good" : "not usable";
-  summary["title"] = setup.title;
-  summary["inverse"] = inverse_json(setup, result, misfit);
-  summary["packings"] = packings_json(result.confirmed);
-  summary["remarks"] = remarks;
+  InverseSummary summary;
+  summary.head = {
+      misfit <= kReached ? RunStatus::good : RunStatus::not_usable, setup.title, remarks_of(setup, result, misfit), {}};
+  summary.inverse = search_of(setup, result, misfit);
+  summary.packings = summary_of(result.confirmed.packings);
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
-    summary["files"][file] = run.path(file);
+    summary.head.files[file] = run.path(file);
   std::string people = people_text(setup, result, misfit);
-  for (const std::string& remark : remarks) people += "note: " + remark + "\n";
-  return run.finish(std::move(summary), people);
+  for (const std::string& remark : summary.head.remarks) people += "note: " + remark + "\n";
+  return run.finish(json_of(summary), people);
 }
 
 }  // namespace
 
 SceneKind inverse_kind() {
-  return {.name = "inverse",
-          .command = "run",
-          .run = run_inverse,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_inverse(scene, out); },
-          .read = [](const Scene& scene) { (void)read_inverse(scene); }};
+  return {
+      .name = "inverse",
+      .command = "run",
+      .run = run_inverse,
+      .check = [](const Scene& scene, const std::string&, Findings& out) { check_inverse(scene, out); },
+      .read = [](const Scene& scene) { (void)read_inverse(scene); },
+      .results = {.files = {{.names = "evaluations\\.csv"}}, .sections = {{Place::search, report::inverse_section}}}};
 }
 
 }  // namespace softgrain

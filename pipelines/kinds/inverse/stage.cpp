@@ -64,10 +64,7 @@ TaskResult measure_one(const InverseSetup& setup, const Task& task, std::uint64_
             ? make_soft_solid(spec, first, protocol->damped_contacts())
             : make_soft_soft(spec, first, generate_shell_packing(spec, seed, second_body_index(task.packing)),
                              protocol->damped_contacts());
-    measure(state, setup.plan, *protocol, [](const MeasurementState&, double) {
-      if (interrupt_requested())
-        throw Interrupted("stopped by a signal; finished packings are saved, go on with --resume");
-    });
+    measure(state, setup.plan, *protocol);
   } catch (const NotUsable&) {  // a lost grain at the far end of the box must not end the search: what there is counts
   } catch (const BadInput&) {   // not a grain found a place
   }

@@ -130,12 +130,10 @@ class CrowdRunner {
     std::vector<const SoftContent*> others;
     for (std::size_t k = 1; k < packings.size(); ++k)
       others.push_back(&contents_[static_cast<std::size_t>(packings[k])]);
-    std::size_t points = 0;
-    for (const auto& shares : *task.plan) points += shares.size();
     CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
                                    others, level_ != nullptr ? &level_->laws : nullptr);
-    const auto advance = [&](const CrowdPoint&) { progress.advance(weight / static_cast<double>(points)); };
-    return run_kept_crowd(run_.store, name, e, *task.plan, options, advance);
+    TaskProgress mine(progress, weight);
+    return run_kept_crowd(run_.store, name, e, *task.plan, options, [&](double share) { mine.reach(share); });
   }
 
   const CrowdSetup& setup_;

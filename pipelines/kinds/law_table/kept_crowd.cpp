@@ -49,15 +49,18 @@ CrowdPlace read_place(const h5::Group& group, CrowdExperiment& e) {
 }  // namespace
 
 CrowdRun run_kept_crowd(const TaskStore& store, const std::string& name, CrowdExperiment& experiment,
-                        const CrowdPlan& plan, const CrowdOptions& options, const CrowdObserver& observer) {
+                        const CrowdPlan& plan, const CrowdOptions& options,
+                        const std::function<void(double share)>& progress) {
   const std::string task = name + "-under-way";
-  CrowdKeeper keeper;
-  keeper.seconds = store.seconds();
-  store.load(task, [&](const h5::Group& g) { keeper.start = read_place(g, experiment); });
-  keeper.save = [&](const CrowdPlace& place, const CrowdExperiment& e) {
-    store.save(task, [&](const h5::Group& g) { write_place(g, place, e); });
+  CrowdPlace start;
+  store.load(task, [&](const h5::Group& g) { start = read_place(g, experiment); });
+  RunControl<CrowdUnderWay> control;
+  control.seconds = store.seconds();
+  control.save = [&](const CrowdUnderWay& now) {
+    store.save(task, [&](const h5::Group& g) { write_place(g, now.place, now.experiment); });
   };
-  CrowdRun run = run_crowd(experiment, plan, options, observer, keeper);
+  if (progress) control.progress = [&](const CrowdUnderWay&, double share) { progress(share); };
+  CrowdRun run = run_crowd(experiment, plan, options, control, std::move(start));
   store.remove(task);
   return run;
 }

@@ -10,8 +10,9 @@
 #include "pipelines/kinds/law_table/crowd_plan.h"
 #include "pipelines/kinds/law_table/crowd_stage.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
+#include "pipelines/kinds/law_table/results.h"
+#include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
@@ -91,7 +92,8 @@ SceneKind law_table_kind() {
           .command = "run",
           .run = run_law_table,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_law_table(scene, out); },
-          .read = [](const Scene& scene) { (void)read_law_table(scene); }};
+          .read = [](const Scene& scene) { (void)read_law_table(scene); },
+          .results = law_table_results()};
 }
 
 }  // namespace softgrain

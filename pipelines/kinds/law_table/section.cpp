@@ -8,9 +8,10 @@
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/data/law_remarks.h"
+#include "pipelines/kinds/law_table/results.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain::report {

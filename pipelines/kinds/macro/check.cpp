@@ -14,7 +14,7 @@
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/law/law_values.h"
-#include "pipelines/run/run_summary.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain {
 
@@ -138,7 +138,7 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   std::string remark;
   const LawTableEntry entry = law_entry(laws, contents_fraction, remark);
   const CrowdLaw& law = *entry.find(named.form);
-  json facts = identity_json(named.identity);
+  json facts = json_of(named.identity);
   facts["error_cross"] = law.error_cross;
   out.add_once("law", facts,
                fmt::format("law: {}{}; off by {}", identity_text(named.identity),

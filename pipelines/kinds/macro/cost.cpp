@@ -55,15 +55,14 @@ double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLa
   state.macro = make_law_system(spec, packing, law.laws, solid_fraction > 0.0 ? solid_fraction : 1.0);
   state.curve = begin_curve(spec, packing, state.macro, law.name, 0);
   double share = 0.0;
+  RunControl<CompressionState> control{.seconds = kBudget};
+  control.progress = [&](const CompressionState& s, double done) {
+    share = done;
+    if (s.curve.cost.seconds > kBudget) throw TrialOver{};
+  };
   const double seconds = core_seconds_of([&] {
     try {
-      compress(
-          state, spec,
-          [&](const CompressionState& s, double done) {
-            share = done;
-            if (s.curve.cost.seconds > kBudget) throw TrialOver{};
-          },
-          kBudget);
+      compress(state, spec, control);
     } catch (const TrialOver&) {
     } catch (const NotUsable&) {  // the run will say so
     }

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "macrosim/lammps_run/lammps_program.h"
-#include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
+#include "pipelines/kinds/macro/results.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/macro/summary.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
@@ -59,37 +59,28 @@ NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& conte
 }
 
 /// What the law does beside the shelled twin; nothing to compare is a remark, as all that was computed is kept.
-void compare_with_twin(const std::vector<MacroCurve>& curves, nlohmann::json& summary) {
-  const auto undefined = [&](const std::string& what) {
-    summary["remarks"].push_back(what);
-    summary["status"] = "not usable";
-  };
+void compare_with_twin(const std::vector<MacroCurve>& curves, MacroRunSummary& summary) {
   try {
     const Comparison c = compare_curves(curves_of(curves, "law"), curves_of(curves, "shelled"));
-    summary["comparison"] = {{"stress_error", c.axial_difference.mean},
-                             {"speedup_seconds", c.speedup_seconds},
-                             {"speedup_contact_evaluations", c.speedup_contact_evaluations}};
-    for (const std::string& one : c.undefined) undefined("law and twin: " + one);
+    summary.runs.comparison = summary_of(c);
+    for (const std::string& one : c.undefined) summary.head.reject("law and twin: " + one);
   } catch (const ZeroReference& e) {
-    undefined(std::string("law and twin cannot be compared: ") + e.what());
+    summary.head.reject(std::string("law and twin cannot be compared: ") + e.what());
   } catch (const BadInput& e) {
-    summary["remarks"].push_back(std::string("law and twin cannot be compared: ") + e.what());
+    summary.head.remarks.push_back(std::string("law and twin cannot be compared: ") + e.what());
   }
 }
 
-nlohmann::json summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
-                         bool usable) {
-  nlohmann::json summary;
+MacroRunSummary summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
+                          bool usable) {
+  MacroRunSummary summary;
   const bool resolved = has_twin(scene.setup, Twin::shelled);
-  summary["status"] = usable ? "good" : "not usable";
-  summary["title"] = scene.title;
-  summary["law"] = identity_json(law.identity);
-  summary["law"]["file"] = scene.law_file;
-  summary["macro"] = macro_json(curves, "law");
-  if (resolved) summary["resolved"] = macro_json(curves, "shelled");
-  if (has_twin(scene.setup, Twin::free)) summary["free"] = macro_json(curves, "free");
-  summary["remarks"] = macro_remarks(curves);
-  if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary["remarks"].push_back(assumed);
+  summary.head = {usable ? RunStatus::good : RunStatus::not_usable, scene.title, macro_remarks(curves), {}};
+  summary.law = {law.identity, scene.law_file};
+  summary.runs.macro = summary_of(curves, "law");
+  if (resolved) summary.runs.resolved = summary_of(curves, "shelled");
+  if (has_twin(scene.setup, Twin::free)) summary.runs.free = summary_of(curves, "free");
+  if (const std::string assumed = assumed_text(scene.setup); !assumed.empty()) summary.head.remarks.push_back(assumed);
   if (resolved && usable) compare_with_twin(curves, summary);
   return summary;
 }
@@ -107,6 +98,12 @@ void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& 
   if (scene.setup.spec.preparation == MacroEngine::softgrain) save_packings(packings, run, kInitialFile);
 }
 
+/// Where LAMMPS works on each sample.
+void add_directories(std::int64_t samples, const RunContext& context, MacroRunSummary& summary) {
+  for (std::int64_t k = 0; k < samples; ++k)
+    summary.head.files["lammps_" + std::to_string(k)] = lammps_directory(context, k);
+}
+
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
 ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
                       const Run& run) {
@@ -115,18 +112,17 @@ ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::
     save_if_prepared(scene, packings, run);
     write_lammps_files(lammps_runs(scene, law, contents, run.provenance), packings, run.context);
   });
-  nlohmann::json summary = {{"status", "written"}, {"title", scene.title}, {"remarks", {"nothing was run"}}};
-  summary["law"] = identity_json(law.identity);
-  summary["law"]["file"] = scene.law_file;
-  for (std::int64_t k = 0; k < scene.setup.samples; ++k)
-    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(run.context, k);
-  summary["provenance"] = provenance_json(run.provenance);
+  MacroRunSummary summary;
+  summary.head = {RunStatus::written, scene.title, {"nothing was run"}, {}};
+  summary.law = {law.identity, scene.law_file};
+  add_directories(scene.setup.samples, run.context, summary);
   run.context.finish(
-      summary, fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
-                           "--with-lammps builds); then the same command here with --resume and without --write-only",
-                           lammps_directory(run.context, 0),
-                           scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
-                           lammps::kProgramName));
+      json_of(summary), run.provenance,
+      fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
+                  "--with-lammps builds); then the same command here with --resume and without --write-only",
+                  lammps_directory(run.context, 0),
+                  scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
+                  lammps::kProgramName));
   return ExitStatus::good;
 }
 
@@ -143,13 +139,6 @@ std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::option
                             std::move(outcomes));
   save_macro(curves, run.path("macro.h5"), run.provenance);
   return curves;
-}
-
-void add_engine(const LammpsEngine& engine, std::int64_t samples, const RunContext& context, nlohmann::json& summary) {
-  summary["engine"] = {
-      {"name", "lammps"}, {"ranks", engine.ranks}, {"program", engine.program}, {"lammps", lammps_release(context)}};
-  for (std::int64_t k = 0; k < samples; ++k)
-    summary["files"]["lammps_" + std::to_string(k)] = lammps_directory(context, k);
 }
 
 ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
@@ -170,11 +159,14 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
 
   const bool usable = all_carry_stress(curves) &&
                       std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
-  nlohmann::json summary = summarise(macro, law, curves, usable);
-  summary["files"] = {
+  MacroRunSummary summary = summarise(macro, law, curves, usable);
+  summary.head.files = {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
-  if (lammps) add_engine(*lammps, macro.setup.samples, run.context, summary);
-  return run.finish(std::move(summary), people_text(law, curves));
+  if (lammps) {
+    summary.engine = {MacroEngine::lammps, lammps->ranks, lammps->program, lammps_release(run.context)};
+    add_directories(macro.setup.samples, run.context, summary);
+  }
+  return run.finish(json_of(summary), people_text(law, curves));
 }
 
 }  // namespace
@@ -185,6 +177,7 @@ SceneKind macro_kind() {
           .run = run_macro_scene,
           .check = check_macro_scene,
           .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
+          .results = macro_results(),
           .takes_law = true};
 }
 

@@ -8,10 +8,11 @@
 
 #include "common/core/error.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/kinds/macro/results.h"
 #include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain::report {

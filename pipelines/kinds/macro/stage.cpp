@@ -77,29 +77,27 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
   KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
   stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
   if (laws != nullptr) state.curve.law = laws->identity;
-  double done = static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec));
-  progress.advance(done);
+  TaskProgress mine(progress);
+  mine.reach(static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec)));
   MacroCurve recorded = state.curve;
+  RunControl<CompressionState> control{.seconds = stage.store.seconds()};
+  control.save = [&](const CompressionState& s) {
+    const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
+    if (s.increments == 0 && states.wants(point))
+      states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
+    stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
+    recorded = s.curve;
+  };
+  control.progress = [&](const CompressionState&, double share) { mine.reach(share); };
   try {
-    compress(
-        state, spec,
-        [&](const CompressionState& s, double share) {
-          const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
-          if (s.increments == 0 && states.wants(point))
-            states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
-          stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
-          progress.advance(share - done);
-          done = share;
-          recorded = s.curve;
-        },
-        stage.store.seconds());
+    compress(state, spec, control);
   } catch (const NotUsable& e) {  // this run alone ends here; without a point there is nothing to go on with
     if (recorded.strain.empty()) throw;
     state.curve = std::move(recorded);
     state.curve.usable = false;
     state.curve.note += (state.curve.note.empty() ? "" : "; ") +
                         fmt::format("broke off beyond strain {:.4g}: {}", state.curve.strain.back(), e.what());
-    progress.advance(1.0 - done);
+    mine.reach(1.0);
   }
   if (laws != nullptr && laws->note && state.curve.usable) {
     const std::string note = laws->note(state.macro.system);

@@ -5,67 +5,15 @@
 #include <cmath>
 
 #include "common/io/text_file.h"
-#include "macrosim/constructed_packing.h"
-#include "pipelines/compare/macro_scores.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/macro_comparison/results.h"
+#include "pipelines/kinds/macro_comparison/summary.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 #include "pipelines/run/text_table.h"
 
 namespace softgrain {
 
 namespace {
-
-using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-json to_json(const MeanError& m) {
-  if (m.n == 0) return nullptr;
-  return {{"mean", number(m.mean)}, {"standard_error", number(m.error)}, {"n", m.n}};
-}
-
-json to_json(const TwinErrors& e) {
-  if (e.axial.n == 0) return nullptr;
-  return {{"stress_error", to_json(e.axial)},
-          {"end_stress_ratio", to_json(e.axial_end)},
-          {"deviator_error", to_json(e.deviator)},
-          {"lateral_ratio_difference", to_json(e.lateral_ratio)},
-          {"coordination_difference", to_json(e.coordination)},
-          {"fabric_difference", to_json(e.fabric)},
-          {"force_mean_ratio", to_json(e.force_mean)},
-          {"force_distance", to_json(e.force_distance)},
-          {"speedup_seconds", number(e.speedup_seconds)},
-          {"speedup_contact_evaluations", number(e.speedup_evaluations)}};
-}
-
-json to_json(const EngineScore& s) {
-  return {{"engine", s.engine},
-          {"samples", s.samples},
-          {"axial_stress", to_json(s.axial)},
-          {"lateral_ratio", to_json(s.lateral_ratio)},
-          {"coordination", to_json(s.coordination)},
-          {"fabric", to_json(s.fabric)},
-          {"force_mean", to_json(s.force_mean)},
-          {"force_variation", to_json(s.force_variation)},
-          {"contact_evaluations", number(s.contact_evaluations)},
-          {"seconds", number(s.seconds)},
-          {"against_shelled", to_json(s.shelled)},
-          {"against_free", to_json(s.free)}};
-}
-
-json to_json(const SceneFacts& f) {
-  return {{"solid", f.solid},
-          {"soft", f.soft},
-          {"inner_grains", f.inner_grains},
-          {"soft_share", f.soft_share},
-          {"body_fraction", f.body_fraction},
-          {"solid_fraction", f.solid_fraction},
-          {"soft_radius", {f.soft_radius_low, f.soft_radius_mean, f.soft_radius_high}},
-          {"exponent", f.exponent.exponent},
-          {"exponent_error", f.exponent.standard_error},
-          {"polydispersity", f.largest_over_smallest}};
-}
 
 /// What a scene left behind.
 struct SceneResult {
@@ -117,21 +65,10 @@ SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& 
   return r;
 }
 
-json scene_json(const SceneResult& r) {
-  json facts = json::array();
-  for (const SceneFacts& f : r.facts) facts.push_back(to_json(f));
-  json engines = json::array();
-  for (const EngineScore& s : r.scores) engines.push_back(to_json(s));
-  json laws = json::array();
-  for (const NamedLaws& l : r.laws) laws.push_back(identity_json(l.identity));
-  return {{"name", r.name},
-          {"laws", laws},
-          {"test", to_string(r.spec.test)},
-          {"construction", to_string(r.spec.construction)},
-          {"soft_share", r.spec.soft_share},
-          {"file", r.file},
-          {"samples", facts},
-          {"engines", engines}};
+ComparedScene summary_of(const SceneResult& r) {
+  ComparedScene out{r.name, {}, r.spec.test, r.spec.construction, r.spec.soft_share, r.file, r.facts, r.scores};
+  for (const NamedLaws& l : r.laws) out.laws.push_back(l.identity);
+  return out;
 }
 
 /// One row per scene and engine, the scene in the first column.
@@ -187,21 +124,19 @@ std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
   return {"the law was measured on soft particles of another packing or material than those of the twins"};
 }
 
-json summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>& results, const Run& run) {
-  json s;
-  bool usable = true;
-  s["title"] = setup.title;
-  s["remarks"] = law_remarks(setup);
-  s["scenes"] = json::array();
+MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::vector<SceneResult>& results,
+                                 const Run& run) {
+  MacroComparisonSummary s;
+  s.head.title = setup.title;
+  s.head.remarks = law_remarks(setup);
   for (const SceneResult& r : results) {
-    usable = usable && r.usable;
-    s["scenes"].push_back(scene_json(r));
-    for (const std::string& remark : r.remarks) s["remarks"].push_back(remark);
-    s["files"]["macro_" + r.name] = run.path(r.file);
+    if (!r.usable) s.head.status = RunStatus::not_usable;
+    s.compared.scenes.push_back(summary_of(r));
+    s.head.remarks.insert(s.head.remarks.end(), r.remarks.begin(), r.remarks.end());
+    s.head.files["macro_" + r.name] = run.path(r.file);
   }
   for (const char* file : {"comparison.json", "table.md", "table.csv", "report.html"})
-    s["files"][file] = run.path(file);
-  s["status"] = usable ? "good" : "not usable";
+    s.head.files[file] = run.path(file);
   return s;
 }
 
@@ -213,10 +148,10 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
   run.context.guard([&] {
     for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));
   });
-  json summary = summarise(setup, results, run);
-  write_text_atomic(run.path("comparison.json"), json{{"scenes", summary["scenes"]}}.dump(2) + "\n");
+  const MacroComparisonSummary summary = summarise(setup, results, run);
+  write_text_atomic(run.path("comparison.json"), json_of(summary.compared).dump(2) + "\n");
   write_tables(whole_table(results), run);
-  return run.finish(std::move(summary), people_text(results, run));
+  return run.finish(json_of(summary), people_text(results, run));
 }
 
 }  // namespace
@@ -226,7 +161,8 @@ SceneKind macro_comparison_kind() {
           .command = "run",
           .run = run_macro_comparison,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_macro_comparison(scene, out); },
-          .read = [](const Scene& scene) { (void)read_macro_comparison(scene); }};
+          .read = [](const Scene& scene) { (void)read_macro_comparison(scene); },
+          .results = macro_comparison_results()};
 }
 
 }  // namespace softgrain

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <map>
 
-#include "pipelines/compare/macro_scores.h"
+#include "pipelines/kinds/macro_comparison/results.h"
+#include "pipelines/kinds/macro_comparison/summary.h"
 #include "pipelines/report/engine_style.h"
 #include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/report/svg_plot.h"
 
 namespace softgrain::report {
@@ -29,7 +30,7 @@ std::string capital(std::string word) {
   return word;
 }
 
-std::string stress_figure(const MacroScene& scene, Stress member, const std::string& what) {
+std::string stress_figure(const ComparedCurves& scene, Stress member, const std::string& what) {
   const SiPrefix prefix = si_prefix(largest(scene.curves, member));
   Plot plot({.id = "macro-" + scene.name + "-" + what,
              .title = capital(what) + " stress, " + scene.name,
@@ -39,7 +40,7 @@ std::string stress_figure(const MacroScene& scene, Stress member, const std::str
   return plot.empty() ? "" : figure(plot.svg(), "From the wall forces; one line per sample.");
 }
 
-std::string force_figure(const MacroScene& scene) {
+std::string force_figure(const ComparedCurves& scene) {
   Plot plot({.id = "macro-" + scene.name + "-forces",
              .title = "Contact forces between bodies, " + scene.name,
              .x = {.label = "normal force over its mean", .low = 0.0, .high = 5.0},
@@ -79,48 +80,43 @@ std::string table_of(const std::vector<EngineScore>& scores) {
   return html.html();
 }
 
-std::string cell_of(const nlohmann::json& facts, const char* key) {
-  const auto value = find_number(facts, key);
-  return value ? format_number(*value, 3) : "–";
-}
-
 /// What the samples of a scene are made of, from the summary.
-std::string facts_of(const RunData& run, const std::string& name) {
+std::string facts_of(const std::vector<ComparedScene>& scenes, const std::string& name) {
   HtmlTable html({"sample", "solid grains", "soft particles", "grains inside", "volume share of soft",
                   "bodies over box", "grains over box", "exponent of all radii", "largest over smallest"});
-  const auto* scenes = find_value(run.summary, "scenes");
-  if (scenes == nullptr || !scenes->is_array()) return "";
-  for (const auto& scene : *scenes) {
-    const auto* samples = find_value(scene, "samples");
-    if (find_text(scene, "name") != name || samples == nullptr || !samples->is_array()) continue;
+  for (const ComparedScene& scene : scenes) {
+    if (scene.name != name) continue;
     std::size_t k = 0;
-    for (const auto& f : *samples) {
+    for (const SceneFacts& f : scene.samples) {
       std::vector<std::string> row{std::to_string(k++)};
-      for (const char* key : {"solid", "soft", "inner_grains", "soft_share", "body_fraction", "solid_fraction",
-                              "exponent", "polydispersity"})
-        row.push_back(cell_of(f, key));
+      for (const double x :
+           {static_cast<double>(f.solid), static_cast<double>(f.soft), static_cast<double>(f.inner_grains),
+            f.soft_share, f.body_fraction, f.solid_fraction, f.exponent.exponent, f.largest_over_smallest})
+        row.push_back(format_number(x, 3));
       html.row(row);
     }
   }
   return html.empty() ? "" : html.html();
 }
 
-std::string scene_part(const RunData& run, const MacroScene& scene) {
+std::string scene_part(const std::vector<ComparedScene>& compared, const ComparedCurves& scene) {
   const bool shear = !scene.curves.empty() && scene.curves.front().test == MacroTest::shear;
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
   body += figure_row({stress_figure(scene, &MacroCurve::stress_axial, "axial"),
                       shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")
                             : stress_figure(scene, &MacroCurve::stress_lateral, "lateral"),
                       force_figure(scene)});
-  return body + table_of(score_engines(scene.curves)) + facts_of(run, scene.name) + law_paragraph(scene.curves);
+  return body + table_of(score_engines(scene.curves)) + facts_of(compared, scene.name) + law_paragraph(scene.curves);
 }
 
 }  // namespace
 
 std::string macro_scenes_section(const RunData& run) {
   std::string body;
-  if (!run.macro_scenes.empty()) body += figure_row({error_cost_figure(run)});
-  for (const MacroScene& scene : run.macro_scenes) body += scene_part(run, scene);
+  const std::vector<ComparedCurves>& scenes = run.macro_scenes;
+  if (!scenes.empty()) body += figure_row({error_cost_figure(run)});
+  const auto compared = run.summary_as<ComparedScenes>();
+  for (const ComparedCurves& scene : scenes) body += scene_part(compared.scenes, scene);
   if (!body.empty())
     body += paragraph(
         "Stress error: square root of ∫(engine − twin)² over ∫ twin² along the strain. Coordination, fabric (zz − xx) "

@@ -1,6 +1,5 @@
 #include "pipelines/kinds/particles/scene.h"
 
-#include <filesystem>
 #include <utility>
 
 #include "common/io/progress.h"
@@ -9,14 +8,13 @@
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/export/xdmf.h"
+#include "pipelines/kinds/particles/results.h"
 #include "pipelines/kinds/particles/summary.h"
-#include "pipelines/run/run_summary.h"
+#include "pipelines/run/run.h"
 
 namespace softgrain {
 
 namespace {
-
-using nlohmann::json;
 
 template <int D>
 ParticlesResultOf<D> run_with_progress(const ParticlesSceneOf<D>& scene, System<D> start, const RunContext& context) {
@@ -35,27 +33,23 @@ template <int D>
 ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
   ParticlesSceneOf<D> setup = read_particles_scene<D>(scene);
-  const RunContext context(options, "microsim", std::filesystem::path(scene.path()).stem().string(),
-                           contact_law_files(scene));
-  const Provenance provenance = context.provenance(scene, context.seed(0));
-  context.begin(scene, provenance.seed, "");
-  const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), context);
-  json summary = particles_summary(setup, result, memory_before);
-  std::string text = particles_text(result);
-  if (summary.contains("remarks"))
-    for (const json& remark : summary["remarks"]) text += "\nremark: " + remark.get<std::string>();
+  const Run run(scene, options, "microsim", 0, {.files = contact_law_files(scene)});
+  const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), run.context);
+  ParticlesSummary summary = summary_of(setup, result, memory_before);
+  std::string text = particles_text(result) + "\n";
+  for (const std::string& remark : summary.head.remarks) text += "remark: " + remark + "\n";
   if (setup.record) {
-    save_particles_run(context.path("run.h5"), setup, result, provenance);
-    write_run_xdmf(context.path("run.h5"));
-    summary["files"] = {{"trajectory", context.path("run.h5")},
-                        {"xdmf", context.path("run.xdmf")},
-                        {"xdmf_contacts", context.path("run_contacts.xdmf")}};
-    text += "\ntrajectory: " + context.path("run.h5");
+    save_particles_run(run.path("run.h5"), setup, result, run.provenance);
+    write_run_xdmf(run.path("run.h5"));
+    summary.head.files = {{"trajectory", run.path("run.h5")},
+                          {"xdmf", run.path("run.xdmf")},
+                          {"xdmf_contacts", run.path("run_contacts.xdmf")}};
+    text += "trajectory: " + run.path("run.h5") + "\n";
   }
-  summary["provenance"] = provenance_json(provenance);
-  context.finish(std::move(summary), text);
-  remove_checkpoint(context.path("checkpoint.h5"));
-  return result.usable ? ExitStatus::good : ExitStatus::not_usable;
+  summary.head.files["report"] = run.path("report.html");
+  const ExitStatus status = run.finish(json_of(summary), text);
+  remove_checkpoint(run.path("checkpoint.h5"));
+  return status;
 }
 
 ExitStatus run_particles_scene(const Scene& scene, const CommonOptions& options) {
@@ -83,7 +77,8 @@ SceneKind particles_kind() {
           .command = "microsim",
           .run = run_particles_scene,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_any_particles(scene, out); },
-          .read = read_any_particles};
+          .read = read_any_particles,
+          .results = particles_results()};
 }
 
 }  // namespace softgrain

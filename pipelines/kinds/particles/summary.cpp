@@ -17,26 +17,27 @@ using nlohmann::json;
 constexpr Slot kMostListed = 1000;
 
 template <int D>
-json particles_json(const System<D>& s) {
-  json out = json::array();
+std::vector<double> list_of(const Vec<D>& v) {
+  return {v.v.begin(), v.v.end()};
+}
+
+template <int D>
+std::vector<GrainState> grains_of(const System<D>& s) {
+  std::vector<GrainState> out;
   for (Slot i = 0; i < std::min(s.particles.grains, kMostListed); ++i) {
     const auto u = static_cast<std::size_t>(i);
-    out.push_back({{"id", i},
-                   {"position", s.particles.sphere[u].x.v},
-                   {"velocity", s.particles.velocity[u].v},
-                   {"spin", s.particles.spin[u].v}});
+    out.push_back(
+        {i, list_of(s.particles.sphere[u].x), list_of(s.particles.velocity[u]), list_of(s.particles.spin[u])});
   }
   return out;
 }
 
 template <int D>
-json walls_json(const ParticlesSceneOf<D>& scene, const System<D>& s) {
-  json out = json::array();
+std::vector<WallState> walls_of(const ParticlesSceneOf<D>& scene, const System<D>& s) {
+  std::vector<WallState> out;
   for (std::size_t w = 0; w < scene.wall_name.size(); ++w) {
     const std::size_t u = static_cast<std::size_t>(s.particles.grains) + w;
-    out.push_back({{"name", scene.wall_name[w]},
-                   {"position", s.particles.sphere[u].x.v},
-                   {"velocity", s.particles.velocity[u].v}});
+    out.push_back({scene.wall_name[w], list_of(s.particles.sphere[u].x), list_of(s.particles.velocity[u])});
   }
   return out;
 }
@@ -49,14 +50,14 @@ json body_json(const ParticlesSceneOf<D>& scene, const System<D>& s, Slot slot) 
 }
 
 template <int D>
-json contacts_json(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result) {
-  json out = json::array();
+std::vector<PairSummary> pairs_of(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result) {
+  std::vector<PairSummary> out;
   for (const ContactHistory& c : result.contacts)
-    out.push_back({{"pair", {body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)}},
-                   {"count", c.count},
-                   {"duration", c.duration},
-                   {"max_force", c.max_force},
-                   {"max_overlap", c.max_overlap}});
+    out.push_back({{body_json(scene, result.system, c.i), body_json(scene, result.system, c.j)},
+                   c.count,
+                   c.duration,
+                   c.max_force,
+                   c.max_overlap});
   return out;
 }
 
@@ -92,8 +93,8 @@ json guards_json(const GuardSpec& spec, const GuardReport& g, const System<D>& s
 
 /// What was counted, in words.
 template <int D>
-json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System<D>& s) {
-  json out = json::array();
+std::vector<std::string> guard_remarks(const GuardSpec& spec, const GuardReport& g, const System<D>& s) {
+  std::vector<std::string> out;
   const auto counted = [&](const GuardRecord& r, double limit, const char* what) {
     if (r.count > 0)
       out.push_back(fmt::format("{} above the limit of {:.3g} at {} of {} looks (first at {:.4g} s, largest {:.3g})",
@@ -110,9 +111,6 @@ json guard_remarks(const GuardSpec& spec, const GuardReport& g, const System<D>&
   if (!laws.empty()) out.push_back(laws);
   return out;
 }
-
-/// Times that do not exist are null.
-json time_json(double seconds) { return std::isfinite(seconds) ? json(seconds) : json(nullptr); }
 
 /// The state of all contacts at the end; see ContactTotals.
 template <int D>
@@ -163,32 +161,34 @@ json cost_json(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& res
 }  // namespace
 
 template <int D>
-json particles_summary(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result, double memory_before) {
+ParticlesSummary summary_of(const ParticlesSceneOf<D>& scene, const ParticlesResultOf<D>& result,
+                            double memory_before) {
   const System<D>& s = result.system;
-  json out = {{"status", result.usable ? "good" : "not usable"},
-              {"kind", "particles"},
-              {"title", scene.title},
-              {"dimension", D},
-              {"particle_count", s.particles.grains},
-              {"time", s.time},
-              {"steps", s.step},
-              {"step", scene.time.step},
-              {"natural_time", time_json(scene.time.natural_time)},
-              {"shortest_impact", time_json(scene.time.contact_time)},
-              {"step_limited_by", scene.time.limited_by},
-              {"kinetic_energy", kinetic_energy(s.particles)},
-              {"frames", result.trajectory.time.size()},
-              {"particles", particles_json(s)},
-              {"walls", walls_json(scene, s)}};
   const ContactTotals<D> totals = contact_totals(s);
-  out["contact_state"] = contact_state_json(totals);
-  out["cost"] = cost_json(scene, result, totals, memory_before);
-  if (result.watched) out["contacts"] = contacts_json(scene, result);
-  out["guards"] = guards_json(scene.guards, result.guards, s);
-  json remarks = guard_remarks(scene.guards, result.guards, s);
-  for (const std::string& remark : scene.remarks) remarks.push_back(remark);
-  if (!remarks.empty()) out["remarks"] = remarks;
-  if (!result.usable) out["reason"] = result.reason;
+  ParticlesSummary out{.head = {result.usable ? RunStatus::good : RunStatus::not_usable,
+                                scene.title,
+                                guard_remarks(scene.guards, result.guards, s),
+                                {}},
+                       .reason = result.reason,
+                       .kind = "particles",
+                       .dimension = D,
+                       .particle_count = s.particles.grains,
+                       .time = s.time,
+                       .steps = s.step,
+                       .step = scene.time.step,
+                       .natural_time = scene.time.natural_time,
+                       .shortest_impact = scene.time.contact_time,
+                       .step_limited_by = scene.time.limited_by,
+                       .kinetic_energy = kinetic_energy(s.particles),
+                       .frames = result.trajectory.time.size(),
+                       .particles = grains_of(s),
+                       .walls = walls_of(scene, s),
+                       .contacts = {},
+                       .contact_state = contact_state_json(totals),
+                       .cost = cost_json(scene, result, totals, memory_before),
+                       .guards = guards_json(scene.guards, result.guards, s)};
+  if (result.watched) out.contacts = pairs_of(scene, result);
+  out.head.remarks.insert(out.head.remarks.end(), scene.remarks.begin(), scene.remarks.end());
   return out;
 }
 
@@ -200,8 +200,8 @@ std::string particles_text(const ParticlesResultOf<D>& result) {
                            s.particles.grains, s.step, s.time, s.cost.seconds, kinetic_energy(s.particles));
 }
 
-template json particles_summary<2>(const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&, double);
-template json particles_summary<3>(const ParticlesSceneOf<3>&, const ParticlesResultOf<3>&, double);
+template ParticlesSummary summary_of<2>(const ParticlesSceneOf<2>&, const ParticlesResultOf<2>&, double);
+template ParticlesSummary summary_of<3>(const ParticlesSceneOf<3>&, const ParticlesResultOf<3>&, double);
 template std::string particles_text<2>(const ParticlesResultOf<2>&);
 template std::string particles_text<3>(const ParticlesResultOf<3>&);
 

@@ -12,14 +12,12 @@
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/law/law_json.h"
+#include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
-#include "pipelines/run/run_summary.h"
 
 namespace softgrain {
 
 namespace {
-
-using nlohmann::json;
 
 std::string law_line(const PairLaw& law) {
   if (law.status == LawStatus::no_threshold_crossing || law.status == LawStatus::not_run)
@@ -27,25 +25,6 @@ std::string law_line(const PairLaw& law) {
   return fmt::format("{}: Fn/(E Rs^2) = {:.4g} (Delta^{:.3f} - {:.4f}^{:.3f}), Delta up to {:.2f}, {} packings, {}",
                      to_string(law.kind), law.normal.a.value, law.normal.b.value, law.normal.delta.value,
                      law.normal.b.value, law.delta_max, law.packings, to_string(law.status));
-}
-
-json comparison_json(const Comparison& c) {
-  json samples = json::array();
-  for (const SampleComparison& s : c.samples)
-    samples.push_back({{"sample", s.sample},
-                       {"strain_high", s.strain_high},
-                       {"stress_error", s.axial_difference},
-                       {"end_ratio", s.axial_end_ratio}});
-  return {{"stress_error", c.axial_difference.mean},
-          {"stress_error_standard_error", c.axial_difference.error},
-          {"lateral_stress_error", c.lateral_difference.mean},
-          {"end_stress_ratio", c.axial_end_ratio.mean},
-          {"lateral_stress_ratio_law", c.lateral_stress_ratio_candidate.mean},
-          {"lateral_stress_ratio_resolved", c.lateral_stress_ratio_reference.mean},
-          {"speedup_seconds", c.speedup_seconds},
-          {"speedup_contact_evaluations", c.speedup_contact_evaluations},
-          {"samples", samples},
-          {"left_out", c.left_out}};
 }
 
 /// What the stages leave behind, for summary and screen.
@@ -60,7 +39,7 @@ struct PipelineResult {
 
 void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   FitOptions options = setup.fit;
-  options.relaxation = to_string(setup.measure.series[0].relaxation);
+  options.relaxation = setup.measure.relaxations().front();
   options.seed = run.seed;
   result.card = calibrate(result.measured.data, options);
   save_card(result.card, run.path("law.toml"), run.provenance);
@@ -108,30 +87,34 @@ void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& resul
   }
 }
 
-json summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& run) {
-  const Measurements& data = r.measured.data;
-  json s;
-  s["status"] = r.usable ? "good" : "not usable";
-  s["title"] = setup.title;
-  s["laws"] = laws_json(r.card);
-  s["packings"] = packings_json(data);
-  s["packings"]["broke_off"] = r.measured.left_out.size();
-  s["packings"]["seconds"] = r.measured.packing_seconds;
-  s["measurement"] = measurement_json(data, to_string(setup.measure.series[0].relaxation));
-  s["measurement"]["wall_seconds"] = r.measured.wall_seconds;
-  s["forces"] = forces_json(data, to_string(setup.measure.series[0].relaxation));
-  if (setup.measure.series.size() > 1) {
-    s["reference_measurement"] = measurement_json(data, to_string(setup.measure.series[1].relaxation));
-    s["relaxations"] = relaxations_json(data, to_string(setup.measure.series[1].relaxation),
-                                        to_string(setup.measure.series[0].relaxation));
-  }
-  s["macro"] = macro_json(r.curves, "law");
-  s["resolved"] = macro_json(r.curves, "shelled");
-  if (setup.macro && has_twin(*setup.macro, Twin::free)) s["free"] = macro_json(r.curves, "free");
-  if (r.comparison) s["comparison"] = comparison_json(*r.comparison);
-  s["remarks"] = r.remarks;
+struct PipelineSummary {
+  SummaryHead head;
+  std::map<std::string, PairLawSummary> laws;
+  MeasuredSummary measured;
+  MacroSummary macro;
+};
+
+void fields(auto&& visit, Of<PipelineSummary> auto& s) {
+  fields(visit, s.head);
+  visit("laws", s.laws);
+  fields(visit, s.measured);
+  fields(visit, s.macro);
+}
+
+PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& run) {
+  PipelineSummary s;
+  s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
-    s["files"][file] = run.path(file);
+    s.head.files[file] = run.path(file);
+  s.laws = summary_of(r.card);
+  s.measured = summary_of(r.measured.data, setup.measure.relaxations());
+  s.measured.packings.broke_off = r.measured.left_out.size();
+  s.measured.packings.seconds = r.measured.packing_seconds;
+  s.measured.measurement.wall_seconds = r.measured.wall_seconds;
+  s.macro.macro = summary_of(r.curves, "law");
+  s.macro.resolved = summary_of(r.curves, "shelled");
+  if (setup.macro && has_twin(*setup.macro, Twin::free)) s.macro.free = summary_of(r.curves, "free");
+  if (r.comparison) s.macro.comparison = summary_of(*r.comparison);
   return s;
 }
 
@@ -160,7 +143,7 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   result.usable = result.measured.enough_left;
   fit(setup, run, result);
   run_macro(setup, run, result);
-  return run.finish(summarise(setup, result, run), people_text(result));
+  return run.finish(json_of(summarise(setup, result, run)), people_text(result));
 }
 
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {

@@ -36,6 +36,12 @@ struct MeasureSetup {
   std::int64_t kept_states = 0;  ///< of the first packing of every kind and relaxation, for pictures
 
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
+  /// Names of the relaxations, that of the fit first.
+  [[nodiscard]] std::vector<std::string> relaxations() const {
+    std::vector<std::string> names;
+    for (const MeasureSeries& s : series) names.push_back(to_string(s.relaxation));
+    return names;
+  }
 };
 
 /// Throws BadInput at a key of `packing` when a packing of this kind would be drawn from more than 1e7 grains (or from

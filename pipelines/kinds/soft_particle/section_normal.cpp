@@ -5,11 +5,12 @@
 #include <optional>
 
 #include "pipelines/compare/differences.h"
+#include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
 #include "pipelines/report/reference_curves.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 
 namespace softgrain::report {
 namespace {

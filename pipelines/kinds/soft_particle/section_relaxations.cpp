@@ -6,10 +6,11 @@
 
 #include "common/core/error.h"
 #include "pipelines/compare/compare_measurements.h"
+#include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 
 namespace softgrain::report {
 namespace {

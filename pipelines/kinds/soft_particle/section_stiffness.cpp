@@ -1,10 +1,11 @@
 // Tangential stiffness against overlap: initial slope and secant, measured and fitted, in N/m and N per degree.
 #include <fmt/format.h>
 
+#include "pipelines/kinds/soft_particle/results.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/plot_helpers.h"
-#include "pipelines/report/sections.h"
+#include "pipelines/report/run_data.h"
 
 namespace softgrain::report {
 namespace {

@@ -156,25 +156,20 @@ TaskOutcome run_task(const Stage& stage, const Task& task) {
   KeptStates states(stage.store, task.name(), static_cast<std::int64_t>(plan.deltas.size()),
                     task.packing == 0 ? stage.setup.kept_states : 0);
   stage.store.load(task.name(), [&](const h5::Group& g) { read_run(g, state); });
-  double done = static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size());
-  stage.progress.advance(done * task.weight());
+  TaskProgress mine(stage.progress, task.weight());
+  mine.reach(static_cast<double>(state.run.normal.size()) / static_cast<double>(plan.deltas.size()));
+  RunControl<MeasurementState> control{.seconds = stage.store.seconds()};
+  control.save = [&](const MeasurementState& s) {
+    stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
+  };
+  control.progress = [&](const MeasurementState&, double share) { mine.reach(share); };
   try {
-    measure(
-        state, plan, *protocol,
-        [&](const MeasurementState& s, double share) {
-          stage.store.save(task.name(), [&](const h5::Group& g) { write_run(g, s); });
-          stage.progress.advance((share - done) * task.weight());
-          done = share;
-          if (interrupt_requested())
-            throw Interrupted("stopped by a signal; measured points are saved, go on with --resume");
-        },
-        stage.store.seconds(),
-        [&](const SoftExperiment& recorded, std::size_t number) {
-          const auto point = static_cast<std::int64_t>(number);
-          if (states.wants(point)) states.add(named_state(recorded, task), point);
-        });
+    measure(state, plan, *protocol, control, [&](const SoftExperiment& recorded, std::size_t number) {
+      const auto point = static_cast<std::int64_t>(number);
+      if (states.wants(point)) states.add(named_state(recorded, task), point);
+    });
   } catch (const NotUsable& e) {  // this packing alone; after --resume it breaks off at the same place again
-    stage.progress.advance((1.0 - done) * task.weight());
+    mine.reach(1.0);
     return {{}, states.take(), break_off_text(task, state, e.what())};
   }
   return {state.run, states.take(), ""};

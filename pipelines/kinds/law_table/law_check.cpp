@@ -1,5 +1,5 @@
 // softgrain check of law cards and law tables.
-#include "pipelines/commands/law_check.h"
+#include "pipelines/kinds/law_table/law_check.h"
 
 #include <fmt/format.h>
 

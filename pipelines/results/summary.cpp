@@ -1,4 +1,4 @@
-#include "pipelines/run/run_summary.h"
+#include "pipelines/results/summary.h"
 
 #include <fmt/format.h>
 
@@ -55,60 +55,41 @@ json to_json(const RelaxationComparison& c) {
           {"candidate_tangential_cost", cost_json(c.candidate_tangential_cost)}};
 }
 
-}  // namespace
-
-json packings_json(const Measurements& data) {
-  const auto phi = over(data.packings, [](const PackingInfo& p) { return p.solid_fraction; });
-  const auto b = over(data.packings, [](const PackingInfo& p) { return p.exponent; });
-  const auto z = over(data.packings, [](const PackingInfo& p) { return p.contacts_per_grain; });
-  const auto n = over(data.packings, [](const PackingInfo& p) { return static_cast<double>(p.grains); });
-  return {{"count", data.packings.size()},
-          {"solid_fraction", phi.mean},
-          {"solid_fraction_deviation", phi.deviation_or_zero()},
-          {"exponent", b.mean},
-          {"exponent_deviation", b.deviation_or_zero()},
-          {"contacts_per_grain", z.mean},
-          {"grains", n.mean},
-          {"grains_deviation", n.deviation_or_zero()}};
-}
-
-json measurement_json(const Measurements& data, const std::string& relaxation) {
-  std::int64_t points = 0;
-  Cost cost;
-  for (const PackingRun& run : data.runs) {
-    if (run.relaxation != relaxation) continue;
-    points += static_cast<std::int64_t>(run.normal.size());
-    for (const TangentialPoint& t : run.tangential) points += t.angle_deg != 0.0 ? 1 : 0;
-    cost += run.normal_cost;
-    cost += run.tangential_cost;
+std::vector<ForceSummary> forces_of(const std::map<double, std::vector<double>>& rows) {
+  std::vector<ForceSummary> out;
+  for (const auto& [delta, values] : rows) {
+    const MeanError m = mean_error(values);
+    out.push_back({delta, m.mean, m.error, m.deviation, m.n});
   }
-  const double n = points > 0 ? static_cast<double>(points) : 1.0;
-  return {{"relaxation", relaxation},
-          {"points", points},
-          {"loop_passes", cost.loop_passes},
-          {"contact_evaluations", cost.contact_evaluations},
-          {"seconds", cost.seconds},
-          {"loop_passes_per_point", static_cast<double>(cost.loop_passes) / n},
-          {"seconds_per_point", cost.seconds / n}};
+  return out;
 }
 
-json forces_json(const Measurements& data, const std::string& relaxation) {
+/// Of each kind of contact and Delta.
+std::map<std::string, std::vector<ForceSummary>> forces_of(const Measurements& data, const std::string& relaxation) {
   std::map<std::string, std::map<double, std::vector<double>>> forces;
   for (const PackingRun& run : data.runs) {
     if (run.relaxation != relaxation) continue;
     for (const NormalPoint& p : run.normal)
       if (p.converged) forces[to_string(run.kind)][p.delta].push_back(p.force);
   }
-  json out = json::object();
-  for (const auto& [kind, rows] : forces)
-    for (const auto& [delta, values] : rows) {
-      const MeanError m = mean_error(values);
-      out[kind].push_back({{"delta", delta},
-                           {"force", m.mean},
-                           {"standard_error", m.error},
-                           {"deviation", m.deviation},
-                           {"packings", m.n}});
-    }
+  std::map<std::string, std::vector<ForceSummary>> out;
+  for (const auto& [kind, rows] : forces) out[kind] = forces_of(rows);
+  return out;
+}
+
+MeasurementSummary cost_summary(const Measurements& data, const std::string& relaxation) {
+  MeasurementSummary out;
+  out.relaxation = relaxation;
+  for (const PackingRun& run : data.runs) {
+    if (run.relaxation != relaxation) continue;
+    out.points += static_cast<std::int64_t>(run.normal.size());
+    for (const TangentialPoint& t : run.tangential) out.points += t.angle_deg != 0.0 ? 1 : 0;
+    out.cost += run.normal_cost;
+    out.cost += run.tangential_cost;
+  }
+  const double n = out.points > 0 ? static_cast<double>(out.points) : 1.0;
+  out.loop_passes_per_point = static_cast<double>(out.cost.loop_passes) / n;
+  out.seconds_per_point = out.cost.seconds / n;
   return out;
 }
 
@@ -131,43 +112,59 @@ json relaxations_json(const Measurements& data, const std::string& reference, co
   return out;
 }
 
-json identity_json(const LawIdentity& law) {
-  const auto known = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
-  return {{"form", law.form ? to_string(*law.form) : ""},
-          {"solid_fraction", law.solid_fraction > 0.0 ? json(law.solid_fraction) : json(nullptr)},
-          {"E", law.youngs_modulus},
-          {"nu", known(law.poisson_ratio)},
-          {"mu", known(law.friction)},
-          {"hash", law.hash}};
+}  // namespace
+
+PackingsSummary summary_of(const std::vector<PackingInfo>& packings) {
+  const auto phi = over(packings, [](const PackingInfo& p) { return p.solid_fraction; });
+  const auto b = over(packings, [](const PackingInfo& p) { return p.exponent; });
+  const auto z = over(packings, [](const PackingInfo& p) { return p.contacts_per_grain; });
+  const auto n = over(packings, [](const PackingInfo& p) { return static_cast<double>(p.grains); });
+  return {packings.size(), phi.mean, phi.deviation_or_zero(), b.mean, b.deviation_or_zero(),
+          z.mean,          n.mean,   n.deviation_or_zero(),   {},     {}};
 }
 
-json macro_json(const std::vector<MacroCurve>& curves, const std::string& engine) {
-  Cost cost;
-  std::int64_t bodies = 0;
-  std::int64_t samples = 0;
-  std::int64_t grains = 0;
-  double share = 0.0;
+MeasuredSummary summary_of(const Measurements& data, const std::vector<std::string>& relaxations) {
+  MeasuredSummary out;
+  out.packings = summary_of(data.packings);
+  out.measurement = cost_summary(data, relaxations.front());
+  out.forces = forces_of(data, relaxations.front());
+  if (relaxations.size() < 2) return out;
+  out.reference_measurement = cost_summary(data, relaxations[1]);
+  out.relaxations = relaxations_json(data, relaxations[1], relaxations[0]);
+  return out;
+}
+
+EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
+  EngineSummary out;
   bool usable = true;
-  LawIdentity law;  ///< the same for all samples
   for (const MacroCurve& c : curves) {
     if (c.engine != engine) continue;
-    cost += c.cost;
-    bodies = std::max(bodies, c.bodies);
-    grains = std::max(grains, c.grains);
-    share += c.soft_volume_share;
+    out.cost += c.cost;
+    out.bodies = std::max(out.bodies, c.bodies);
+    out.grains_inside = std::max(out.grains_inside, c.grains);
+    out.soft_volume_share += c.soft_volume_share;
     usable = usable && c.usable;
-    law = c.law;
-    ++samples;
+    if (c.law.form) out.law = c.law;  // the same for all samples
+    ++out.samples;
   }
-  json out{{"samples", samples},
-           {"bodies", bodies},
-           {"grains_inside", grains},
-           {"soft_volume_share", samples > 0 ? share / static_cast<double>(samples) : 0.0},
-           {"loop_passes", cost.loop_passes},
-           {"contact_evaluations", cost.contact_evaluations},
-           {"seconds", cost.seconds},
-           {"usable", usable && samples > 0}};
-  if (law.form) out["law"] = identity_json(law);
+  out.usable = usable && out.samples > 0;
+  if (out.samples > 0) out.soft_volume_share /= static_cast<double>(out.samples);
+  return out;
+}
+
+ComparisonSummary summary_of(const Comparison& c) {
+  ComparisonSummary out{c.axial_difference.mean,
+                        c.axial_difference.error,
+                        c.lateral_difference.mean,
+                        c.axial_end_ratio.mean,
+                        c.lateral_stress_ratio_candidate.mean,
+                        c.lateral_stress_ratio_reference.mean,
+                        c.speedup_seconds,
+                        c.speedup_contact_evaluations,
+                        {},
+                        c.left_out};
+  for (const SampleComparison& s : c.samples)
+    out.samples.push_back({s.sample, s.strain_high, s.axial_difference, s.axial_end_ratio});
   return out;
 }
 
@@ -222,11 +219,6 @@ std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
       "stands in for the friction limit of soft contacts");
   out.push_back(pair_law_remark());
   return out;
-}
-
-json provenance_json(const Provenance& p) {
-  return {{"version", p.version}, {"commit", p.commit},   {"compiler", p.compiler}, {"threads", p.threads},
-          {"seed", p.seed},       {"command", p.command}, {"scene", p.scene}};
 }
 
 }  // namespace softgrain

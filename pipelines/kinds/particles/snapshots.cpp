@@ -1,3 +1,4 @@
+// The frames that run.h5 holds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include "common/core/error.h"
 #include "microsim/particles/frame_contacts.h"
 #include "microsim/particles/trajectory.h"
-#include "pipelines/snapshots/snapshots_of_kinds.h"
+#include "pipelines/kinds/particles/results.h"
 
 namespace softgrain {
 
@@ -146,8 +147,7 @@ void add_contacts(Snapshot& s, const FrameContacts& all, const std::vector<std::
 
 }  // namespace
 
-void visit_particles(const std::string& path, SnapshotChoice choice,
-                     const std::function<void(const Snapshot&)>& visit) {
+void visit_particles(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) {
   const h5::Group root = h5::open_file(path);
   if (!root.has_attribute("kind") || from_word<SnapshotKind>(root.text("kind")) != SnapshotKind::particles)
     throw FileTrouble(path + ": holds no particles");

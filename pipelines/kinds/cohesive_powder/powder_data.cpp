@@ -1,4 +1,4 @@
-#include "pipelines/snapshots/powder_data.h"
+#include "pipelines/kinds/cohesive_powder/powder_data.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,61 @@
+#include "pipelines/kinds/law_table/results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipelines/kinds/law_table/law_check.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/run/findings.h"
+
+namespace softgrain {
+
+namespace {
+
+using namespace report;
+
+void check_crowd_file(const std::string& path, Findings& out) {
+  const CrowdMeasurements data = load_crowd(path);
+  std::size_t open = 0;
+  for (const CrowdRun& run : data.runs)
+    open += static_cast<std::size_t>(
+        std::count_if(run.points.begin(), run.points.end(), [](const CrowdPoint& p) { return !p.converged; }));
+  out.add("kind", "crowd measurements",
+          fmt::format("crowd measurements: {} configurations, {} packings, {} runs", data.configurations.size(),
+                      data.packings.size(), data.runs.size()));
+  if (open > 0) out.warn(fmt::format("{} recorded points did not converge", open));
+}
+
+std::string table_line(const LawTableEntry& entry) {
+  const CrowdLaw* best = entry.find(entry.best);
+  if (best == nullptr) return "";
+  std::string held_out;
+  if (std::isfinite(best->error_held_out))
+    held_out = fmt::format(" and by {} % on what was held out", format_number(100.0 * best->error_held_out, 2));
+  return fmt::format("Solid fraction {}: the {} law is best, off by {} % where it was fitted{}; h/Rs up to {}.",
+                     format_number(entry.solid_fraction, 3), to_string(entry.best),
+                     format_number(100.0 * best->error_fitted, 2), held_out, format_number(entry.overlap_max, 2));
+}
+
+std::vector<HeadLine> lines_of(const RunData& run) {
+  std::vector<HeadLine> lines;
+  if (run.law_table)
+    for (const LawTableEntry& entry : run.law_table->entries) lines.emplace_back("Law", table_line(entry));
+  return lines;
+}
+
+}  // namespace
+
+KindResults law_table_results() {
+  return {.files = {{.names = "crowd(_(variant|level)_[0-9]+)?\\.h5",
+                     .is = [](const h5::Group& root) { return root.has("configurations"); },
+                     .check = check_crowd_file},
+                    {.names = "law(_table)?\\.toml", .check = check_laws},
+                    {.names = "law_table\\.h5|law_table_level_[0-9]+\\.(toml|h5)"}},
+          .sections = {{Place::crowds, law_table_section}},
+          .lines = lines_of};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,82 @@
+#include "pipelines/kinds/macro/results.h"
+
+#include <fmt/format.h>
+
+#include "common/core/error.h"
+#include "common/core/statistics.h"
+#include "pipelines/compare/compare.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/run/findings.h"
+
+namespace softgrain {
+
+namespace {
+
+using namespace report;
+
+void check_macro_file(const std::string& path, Findings& out) {
+  const std::vector<MacroCurve> curves = load_macro(path);
+  out.add("kind", "macro curves", fmt::format("macro curves: {}", curves.size()));
+  out.facts["curves"] = nlohmann::json::array();
+  for (const MacroCurve& c : curves) {
+    const bool recorded = !c.strain.empty() && !c.stress_axial.empty();
+    out.facts["curves"].push_back({{"engine", c.engine}, {"sample", c.sample}, {"usable", c.usable}});
+    if (recorded)
+      out.lines += fmt::format(
+          "    {} sample {}: {} bodies, {} points to a strain of {:.3g}, axial stress {:.4g} Pa{}\n", c.engine,
+          c.sample, c.bodies, c.strain.size(), c.strain.back(), c.stress_axial.back(), c.usable ? "" : ", not usable");
+    if (!c.usable) out.warn(fmt::format("{} sample {} is not usable: {}", c.engine, c.sample, c.note));
+    if (!c.law_beyond.empty() && c.law_beyond.back() > 0.0)
+      out.warn(fmt::format("{} sample {}: {:.0f} of {:.0f} uses of its law lay beyond what was measured at the end",
+                           c.engine, c.sample, c.law_beyond.back(), c.law_asked.empty() ? 0.0 : c.law_asked.back()));
+  }
+}
+
+/// Where runs of one engine ended, when there is nothing to compare with.
+std::string end_line(const std::vector<MacroCurve>& curves) {
+  std::vector<double> stress;
+  for (const MacroCurve& c : curves)
+    if (!c.stress_axial.empty()) stress.push_back(c.stress_axial.back());
+  if (stress.empty()) return "";
+  const MeanError mean = mean_error(stress);
+  return fmt::format("Axial stress {} Pa at strain {} ({}; {} {}).",
+                     stress.size() > 1 ? format_with_error(mean.mean, mean.error) : format_number(mean.mean, 4),
+                     format_number(curves.front().strain.back(), 3), to_string(curves.front().test), stress.size(),
+                     stress.size() > 1 ? "samples, mean" : "sample");
+}
+
+std::string macro_line(const std::vector<MacroCurve>& macro) {
+  const auto laws = curves_of(macro, "law");
+  const auto twins = curves_of(macro, "shelled");
+  if (laws.empty() || twins.empty()) return end_line(laws.empty() ? macro : laws);
+  try {
+    const Comparison c = compare_curves(laws, twins);
+    if (!c.undefined.empty()) return "Law and resolved twin: " + c.undefined.front() + ".";
+    return fmt::format(
+        "Stress by the law differs from the resolved twin by {} % ({} samples); {} times fewer contact "
+        "evaluations, {} times faster.",
+        format_with_error(100 * c.axial_difference.mean, 100 * c.axial_difference.error), c.samples.size(),
+        format_number(c.speedup_contact_evaluations, 3), format_number(c.speedup_seconds, 3));
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+}
+
+std::vector<HeadLine> lines_of(const RunData& run) {
+  if (run.macro.empty()) return {};
+  return {{"Macro", macro_line(run.macro)}};
+}
+
+}  // namespace
+
+KindResults macro_results() {
+  return {.files = {{.names = "macro(_initial)?\\.h5",
+                     .is = [](const h5::Group& root) { return root.has("curves"); },
+                     .check = check_macro_file},
+                    {.names = "states_macro\\.h5|lammps-[0-9]+"}},
+          .sections = {{Place::macro, macro_section}},
+          .lines = lines_of};
+}
+
+}  // namespace softgrain

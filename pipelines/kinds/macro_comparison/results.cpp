@@ -1,0 +1,46 @@
+#include "pipelines/kinds/macro_comparison/results.h"
+
+#include <fmt/format.h>
+
+#include "pipelines/compare/macro_scores.h"
+#include "pipelines/report/engine_style.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/run_data.h"
+
+namespace softgrain {
+
+namespace {
+
+using namespace report;
+
+/// The law that comes closest to the shelled twin.
+std::string scene_line(const ComparedCurves& scene) {
+  const std::vector<EngineScore> scores = score_engines(scene.curves);
+  const EngineScore* best = nullptr;
+  for (const EngineScore& s : scores) {
+    if (s.shelled.axial.n == 0 || s.twin()) continue;
+    if (best == nullptr || s.shelled.axial.mean < best->shelled.axial.mean) best = &s;
+  }
+  if (best == nullptr) return "";
+  return fmt::format(
+      "{}: the {} comes closest, stress off by {} % from the shelled twin; {} times fewer contact evaluations.",
+      scene.name, engine_name(best->engine),
+      format_with_error(100.0 * best->shelled.axial.mean, 100.0 * best->shelled.axial.error),
+      format_number(best->shelled.speedup_evaluations, 3));
+}
+
+std::vector<HeadLine> lines_of(const RunData& run) {
+  std::vector<HeadLine> lines;
+  for (const ComparedCurves& scene : run.macro_scenes) lines.emplace_back("Macro", scene_line(scene));
+  return lines;
+}
+
+}  // namespace
+
+KindResults macro_comparison_results() {
+  return {.files = {{.names = "comparison\\.json"}, {.names = "(macro|states_macro)_.+\\.h5", .says_so = true}},
+          .sections = {{Place::macro_scenes, macro_scenes_section}},
+          .lines = lines_of};
+}
+
+}  // namespace softgrain

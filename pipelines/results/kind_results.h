@@ -1,0 +1,81 @@
+// What runs of a kind of scene leave behind, as check, report, export and the removal of earlier runs know it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/data/snapshot.h"
+#include "common/io/hdf5_file.h"
+
+namespace softgrain {
+
+class Findings;
+
+namespace report {
+struct RunData;
+}
+
+enum class SnapshotChoice {
+  all,
+  last  ///< of every series the last state
+};
+
+using VisitSnapshot = std::function<void(const Snapshot&)>;
+
+/// Files that runs of a kind leave in their directory.
+struct ResultFile {
+  const char* names = "";  ///< regular expression; nobody else gives a file such a name
+  bool says_so = false;    ///< the name may be anybody's: the file itself must say that this program wrote it
+  /// Whether an HDF5 file is one, whatever its name; null: no HDF5 file, or none that is looked into.
+  bool (*is)(const h5::Group& root) = nullptr;
+  /// What is in it, for `check`. Throws FileTrouble.
+  void (*check)(const std::string& path, Findings& out) = nullptr;
+  /// Its states, for pictures and export; null: it holds none. Throws FileTrouble.
+  void (*visit)(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) = nullptr;
+};
+
+/// Places of the sections in a report.
+enum class Place {
+  own_data,
+  search,
+  crowds,
+  levels,
+  normal,
+  tangential,
+  stiffness,
+  laws,
+  relaxations,
+  macro,
+  macro_scenes,
+  packing,
+  radii,
+  particles,
+  grain_boxes,
+  powder_variants,
+  powder,
+  cost,
+  provenance
+};
+
+/// A part of the report; an empty string where a run holds nothing of it.
+struct ReportSection {
+  Place place;
+  std::string (*html)(const report::RunData& run);
+};
+
+/// Label and text of a line at the head of the report.
+using HeadLine = std::pair<std::string, std::string>;
+
+struct KindResults {
+  std::vector<ResultFile> files{};
+  std::vector<ReportSection> sections{};
+  /// What came out, a few lines; null: nothing is said.
+  std::vector<HeadLine> (*lines)(const report::RunData& run) = nullptr;
+};
+
+/// Those of every kind; see kinds/kinds.cpp.
+const std::vector<KindResults>& results_of_kinds();
+
+}  // namespace softgrain

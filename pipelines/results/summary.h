@@ -1,0 +1,280 @@
+// Pieces of summary.json that several commands write, and the remarks that go with them.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/limits.h"
+#include "common/data/fields.h"
+#include "common/data/macro_result.h"
+#include "common/data/measurements.h"
+#include "common/io/json_record.h"
+#include "common/io/provenance.h"
+#include "macrosim/macro_spec.h"
+#include "pipelines/compare/compare.h"
+
+namespace softgrain {
+
+/// What a summary says of its run.
+enum class RunStatus { good, not_usable, not_run, written };
+
+template <>
+inline constexpr auto words<RunStatus> = word_list<RunStatus>({{RunStatus::good, "good"},
+                                                               {RunStatus::not_usable, "not usable"},
+                                                               {RunStatus::not_run, "not run"},
+                                                               {RunStatus::written, "written"}});
+
+/// What the summary of every kind begins with.
+struct SummaryHead {
+  RunStatus status = RunStatus::good;
+  std::string title;
+  std::vector<std::string> remarks;          ///< sentences about what must not be overlooked
+  std::map<std::string, std::string> files;  ///< that were written
+
+  /// Not usable, and why.
+  void reject(const std::string& remark) {
+    status = RunStatus::not_usable;
+    remarks.push_back(remark);
+  }
+};
+
+void fields(auto&& visit, Of<SummaryHead> auto& s) {
+  visit("status", s.status);
+  visit("title", s.title);
+  visit("remarks", s.remarks);
+  visit("files", s.files, kLeftOut);
+}
+
+/// Which program moved the bodies, when it was another.
+struct EngineUse {
+  MacroEngine name = MacroEngine::softgrain;
+  std::int64_t ranks = 0;
+  std::string program;
+  std::string release;  ///< "29 Sep 2021"
+};
+
+void fields(auto&& visit, Of<EngineUse> auto& s) {
+  visit("name", s.name);
+  visit("ranks", s.ranks);
+  visit("program", s.program);
+  visit("lammps", s.release);
+}
+
+/// What any summary says of its run, whatever the kind and whoever wrote it.
+struct AnySummary {
+  std::string status;  ///< empty: no summary
+  std::string title;
+  std::string command;
+  std::string version;
+  std::string commit;
+  std::optional<std::vector<std::string>> remarks;
+  std::map<std::string, std::string> files;
+  std::optional<double> seconds;
+  std::optional<Provenance> provenance;
+  std::optional<EngineUse> engine;
+};
+
+void fields(auto&& visit, Of<AnySummary> auto& s) {
+  visit("status", s.status);
+  visit("title", s.title);
+  visit("command", s.command);
+  visit("version", s.version);
+  visit("commit", s.commit);
+  visit("remarks", s.remarks);
+  visit("files", s.files);
+  visit("seconds", s.seconds);
+  visit("provenance", s.provenance);
+  visit("engine", s.engine);
+}
+
+/// Whether a status in words says that the result is to be used.
+inline bool is_good(const std::string& status) { return from_word<RunStatus>(status) == RunStatus::good; }
+
+/// Of the packings that were measured: means, standard deviations beside them.
+struct PackingsSummary {
+  std::size_t count = 0;
+  double solid_fraction = 0.0;
+  double solid_fraction_deviation = 0.0;
+  double exponent = 0.0;  ///< of the radii, by maximum likelihood
+  double exponent_deviation = 0.0;
+  double contacts_per_grain = 0.0;
+  double grains = 0.0;
+  double grains_deviation = 0.0;
+  std::optional<std::size_t> broke_off;  ///< whose measurement did not come to its end
+  std::optional<double> seconds;         ///< that making them took
+};
+
+void fields(auto&& visit, Of<PackingsSummary> auto& s) {
+  visit("count", s.count);
+  visit("solid_fraction", s.solid_fraction);
+  visit("solid_fraction_deviation", s.solid_fraction_deviation);
+  visit("exponent", s.exponent);
+  visit("exponent_deviation", s.exponent_deviation);
+  visit("contacts_per_grain", s.contacts_per_grain);
+  visit("grains", s.grains);
+  visit("grains_deviation", s.grains_deviation);
+  visit("broke_off", s.broke_off, kLeftOut);
+  visit("seconds", s.seconds, kLeftOut);
+}
+
+PackingsSummary summary_of(const std::vector<PackingInfo>& packings);
+
+/// What one relaxation took, in all and per point.
+struct MeasurementSummary {
+  std::string relaxation;
+  std::int64_t points = 0;
+  Cost cost;
+  double loop_passes_per_point = 0.0;
+  double seconds_per_point = 0.0;
+  std::optional<double> wall_seconds;
+};
+
+void fields(auto&& visit, Of<MeasurementSummary> auto& s) {
+  visit("relaxation", s.relaxation);
+  visit("points", s.points);
+  fields(visit, s.cost);
+  visit("loop_passes_per_point", s.loop_passes_per_point);
+  visit("seconds_per_point", s.seconds_per_point);
+  visit("wall_seconds", s.wall_seconds, kLeftOut);
+}
+
+/// Force at one overlap, over packings whose point converged [N].
+struct ForceSummary {
+  double delta = 0.0;
+  double force = 0.0;
+  double standard_error = 0.0;
+  double deviation = 0.0;
+  std::size_t packings = 0;
+};
+
+void fields(auto&& visit, Of<ForceSummary> auto& s) {
+  visit("delta", s.delta);
+  visit("force", s.force);
+  visit("standard_error", s.standard_error);
+  visit("deviation", s.deviation);
+  visit("packings", s.packings);
+}
+
+/// What was measured on soft particles. The first relaxation gives the law; a second one checks it.
+struct MeasuredSummary {
+  PackingsSummary packings;
+  MeasurementSummary measurement;
+  std::map<std::string, std::vector<ForceSummary>> forces;  ///< of each kind of contact
+  std::optional<MeasurementSummary> reference_measurement;
+  nlohmann::json relaxations;  ///< {reference, candidate, kind of contact: {normal, kt_initial, ...}}: means and ratios
+};
+
+void fields(auto&& visit, Of<MeasuredSummary> auto& s) {
+  visit("packings", s.packings);
+  visit("measurement", s.measurement);
+  visit("forces", s.forces);
+  visit("reference_measurement", s.reference_measurement, kLeftOut);
+  visit("relaxations", s.relaxations, kLeftOut);
+}
+
+MeasuredSummary summary_of(const Measurements& data, const std::vector<std::string>& relaxations);
+
+void fields(auto&& visit, Of<LawIdentity> auto& law) {
+  auto fraction = law.solid_fraction > 0.0 ? std::optional(law.solid_fraction) : std::nullopt;  // of a card: none
+  visit("form", law.form);
+  visit("solid_fraction", fraction);
+  visit("E", law.youngs_modulus);
+  visit("nu", law.poisson_ratio);
+  visit("mu", law.friction);
+  visit("hash", law.hash);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>) law.solid_fraction = fraction.value_or(0.0);
+}
+
+/// Of one engine: the largest number of bodies and grains, costs summed over its samples.
+struct EngineSummary {
+  std::int64_t samples = 0;
+  std::int64_t bodies = 0;
+  std::int64_t grains_inside = 0;
+  double soft_volume_share = 0.0;  ///< mean
+  Cost cost;
+  bool usable = false;
+  std::optional<LawIdentity> law;
+};
+
+void fields(auto&& visit, Of<EngineSummary> auto& s) {
+  visit("samples", s.samples);
+  visit("bodies", s.bodies);
+  visit("grains_inside", s.grains_inside);
+  visit("soft_volume_share", s.soft_volume_share);
+  fields(visit, s.cost);
+  visit("usable", s.usable);
+  visit("law", s.law, kLeftOut);
+}
+
+EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::string& engine);
+
+/// One sample of a law run against its twin.
+struct SampleDifference {
+  std::int64_t sample = 0;
+  double strain_high = 0.0;
+  double stress_error = 0.0;
+  double end_ratio = 0.0;
+};
+
+void fields(auto&& visit, Of<SampleDifference> auto& s) {
+  visit("sample", s.sample);
+  visit("strain_high", s.strain_high);
+  visit("stress_error", s.stress_error);
+  visit("end_ratio", s.end_ratio);
+}
+
+/// Law runs against the shelled twin, see Comparison.
+struct ComparisonSummary {
+  double stress_error = kNaN;  ///< relative L2 difference of the axial stress, mean over samples
+  double stress_error_standard_error = kNaN;
+  double lateral_stress_error = kNaN;
+  double end_stress_ratio = kNaN;
+  double lateral_stress_ratio_law = kNaN;
+  double lateral_stress_ratio_resolved = kNaN;
+  double speedup_seconds = kNaN;
+  double speedup_contact_evaluations = kNaN;
+  std::vector<SampleDifference> samples;
+  std::vector<std::string> left_out;
+};
+
+void fields(auto&& visit, Of<ComparisonSummary> auto& s) {
+  visit("stress_error", s.stress_error);
+  visit("stress_error_standard_error", s.stress_error_standard_error);
+  visit("lateral_stress_error", s.lateral_stress_error);
+  visit("end_stress_ratio", s.end_stress_ratio);
+  visit("lateral_stress_ratio_law", s.lateral_stress_ratio_law);
+  visit("lateral_stress_ratio_resolved", s.lateral_stress_ratio_resolved);
+  visit("speedup_seconds", s.speedup_seconds);
+  visit("speedup_contact_evaluations", s.speedup_contact_evaluations);
+  visit("samples", s.samples);
+  visit("left_out", s.left_out);
+}
+
+ComparisonSummary summary_of(const Comparison& comparison);
+
+/// What macro runs took and how far the law is from the twin.
+struct MacroSummary {
+  std::optional<EngineSummary> macro;  ///< by law
+  std::optional<EngineSummary> resolved;
+  std::optional<EngineSummary> free;  ///< the twin without shells
+  std::optional<ComparisonSummary> comparison;
+};
+
+void fields(auto&& visit, Of<MacroSummary> auto& s) {
+  visit("macro", s.macro, kLeftOut);
+  visit("resolved", s.resolved, kLeftOut);
+  visit("free", s.free, kLeftOut);
+  visit("comparison", s.comparison, kLeftOut);
+}
+
+/// Sentences about what must not be overlooked: points that did not converge, curves that are not usable.
+std::vector<std::string> measurement_remarks(const Measurements& data);
+/// Whether every run with a law, and every shelled twin, ends under stress: else nothing can be said relative to it.
+bool all_carry_stress(const std::vector<MacroCurve>& curves);
+
+std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves);
+
+}  // namespace softgrain
