@@ -40,6 +40,13 @@ bool labelled(int mantissa, int exponent, double decades) {
   return mantissa == 1 && exponent % every == 0;
 }
 
+/// Room at the ends of an axis must not reach beyond all numbers.
+bool can_be_drawn(Scale scale, double value) {
+  constexpr double kLargest = 1e100;
+  if (!(std::abs(value) < kLargest)) return false;
+  return scale == Scale::linear || value > 1.0 / kLargest;
+}
+
 }  // namespace
 
 double nice_step(double range, int target) {
@@ -63,7 +70,7 @@ Axis Axis::around(Scale scale, std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const double v : values) {
-    if (!std::isfinite(v) || (scale == Scale::logarithmic && v <= 0.0)) continue;
+    if (!can_be_drawn(scale, v)) continue;
     low = std::min(low, v);
     high = std::max(high, v);
   }
@@ -71,7 +78,7 @@ Axis Axis::around(Scale scale, std::span<const double> values) {
   return scale == Scale::linear ? linear_around(low, high) : logarithmic_around(low, high);
 }
 
-bool Axis::drawable(double value) const { return std::isfinite(value) && (scale_ == Scale::linear || value > 0.0); }
+bool Axis::drawable(double value) const { return can_be_drawn(scale_, value); }
 
 double Axis::position(double value) const {
   if (!drawable(value)) return std::numeric_limits<double>::quiet_NaN();

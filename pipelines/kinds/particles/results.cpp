@@ -26,7 +26,7 @@ std::vector<HeadLine> lines_of(const report::RunData& run) {
   const auto scene = run.summary_as<ParticlesSummary>();
   if (scene.particles.empty()) return {};
   const std::int64_t count = std::max<std::int64_t>(scene.particle_count, std::ssize(scene.particles));
-  return {{"Scene", fmt::format("{} explicit particles.", count)}};
+  return {{"Scene", count == 1 ? "1 explicit particle." : fmt::format("{} explicit particles.", count)}};
 }
 
 }  // namespace

@@ -1,0 +1,171 @@
+// Summaries of all kinds: what was written comes back, and what others wrote in its place is no trouble.
+#include <gtest/gtest.h>
+
+#include "pipelines/kinds/cohesive_powder/results.h"
+#include "pipelines/kinds/cohesive_powder/summary.h"
+#include "pipelines/kinds/hierarchy/summary.h"
+#include "pipelines/kinds/inverse/summary.h"
+#include "pipelines/kinds/macro/summary.h"
+#include "pipelines/kinds/macro_comparison/summary.h"
+#include "pipelines/kinds/particles/results.h"
+#include "pipelines/kinds/particles/summary.h"
+#include "pipelines/law/experiment_summary.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/sections.h"
+
+namespace softgrain {
+namespace {
+
+using nlohmann::json;
+
+SummaryHead head() { return {RunStatus::not_usable, "title", {"a remark"}, {{"file", "path"}}}; }
+
+HierarchySummary hierarchy() {
+  HierarchySummary s;
+  s.head = head();
+  s.levels.resize(2);
+  s.levels[1].level = 1;
+  s.levels[1].inner = InnerSummary{4.0, 0.1, 0.2, 3.0};
+  s.levels[1].law.parameters = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  s.levels[1].curves = {{0.1, 0.2}, {1.0, 2.0}, {3.0, 4.0}};
+  s.levels[1].distance_percent = 2.5;
+  s.levels[1].changes = {{"one", 1.1, 0.1}};
+  s.fixed_point = FixedPoint{true, "text", 1};
+  s.check = CheckSummary{};
+  s.check->result.points.resize(1);
+  return s;
+}
+
+InverseSummary inverse() {
+  InverseSummary s;
+  s.head = head();
+  s.inverse = SearchSummary{};
+  s.inverse->parameters = {{"mu", 0.3, {{0.2, 0.4}}, 0.05, true, {{0.0, 1.0}}, false}};
+  s.inverse->target = {{0.1}, {2.0}, {0.1}, 0.04};
+  s.inverse->confirmed = {{2.1}, {0.2}, 8, 1.1};
+  s.inverse->evaluations = {{{0.3}, kNaN, {2.2}}};
+  return s;
+}
+
+PowderSummary powder() {
+  PowderSummary s;
+  s.head = head();
+  s.kind = "cohesive-powder";
+  s.samples.resize(1);
+  PackSummary& pack = s.samples[0];
+  pack.contacts.shares = {0.1, 0.9};
+  pack.analysis.rigidity = PowderRigidity{};
+  pack.analysis.rigidity->backbone = Rigidity{};
+  pack.scattering = ScatteringFit{};
+  pack.scattering->covariance.assign(16, 1.0);
+  pack.scattering->dimension = {1.9, 0.1, 1.7, 2.1};
+  pack.holes = PowderHoles{};
+  s.seconds = {1.5};
+  s.statistics = {{"z", 3.0}};
+  s.scattering = EnsembleFit{*pack.scattering, {*pack.scattering}};
+  return s;
+}
+
+PowderVariantsSummary variants() {
+  PowderVariantsSummary s;
+  s.variants.resize(1);
+  s.variants[0].name = "rough";
+  s.variants[0].values["Phi"] = {0.7, 0.01, 4, 0.005};
+  s.variants[0].published["Phi"] = {0.71, kNaN};
+  s.variants[0].difference["Phi"] = {-0.01, kNaN};
+  return s;
+}
+
+MacroRunSummary macro() {
+  MacroRunSummary s;
+  s.head = head();
+  s.law = RunLaw{{Crowd::pair, 0.7, 5e5, 0.3, {}, "hash"}, "law.toml"};
+  s.runs.macro = EngineSummary{};
+  s.runs.comparison = ComparisonSummary{};
+  s.runs.comparison->samples.resize(1);
+  s.engine = EngineUse{MacroEngine::lammps, 4, "lmp", "2021"};
+  return s;
+}
+
+ParticlesSummary particles() {
+  ParticlesSummary s;
+  s.head = head();
+  s.particles = {{0, {1.0, 2.0}, {3.0, 4.0}, {5.0}}};
+  s.contacts = std::vector<PairSummary>{{{0, "wall"}, 1, 2.0, 3.0, 4.0}};
+  return s;
+}
+
+ExperimentSummary experiment() {
+  ExperimentSummary s;
+  s.head = head();
+  PairLawSummary& law = s.laws["soft-solid"];
+  law.parts.normal = LawNumbers{};
+  law.parts.normal->a = {1.0, 0.1, 0.8, 1.2};
+  s.experiment = {{PairKind::soft_soft, "a", {0.1}, {1.0}, {kNaN}, 5, 0}};
+  return s;
+}
+
+/// Calls with the value at every place in it replaced by something of another kind, or gone.
+void damage(json& whole, json& at, const std::function<void(const json&)>& look) {
+  for (const json& other : {json(), json(true), json(-7), json(1e300), json("text"),
+                            json::array({json(), "x", json::object()}), json{{"a", 1}}}) {
+    const json before = std::exchange(at, other);
+    look(whole);
+    at = before;
+  }
+  if (at.is_structured())
+    for (json& inner : at) damage(whole, inner, look);
+}
+
+/// `section`: of the report, drawn of every damaged summary.
+template <class Summary>
+void expect_lasting(const Summary& summary, std::string (*section)(const report::RunData&) = nullptr) {
+  json written = json_of(summary);
+  EXPECT_EQ(json_of(record_of<Summary>(json::parse(written.dump()))).dump(), written.dump());
+  std::size_t looks = 0;
+  damage(written, written, [&](const json& damaged) {
+    (void)json_of(record_of<Summary>(damaged));
+    (void)record_of<AnySummary>(damaged);
+    report::RunData run;
+    run.summary = damaged;
+    if (section != nullptr) (void)section(run);
+    (void)report::heading_section(run);
+    (void)report::provenance_section(run);
+    ++looks;
+  });
+  EXPECT_GT(looks, 50U);
+}
+
+TEST(Summaries, OfHierarchiesLast) { expect_lasting(hierarchy(), report::hierarchy_section); }
+TEST(Summaries, OfSearchesLast) { expect_lasting(inverse(), report::inverse_section); }
+TEST(Summaries, OfVariantsLast) { expect_lasting(variants(), report::powder_variants_section); }
+TEST(Summaries, OfMacroRunsLast) { expect_lasting(macro(), report::cost_section); }
+TEST(Summaries, OfParticlesLast) { expect_lasting(particles(), report::particles_section); }
+TEST(Summaries, OfExperimentsLast) { expect_lasting(experiment(), report::laws_section); }
+
+TEST(Summaries, OfPowdersLast) {
+  // A fit that is read has numbers or none; the covariance, which says so when it is written, stays in powder.h5.
+  PowderSummary s = powder();
+  const json written = json_of(s);
+  const auto back = record_of<PowderSummary>(written);
+  EXPECT_EQ(back.samples[0].scattering->dimension.low, 1.7);
+  EXPECT_EQ(back.scattering->other_ranges.at(0).dimension.error, 0.1);
+  EXPECT_EQ(back.samples[0].analysis.rigidity->backbone->freedoms, 0);
+  s.scattering.reset();
+  s.samples[0].scattering.reset();
+  expect_lasting(s);
+}
+
+TEST(Summaries, OfComparedScenesNameTheirCurves) {
+  ComparedScenes s;
+  s.scenes = {{"a", {}, MacroTest::shear, Construction::mixed, 0.3, "macro_a.h5", std::vector<SceneFacts>(1), {}}};
+  s.scenes[0].samples[0].solid = 12;
+  const auto back = record_of<ComparedScenes>(json_of(s));
+  ASSERT_EQ(back.scenes.size(), 1U);
+  EXPECT_EQ(back.scenes[0].file, "macro_a.h5");
+  EXPECT_EQ(back.scenes[0].test, MacroTest::shear);
+  EXPECT_EQ(back.scenes[0].samples.at(0).solid, 12);
+}
+
+}  // namespace
+}  // namespace softgrain
