@@ -178,14 +178,15 @@ void fields(auto&& visit, Of<MeasuredSummary> auto& s) {
 MeasuredSummary summary_of(const Measurements& data, const std::vector<std::string>& relaxations);
 
 void fields(auto&& visit, Of<LawIdentity> auto& law) {
-  auto fraction = law.solid_fraction > 0.0 ? std::optional(law.solid_fraction) : std::nullopt;  // of a card: none
+  double fraction = law.solid_fraction > 0.0 ? law.solid_fraction : kNaN;  // of a card: none
   visit("form", law.form);
   visit("solid_fraction", fraction);
   visit("E", law.youngs_modulus);
   visit("nu", law.poisson_ratio);
   visit("mu", law.friction);
   visit("hash", law.hash);
-  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>) law.solid_fraction = fraction.value_or(0.0);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>)
+    law.solid_fraction = fraction > 0.0 ? fraction : 0.0;
 }
 
 /// Of one engine: the largest number of bodies and grains, costs summed over its samples.
