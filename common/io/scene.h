@@ -132,6 +132,8 @@ class SceneTable {
 
   /// "file:line" of a key (of the table itself when the key is absent), for messages of checks that span keys.
   [[nodiscard]] std::string where(const std::string& key) const;
+  /// A path written in the scene, relative to the scene's own folder.
+  [[nodiscard]] std::string resolve(const std::string& relative) const;
   /// Throws BadScene at `key` with this text in the standard form; one without mistakes where a value of this table, or
   /// of one below, is not that of the file, so that the complaint may come from that.
   [[noreturn]] void reject(const std::string& key, const std::string& problem) const;

@@ -133,10 +133,12 @@ Scene::Scene(const std::string& name, std::string text, std::shared_ptr<SceneDoc
 
 SceneTable Scene::root() const { return SceneTable(root_); }
 
-std::string Scene::resolve(const std::string& relative) const {
+std::string SceneTable::resolve(const std::string& relative) const {
   const std::filesystem::path given(relative);
   if (given.is_absolute()) return relative;
-  return (std::filesystem::path(path_).parent_path() / given).lexically_normal().string();
+  return (std::filesystem::path(impl_->document->name).parent_path() / given).lexically_normal().string();
 }
+
+std::string Scene::resolve(const std::string& relative) const { return root().resolve(relative); }
 
 }  // namespace softgrain

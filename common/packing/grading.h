@@ -1,0 +1,97 @@
+// Size distributions of grains, whatever their form: pieces of power laws, each with a share of the volume.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/core/words.h"
+
+namespace softgrain {
+
+class RandomStream;
+
+enum class GradingForm { power_law, fuller, log_normal, classes, sieve_curve, list };
+
+template <>
+inline constexpr auto words<GradingForm> = word_list<GradingForm>({{GradingForm::power_law, "power-law"},
+                                                                   {GradingForm::fuller, "fuller"},
+                                                                   {GradingForm::log_normal, "log-normal"},
+                                                                   {GradingForm::classes, "classes"},
+                                                                   {GradingForm::sieve_curve, "sieve-curve"},
+                                                                   {GradingForm::list, "list"}});
+
+/// Radii between low and high [m] with number density ~ r^-exponent; low = high: all alike.
+struct SizePiece {
+  double low = 0.0;
+  double high = 0.0;
+  double exponent = 4.0;  ///< 4: the volume of spheres is even over the logarithm of the size
+  double volume = 1.0;    ///< share of the volume of all grains
+
+  [[nodiscard]] double radius(double u) const;  ///< below it are u of its grains, 0 <= u <= 1
+  /// The mean of r^power over its grains.
+  [[nodiscard]] double mean_power(int power) const;
+  /// Share of the sum of r^power in grains below r.
+  [[nodiscard]] double passing(double r, int power) const;
+};
+
+/// A distribution by volume ("passing" of a sieve analysis), from which the one by number follows. In the plane volumes
+/// are areas of disks, as masses are.
+class Grading {
+ public:
+  /// P(r) ~ r^-exponent by number [SP 1.1]. All of these throw BadInput for sizes that are not positive or fall.
+  static Grading power_law(double exponent, double rmin, double rmax, int dimension = 3);
+  /// Volume passing ((r^q - rmin^q)/(rmax^q - rmin^q)): Fuller's curve with q = 1/2 and rmin = 0, Andreasen's and
+  /// Andersen's with a least size [Dinger and Funk]. q != 0.
+  static Grading fuller(double q, double rmin, double rmax, int dimension = 3);
+  /// Logarithms of sizes normal by volume about that of the median, with deviation ln(geometric_deviation), cut off at
+  /// both ends; passing within 3e-5 of the exact one over two decades.
+  static Grading log_normal(double median, double geometric_deviation, double rmin, double rmax, int dimension = 3);
+  /// Shares of volume are scaled to 1; classes may overlap.
+  static Grading classes(std::vector<SizePiece> pieces, int dimension = 3);
+  /// Passing known at some sizes, straight over the logarithm of the size between: sieve_radius ascends, passing from 0
+  /// to 1.
+  static Grading sieve_curve(const std::vector<double>& sieve_radius, const std::vector<double>& passing,
+                             int dimension = 3);
+  /// These grains, in these numbers.
+  static Grading list(std::vector<double> radii, int dimension = 3);
+
+  [[nodiscard]] GradingForm form() const { return form_; }
+  /// The keys and values that read_grading makes the same distribution of, a line each; equal texts: equal radii.
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// "sieve-curve, diameters from 0.5 to 4 mm".
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] const std::vector<SizePiece>& pieces() const { return pieces_; }
+  [[nodiscard]] double smallest() const;
+  [[nodiscard]] double largest() const;
+  /// Share of the volume in grains smaller than r.
+  [[nodiscard]] double passing(double r) const;
+  /// Radius below which u of all grains are, by number, 0 <= u <= 1; where classes overlap, one class after another.
+  [[nodiscard]] double radius(double u) const;
+  /// <r^3> over grains [m^3], of disks <r^2> [m^2].
+  [[nodiscard]] double mean_volume() const;
+  /// `n` radii, one from each of n equal shares of the number at the same random place in each: without bias, and with
+  /// less scatter of the volume than independent ones. Ascending. A list of n radii gives these.
+  [[nodiscard]] std::vector<double> draw(std::size_t n, RandomStream& random) const;
+  /// Largest difference between the passing of radii and the one asked for, beside each grain. None can be below half
+  /// the volume share of the largest grain, and one that is drawn is not above that share.
+  [[nodiscard]] double largest_difference(const std::vector<double>& radii) const;
+  /// Volume of `radii` smaller than `r`, over that of all.
+  [[nodiscard]] double obtained_passing(const std::vector<double>& radii, double r) const;
+
+  /// The same law for other units of length.
+  [[nodiscard]] bool same_shape(double unit, const Grading& other, double other_unit) const;
+
+ private:
+  Grading(GradingForm form, std::string text, std::vector<SizePiece> pieces, int dimension);
+  [[nodiscard]] double volume(double r) const { return dimension_ == 2 ? r * r : r * r * r; }
+
+  GradingForm form_ = GradingForm::list;
+  int dimension_ = 3;
+  std::string text_;
+  std::vector<SizePiece> pieces_;
+  std::vector<double> number_;  ///< share of the number in the pieces up to each, the last 1
+  std::vector<double> volume_;  ///< share of the volume in the pieces before each; empty: pieces overlap
+};
+
+}  // namespace softgrain

@@ -1,0 +1,244 @@
+#include "common/packing/grading_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "common/core/error.h"
+#include "common/io/csv_file.h"
+
+namespace softgrain {
+
+namespace {
+
+const Range kExponents = Range::closed(-20.0, 20.0);
+
+struct Ends {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+Ends read_ends(const SceneTable& t) {
+  const double low = t.number("radius_min", Unit::length, Range::positive());
+  const double high = t.number("radius_max", Unit::length, Range::positive());
+  if (t.sound() && !(high > low)) t.reject("radius_max", "must be above radius_min");
+  return {low, high};
+}
+
+SizePiece read_class(const SceneTable& c, int dimension) {
+  SizePiece p;
+  if (c.has("radius")) {
+    p.low = p.high = c.number("radius", Unit::length, Range::positive());
+  } else {
+    const Ends ends = read_ends(c);
+    p.low = ends.low;
+    p.high = ends.high;
+  }
+  p.exponent = p.low == p.high ? 1.0 + dimension : c.number("exponent", Unit::none, kExponents, 1.0 + dimension);
+  p.volume = c.number("volume_share", Unit::none, Range{0.0, 1.0, true, false});
+  return p;
+}
+
+Grading read_classes(const SceneTable& t, int dimension) {
+  std::vector<SizePiece> pieces;
+  double sum = 0.0;
+  for (const SceneTable& c : t.tables("class")) {
+    pieces.push_back(read_class(c, dimension));
+    sum += pieces.back().volume;
+  }
+  if (pieces.empty()) t.reject("class", "needs at least one [[class]] with a size and volume_share");
+  if (t.sound() && std::abs(sum - 1.0) > 1e-6)
+    t.reject("class", fmt::format("the shares add up to {:g}; they must add up to 1", sum));
+  return Grading::classes(std::move(pieces), dimension);
+}
+
+/// The column with one of these names; -1: none.
+int column_of(const CsvFile& csv, std::initializer_list<const char*> names) {
+  for (std::size_t k = 0; k < csv.columns().size(); ++k)
+    for (const char* name : names)
+      if (csv.columns()[k].name == name) return static_cast<int>(k);
+  return -1;
+}
+
+std::string head_of(const CsvFile& csv) { return csv.where(csv.header_line()) + ": "; }
+
+bool in_inches(std::string unit) {
+  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return unit == "in" || unit == "in." || unit == "inch" || unit == "inches" || unit == "\"";
+}
+
+std::size_t length_column(const CsvFile& csv, std::initializer_list<const char*> names, const char* example) {
+  const int k = column_of(csv, names);
+  if (k < 0) throw BadInput(fmt::format("{}needs a column \"{}\"", head_of(csv), example));
+  const auto column = static_cast<std::size_t>(k);
+  if (in_inches(csv.columns()[column].unit))
+    throw BadInput(
+        fmt::format("{}sizes in inches are not read; give them in mm (1 in = 25.4 mm): \"{}\"", head_of(csv), example));
+  csv.require_unit(column, Unit::length, example);
+  return column;
+}
+
+double must(const std::optional<double>& value, const CsvFile& csv, const CsvRow& row, const char* what) {
+  if (!value) throw BadInput(fmt::format("{}: {} is missing", csv.where(row.line), what));
+  return *value;
+}
+
+struct SieveRow {
+  double opening = 0.0;  ///< [m]
+  double passing = 0.0;  ///< 0 to 1
+  std::string where{};   ///< "file:line"
+};
+
+/// 100 where the column is in percent, 1 where it is a share.
+double whole_of(const CsvFile& csv, std::size_t column) {
+  const std::string& unit = csv.columns()[column].unit;
+  if (unit == "%" || unit == "percent") return 100.0;
+  if (unit.empty() || unit == "1" || unit == "-") return 1.0;
+  throw BadInput(
+      fmt::format("{}passing is in percent of mass or a share: \"passing [%]\", not [{}]", head_of(csv), unit));
+}
+
+std::vector<SieveRow> sieve_rows(const CsvFile& csv) {
+  const std::size_t opening =
+      length_column(csv, {"opening", "sieve", "size", "diameter", "sieve opening", "sieve size"}, "opening [mm]");
+  const int passing = column_of(csv, {"passing", "finer", "cumulative passing", "percent passing"});
+  if (passing < 0)
+    throw BadInput(fmt::format("{}needs a column \"passing [%]\", cumulative, of mass{}", head_of(csv),
+                               column_of(csv, {"retained", "cumulative retained"}) >= 0
+                                   ? "; passing is 100 % less what is retained in all"
+                                   : ""));
+  const auto column = static_cast<std::size_t>(passing);
+  const double whole = whole_of(csv, column);
+  std::vector<SieveRow> rows;
+  for (const CsvRow& row : csv.rows()) {
+    SieveRow s;
+    s.where = csv.where(row.line);
+    s.opening = must(csv.number(row, opening, Unit::length), csv, row, "the opening");
+    std::string text = row.cells[column];
+    if (!text.empty() && text.back() == '%') text.pop_back();
+    CsvRow plain = row;
+    plain.cells[column] = text;
+    s.passing = must(csv.number(plain, column, Unit::none), csv, row, "what passes") / whole;
+    if (!(s.opening > 0.0))
+      throw BadInput(s.where + ": an opening must be positive; for a pan give the size of the smallest grains");
+    if (s.passing < 0.0 || s.passing > 1.0)
+      throw BadInput(fmt::format("{}: {:g} passes; allowed: 0 to {}", s.where, s.passing * whole,
+                                 whole == 1.0 ? "1 (a share; write \"passing [%]\" for percent)" : "100 %"));
+    rows.push_back(s);
+  }
+  return rows;
+}
+
+std::string percent(double share) { return fmt::format("{:g} %", 100.0 * share); }
+
+/// What passing that falls may be instead, from the smallest sieve to the largest.
+std::string guess(const std::vector<SieveRow>& rows) {
+  if (std::is_sorted(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.passing > b.passing; }))
+    return ": this looks like what is retained in all; passing is 100 % less that";
+  double sum = 0.0;
+  for (const SieveRow& row : rows) sum += row.passing;
+  if (std::abs(sum - 1.0) > 0.02) return "";
+  return ": all add up to 100 %, which looks like what each sieve retains; passing is the sum of what finer sieves "
+         "retain";
+}
+
+/// From the smallest sieve to the largest.
+Grading curve_of(std::vector<SieveRow> rows, int dimension) {
+  if (rows.size() < 2) throw BadInput("a sieve curve needs at least two sieves");
+  std::stable_sort(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.opening < b.opening; });
+  std::vector<double> radius{0.5 * rows[0].opening};
+  std::vector<double> passing{rows[0].passing};
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const SieveRow& before = rows[k - 1];
+    const SieveRow& row = rows[k];
+    if (row.opening == before.opening)
+      throw BadInput(
+          fmt::format("{}: the sieve of {:g} mm is there twice ({})", row.where, 1e3 * row.opening, before.where));
+    if (row.passing < before.passing)
+      throw BadInput(fmt::format("{}: passing falls to {} on a wider sieve ({}: {}){}", row.where, percent(row.passing),
+                                 before.where, percent(before.passing), guess(rows)));
+    radius.push_back(0.5 * row.opening);
+    passing.push_back(row.passing);
+  }
+  for (const auto& [row, wanted] : {std::pair{rows.front(), 0.0}, std::pair{rows.back(), 1.0}})
+    if (row.passing != wanted)
+      throw BadInput(fmt::format("{}: the curve goes from {} to {}; it must go from 0 to 100 %: add the {} grains",
+                                 row.where, percent(rows.front().passing), percent(rows.back().passing),
+                                 wanted == 0.0 ? "size that is below all" : "size that is above all"));
+  return Grading::sieve_curve(radius, passing, dimension);
+}
+
+Grading read_curve(const SceneTable& t, int dimension) {
+  if (t.has("file")) return read_sieve_curve(t.resolve(t.text("file")), dimension);
+  const std::vector<double> openings = t.numbers("openings", Unit::length, Range::positive());
+  const std::vector<double> passing = t.numbers("passing", Unit::none, Range::closed(0.0, 1.0));
+  if (openings.size() != passing.size())
+    t.reject("passing", fmt::format("has {} values; openings has {}: one for each", passing.size(), openings.size()));
+  std::vector<SieveRow> rows;
+  for (std::size_t k = 0; k < openings.size(); ++k) rows.push_back({openings[k], passing[k], t.where("passing")});
+  return curve_of(std::move(rows), dimension);
+}
+
+Grading read_list(const SceneTable& t, int dimension) {
+  if (t.has("file")) return read_radii(t.resolve(t.text("file")), dimension);
+  std::vector<double> radii = t.numbers("radii", Unit::length, Range::positive());
+  if (radii.empty()) t.reject("radii", "at least one radius is needed");
+  return Grading::list(std::move(radii), dimension);
+}
+
+}  // namespace
+
+Grading read_sieve_curve(const std::string& path, int dimension) {
+  try {
+    return curve_of(sieve_rows(CsvFile::read(path)), dimension);
+  } catch (const BadInput& e) {
+    const std::string what = e.what();
+    throw BadInput(what.starts_with(path) ? what : path + ": " + what);
+  }
+}
+
+Grading read_radii(const std::string& path, int dimension) {
+  const CsvFile csv = CsvFile::read(path);
+  const bool diameters = column_of(csv, {"radius", "r"}) < 0 && column_of(csv, {"diameter", "d"}) >= 0;
+  const std::size_t column = diameters ? length_column(csv, {"diameter", "d"}, "diameter [mm]")
+                                       : length_column(csv, {"radius", "r"}, "radius [mm]");
+  std::vector<double> radii;
+  for (const CsvRow& row : csv.rows()) {
+    radii.push_back((diameters ? 0.5 : 1.0) * must(csv.number(row, column, Unit::length), csv, row, "the size"));
+    if (!(radii.back() > 0.0)) throw BadInput(fmt::format("{}: a size must be positive", csv.where(row.line)));
+  }
+  if (radii.empty()) throw BadInput(path + ": no sizes");
+  return Grading::list(std::move(radii), dimension);
+}
+
+Grading read_grading(const SceneTable& t, int dimension) {
+  const auto form = t.choice<GradingForm>("form");
+  if (form == GradingForm::classes) return read_classes(t, dimension);
+  if (form == GradingForm::sieve_curve) return read_curve(t, dimension);
+  if (form == GradingForm::list) return read_list(t, dimension);
+  const Ends ends = read_ends(t);
+  if (form == GradingForm::log_normal)
+    return Grading::log_normal(t.number("radius_median", Unit::length, Range::positive()),
+                               t.number("geometric_deviation", Unit::none, Range{1.0, 20.0, true, false}), ends.low,
+                               ends.high, dimension);
+  if (form == GradingForm::fuller)
+    return Grading::fuller(t.number("exponent", Unit::none, Range{0.0, 3.0, true, false}), ends.low, ends.high,
+                           dimension);
+  return Grading::power_law(t.number("exponent", Unit::none, kExponents), ends.low, ends.high, dimension);
+}
+
+std::optional<Grading> read_sizes(const SceneTable& t, const std::string& key,
+                                  std::initializer_list<const char*> instead, int dimension) {
+  if (!t.has(key)) return std::nullopt;
+  for (const char* other : instead)
+    if (t.has(other)) t.mistake(other, "goes without " + key + ", which says all sizes");
+  const SceneTable sizes = t.table(key);
+  std::optional<Grading> out;
+  sizes.part([&] { out = read_grading(sizes, dimension); });
+  return out;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,31 @@
+// Size distributions as a scene writes them.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+#include "common/io/scene.h"
+#include "common/packing/grading.h"
+
+namespace softgrain {
+
+/// Reads a table with `form` and its keys: "power-law" (exponent, radius_min, radius_max), "fuller" (exponent q),
+/// "log-normal" (radius_median, geometric_deviation), "classes" ([[class]]: radius or radius_min, radius_max, exponent;
+/// volume_share), "sieve-curve" (file, or openings and passing), "list" (radii or file). Files are looked for in the
+/// folder of the scene. Throws BadInput with file and line, FileTrouble.
+Grading read_grading(const SceneTable& table, int dimension = 3);
+
+/// The table `key` of `table`, if there is one; keys that say the same another way are refused beside it. Within
+/// Scene::read mistakes are noted, and none comes back.
+std::optional<Grading> read_sizes(const SceneTable& table, const std::string& key,
+                                  std::initializer_list<const char*> instead, int dimension = 3);
+
+/// A sieve analysis as CSV: columns "opening [mm]" (diameter; also sieve, size, diameter) and "passing [%]" of mass
+/// (also finer; a share without unit). In any order of sizes; from 0 to 100 %. Throws BadInput, FileTrouble.
+Grading read_sieve_curve(const std::string& path, int dimension = 3);
+
+/// Radii as CSV: a column "radius [mm]" or "diameter [mm]". Throws BadInput, FileTrouble.
+Grading read_radii(const std::string& path, int dimension = 3);
+
+}  // namespace softgrain
