@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstddef>
 #include <map>
 
@@ -39,9 +40,11 @@ void require_same(const Measurements& first, const Measurements& other, const st
   const auto a = conditions(first);
   const auto b = conditions(other);
   for (std::size_t k = 0; k < a.size(); ++k)
-    if (a[k].value != b[k].value)
+    if (a[k].value != b[k].value && !(std::isnan(a[k].value) && std::isnan(b[k].value)))
       throw BadInput(fmt::format("cannot merge {} and {}: {} = {} and {}", first_name, other_name, a[k].name,
                                  a[k].value, b[k].value));
+  if (!same_sizes(first.spec, other.spec))
+    throw BadInput(fmt::format("cannot merge {} and {}: the sizes of the grains differ", first_name, other_name));
 }
 
 /// A packing is the same when its radii are (every grain was grown to a random neighbour: no two packings agree by

@@ -18,15 +18,6 @@ namespace {
 constexpr double kFilledTogether = 0.44;
 constexpr double kShareTolerance = 0.02;
 
-std::vector<MacroBody> draw_solids(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, kMacroRadii, sample);
-  std::vector<MacroBody> bodies(static_cast<std::size_t>(spec.bodies));
-  for (MacroBody& b : bodies)
-    b.r = power_law_radius(spec.exponent, spec.solid_radius_max, spec.solid_polydispersity, random.uniform());
-  std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
-  return bodies;
-}
-
 /// Volume of soft particles that is `share` of them and the solid grains together.
 double soft_volume(double share, double solid_volume) { return solid_volume * share / (1.0 - share); }
 
@@ -74,7 +65,7 @@ void add_soft(const MacroSpec& spec, MacroPacking& packing) {
 MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
   if (!(spec.soft_share < 1.0)) throw BadInput("macro: construction \"voids\" needs solid grains: soft_share below 1");
   const double fraction = spec.solid_fill > 0.0 ? spec.solid_fill : kFilledTogether * (1.0 - spec.soft_share);
-  MacroPacking packing = place_loosely(draw_solids(spec, seed, sample), seed, sample, std::min(0.30, fraction));
+  MacroPacking packing = place_loosely(drawn_bodies(spec, seed, sample), seed, sample, std::min(0.30, fraction));
   compact_to_fraction(spec, packing, fraction);
   if (spec.soft_share > 0.0) add_soft(spec, packing);
   bring_into_touch(spec, packing);

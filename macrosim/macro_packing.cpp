@@ -1,6 +1,7 @@
 #include "macrosim/macro_packing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "common/core/error.h"
@@ -11,15 +12,33 @@ namespace softgrain {
 
 namespace {
 
-/// Draws bodies one by one, always of the kind that is behind its share of the volume.
-std::vector<MacroBody> draw_bodies(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, kMacroRadii, sample);
+Grading sizes_of(const std::optional<Grading>& sizes, double exponent, double rmax, double polydispersity) {
+  return sizes ? *sizes : Grading::power_law(exponent, rmax / polydispersity, rmax);
+}
+
+/// Numbers of both kinds come from their mean volumes.
+std::vector<MacroBody> draw_gradings(const MacroSpec& spec, double soft_share, RandomStream& random) {
+  const Grading solid = sizes_of(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
+  const Grading soft = sizes_of(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const double per_soft = soft_share / soft.mean_volume();
+  const double per_solid = (1.0 - soft_share) / solid.mean_volume();
+  std::int64_t softs = std::llround(static_cast<double>(spec.bodies) * per_soft / (per_soft + per_solid));
+  if (soft_share > 0.0) softs = std::max<std::int64_t>(softs, 1);
+  if (soft_share < 1.0 && spec.bodies > 1) softs = std::min(softs, spec.bodies - 1);
+  std::vector<MacroBody> bodies;
+  for (const double r : solid.draw(static_cast<std::size_t>(spec.bodies - softs), random))
+    bodies.push_back({{}, r, false});
+  for (const double r : soft.draw(static_cast<std::size_t>(softs), random)) bodies.push_back({{}, r, true});
+  return bodies;
+}
+
+std::vector<MacroBody> draw_power_laws(const MacroSpec& spec, double soft_share, RandomStream& random) {
   std::vector<MacroBody> bodies;
   double soft = 0.0;
   double all = 0.0;
   for (std::int64_t k = 0; k < spec.bodies; ++k) {
     MacroBody body;
-    body.soft = spec.soft_share > 0.0 && soft <= spec.soft_share * all;
+    body.soft = soft_share > 0.0 && soft <= soft_share * all;
     body.r = body.soft
                  ? power_law_radius(spec.exponent, spec.soft_radius_max, spec.soft_polydispersity, random.uniform())
                  : power_law_radius(spec.exponent, spec.solid_radius_max, spec.solid_polydispersity, random.uniform());
@@ -27,11 +46,19 @@ std::vector<MacroBody> draw_bodies(const MacroSpec& spec, std::uint64_t seed, st
     if (body.soft) soft += cube(body.r);
     bodies.push_back(body);
   }
-  std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
   return bodies;
 }
 
 }  // namespace
+
+std::vector<MacroBody> drawn_bodies(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
+  RandomStream random(seed, kMacroRadii, sample);
+  const double soft_share = spec.construction == Construction::voids ? 0.0 : spec.soft_share;
+  std::vector<MacroBody> bodies = spec.solid_sizes || spec.soft_sizes ? draw_gradings(spec, soft_share, random)
+                                                                      : draw_power_laws(spec, soft_share, random);
+  std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
+  return bodies;
+}
 
 double MacroPacking::body_volume() const {
   double sum = 0.0;
@@ -59,7 +86,7 @@ std::int64_t MacroPacking::soft_count() const {
 }
 
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  MacroPacking packing = place_loosely(draw_bodies(spec, seed, sample), seed, sample);
+  MacroPacking packing = place_loosely(drawn_bodies(spec, seed, sample), seed, sample);
   if (spec.preparation == MacroEngine::softgrain) bring_into_touch(spec, packing);
   return packing;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "common/core/vec.h"
@@ -29,7 +30,18 @@ struct MacroPacking {
   [[nodiscard]] std::int64_t soft_count() const;
 };
 
-/// Radii from the power laws, random non-overlapping start, frictionless isotropic compaction of all bodies as hard
+/// The bodies of a sample, largest first and without places: solid grains alone where soft particles fill voids later.
+/// Radii of power laws are drawn one by one, always of the kind that is behind its share of the volume; of other
+/// distributions as Grading::draw does, in the numbers that make the share.
+std::vector<MacroBody> drawn_bodies(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
+
+/// Text of the distributions that a scene asks for.
+inline std::string sizes_text(const MacroSpec& spec) {
+  return (spec.solid_sizes ? spec.solid_sizes->text() : "") +
+         (spec.soft_sizes ? "soft: " + spec.soft_sizes->text() : "");
+}
+
+/// Drawn bodies, random non-overlapping start, frictionless isotropic compaction of all bodies as hard
 /// grains until the wall pressure reaches start_pressure * E; with preparation "lammps" no compaction. Throws BadInput
 /// when the shares cannot be met, NotUsable when it does not jam.
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ template <>
 inline constexpr auto words<MacroEngine> = word_list<MacroEngine>({{MacroEngine::softgrain, "softgrain"},
                                                                    {MacroEngine::lammps, "lammps"}});
 
-/// Solid grains and soft particles of power-law radii in a box of six planes, compressed [SP 1.9]. SI units.
+/// Solid grains and soft particles of any sizes in a box of six planes, compressed [SP 1.9]. SI units.
 struct MacroSpec {
   Construction construction = Construction::mixed;
   std::int64_t bodies = 200;                         ///< mixed: solid grains + soft particles; voids: solid grains
@@ -37,6 +38,8 @@ struct MacroSpec {
   double solid_polydispersity = 2.0;                 ///< rmax/rmin of the solid grains
   double soft_radius_max = 0.016;                    ///< [m]
   double soft_polydispersity = 1.5;                  ///< of the shells; voids: smaller holes stay empty
+  std::optional<Grading> solid_sizes;  ///< radii of another law, whose ends stand in the two numbers above
+  std::optional<Grading> soft_sizes;
   double solid_fill = 0.0;  ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
   double youngs_modulus = 5.0e5;  ///< E of solid grains, walls and of what is inside the soft particles [Pa]
   double poisson_ratio = 0.3;

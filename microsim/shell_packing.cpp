@@ -174,11 +174,23 @@ std::optional<Vec3> VoidPlacement::place(const PlacedGrains& grains, double r, s
 
 namespace {
 
+/// As many as have the volume of beta shells.
+std::size_t drawn_grains(const SoftParticleSpec& spec) {
+  const double each = spec.sizes->mean_volume() / std::pow(spec.shell_radius, 3);
+  return static_cast<std::size_t>(std::max(1.0, std::round(spec.beta / each)));
+}
+
 std::vector<double> draw_radii(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index) {
   const double rmax = spec.rmax_over_shell;
   const PowerLawRadii law{spec.exponent, rmax / spec.polydispersity, rmax};
   RandomStream random(seed, RandomPurpose::radii, index);
   std::vector<double> radii;
+  if (spec.sizes) {
+    radii = spec.sizes->draw(drawn_grains(spec), random);
+    for (double& r : radii) r /= spec.shell_radius;
+    std::sort(radii.begin(), radii.end(), std::greater<>());
+    return radii;
+  }
   double volume = 0.0;  // in units of the shell's
   while (volume <= spec.beta) {
     radii.push_back(law.radius(random.uniform()));
@@ -204,7 +216,8 @@ ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t 
   ShellPacking packing;
   packing.seed = index;
   PlacedGrains grains(packing);
-  VoidPlacement voids(spec.rmax_over_shell / spec.polydispersity);
+  VoidPlacement voids(spec.sizes ? spec.sizes->smallest() / spec.shell_radius
+                                 : spec.rmax_over_shell / spec.polydispersity);
   RandomStream random(seed, RandomPurpose::positions, index);
   for (const double r : draw_radii(spec, seed, index)) {
     stop_if_interrupted("packing");

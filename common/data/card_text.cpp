@@ -1,5 +1,6 @@
 #include "common/data/card_text.h"
 #include "common/core/limits.h"
+#include "common/packing/grading_scene.h"
 
 #include <fmt/format.h>
 
@@ -72,6 +73,13 @@ const std::vector<SpecLine>& spec_lines() {
   return lines;
 }
 
+/// Of lines "key = value".
+std::string inline_table(const std::string& lines) {
+  std::string text = "{";
+  for (const char c : lines) text += c == '\n' ? std::string(", ") : std::string(1, c);
+  return text.substr(0, text.size() - 2) + "}";
+}
+
 }  // namespace
 
 std::string spec_text(const SoftParticleSpec& s) {
@@ -81,6 +89,8 @@ std::string spec_text(const SoftParticleSpec& s) {
     const std::string meaning = *line.meaning == '\0' ? "" : std::string("  # ") + line.meaning;
     if (is_known(s.*line.value)) fmt::format_to(out, "{} = {}{}\n", line.key, real(s.*line.value), meaning);
   }
+  if (s.sizes)
+    fmt::format_to(out, "sizes = {}  # radii of the grains as they were drawn\n", inline_table(s.sizes->text()));
   if (s.trials == 0) return text;
   fmt::format_to(out, "trials = {}  # random positions tried per grain\n", s.trials);
   fmt::format_to(out, "placement = {}  # blind trials, or the same law by looking only where there is room\n",
@@ -90,8 +100,10 @@ std::string spec_text(const SoftParticleSpec& s) {
 
 SoftParticleSpec read_spec_text(const SceneTable& table, bool may_be_unknown) {
   SoftParticleSpec s = unknown_soft_particle(0.0, 0.0);
+  s.sizes = read_sizes(table, "sizes", {"exponent"});
   for (const SpecLine& line : spec_lines())
-    if (line.always || !may_be_unknown || table.has(line.key))
+    if (line.always || !(may_be_unknown || (s.sizes && line.value == &SoftParticleSpec::exponent)) ||
+        table.has(line.key))
       s.*line.value = table.number(line.key, line.unit, line.range);
   if (!may_be_unknown || table.has("trials"))
     s.trials = table.count("trials", 1, std::numeric_limits<std::int64_t>::max());

@@ -51,8 +51,7 @@ bool same_neighbours(const CrowdLaw& a, const CrowdLaw& b) {
 }
 
 bool same_grains(const SoftParticleSpec& a, const SoftParticleSpec& b) {
-  return a.poisson_ratio == b.poisson_ratio && a.friction == b.friction && a.exponent == b.exponent &&
-         a.polydispersity == b.polydispersity && a.rmax_over_shell == b.rmax_over_shell;
+  return a.poisson_ratio == b.poisson_ratio && a.friction == b.friction && same_sizes(a, b);
 }
 
 /// Only what was measured alike can be interpolated.

@@ -3,12 +3,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/core/cost.h"
 #include "common/data/pair_kind.h"
 #include "common/io/provenance.h"
+#include "common/packing/grading.h"
 
 namespace softgrain {
 
@@ -28,6 +30,7 @@ struct SoftParticleSpec {
   double friction = 0.3;                    ///< mu, Coulomb coefficient
   double density = 2500.0;                  ///< rho [kg/m^3]
   double restitution = 0.5;                 ///< e of the Tsuji damping (dynamic runs)
+  std::optional<Grading> sizes;             ///< radii [m] of another law than P(r) ~ r^-b, whose exponent is NaN then
   double exponent = 3.5;                    ///< b of the size distribution P(r) ~ r^-b
   double polydispersity = 10.0;             ///< Pi = rmax/rmin
   double rmax_over_shell = 0.5;             ///< rmax/Rs
@@ -41,8 +44,15 @@ inline bool is_known(double value) { return !std::isnan(value); }
 
 /// Whether it is known what is inside: law of sizes, how many grains, how they were placed.
 inline bool packing_known(const SoftParticleSpec& s) {
-  return is_known(s.exponent) && is_known(s.polydispersity) && is_known(s.rmax_over_shell) && is_known(s.beta) &&
-         s.trials > 0;
+  return (s.sizes || is_known(s.exponent)) && is_known(s.polydispersity) && is_known(s.rmax_over_shell) &&
+         is_known(s.beta) && s.trials > 0;
+}
+
+/// Whether the radii of both follow the same law, in units of their shells.
+inline bool same_sizes(const SoftParticleSpec& a, const SoftParticleSpec& b) {
+  if (a.sizes && b.sizes) return a.sizes->same_shape(a.shell_radius, *b.sizes, b.shell_radius);
+  return !a.sizes && !b.sizes && a.exponent == b.exponent && a.polydispersity == b.polydispersity &&
+         a.rmax_over_shell == b.rmax_over_shell;
 }
 
 /// A soft particle of which Rs and E are all that is known.

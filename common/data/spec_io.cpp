@@ -6,6 +6,7 @@
 #include "common/data/columns.h"
 #include "common/data/fields.h"
 #include "common/io/provenance.h"
+#include "common/packing/grading_scene.h"
 
 namespace softgrain {
 
@@ -39,6 +40,7 @@ void write_spec(const h5::Group& root, const SoftParticleSpec& spec) {
   group.attribute("units", kUnits);
   for (const SpecField& field : kFields)
     if (is_known(spec.*field.value)) group.attribute(field.name, spec.*field.value);
+  if (spec.sizes) group.attribute("sizes", spec.sizes->text());
   if (!packing_known(spec)) return;
   group.attribute("trials", spec.trials);
   group.attribute("placement", to_string(spec.placement));
@@ -48,7 +50,13 @@ SoftParticleSpec read_spec(const h5::Group& root) {
   const h5::Group group = root.open("spec");
   SoftParticleSpec spec;
   if (group.text("units") != kUnits) throw FileTrouble("spec: units '" + group.text("units") + "' are not known");
-  for (const SpecField& field : kFields) spec.*field.value = read_attribute(group, field.name, field.limits);
+  if (group.has_attribute("sizes")) {
+    spec.sizes = stored_grading(group.text("sizes"));
+    spec.exponent = std::numeric_limits<double>::quiet_NaN();
+  }
+  for (const SpecField& field : kFields)
+    if (!spec.sizes || field.value != &SoftParticleSpec::exponent)
+      spec.*field.value = read_attribute(group, field.name, field.limits);
   spec.trials = group.integer("trials");
   if (spec.trials < 1)
     throw FileTrouble("attribute 'trials' is " + std::to_string(spec.trials) + "; allowed: at least 1");

@@ -68,6 +68,8 @@ class Grading {
   [[nodiscard]] double passing(double r) const;
   /// Radius below which u of all grains are, by number, 0 <= u <= 1; where classes overlap, one class after another.
   [[nodiscard]] double radius(double u) const;
+  /// r^3, of disks r^2.
+  [[nodiscard]] double volume(double r) const { return dimension_ == 2 ? r * r : r * r * r; }
   /// <r^3> over grains [m^3], of disks <r^2> [m^2].
   [[nodiscard]] double mean_volume() const;
   /// `n` radii, one from each of n equal shares of the number at the same random place in each: without bias, and with
@@ -79,12 +81,14 @@ class Grading {
   /// Volume of `radii` smaller than `r`, over that of all.
   [[nodiscard]] double obtained_passing(const std::vector<double>& radii, double r) const;
 
+  friend bool operator==(const Grading& a, const Grading& b) {
+    return a.dimension_ == b.dimension_ && a.text_ == b.text_;
+  }
   /// The same law for other units of length.
   [[nodiscard]] bool same_shape(double unit, const Grading& other, double other_unit) const;
 
  private:
   Grading(GradingForm form, std::string text, std::vector<SizePiece> pieces, int dimension);
-  [[nodiscard]] double volume(double r) const { return dimension_ == 2 ? r * r : r * r * r; }
 
   GradingForm form_ = GradingForm::list;
   int dimension_ = 3;

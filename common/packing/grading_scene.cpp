@@ -230,6 +230,14 @@ Grading read_grading(const SceneTable& t, int dimension) {
   return Grading::power_law(t.number("exponent", Unit::none, kExponents), ends.low, ends.high, dimension);
 }
 
+Grading stored_grading(const std::string& text, int dimension) {
+  try {
+    return read_grading(Scene::parse(text, "sizes").root(), dimension);
+  } catch (const BadInput& e) {
+    throw FileTrouble(std::string("attribute 'sizes': ") + e.what());
+  }
+}
+
 std::optional<Grading> read_sizes(const SceneTable& t, const std::string& key,
                                   std::initializer_list<const char*> instead, int dimension) {
   if (!t.has(key)) return std::nullopt;

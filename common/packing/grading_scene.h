@@ -16,6 +16,9 @@ namespace softgrain {
 /// folder of the scene. Throws BadInput with file and line, FileTrouble.
 Grading read_grading(const SceneTable& table, int dimension = 3);
 
+/// What Grading::text gave a file. Throws FileTrouble.
+Grading stored_grading(const std::string& text, int dimension = 3);
+
 /// The table `key` of `table`, if there is one; keys that say the same another way are refused beside it. Within
 /// Scene::read mistakes are noted, and none comes back.
 std::optional<Grading> read_sizes(const SceneTable& table, const std::string& key,

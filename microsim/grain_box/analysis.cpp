@@ -19,6 +19,7 @@ constexpr double kContacts = 6.0;
 constexpr double kBytesPerGrain = 11000.0;  // a process with 2740 grains had 31 MB
 
 double mean_radius_cubed(const GrainBoxMaterial& m) {
+  if (m.sizes) return m.sizes->mean_volume();
   const double a = m.radius_min;
   const double b = m.radius_max;
   return 0.25 * (a + b) * (a * a + b * b);

@@ -44,19 +44,31 @@ double cut_normal(RandomStream& random) {
   }
 }
 
+}  // namespace
+
+std::vector<double> drawn_radii(const GrainBoxSpec& spec, std::uint64_t seed) {
+  const GrainBoxMaterial& m = spec.material;
+  RandomStream random(seed, kGrainRadii, 0);
+  std::vector<double> radii;
+  if (m.sizes) radii = m.sizes->draw(static_cast<std::size_t>(spec.grains), random);
+  while (radii.size() < static_cast<std::size_t>(spec.grains))
+    radii.push_back(m.radius_min + (m.radius_max - m.radius_min) * random.uniform());
+  std::sort(radii.begin(), radii.end(), std::greater<>());
+  return radii;
+}
+
+namespace {
+
 void draw_grains(GrainPack& pack, const GrainBoxSpec& spec, std::uint64_t seed) {
   const GrainBoxMaterial& m = spec.material;
-  RandomStream radii(seed, kGrainRadii, 0);
   RandomStream elasticity(seed, kGrainElasticity, 0);
+  pack.radius = drawn_radii(spec, seed);  // the largest first: late grains then find places
   for (std::int64_t n = 0; n < spec.grains; ++n) {
-    pack.radius.push_back(m.radius_min + (m.radius_max - m.radius_min) * radii.uniform());
     const double e = m.youngs_modulus * (1.0 + m.youngs_modulus_scatter * cut_normal(elasticity));
     pack.youngs_modulus.push_back(std::max(e, 0.05 * m.youngs_modulus));
     const double nu = m.poisson_ratio * (1.0 + m.poisson_ratio_scatter * cut_normal(elasticity));
     pack.poisson_ratio.push_back(std::clamp(nu, -0.9, 0.49));
   }
-  // The largest first: late grains then find places.
-  std::sort(pack.radius.begin(), pack.radius.end(), std::greater<>());
 }
 
 Vec3 loose_lengths(const GrainPack& pack, const GrainBoxSpec& spec) {

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "common/statics/grain_pack.h"
 #include "microsim/grain_box/spec.h"
 
 namespace softgrain {
+
+/// Radii of a pack, largest first.
+std::vector<double> drawn_radii(const GrainBoxSpec& spec, std::uint64_t seed);
 
 /// Grains at random places without overlap inside a box from the origin to `lengths`; elasticity drawn. Walls in the
 /// order -x +x -y +y -z +z, everything frictionless. Depends on the seed alone. Throws BadInput when the grains do not

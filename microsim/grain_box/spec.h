@@ -4,18 +4,21 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/core/vec.h"
+#include "common/packing/grading.h"
 #include "common/statics/least_work.h"
 
 namespace softgrain {
 
-/// Grains: radii uniform, E and nu normal, cut at three deviations and to what elasticity allows.
+/// Grains: radii uniform or of `sizes`, E and nu normal, cut at three deviations and to what elasticity allows.
 struct GrainBoxMaterial {
   double radius_min = 0.07e-3;          ///< [m]
   double radius_max = 0.13e-3;          ///< [m]
+  std::optional<Grading> sizes;         ///< radii of another law, whose ends stand in the two numbers above
   double youngs_modulus = 70e9;         ///< mean E [Pa]
   double youngs_modulus_scatter = 0.1;  ///< standard deviation over mean
   double poisson_ratio = 0.2;

@@ -31,15 +31,6 @@ AnyLaw law_of(const PowderSpec& spec) {
   return law;
 }
 
-std::vector<double> draw_diameters(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  RandomStream random(seed, kDiameters, sample);
-  std::vector<double> d;
-  for (std::int64_t k = 0; k < spec.disks; ++k)
-    d.push_back(spec.diameter_min + (1.0 - spec.diameter_min) * random.uniform());
-  std::sort(d.begin(), d.end(), std::greater<>());
-  return d;
-}
-
 /// Disks placed so far, by cells as wide as the largest disk and its reach.
 class PlacedDisks {
  public:
@@ -118,9 +109,21 @@ AnyLaw powder_law(const PowderSpec& spec) {
   return spec.rolling ? law_of<true, true>(spec) : law_of<true, false>(spec);
 }
 
+std::vector<double> drawn_diameters(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {
+  RandomStream random(seed, kDiameters, sample);
+  std::vector<double> d;
+  if (spec.sizes)
+    for (const double r : spec.sizes->draw(static_cast<std::size_t>(spec.disks), random))
+      d.push_back(r / spec.sizes->largest());
+  while (d.size() < static_cast<std::size_t>(spec.disks))
+    d.push_back(spec.diameter_min + (1.0 - spec.diameter_min) * random.uniform());
+  std::sort(d.begin(), d.end(), std::greater<>());
+  return d;
+}
+
 System<2> make_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample) {
   constexpr int kTrials = 1000000;
-  const std::vector<double> diameters = draw_diameters(spec, seed, sample);
+  const std::vector<double> diameters = drawn_diameters(spec, seed, sample);
   double area = 0.0;
   for (const double d : diameters) area += 0.25 * std::numbers::pi * d * d;
   const double edge = std::sqrt(area / spec.solid_fraction);

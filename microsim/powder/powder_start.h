@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "common/contact/law_set.h"
+#include "common/packing/grading.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -24,6 +27,7 @@ struct PowderSpec {
   double rolling_friction = 1e-2;   ///< mu_r/(mu a)
   double pressure = 0.01;           ///< P* = P a/F0; without cohesion P itself is 1
   double start_speed = 0.0;         ///< V0, root mean square of |v| at the start, over V* = sqrt(F0 D0/m); 0: at rest
+  std::optional<Grading> sizes;     ///< of disks, by area; in any unit, its largest size counts as 1
 
   /// F1 = max(F0, P a), the scale of forces in equilibrium criteria.
   [[nodiscard]] double force_scale() const { return cohesive ? std::max(1.0, pressure) : 1.0; }
@@ -36,6 +40,9 @@ struct PowderSpec {
 
 /// The law of all pairs; stiffness in the units of the sample.
 AnyLaw powder_law(const PowderSpec& spec);
+
+/// Diameters of a sample, largest first.
+std::vector<double> drawn_diameters(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);
 
 /// Disks at random places of a square periodic cell, largest first, none within reach of another; at rest, or with
 /// Maxwell velocities of root mean square V0 without net momentum and without spin. Throws BadInput when they find no

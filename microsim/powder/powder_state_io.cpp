@@ -6,6 +6,7 @@
 #include "common/data/columns.h"
 #include "common/data/fields.h"
 #include "common/io/attribute_members.h"
+#include "common/packing/grading_scene.h"
 #include "common/state/system_io.h"
 #include "microsim/powder/powder_assembly.h"
 
@@ -76,11 +77,15 @@ void fields(auto&& item, Of<PowderSpec> auto& s) {
 
 }  // namespace
 
-void write_powder_spec(const h5::Group& group, const PowderSpec& spec) { fields(AttributeWriter{group}, spec); }
+void write_powder_spec(const h5::Group& group, const PowderSpec& spec) {
+  fields(AttributeWriter{group}, spec);
+  if (spec.sizes) group.attribute("sizes", spec.sizes->text());
+}
 
 PowderSpec read_powder_spec(const h5::Group& group) {
   PowderSpec spec;
   fields(AttributeReader{group}, spec);
+  if (group.has_attribute("sizes")) spec.sizes = stored_grading(group.text("sizes"), 2);
   return spec;
 }
 

@@ -22,6 +22,21 @@ void note_known(List& obstacles, List& said, const char* what, double candidate,
     said.push_back(fmt::format("{}: not known of the {}", what, is_known(candidate) ? "reference" : "candidate"));
 }
 
+/// At least one is no power law of an exponent.
+void note_sizes(const SoftParticleSpec& candidate, const SoftParticleSpec& reference, Differences& out) {
+  if (!packing_known(candidate) || !packing_known(reference)) {
+    out.said.push_back(
+        fmt::format("sizes of the grains: not known of the {}", packing_known(candidate) ? "reference" : "candidate"));
+    return;
+  }
+  const auto name = [](const SoftParticleSpec& s) {
+    return s.sizes ? s.sizes->name() : fmt::format("power law of exponent {}", s.exponent);
+  };
+  if (!same_sizes(candidate, reference))
+    out.obstacles.push_back(
+        fmt::format("sizes of the grains: {} against {}, of another curve", name(candidate), name(reference)));
+}
+
 std::string radii(const MacroStart& s) { return fmt::format("{:.6g} to {:.6g} m", s.radius_min, s.radius_max); }
 
 void note_start(const MacroCurve& candidate, const MacroCurve& reference, Differences& out) {
@@ -97,7 +112,10 @@ Differences differences(const SoftParticleSpec& candidate, const SoftParticleSpe
   note(out.said, "E of the grains [Pa]", candidate.youngs_modulus, reference.youngs_modulus);
   note_known(out.obstacles, out.said, "nu of the grains", candidate.poisson_ratio, reference.poisson_ratio);
   note_known(out.obstacles, out.said, "mu of the grains", candidate.friction, reference.friction);
-  note_known(out.obstacles, out.said, "exponent of the radii", candidate.exponent, reference.exponent);
+  if (candidate.sizes || reference.sizes)
+    note_sizes(candidate, reference, out);
+  else
+    note_known(out.obstacles, out.said, "exponent of the radii", candidate.exponent, reference.exponent);
   note_known(out.obstacles, out.said, "polydispersity", candidate.polydispersity, reference.polydispersity);
   note_known(out.obstacles, out.said, "largest grain over Rs", candidate.rmax_over_shell, reference.rmax_over_shell);
   note_known(out.obstacles, out.said, "packing, beta", candidate.beta, reference.beta);

@@ -126,7 +126,8 @@ std::string spec_text_for_people(const SoftParticleSpec& s) {
   std::string text = fmt::format("Rs = {} m, E = {} Pa, nu = {}, mu = {}, {} kg/m^3; ", number(s.shell_radius),
                                  number(s.youngs_modulus), known(s.poisson_ratio), known(s.friction), known(s.density));
   if (!packing_known(s)) return text + "what is inside is not known";
-  return text + fmt::format("radii r^-{} with rmax/rmin = {}, rmax/Rs = {}, beta = {}, {} trials{}", number(s.exponent),
+  const std::string sizes = s.sizes ? "sizes: " + s.sizes->name() : fmt::format("radii r^-{}", number(s.exponent));
+  return text + fmt::format("{} with rmax/rmin = {}, rmax/Rs = {}, beta = {}, {} trials{}", sizes,
                             number(s.polydispersity), number(s.rmax_over_shell), number(s.beta), s.trials,
                             s.placement == Placement::voids ? " in voids" : "");
 }

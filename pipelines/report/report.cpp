@@ -18,13 +18,14 @@ using namespace report;
 
 /// Those of no kind in particular, and those of every kind, in the order of their places.
 std::string sections_of(const RunData& run) {
-  std::vector<ReportSection> sections{{Place::own_data, own_data_section}, {Place::laws, laws_section},
-                                      {Place::packing, packing_section},   {Place::radii, radii_section},
-                                      {Place::cost, cost_section},         {Place::provenance, provenance_section}};
+  std::vector<ReportSection> sections{{Place::own_data, own_data_section},    {Place::laws, laws_section},
+                                      {Place::packing, packing_section},      {Place::radii, radii_section},
+                                      {Place::radii, sizes_section},          {Place::cost, cost_section},
+                                      {Place::provenance, provenance_section}};
   for (const KindResults& kind : results_of_kinds())
     sections.insert(sections.end(), kind.sections.begin(), kind.sections.end());
-  std::sort(sections.begin(), sections.end(),
-            [](const ReportSection& a, const ReportSection& b) { return a.place < b.place; });
+  std::stable_sort(sections.begin(), sections.end(),
+                   [](const ReportSection& a, const ReportSection& b) { return a.place < b.place; });
   std::string body;
   for (const ReportSection& section : sections) body += section.html(run);
   return body;

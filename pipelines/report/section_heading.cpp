@@ -61,12 +61,11 @@ std::string material_line(const RunData& run) {
   if (!run.measurements && !packing_known(s))
     return fmt::format("Soft particle of an experiment: radius Rs = {} mm, E = {} MPa; what is inside is not known",
                        format_number(1e3 * s.shell_radius), format_number(1e-6 * s.youngs_modulus));
+  const std::string sizes = s.sizes ? s.sizes->name() : "number of radii ~ r^-" + format_number(s.exponent);
   return fmt::format(
-      "Soft particle of radius Rs = {} mm, grains with E = {} MPa, ν = {}, μ = {}; number of radii ~ r^-{} over a "
-      "factor {}, largest {} Rs",
+      "Soft particle of radius Rs = {} mm, grains with E = {} MPa, ν = {}, μ = {}; {} over a factor {}, largest {} Rs",
       format_number(1e3 * s.shell_radius), format_number(1e-6 * s.youngs_modulus), format_number(s.poisson_ratio),
-      format_number(s.friction), format_number(s.exponent), format_number(s.polydispersity),
-      format_number(s.rmax_over_shell));
+      format_number(s.friction), sizes, format_number(s.polydispersity), format_number(s.rmax_over_shell));
 }
 
 /// What came out, a few lines whatever the kind of run.

@@ -9,6 +9,7 @@
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/sections.h"
 #include "pipelines/report/svg_plot.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain::report {
 namespace {
@@ -115,9 +116,10 @@ std::string radii_section(const RunData& run) {
              .title = "Size distribution of the packed grains",
              .x = {.label = "grain radius over shell radius, r/Rs", .scale = Scale::logarithmic},
              .y = {.label = "number density P(r) Rs", .scale = Scale::logarithmic}});
-  plot.add(power_law(data.spec.exponent, range,
-                     fmt::format("drawn from P(r) ~ r^-b, b = {}", format_number(data.spec.exponent)),
-                     {.color = palette::black, .width = 1.4, .dash = "6 4"}));
+  if (!data.spec.sizes)
+    plot.add(power_law(data.spec.exponent, range,
+                       fmt::format("drawn from P(r) ~ r^-b, b = {}", format_number(data.spec.exponent)),
+                       {.color = palette::black, .width = 1.4, .dash = "6 4"}));
   const MeanError b = mean_exponent(data);
   if (b.n > 0) {
     plot.add(power_law(b.mean, range, "fitted after growth, b = " + format_with_error(b.mean, b.error),
@@ -125,9 +127,49 @@ std::string radii_section(const RunData& run) {
   }
   plot.add(measured(data, range));
   const std::string caption =
-      "Both lines are normalised over the range of radii that is shown. b is the mean over packings of the "
+      "Lines are normalised over the range of radii that is shown. b is the mean over packings of the "
       "maximum-likelihood exponent.";
   return section("radii", "Packings", packing_facts(data) + figure_row({figure(plot.svg(), caption)}));
+}
+
+namespace {
+
+/// Passing over size of one kind of grains, in percent; empty without the curves.
+std::string passing_figure(const SizesSummary& one, std::size_t number) {
+  const std::size_t n = one.diameter.size();
+  if (n < 2 || one.asked.size() != n || one.obtained.size() != n) return "";
+  const bool metres = one.unit == "m";
+  Series wanted{.label = "asked", .hover = "", .x = {}, .y = {}};
+  Series found{.label = "obtained", .hover = "", .x = {}, .y = {}};
+  for (std::size_t k = 0; k < n; ++k) {
+    wanted.x.push_back(metres ? 1e3 * one.diameter[k] : one.diameter[k]);
+    wanted.y.push_back(100.0 * one.asked[k]);
+    found.y.push_back(100.0 * one.obtained[k]);
+  }
+  found.x = wanted.x;
+  wanted.style = {.color = palette::black, .width = 1.4, .dash = "6 4"};
+  found.style = {.color = palette::blue, .width = 1.6};
+  Plot plot({.id = fmt::format("passing-{}", number),
+             .title = "Passing: " + one.of,
+             .x = {.label = metres ? "diameter [mm]" : "diameter over the largest", .scale = Scale::logarithmic},
+             .y = {.label = "passing [% of the volume]", .low = 0.0, .high = 100.0}});
+  plot.add(found);
+  plot.add(wanted);
+  return figure(
+      plot.svg(),
+      fmt::format("{}, by {}: {} in the mean of {}; what passes differs from what was asked by at most {} % of "
+                  "the volume. One grain of the largest size is {} %: no sample comes closer than half that.",
+                  one.of, one.form, format_number(one.grains), one.samples,
+                  format_number(100.0 * one.largest_difference), format_number(100.0 * one.largest_grain)));
+}
+
+}  // namespace
+
+std::string sizes_section(const RunData& run) {
+  std::vector<std::string> figures;
+  for (const SizesSummary& one : run.summary_as<AnySummary>().sizes)
+    if (const std::string drawn = passing_figure(one, figures.size()); !drawn.empty()) figures.push_back(drawn);
+  return figures.empty() ? "" : section("sizes", "Sizes: asked and obtained", figure_row(figures));
 }
 
 }  // namespace softgrain::report

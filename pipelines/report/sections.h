@@ -13,6 +13,7 @@ std::string laws_section(const RunData& run);        ///< parameters, errors, in
 std::string own_data_section(const RunData& run);    ///< curves of an experiment and the law fitted to them
 std::string packing_section(const RunData& run);     ///< the packing in 3D, from the states that the run kept
 std::string radii_section(const RunData& run);       ///< size distribution of the packed grains
+std::string sizes_section(const RunData& run);       ///< passing over size, asked and obtained
 std::string cost_section(const RunData& run);        ///< passes, contact evaluations, seconds, speed-ups
 std::string provenance_section(const RunData& run);  ///< version, seeds, command, scene
 

@@ -27,12 +27,40 @@ inline constexpr auto words<RunStatus> = word_list<RunStatus>({{RunStatus::good,
                                                                {RunStatus::not_run, "not run"},
                                                                {RunStatus::written, "written"}});
 
+/// Grains of one kind whose sizes a distribution said: what was asked, and what came out in the mean of samples.
+struct SizesSummary {
+  std::string of;    ///< "solid grains"
+  std::string form;  ///< of the distribution
+  std::int64_t samples = 0;
+  double grains = 0.0;              ///< mean number
+  double largest_difference = 0.0;  ///< of the share of the volume that passes, over all samples and sizes
+  double largest_grain = 0.0;       ///< its share of the volume of all: half of it bounds the difference from below
+  std::string unit;                 ///< of the diameters
+  std::vector<double> diameter;
+  std::vector<double> asked;  ///< share of the volume that passes there
+  std::vector<double> obtained;
+};
+
+void fields(auto&& visit, Of<SizesSummary> auto& s) {
+  visit("of", s.of);
+  visit("form", s.form);
+  visit("samples", s.samples);
+  visit("grains", s.grains);
+  visit("largest_difference", s.largest_difference);
+  visit("largest_grain", s.largest_grain);
+  visit("unit", s.unit);
+  visit("diameter", s.diameter);
+  visit("asked", s.asked);
+  visit("obtained", s.obtained);
+}
+
 /// What the summary of every kind begins with.
 struct SummaryHead {
   RunStatus status = RunStatus::good;
   std::string title;
   std::vector<std::string> remarks;          ///< sentences about what must not be overlooked
   std::map<std::string, std::string> files;  ///< that were written
+  std::vector<SizesSummary> sizes{};
 
   /// Not usable, and why.
   void reject(const std::string& remark) {
@@ -46,6 +74,7 @@ void fields(auto&& visit, Of<SummaryHead> auto& s) {
   visit("title", s.title);
   visit("remarks", s.remarks);
   visit("files", s.files, kLeftOut);
+  visit("sizes", s.sizes, kLeftOut);
 }
 
 /// Which program moved the bodies, when it was another.
@@ -75,6 +104,7 @@ struct AnySummary {
   std::optional<double> seconds;
   std::optional<Provenance> provenance;
   std::optional<EngineUse> engine;
+  std::vector<SizesSummary> sizes;
 };
 
 void fields(auto&& visit, Of<AnySummary> auto& s) {
@@ -88,6 +118,7 @@ void fields(auto&& visit, Of<AnySummary> auto& s) {
   visit("seconds", s.seconds);
   visit("provenance", s.provenance);
   visit("engine", s.engine);
+  visit("sizes", s.sizes);
 }
 
 /// Whether a status in words says that the result is to be used.

@@ -167,6 +167,7 @@ void check_one(const PowderSetup& setup, Findings& out) {
   out.lines += "  " + check_setup(setup, out.facts);
   const double overlap = expected_overlap(setup.spec);
   out.add("overlap", overlap, fmt::format("contacts overlap by about {:.2g} of the largest diameter at rest", overlap));
+  add_sizes(out, drawn_sizes(setup, setup.seed));
   warn_of_setup(setup, "", out);
   spend_on_assembly(setup, out);
 }

@@ -186,6 +186,7 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   summary.kind = "cohesive-powder";
   summary.head.title = setup.title;
   summary.head.files = {{"powder.h5", run.path("powder.h5")}, {"report", run.path("report.html")}};
+  summary.head.sizes = summaries_of(drawn_sizes(setup, run.seed));
   add_samples(samples, structures, summary);
   std::string people = add_means(setup, samples, structures, summary);
   for (const std::string& remark : summary.head.remarks) people += "note: " + remark + "\n";
@@ -197,7 +198,8 @@ namespace {
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   if (has_powder_variants(scene)) return run_powder_variants(scene, options);
   const PowderSetup setup = read_powder(scene);
-  return run_powder_ensemble(setup, Run(scene, options, "microsim", setup.seed, {.files = {setup.states}}));
+  return run_powder_ensemble(
+      setup, Run(scene, options, "microsim", setup.seed, {.files = {setup.states}, .text = sizes_text(setup.spec)}));
 }
 
 void read_any_powder(const Scene& scene) {

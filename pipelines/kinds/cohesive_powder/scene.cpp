@@ -1,6 +1,7 @@
 #include "pipelines/kinds/cohesive_powder/scene.h"
 
 #include "common/io/hdf5_file.h"
+#include "common/packing/grading_scene.h"
 
 namespace softgrain {
 
@@ -9,6 +10,8 @@ namespace {
 void read_disks(const SceneTable& t, PowderSpec& spec) {
   spec.disks = t.count("count", 2, 1000000, spec.disks);
   spec.diameter_min = t.number("diameter_min", Unit::none, Range{0.0, 1.0, true, false}, spec.diameter_min);
+  spec.sizes = read_sizes(t, "sizes", {"diameter_min"}, 2);
+  if (spec.sizes) spec.diameter_min = spec.sizes->smallest() / spec.sizes->largest();
   spec.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 0.9, true, true}, spec.solid_fraction);
 }
 
@@ -70,6 +73,17 @@ void read_structure(const SceneTable& t, PowderStructureOptions& o) {
 }
 
 }  // namespace
+
+std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed) {
+  if (!setup.spec.sizes || !setup.states.empty()) return {};
+  const double largest = setup.spec.sizes->largest();
+  DrawnSizes sizes{.of = "disks", .asked = *setup.spec.sizes, .samples = {}, .unit = "a", .scale = 0.5 / largest};
+  for (std::int64_t k = 0; k < setup.samples; ++k) {
+    sizes.samples.push_back(drawn_diameters(setup.spec, seed, static_cast<std::uint64_t>(k)));
+    for (double& d : sizes.samples.back()) d *= largest;
+  }
+  return {sizes};
+}
 
 PowderSetup read_powder(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {

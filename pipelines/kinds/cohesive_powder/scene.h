@@ -10,6 +10,7 @@
 #include "pipelines/run/findings.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/scene_kind.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -26,6 +27,9 @@ struct PowderSetup {
 
   [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, protocol); }
 };
+
+/// Disks whose sizes a distribution says.
+std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed);
 
 /// Reads the scene to the last key. Throws BadInput; FileTrouble when there are no `states` to be read.
 PowderSetup read_powder(const Scene& scene);

@@ -96,6 +96,7 @@ void check_grain_box(const GrainBoxSetup& setup, Findings& out) {
   nlohmann::json& facts = out.facts;
   std::string& lines = out.lines;
   PackTrials trials(setup.seed);
+  add_sizes(out, drawn_sizes(setup, setup.seed));
   facts["packs"] = nlohmann::json::array();
   for (const GrainBoxSpec& spec : setup.packs) {
     const GrainBoxForecast f = forecast(spec);

@@ -60,7 +60,7 @@ std::string people_text(const std::vector<GrainBoxResult>& results) {
 
 ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options) {
   const GrainBoxSetup setup = read_grain_box(scene);
-  const Run run(scene, options, "microsim", setup.seed);
+  const Run run(scene, options, "microsim", setup.seed, {.text = sizes_text(setup.packs.front().material)});
   const std::vector<GrainBoxResult> results = run_packs(setup, run);
   save_grain_boxes(run.path("grain_box.h5"), results, run.provenance);
 
@@ -72,6 +72,7 @@ ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options)
   summary["title"] = setup.title;
   summary["packs"] = grain_boxes_json(results);
   summary["remarks"] = grain_box_remarks(results);
+  if (setup.packs.front().material.sizes) summary["sizes"] = json_of(summaries_of(drawn_sizes(setup, run.seed)));
   summary["files"] = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}};
   return run.finish(std::move(summary), people_text(results));
 }

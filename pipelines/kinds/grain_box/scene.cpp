@@ -7,7 +7,9 @@
 #include <set>
 
 #include "common/core/error.h"
+#include "common/packing/grading_scene.h"
 #include "microsim/grain_box/analysis.h"
+#include "microsim/grain_box/arrangement.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/run/variant_name.h"
 
@@ -32,10 +34,17 @@ int read_axis(const SceneTable& t, int fallback) {
 }
 
 void read_material(const SceneTable& t, GrainBoxMaterial& m) {
+  m.sizes = read_sizes(t, "sizes", {"radius_min", "radius_max"});
   m.radius_min = t.number("radius_min", Unit::length, Range::positive(), m.radius_min);
   m.radius_max = t.number("radius_max", Unit::length, Range::positive(), m.radius_max);
   if (m.radius_max < m.radius_min) t.mistake("radius_max", "must not be below radius_min");
-  if (m.radius_max > 20.0 * m.radius_min) t.mistake("radius_max", "must be at most 20 times radius_min");
+  if (m.sizes) {
+    m.radius_min = m.sizes->smallest();
+    m.radius_max = m.sizes->largest();
+  }
+  if (m.radius_max > 20.0 * m.radius_min)
+    t.mistake(m.sizes ? "sizes" : "radius_max", m.sizes ? "the largest size must be at most 20 times the smallest"
+                                                        : "must be at most 20 times radius_min");
   m.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), m.youngs_modulus);
   m.youngs_modulus_scatter = t.number("E_sd", Unit::none, kScatter, m.youngs_modulus_scatter);
   m.poisson_ratio = t.number("nu", Unit::none, kPoisson, m.poisson_ratio);
@@ -239,6 +248,15 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
 }
 
 }  // namespace
+
+std::vector<DrawnSizes> drawn_sizes(const GrainBoxSetup& setup, std::uint64_t seed) {
+  std::vector<DrawnSizes> out;
+  for (const GrainBoxSpec& spec : setup.packs)
+    if (spec.material.sizes)
+      out.push_back(
+          {.of = "grains of " + spec.name, .asked = *spec.material.sizes, .samples = {drawn_radii(spec, seed)}});
+  return out;
+}
 
 GrainBoxSetup read_grain_box(const Scene& scene) {
   return scene.read([](const SceneTable& root) {

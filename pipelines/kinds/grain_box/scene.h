@@ -9,6 +9,7 @@
 #include "microsim/grain_box/spec.h"
 #include "pipelines/run/findings.h"
 #include "pipelines/run/scene_kind.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -17,6 +18,9 @@ struct GrainBoxSetup {
   std::uint64_t seed = 1;
   std::vector<GrainBoxSpec> packs;  ///< one per [[variant]]; without any, the scene itself
 };
+
+/// Grains whose sizes a distribution says, pack by pack.
+std::vector<DrawnSizes> drawn_sizes(const GrainBoxSetup& setup, std::uint64_t seed);
 
 /// Reads the whole scene. Throws BadInput.
 GrainBoxSetup read_grain_box(const Scene& scene);

@@ -13,6 +13,7 @@
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/run/run.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -188,7 +189,7 @@ void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& res
 
 ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
   const HierarchySetup setup = read_hierarchy_setup(scene);
-  const Run run(scene, options, "run", setup.crowd.seed);
+  const Run run(scene, options, "run", setup.crowd.seed, {.text = sizes_text(setup.crowd.spec)});
   HierarchyRun result;
   run.context.guard([&] {
     run_levels(setup, run, result);

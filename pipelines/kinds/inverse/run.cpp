@@ -9,6 +9,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/kinds/inverse/summary.h"
 #include "pipelines/run/run.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -141,7 +142,7 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   std::string target;
   for (std::size_t j = 0; j < setup.target.delta.size(); ++j)
     target += fmt::format("{:a} {:a} {:a}\n", setup.target.delta[j], setup.target.force[j], setup.target.error[j]);
-  const Run run(scene, options, "run", setup.measure.seed, {.text = target});
+  const Run run(scene, options, "run", setup.measure.seed, {.text = target + sizes_text(setup.measure.spec)});
   InverseResult result;
   run.context.guard([&] { result = run_inverse_stage(setup, run); });
   save(result.confirmed, run.path("measurements.h5"), run.provenance);
@@ -153,6 +154,7 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
       misfit <= kReached ? RunStatus::good : RunStatus::not_usable, setup.title, remarks_of(setup, result, misfit), {}};
   summary.inverse = search_of(setup, result, misfit);
   summary.packings = summary_of(result.confirmed.packings);
+  summary.head.sizes = summaries_of(shell_sizes(result.confirmed.spec, result.confirmed.packings));
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
     summary.head.files[file] = run.path(file);
   std::string people = people_text(setup, result, misfit);

@@ -170,6 +170,9 @@ InverseSetup read_inverse(const Scene& scene) {
     s.packings = root.table_or_empty("packing").count("count", 2, 100000, 8);
     const SceneTable search = root.table("search");
     s.search = read_search(search);
+    for (const char* key : {"exponent", "polydispersity", "rmax_over_shell"})
+      if (s.measure.spec.sizes && search.has(key))
+        search.mistake(key, "cannot be searched beside packing.sizes, which says all sizes");
     search.part([&] {
       if (root.sound()) require_box(search, s);
     });

@@ -27,6 +27,7 @@ std::string text_of(const SoftParticleSpec& s) {
   for (const double x : {s.shell_radius, s.youngs_modulus, s.poisson_ratio, s.friction, s.density, s.exponent,
                          s.polydispersity, s.rmax_over_shell, s.beta})
     text += exact(x);
+  if (s.sizes) text += " " + s.sizes->text();
   return text + fmt::format(" {} {}\n", s.trials, to_string(s.placement));
 }
 

@@ -13,6 +13,7 @@
 #include "pipelines/kinds/law_table/results.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -63,6 +64,8 @@ nlohmann::json summarise(const LawTableSetup& setup, const LawTableRun& result, 
   summary["crowd"] = crowd_json(result.data, setup.crowd.target);
   summary["entries"] = entries_json(result.fit.table);
   summary["remarks"] = result.fit.remarks;
+  if (setup.crowd.spec.sizes)
+    summary["sizes"] = json_of(summaries_of(shell_sizes(setup.crowd.spec, result.data.packings)));
   for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5", "report.html"})
     summary["files"][file] = run.path(file);
   return summary;
@@ -79,7 +82,7 @@ std::string people_text(const LawTableRun& result, const Run& run) {
 
 ExitStatus run_law_table(const Scene& scene, const CommonOptions& options) {
   const LawTableSetup setup = read_law_table(scene);
-  const Run run(scene, options, "run", setup.crowd.seed);
+  const Run run(scene, options, "run", setup.crowd.seed, {.text = sizes_text(setup.crowd.spec)});
   LawTableRun result;
   run.context.guard([&] { result = measure_and_fit(setup, run); });
   return run.finish(summarise(setup, result, run), people_text(result, run));

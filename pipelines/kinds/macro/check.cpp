@@ -11,6 +11,7 @@
 #include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/law/law_values.h"
@@ -36,7 +37,14 @@ struct BodyCounts {
 /// share does, is known only then.
 BodyCounts count_bodies(const MacroSetup& setup) {
   const auto bodies = static_cast<double>(setup.spec.bodies);
-  if (setup.spec.construction != Construction::voids) return {bodies, setup.spec.soft_share * bodies};
+  if (setup.spec.construction != Construction::voids) {
+    double soft = setup.spec.soft_share * bodies;
+    if (setup.spec.solid_sizes || setup.spec.soft_sizes) {
+      const std::vector<MacroBody> drawn = drawn_bodies(setup.spec, 1, 0);
+      soft = static_cast<double>(std::count_if(drawn.begin(), drawn.end(), [](const MacroBody& b) { return b.soft; }));
+    }
+    return {bodies, soft};
+  }
   const SceneFacts facts = describe(make_packing(setup.spec, 1, 0), {});
   return {static_cast<double>(facts.solid + facts.soft), static_cast<double>(facts.soft)};
 }
@@ -257,6 +265,7 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
 void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
   const MacroScene macro = read_macro_scene(scene, law);
   if (const std::string assumed = assumed_text(macro.setup); !assumed.empty()) out.warn(assumed);
+  add_sizes(out, drawn_sizes(macro.setup, macro.seed));
   if (macro.law_file.empty()) {
     out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");
     check_macro(macro.setup, {.grains_per_soft = kGrainsPerSoft}, nullptr, out);

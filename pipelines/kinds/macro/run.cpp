@@ -149,7 +149,8 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const std::optional<LammpsEngine> lammps = read_engine(options);
   if (macro.setup.spec.preparation == MacroEngine::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
-  const Run run(scene, options, "macrosim", macro.seed, {macro.law.files, macro.law.text});
+  const Run run(scene, options, "macrosim", macro.seed,
+                {macro.law.files, macro.law.text + sizes_text(macro.setup.spec)});
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, run.seed);
   const NamedLaws law = law_of(macro, contents);
@@ -162,6 +163,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   MacroRunSummary summary = summarise(macro, law, curves, usable);
   summary.head.files = {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
+  summary.head.sizes = summaries_of(drawn_sizes(macro.setup, run.seed));
   if (lammps) {
     summary.engine = {MacroEngine::lammps, lammps->ranks, lammps->program, lammps_release(run.context)};
     add_directories(macro.setup.samples, run.context, summary);

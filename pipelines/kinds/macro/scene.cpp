@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/core/error.h"
+#include "common/packing/grading_scene.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
@@ -12,16 +13,41 @@ namespace softgrain {
 
 namespace {
 
-void read_bodies(const SceneTable& t, MacroSpec& spec) {
-  spec.construction = t.choice<Construction>("construction", spec.construction);
-  spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
-  spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
-  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+/// Keys of a power law take the place of a distribution that a common [macro] gave.
+void read_power_laws(const SceneTable& t, MacroSpec& spec) {
+  if (t.has("solid_radius_max") || t.has("solid_polydispersity")) spec.solid_sizes.reset();
+  if (t.has("soft_radius_max") || t.has("soft_polydispersity")) spec.soft_sizes.reset();
   spec.solid_radius_max = t.number("solid_radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
   spec.solid_polydispersity =
       t.number("solid_polydispersity", Unit::none, Range::above(1.0), spec.solid_polydispersity);
   spec.soft_radius_max = t.number("soft_radius_max", Unit::length, Range::positive(), spec.soft_radius_max);
   spec.soft_polydispersity = t.number("soft_polydispersity", Unit::none, Range::above(1.0), spec.soft_polydispersity);
+}
+
+/// What else depends on the largest and the smallest body.
+void take_ends(const std::optional<Grading>& sizes, double& radius_max, double& polydispersity) {
+  if (!sizes) return;
+  radius_max = sizes->largest();
+  polydispersity = sizes->largest() / sizes->smallest();
+}
+
+void read_bodies(const SceneTable& t, MacroSpec& spec) {
+  spec.construction = t.choice<Construction>("construction", spec.construction);
+  spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
+  spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
+  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+  read_power_laws(t, spec);
+  if (t.has("solid_sizes"))
+    spec.solid_sizes = read_sizes(t, "solid_sizes", {"solid_radius_max", "solid_polydispersity"});
+  if (t.has("soft_sizes")) spec.soft_sizes = read_sizes(t, "soft_sizes", {"soft_radius_max", "soft_polydispersity"});
+  if (spec.solid_sizes && spec.soft_sizes && t.has("exponent"))
+    t.mistake("exponent", "goes without solid_sizes and soft_sizes, which say all sizes");
+  take_ends(spec.solid_sizes, spec.solid_radius_max, spec.solid_polydispersity);
+  take_ends(spec.soft_sizes, spec.soft_radius_max, spec.soft_polydispersity);
+  if (spec.construction == Construction::voids && spec.soft_sizes)
+    t.mistake("soft_sizes",
+              "construction \"voids\" makes soft particles as large as the holes between solid grains: "
+              "give soft_radius_max and soft_polydispersity, or construction \"mixed\"");
   spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
     t.mistake("soft_share", "construction \"voids\" needs solid grains: must be below 1");

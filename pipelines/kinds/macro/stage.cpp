@@ -147,6 +147,23 @@ Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, cons
   return s;
 }
 
+std::vector<DrawnSizes> drawn_sizes(const MacroSetup& setup, std::uint64_t seed, const std::string& of) {
+  std::vector<DrawnSizes> out;
+  for (const bool soft : {false, true}) {
+    const std::optional<Grading>& asked = soft ? setup.spec.soft_sizes : setup.spec.solid_sizes;
+    if (!asked) continue;
+    DrawnSizes sizes{of + (soft ? "soft particles" : "solid grains"), *asked, {}};
+    for (std::int64_t k = 0; k < setup.samples; ++k) {
+      std::vector<double> radii;
+      for (const MacroBody& b : drawn_bodies(setup.spec, seed, static_cast<std::uint64_t>(k)))
+        if (b.soft == soft) radii.push_back(b.r);
+      if (!radii.empty()) sizes.samples.push_back(std::move(radii));
+    }
+    out.push_back(std::move(sizes));
+  }
+  return out;
+}
+
 double mean_solid_fraction(const std::vector<ShellPacking>& contents) {
   double sum = 0.0;
   for (const ShellPacking& p : contents) sum += p.solid_fraction();

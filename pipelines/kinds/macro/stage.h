@@ -11,6 +11,7 @@
 #include "macrosim/macro_system.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/run/run.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -26,6 +27,9 @@ void save_packings(const std::vector<MacroPacking>& packings, const Run& run, co
 
 /// Both.
 std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, const Run& run, const std::string& file);
+
+/// Bodies whose sizes a distribution says, as they are drawn; `of`: before what they are called.
+std::vector<DrawnSizes> drawn_sizes(const MacroSetup& setup, std::uint64_t seed, const std::string& of = "");
 
 /// Of the contents, their mean; 1 without any.
 double mean_solid_fraction(const std::vector<ShellPacking>& contents);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/soft_particle/check.h"
 
@@ -21,6 +22,7 @@ void check_macro_comparison(const Scene& scene, Findings& out) {
   for (const ComparisonScene& s : setup.scenes) {
     const json common = std::exchange(out.facts, json{{"name", s.name}});
     out.lines += "  scene " + s.name + ":\n";
+    add_sizes(out, drawn_sizes(s.setup, setup.seed));
     check_macro(s.setup, content, &setup.laws, out);
     scenes.push_back(std::exchange(out.facts, common));
   }

@@ -117,9 +117,8 @@ std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
     return {
         "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "
         "scene says"};
-  const bool same = law.exponent == mine.exponent && law.polydispersity == mine.polydispersity &&
-                    law.rmax_over_shell == mine.rmax_over_shell && law.beta == mine.beta &&
-                    law.friction == mine.friction && law.poisson_ratio == mine.poisson_ratio;
+  const bool same = same_sizes(law, mine) && law.beta == mine.beta && law.friction == mine.friction &&
+                    law.poisson_ratio == mine.poisson_ratio;
   if (same) return {};
   return {"the law was measured on soft particles of another packing or material than those of the twins"};
 }
@@ -135,6 +134,9 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
     s.head.remarks.insert(s.head.remarks.end(), r.remarks.begin(), r.remarks.end());
     s.head.files["macro_" + r.name] = run.path(r.file);
   }
+  for (const ComparisonScene& scene : setup.scenes)
+    for (const SizesSummary& sizes : summaries_of(drawn_sizes(scene.setup, run.seed, scene.name + ": ")))
+      s.head.sizes.push_back(sizes);
   for (const char* file : {"comparison.json", "table.md", "table.csv", "report.html"})
     s.head.files[file] = run.path(file);
   return s;
@@ -142,7 +144,9 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
 
 ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options) {
   const MacroComparisonSetup setup = read_macro_comparison(scene);
-  const Run run(scene, options, "run", setup.seed, {setup.laws.files, setup.laws.text});
+  std::string sizes = sizes_text(setup.spec);
+  for (const ComparisonScene& s : setup.scenes) sizes += sizes_text(s.setup.spec);
+  const Run run(scene, options, "run", setup.seed, {setup.laws.files, setup.laws.text + sizes});
   const auto contents = make_contents(setup.spec, setup.contents, run.seed);
   std::vector<SceneResult> results;
   run.context.guard([&] {

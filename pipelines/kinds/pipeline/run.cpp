@@ -106,6 +106,9 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
+  s.head.sizes = summaries_of(shell_sizes(r.measured.data.spec, r.measured.data.packings));
+  if (setup.macro)
+    for (const SizesSummary& sizes : summaries_of(drawn_sizes(*setup.macro, run.seed))) s.head.sizes.push_back(sizes);
   s.laws = summary_of(r.card);
   s.measured = summary_of(r.measured.data, setup.measure.relaxations());
   s.measured.packings.broke_off = r.measured.left_out.size();
@@ -135,7 +138,8 @@ std::string people_text(const PipelineResult& r) {
 
 ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   const PipelineSetup setup = read_pipeline_setup(scene);
-  const Run run(scene, options, "run", setup.measure.seed);
+  const Run run(scene, options, "run", setup.measure.seed,
+                {.text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "")});
   PipelineResult result;
   run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
@@ -149,7 +153,9 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
   const PipelineSetup setup = read_pipeline_setup(scene);
   const MeasureTrial trial = check_measurements(setup.measure, out);
-  if (setup.macro) check_macro(*setup.macro, content_of(trial), nullptr, out);
+  if (!setup.macro) return;
+  add_sizes(out, drawn_sizes(*setup.macro, setup.measure.seed));
+  check_macro(*setup.macro, content_of(trial), nullptr, out);
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 
 #include "common/dynamics/time_step.h"
 #include "microsim/particles/scene_memory.h"
+#include "microsim/shell_packing.h"
 #include "microsim/soft_experiment.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -145,6 +147,7 @@ MeasureTrial check_measurements(const MeasureSetup& setup, Findings& out) {
       warn_of_series(setup.series.front(), kind, out);
     }
   warn_of_soft_particle(setup.spec, out);
+  add_sizes(out, shell_sizes(setup.spec, {describe(trial.packing, setup.spec)}));
   return trial;
 }
 

@@ -7,6 +7,7 @@
 #include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
 
@@ -25,7 +26,7 @@ void fields(auto&& visit, Of<SoftParticleSummary> auto& s) {
 ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& options) {
   const SoftParticleScene read = read_soft_particle_scene(scene);
   const MeasureSetup& setup = read.measure;
-  const Run run(scene, options, "microsim", setup.seed);
+  const Run run(scene, options, "microsim", setup.seed, {.text = sizes_text(setup.spec)});
   MeasureResult result;
   run.context.guard([&] { result = run_measure_stage(setup, run); });
 
@@ -35,6 +36,7 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   if (!summary.head.remarks.empty() || !result.enough_left) summary.head.status = RunStatus::not_usable;
   for (const std::string& text : result.left_out) summary.head.remarks.push_back(text);
   summary.measured = summary_of(result.data, setup.relaxations());
+  summary.head.sizes = summaries_of(shell_sizes(setup.spec, result.data.packings));
   summary.measured.packings.broke_off = result.left_out.size();
   summary.head.files = {{"measurements", run.path("measurements.h5")}, {"report", run.path("report.html")}};
   std::string people =

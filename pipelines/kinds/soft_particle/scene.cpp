@@ -1,10 +1,15 @@
 #include "pipelines/kinds/soft_particle/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "common/core/error.h"
+#include "common/core/solid_sphere.h"
+#include "common/packing/grading_scene.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
 namespace softgrain {
@@ -19,10 +24,7 @@ void read_material(const SceneTable& t, SoftParticleSpec& spec) {
   spec.restitution = t.number("restitution", Unit::none, Range::closed(0.0, 1.0), spec.restitution);
 }
 
-void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
-  spec.shell_radius = t.number("shell_radius", Unit::length, Range::positive(), spec.shell_radius);
-  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
-  spec.polydispersity = t.number("polydispersity", Unit::none, Range::above(1.0), spec.polydispersity);
+void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
   if (t.has("rmax")) {
     const double rmax = t.number("rmax", Unit::length, Range::positive());
     if (rmax >= spec.shell_radius)
@@ -31,6 +33,30 @@ void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
     spec.rmax_over_shell = rmax / spec.shell_radius;
   } else {
     spec.rmax_over_shell = t.number("rmax_over_shell", Unit::none, Range{0.0, 1.0, true, true}, spec.rmax_over_shell);
+  }
+}
+
+/// What else depends on the smallest and largest grain of a distribution.
+void take_ends(const SceneTable& t, SoftParticleSpec& spec) {
+  spec.exponent = std::numeric_limits<double>::quiet_NaN();
+  spec.polydispersity = spec.sizes->largest() / spec.sizes->smallest();
+  spec.rmax_over_shell = spec.sizes->largest() / spec.shell_radius;
+  if (t.sound() && spec.rmax_over_shell >= 1.0)
+    t.mistake("sizes",
+              fmt::format("the largest grain, of radius {:g} m, must be smaller than the shell (shell_radius = "
+                          "{:g} m)",
+                          spec.sizes->largest(), spec.shell_radius));
+}
+
+void read_packing(const SceneTable& t, SoftParticleSpec& spec) {
+  spec.shell_radius = t.number("shell_radius", Unit::length, Range::positive(), spec.shell_radius);
+  spec.sizes = read_sizes(t, "sizes", {"exponent", "polydispersity", "rmax", "rmax_over_shell"});
+  if (spec.sizes) {
+    take_ends(t, spec);
+  } else {
+    spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+    spec.polydispersity = t.number("polydispersity", Unit::none, Range::above(1.0), spec.polydispersity);
+    read_largest(t, spec);
   }
   spec.beta = t.number("beta", Unit::none, Range::above(1.0), spec.beta);
   spec.trials = t.count("trials", 1, 1000000000, spec.trials);
@@ -138,6 +164,14 @@ MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64
 
 void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
   constexpr double kMost = 1e7;
+  if (spec.sizes) {
+    const double all = spec.beta * cube(spec.shell_radius) / spec.sizes->mean_volume();
+    if (all > kMost)
+      t.mistake("sizes", fmt::format("{:.3g} grains of these sizes have the volume of beta = {:g} shells, allowed are "
+                                     "at most 1e7",
+                                     all, spec.beta));
+    return;
+  }
   const double b = spec.exponent;
   const double p = spec.polydispersity;
   const double third_moment = b == 4.0

@@ -1,0 +1,166 @@
+// Where radii are drawn a distribution of sizes is what they follow; what is measured on it remembers it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/merge_measurements.h"
+#include "common/core/error.h"
+#include "common/core/solid_sphere.h"
+#include "common/data/card_text.h"
+#include "common/data/spec_io.h"
+#include "macrosim/constructed_packing.h"
+#include "microsim/grain_box/arrangement.h"
+#include "microsim/powder/powder_start.h"
+#include "microsim/powder/powder_state_io.h"
+#include "microsim/shell_packing.h"
+#include "pipelines/compare/differences.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using softgrain::test::TemporaryDirectory;
+
+/// Half the volume in grains of 1 mm, half in such of 3 mm: 27 of the small for each large one.
+Grading two_sizes(int dimension = 3) {
+  return Grading::classes({{1e-3, 1e-3, 4.0, 0.5}, {3e-3, 3e-3, 4.0, 0.5}}, dimension);
+}
+
+std::int64_t count_near(const std::vector<double>& radii, double r) {
+  return std::count_if(radii.begin(), radii.end(), [r](double x) { return std::abs(x / r - 1.0) < 1e-12; });
+}
+
+SoftParticleSpec sized_spec() {
+  SoftParticleSpec spec;
+  spec.sizes = Grading::fuller(0.5, 2e-3, 8e-3);
+  spec.exponent = std::nan("");
+  spec.polydispersity = 4.0;
+  spec.rmax_over_shell = 0.5;
+  return spec;
+}
+
+TEST(DrawnSizes, OfMacroScenes) {
+  MacroSpec spec;
+  spec.bodies = 28 + 28;
+  spec.soft_share = 0.0;
+  spec.solid_sizes = two_sizes();
+  std::vector<double> radii;
+  for (const MacroBody& b : make_packing(spec, 1, 0).bodies) radii.push_back(b.r);
+  EXPECT_EQ(count_near(radii, 1e-3), 54);
+  EXPECT_EQ(count_near(radii, 3e-3), 2);
+  EXPECT_TRUE(std::is_sorted(radii.begin(), radii.end(), std::greater<>()));
+}
+
+TEST(DrawnSizes, OfSoftParticlesMakeTheirShare) {
+  MacroSpec spec;
+  spec.bodies = 400;
+  spec.soft_share = 0.4;
+  spec.solid_sizes = two_sizes();
+  spec.soft_sizes = Grading::fuller(0.5, 2e-3, 3e-3);
+  double soft = 0.0;
+  double all = 0.0;
+  for (const MacroBody& b : drawn_bodies(spec, 1, 0)) {
+    all += cube(b.r);
+    if (!b.soft) continue;
+    soft += cube(b.r);
+    EXPECT_GE(b.r, 2e-3);
+    EXPECT_LE(b.r, 3e-3);
+  }
+  EXPECT_NEAR(soft / all, 0.4, 0.02);
+}
+
+TEST(DrawnSizes, OfSolidGrainsWhoseVoidsAreFilled) {
+  MacroSpec spec;
+  spec.construction = Construction::voids;
+  spec.bodies = 28;
+  spec.solid_sizes = two_sizes();
+  const std::vector<MacroBody> bodies = drawn_bodies(spec, 1, 0);
+  EXPECT_EQ(bodies.size(), 28U);
+  EXPECT_TRUE(std::none_of(bodies.begin(), bodies.end(), [](const MacroBody& b) { return b.soft; }));
+  EXPECT_EQ(bodies[0].r, 3e-3);
+  EXPECT_EQ(bodies[1].r, 1e-3);
+}
+
+TEST(DrawnSizes, OfGrainBoxes) {
+  GrainBoxSpec spec;
+  spec.grains = 56;
+  spec.material.sizes = two_sizes();
+  const GrainPack pack = make_loose_pack(spec, 1);
+  EXPECT_EQ(count_near(pack.radius, 1e-3), 54);
+  EXPECT_EQ(count_near(pack.radius, 3e-3), 2);
+}
+
+TEST(DrawnSizes, OfPowdersAreByAreaAndOverTheLargest) {
+  PowderSpec spec;
+  spec.disks = 100;
+  spec.sizes = two_sizes(2);  // 9 small for each large one
+  spec.diameter_min = 1.0 / 3.0;
+  const System<2> s = make_powder(spec, 1, 0);
+  std::vector<double> diameters;
+  for (const auto& disk : s.particles.sphere) diameters.push_back(2.0 * disk.r);
+  EXPECT_EQ(count_near(diameters, 1.0 / 3.0), 90);
+  EXPECT_EQ(count_near(diameters, 1.0), 10);
+}
+
+TEST(DrawnSizes, OfPowdersAreKept) {
+  TemporaryDirectory directory;
+  PowderSpec spec;
+  spec.sizes = two_sizes(2);
+  h5::AtomicFile file(directory.file("powder.h5"));
+  write_powder_spec(file.root().create("spec"), spec);
+  file.commit();
+  EXPECT_TRUE(read_powder_spec(h5::open_file(directory.file("powder.h5")).open("spec")) == spec);
+}
+
+TEST(DrawnSizes, OfShellsHaveTheVolumeOfBetaShells) {
+  SoftParticleSpec spec = sized_spec();
+  spec.beta = 0.3;  // so loose that all find a place
+  double volume = 0.0;
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    const ShellPacking packing = generate_shell_packing(spec, 1, k);
+    // Without growth the largest is one of 8 mm at most; with it nothing is below the smallest.
+    EXPECT_GE(*std::min_element(packing.radius.begin(), packing.radius.end()), 2e-3 / spec.shell_radius);
+    volume += static_cast<double>(packing.radius.size()) * spec.sizes->mean_volume() / 20.0;
+  }
+  EXPECT_NEAR(volume / cube(spec.shell_radius), 0.3, 0.02);
+  spec.placement = Placement::voids;
+  EXPECT_GT(generate_shell_packing(spec, 1, 0).radius.size(), 10U);
+}
+
+TEST(DrawnSizes, OfSoftParticlesAreKeptInFilesAndCards) {
+  const SoftParticleSpec spec = sized_spec();
+  TemporaryDirectory directory;
+  h5::AtomicFile file(directory.file("spec.h5"));
+  write_spec(file.root(), spec);
+  file.commit();
+  const SoftParticleSpec stored = read_spec(h5::open_file(directory.file("spec.h5")));
+  ASSERT_TRUE(stored.sizes.has_value());
+  EXPECT_EQ(*stored.sizes, *spec.sizes);
+  EXPECT_TRUE(packing_known(stored));
+  const Scene card = Scene::parse(spec_text(spec), "card");
+  const SoftParticleSpec read = card.read([](const SceneTable& t) { return read_spec_text(t, false); });
+  ASSERT_TRUE(read.sizes.has_value());
+  EXPECT_EQ(*read.sizes, *spec.sizes);
+  EXPECT_EQ(read.polydispersity, 4.0);
+}
+
+TEST(DrawnSizes, AnotherDistributionIsAnotherSoftParticle) {
+  const SoftParticleSpec spec = sized_spec();
+  SoftParticleSpec other = spec;
+  other.sizes = Grading::fuller(0.6, 2e-3, 8e-3);
+  SoftParticleSpec power;
+  power.polydispersity = 4.0;
+  SoftParticleSpec smaller = spec;
+  smaller.shell_radius = 0.1 * spec.shell_radius;
+  smaller.sizes = Grading::fuller(0.5, 2e-4, 8e-4);
+  EXPECT_TRUE(same_sizes(spec, smaller));
+  for (const SoftParticleSpec& b : {other, power}) {
+    EXPECT_FALSE(same_sizes(spec, b));
+    EXPECT_EQ(differences(spec, b).obstacles.size(), 1U);
+    EXPECT_EQ(differences(b, spec).obstacles.size(), 1U);
+  }
+  EXPECT_TRUE(differences(spec, smaller).obstacles.empty());
+}
+
+}  // namespace
