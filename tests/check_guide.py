@@ -29,7 +29,7 @@ PAGES = {
         {"material", "packing"}, set()),
     "scene_particles.md": (
         ["microsim/particles/guards.cpp", "microsim/particles/particles_scene.cpp", "microsim/particles/scene_bodies.cpp",
-         "microsim/particles/scene_contacts.cpp",
+         "microsim/particles/scene_contacts.cpp", "microsim/particles/scene_drawn.cpp",
          "microsim/particles/scene_soft_laws.cpp", "microsim/particles/scene_time.cpp", "microsim/particles/scene_walls.cpp"],
         {"beyond"}, {"energy_unwatched", "entry"}),
     "scene_powder.md": (

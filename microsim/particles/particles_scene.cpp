@@ -189,6 +189,9 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
     SceneBodies<D> bodies = read_bodies<D>(scene, s.materials);
     root.table_or_empty("cell").part([&] { s.cell = read_cell(root, bodies); });
     s.particles = std::move(bodies.particles);
+    if (bodies.sizes) out.law_files += bodies.sizes->text();
+    out.sizes = std::move(bodies.sizes);
+    out.drawn = std::move(bodies.drawn);
     out.wall_name = std::move(bodies.wall_name);
     if (root.sound()) root.check([&] { require_sense(scene, s, laws); });
     const SceneTable time = root.table("time");

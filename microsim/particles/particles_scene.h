@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/io/scene.h"
+#include "common/packing/grading.h"
 #include "common/system.h"
 #include "microsim/particles/guards.h"
 #include "microsim/particles/scene_time.h"
@@ -26,7 +28,9 @@ struct ParticlesSceneOf {
   double checkpoint_seconds = 300.0;  ///< wall time between checkpoints [s]
   GuardSpec guards;
   std::string text;                  ///< the scene as it is used
-  std::string law_files;             ///< text of the law cards and tables that it takes laws from
+  std::string law_files;             ///< text of the law cards and tables that it takes laws from, and of sizes
+  std::optional<Grading> sizes;      ///< of particles that were drawn
+  std::vector<double> drawn;         ///< their radii
   std::vector<std::string> remarks;  ///< what to mind about these laws
 };
 

@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "microsim/particles/scene_drawn.h"
 #include "microsim/particles/scene_memory.h"
 #include "microsim/particles/scene_vector.h"
 #include "microsim/particles/scene_walls.h"
@@ -101,6 +102,7 @@ Vec<D> flat(const Vec3& x, const std::string& path, std::size_t k) {
 template <int D>
 void add_file(Builder<D>& b, const SceneTable& t) {
   if (!t.has("file")) return;
+  if (t.has("sizes")) t.reject("file", "goes without sizes, which says all sizes");
   b.out.many_file = b.scene.resolve(t.text("file"));
   const std::int32_t material = material_index(b.materials, t, "material");
   const double density = density_of(b, t, material);
@@ -115,6 +117,21 @@ void add_file(Builder<D>& b, const SceneTable& t) {
     b.grains.push_back(solid_grain(x, file.radius[k], density, material));
     b.wall_of.push_back(wall_around(b, x));
   }
+}
+
+template <int D>
+void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t) {
+  if (!t.has("count") && !t.has("sizes")) return;
+  const std::int32_t material = material_index(b.materials, t, "material");
+  const double density = density_of(b, t, material);
+  DrawnParticles<D> drawn = read_drawn<D>(root, t, b.walls, b.grains);
+  for (std::size_t k = 0; k < drawn.position.size(); ++k) {
+    b.grains.push_back(solid_grain(drawn.position[k], drawn.radius[k], density, material));
+    b.wall_of.push_back(wall_around(b, drawn.position[k]));
+  }
+  b.out.sizes = std::move(drawn.sizes);
+  b.out.drawn = std::move(drawn.radius);
+  b.out.drawn_where = t.where("count");
 }
 
 template <int D>
@@ -203,7 +220,9 @@ void place_walls(Builder<D>& b) {
 template <int D>
 void place_all(Builder<D>& b) {
   if (b.grains.empty())
-    throw BadInput(b.scene.path() + ":1: the scene has no particle: give [[particle]] tables or [particles] file");
+    throw BadInput(b.scene.path() +
+                   ":1: the scene has no particle: give [[particle]] tables or [particles] file, or "
+                   "count and sizes");
   require_distinct_centres(b);
   place_grains(b, wall_slots(b));
   place_walls(b);
@@ -214,6 +233,7 @@ void read_grains(Builder<D>& b, const SceneTable& root) {
   for (const SceneTable& t : root.tables("particle")) t.part([&] { add_table(b, t); });
   const SceneTable many = root.table_or_empty("particles");
   many.part([&] { add_file(b, many); });
+  many.part([&] { add_drawn(b, root, many); });
   if (root.sound()) root.check([&] { place_all(b); });
 }
 
@@ -222,6 +242,7 @@ void read_grains(Builder<D>& b, const SceneTable& root) {
 template <int D>
 std::string SceneBodies<D>::where_of(Slot particle) const {
   const auto k = static_cast<std::size_t>(particle);
+  if (k >= where.size() && many_file.empty()) return drawn_where;
   return k < where.size() ? where[k] : many_file + ":" + std::to_string(xyzr_line(k - where.size()));
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/core/particles.h"
 #include "common/io/scene.h"
+#include "common/packing/grading.h"
 #include "microsim/particles/scene_contacts.h"
 
 namespace softgrain {
@@ -20,6 +22,9 @@ struct SceneBodies {
   std::vector<std::string> where;  ///< "file:line" of particles that have a table of their own
   std::string many_file;           ///< path of the file with the others
   Vec3 many_box{};                 ///< first line of that file [m]
+  std::optional<Grading> sizes;    ///< of the particles that were drawn, which have no table of their own either
+  std::vector<double> drawn;       ///< their radii
+  std::string drawn_where;         ///< "file:line" of their table
 
   /// "file:line" of a particle, for messages.
   [[nodiscard]] std::string where_of(Slot particle) const;

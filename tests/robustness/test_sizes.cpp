@@ -32,7 +32,12 @@ std::vector<SizedScene> sized_scenes() {
            "[analysis]\nrigidity = false\nscattering = false\nholes = false\n"},
           {"macrosim", "kind = \"macro\"\nlaw = \"" + kTable +
                            "\"\n[macro]\nbodies = 30\nsolid_sizes = SIZES\nsteps = 1\nstrain = 0.02\nresolved = "
-                           "false\n"}};
+                           "false\n"},
+          {"microsim",
+           "kind = \"particles\"\n[material.sand]\ndensity = 2650.0\nE = \"70 MPa\"\nnu = 0.2\n[[contact]]\npair = "
+           "[\"sand\", \"sand\"]\nlaw = \"hertz-tsuji\"\nrestitution = 0.5\nmu = 0.5\n[particles]\nmaterial = "
+           "\"sand\"\ncount = 50\nsizes = SIZES\n[cell]\nsize = [0.06, 0.06, 0.06]\nperiodic = [true, true, "
+           "false]\n[time]\nend = 1e-5\n"}};
 }
 
 class Sizes : public ::testing::Test {
@@ -85,7 +90,7 @@ TEST_F(Sizes, TablesThatAreNone) {
 TEST_F(Sizes, OneWayToSayThemIsEnough) {
   const std::string list = "{ form = \"list\", radii = [\"1 mm\", \"2 mm\"] }";
   const char* const beside[] = {"polydispersity = 4.0", "radius_min = \"1 mm\"", "diameter_min = 0.5",
-                                "solid_radius_max = \"2 mm\""};
+                                "solid_radius_max = \"2 mm\"", "file = \"particles.xyzr\""};
   const auto scenes = sized_scenes();
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const ProgramOutcome ran = run(scenes[k], list + "\n" + beside[k], scenes[k].command);

@@ -11,6 +11,7 @@
 #include "common/data/spec_io.h"
 #include "macrosim/constructed_packing.h"
 #include "microsim/grain_box/arrangement.h"
+#include "microsim/particles/particles_scene.h"
 #include "microsim/powder/powder_start.h"
 #include "microsim/powder/powder_state_io.h"
 #include "microsim/shell_packing.h"
@@ -101,6 +102,38 @@ TEST(DrawnSizes, OfPowdersAreByAreaAndOverTheLargest) {
   for (const auto& disk : s.particles.sphere) diameters.push_back(2.0 * disk.r);
   EXPECT_EQ(count_near(diameters, 1.0 / 3.0), 90);
   EXPECT_EQ(count_near(diameters, 1.0), 10);
+}
+
+TEST(DrawnSizes, OfSingleParticlesWithoutOverlapAcrossTheCell) {
+  const std::string text =
+      "kind = \"particles\"\n[material.m]\ndensity = 2650.0\nE = \"70 MPa\"\nnu = 0.2\n[[contact]]\npair = [\"m\", "
+      "\"m\"]\nlaw = \"hertz-tsuji\"\nrestitution = 0.5\nmu = 0.5\n[[contact]]\npair = [\"m\", \"rigid\"]\nlaw = "
+      "\"hertz-tsuji\"\nrestitution = 0.5\nmu = 0.5\n[[particle]]\nmaterial = \"m\"\nradius = 4e-3\nposition = "
+      "[0.01, 0.01, 0.01]\n[particles]\nmaterial = \"m\"\ncount = 56\nsizes = { form = \"classes\", class = [{ radius "
+      "= "
+      "1e-3, volume_share = 0.5 }, { radius = 3e-3, volume_share = 0.5 }] }\n[cell]\nsize = [0.02, 0.02, "
+      "0.02]\nperiodic = [true, false, false]\n[[wall]]\nshape = \"plane\"\npoint = [0.0, 0.0, 0.004]\nnormal = [0.0, "
+      "0.0, 1.0]\nmaterial = \"rigid\"\n[time]\nend = 1e-5\n";
+  const ParticlesScene scene = read_particles_scene<3>(Scene::parse(text, "s"));
+  EXPECT_EQ(count_near(scene.drawn, 1e-3), 54);
+  EXPECT_EQ(count_near(scene.drawn, 3e-3), 2);
+  const auto& p = scene.system.particles;
+  ASSERT_EQ(p.grains, 57);
+  for (Slot i = 0; i < p.grains; ++i) {
+    const auto& a = p.sphere[static_cast<std::size_t>(i)];
+    EXPECT_GE(a.x[2] - a.r, 0.004);
+    EXPECT_LE(a.x[2] + a.r, 0.02);
+    for (Slot j = 0; j < i; ++j) {
+      const auto& b = p.sphere[static_cast<std::size_t>(j)];
+      Vec3 apart = a.x - b.x;
+      apart[0] -= 0.02 * std::round(apart[0] / 0.02);
+      EXPECT_GE(norm(apart), a.r + b.r) << i << " and " << j;
+    }
+  }
+  const ParticlesScene same = read_particles_scene<3>(Scene::parse(text, "s"));
+  EXPECT_EQ(same.system.particles.sphere[30].x[0], p.sphere[30].x[0]);
+  const ParticlesScene other = read_particles_scene<3>(Scene::parse(text, "s", {"particles.seed=2"}));
+  EXPECT_NE(other.system.particles.sphere[30].x[0], p.sphere[30].x[0]);
 }
 
 TEST(DrawnSizes, OfPowdersAreKept) {

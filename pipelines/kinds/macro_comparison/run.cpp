@@ -110,9 +110,13 @@ std::string people_text(const std::vector<SceneResult>& results, const Run& run)
 
 /// The packings of a comparison should be those that the law was measured on.
 std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
+  const SoftParticleSpec& mine = setup.spec;
+  if (setup.laws.table)
+    for (const LawTableEntry& e : setup.laws.table->entries)
+      if ((e.spec.sizes || mine.sizes) && !same_sizes(e.spec, mine))
+        return {"the law table was measured on soft particles whose grains have other sizes than those of the twins"};
   if (!setup.laws.card) return {};
   const SoftParticleSpec& law = setup.laws.card->spec;
-  const SoftParticleSpec& mine = setup.spec;
   if (!packing_known(law))
     return {
         "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "

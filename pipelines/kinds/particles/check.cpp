@@ -107,6 +107,7 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
           fmt::format("{} {}, {} walls", s.particles.grains, D == 3 ? "grains" : "disks", scene.wall_name.size()));
   out.add("time_step", scene.time.step,
           fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
+  add_sizes(out, drawn_sizes(scene));
   if (limit.body >= 0)
     out.add("step_limit", limit.natural_time,
             fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));

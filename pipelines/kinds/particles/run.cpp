@@ -36,6 +36,7 @@ ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const Run run(scene, options, "microsim", 0, {.files = contact_law_files(scene)});
   const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), run.context);
   ParticlesSummary summary = summary_of(setup, result, memory_before);
+  summary.head.sizes = summaries_of(drawn_sizes(setup));
   std::string text = particles_text(result) + "\n";
   for (const std::string& remark : summary.head.remarks) text += "remark: " + remark + "\n";
   if (setup.record) {

@@ -4,8 +4,16 @@
 #include "microsim/particles/particles_scene.h"
 #include "pipelines/run/findings.h"
 #include "pipelines/run/scene_kind.h"
+#include "pipelines/run/size_summary.h"
 
 namespace softgrain {
+
+/// Particles that were drawn by a distribution of sizes.
+template <int D>
+std::vector<DrawnSizes> drawn_sizes(const ParticlesSceneOf<D>& scene) {
+  if (!scene.sizes) return {};
+  return {{.of = "particles", .asked = *scene.sizes, .samples = {scene.drawn}}};
+}
 
 /// Counts, solid fraction of periodic cells, time step and what limits it, contacts and their overlaps at the start,
 /// memory, disk, expected time from a short trial of the loop; and what to mind.

@@ -1,0 +1,197 @@
+#include "microsim/particles/scene_drawn.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/core/random.h"
+#include "common/io/interrupt.h"
+#include "common/packing/grading_scene.h"
+#include "microsim/particles/scene_memory.h"
+#include "microsim/particles/scene_vector.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr RandomPurpose kParticleRadii{40};
+constexpr RandomPurpose kParticlePlaces{41};
+constexpr int kTrials = 100000;  // per particle
+
+/// Where centres may lie, and which axes are closed.
+template <int D>
+struct Region {
+  Vec<D> low{};
+  Vec<D> high{};
+  std::array<bool, D> periodic{};
+};
+
+template <int D>
+Region<D> read_region(const SceneTable& root, const SceneTable& t) {
+  Region<D> region;
+  if (t.has("low") || t.has("high") || !root.has("cell") || root.table("cell").is_text("size")) {
+    region.low = read_vector<D>(t, "low", Unit::length);
+    region.high = read_vector<D>(t, "high", Unit::length);
+  } else {
+    const SceneTable cell = root.table("cell");
+    region.high = read_vector<D>(cell, "size", Unit::length);
+    const std::vector<bool> flags = cell.flags("periodic");
+    for (std::size_t k = 0; k < std::min<std::size_t>(flags.size(), D); ++k) region.periodic[k] = flags[k];
+  }
+  for (int k = 0; k < D; ++k)
+    if (t.sound() && !(region.high[k] > region.low[k])) t.reject("high", "must be above low along every axis");
+  return region;
+}
+
+/// Particles that have a place, by cells as wide as the largest diameter.
+template <int D>
+class PlacedParticles {
+ public:
+  PlacedParticles(const Region<D>& region, double largest) : region_(region) {
+    std::size_t all = 1;
+    for (int k = 0; k < D; ++k) {
+      const double length = region.high[k] - region.low[k];
+      const auto u = static_cast<std::size_t>(k);
+      count_[u] = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::min(length / (2.0 * largest), 200.0)));
+      all *= static_cast<std::size_t>(count_[u]);
+    }
+    cells_.resize(all);
+  }
+
+  [[nodiscard]] bool has_room(const Vec<D>& x, double r) const {
+    bool room = true;
+    around(x, [&](std::size_t cell) {
+      for (const std::size_t j : cells_[cell]) room = room && !touches(x, r, j);
+    });
+    return room;
+  }
+  void add(const Vec<D>& x, double r) {
+    std::size_t cell = 0;
+    for (std::size_t k = 0; k < D; ++k)
+      cell = cell * static_cast<std::size_t>(count_[k]) + static_cast<std::size_t>(index(x, k));
+    cells_[cell].push_back(x_.size());
+    x_.push_back(x);
+    r_.push_back(r);
+  }
+
+ private:
+  [[nodiscard]] std::int64_t index(const Vec<D>& x, std::size_t k) const {
+    const auto a = static_cast<int>(k);
+    const double share = (x[a] - region_.low[a]) / (region_.high[a] - region_.low[a]);
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(share * static_cast<double>(count_[k])), 0,
+                                    count_[k] - 1);
+  }
+  /// Every cell once that may hold a neighbour.
+  template <class Visit>
+  void around(const Vec<D>& x, const Visit& visit) const {
+    std::vector<std::size_t> cells{0};
+    for (std::size_t k = 0; k < D; ++k) {
+      std::vector<std::int64_t> along;
+      for (std::int64_t step = -1; step <= 1; ++step) {
+        std::int64_t c = index(x, k) + step;
+        if (region_.periodic[k]) c = (c + count_[k]) % count_[k];
+        if (c >= 0 && c < count_[k] && std::find(along.begin(), along.end(), c) == along.end()) along.push_back(c);
+      }
+      std::vector<std::size_t> next;
+      for (const std::size_t before : cells)
+        for (const std::int64_t c : along)
+          next.push_back(before * static_cast<std::size_t>(count_[k]) + static_cast<std::size_t>(c));
+      cells = std::move(next);
+    }
+    for (const std::size_t cell : cells) visit(cell);
+  }
+  [[nodiscard]] bool touches(const Vec<D>& x, double r, std::size_t j) const {
+    Vec<D> apart = x - x_[j];
+    for (int k = 0; k < D; ++k) {
+      const double length = region_.high[k] - region_.low[k];
+      if (region_.periodic[static_cast<std::size_t>(k)]) apart[k] -= length * std::round(apart[k] / length);
+    }
+    return norm2(apart) < (r + r_[j]) * (r + r_[j]);
+  }
+
+  Region<D> region_;
+  std::array<std::int64_t, D> count_{};
+  std::vector<std::vector<std::size_t>> cells_;
+  std::vector<Vec<D>> x_;
+  std::vector<double> r_;
+};
+
+template <int D>
+bool clear_of_walls(const std::vector<SceneWall<D>>& walls, const Vec<D>& x, double r) {
+  return std::all_of(walls.begin(), walls.end(), [&](const SceneWall<D>& w) {
+    return w.plane ? dot(x - w.body.x, w.normal) >= r : norm(x - w.body.x) + r <= w.body.r;
+  });
+}
+
+template <int D>
+Vec<D> random_place(const Region<D>& region, double r, RandomStream& random) {
+  Vec<D> x;
+  for (int k = 0; k < D; ++k) {
+    const double margin = region.periodic[static_cast<std::size_t>(k)] ? 0.0 : r;
+    x[k] = region.low[k] + margin + (region.high[k] - region.low[k] - 2.0 * margin) * random.uniform();
+  }
+  return x;
+}
+
+template <int D>
+void require_room(const SceneTable& t, const Region<D>& region, double largest) {
+  for (int k = 0; k < D; ++k)
+    if (region.high[k] - region.low[k] < 2.0 * largest)
+      t.reject("sizes",
+               fmt::format("the largest particle, of radius {:g} m, is wider than the box of places", largest));
+}
+
+template <int D>
+void place(const SceneTable& t, const Region<D>& region, const std::vector<SceneWall<D>>& walls,
+           const std::vector<NewBody<D>>& others, RandomStream& random, DrawnParticles<D>& out) {
+  double largest = out.radius.front();
+  for (const NewBody<D>& body : others) largest = std::max(largest, body.r);
+  PlacedParticles<D> placed(region, largest);
+  for (const NewBody<D>& body : others) placed.add(body.x, body.r);
+  for (std::size_t k = 0; k < out.radius.size(); ++k) {
+    stop_if_interrupted("placing particles");
+    const double r = out.radius[k];
+    Vec<D> x;
+    int trial = 0;
+    do {
+      x = random_place(region, r, random);
+    } while ((!clear_of_walls(walls, x, r) || !placed.has_room(x, r)) && ++trial < kTrials);
+    if (trial == kTrials)
+      t.reject("count", fmt::format("particle {} of {} finds no place in {} trials: fewer, or a larger box", k + 1,
+                                    out.radius.size(), kTrials));
+    placed.add(x, r);
+    out.position.push_back(x);
+  }
+}
+
+}  // namespace
+
+template <int D>
+DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
+                             const std::vector<NewBody<D>>& others) {
+  DrawnParticles<D> out;
+  const std::int64_t count = t.count("count", 1, 10000000);
+  const auto seed = static_cast<std::uint64_t>(t.count("seed", 0, 1000000000000, 1));
+  if (!t.has("sizes")) (void)t.table("sizes");  // says that it is missing
+  out.sizes = read_sizes(t, "sizes", {}, D);
+  const Region<D> region = read_region<D>(root, t);
+  if (!out.sizes || !t.sound() || !root.sound()) return out;
+  if (const std::string problem = memory_problem(count, available_memory()); !problem.empty())
+    t.reject("count", problem);
+  RandomStream radii(seed, kParticleRadii, 0);
+  out.radius = out.sizes->draw(static_cast<std::size_t>(count), radii);
+  std::reverse(out.radius.begin(), out.radius.end());
+  require_room<D>(t, region, out.radius.front());
+  RandomStream places(seed, kParticlePlaces, 0);
+  place(t, region, walls, others, places, out);
+  return out;
+}
+
+template DrawnParticles<2> read_drawn<2>(const SceneTable&, const SceneTable&, const std::vector<SceneWall<2>>&,
+                                         const std::vector<NewBody<2>>&);
+template DrawnParticles<3> read_drawn<3>(const SceneTable&, const SceneTable&, const std::vector<SceneWall<3>>&,
+                                         const std::vector<NewBody<3>>&);
+
+}  // namespace softgrain

@@ -1,0 +1,27 @@
+// Particles of a scene that are drawn by a distribution of sizes and placed at random.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/core/particles.h"
+#include "common/packing/grading.h"
+#include "microsim/particles/scene_walls.h"
+
+namespace softgrain {
+
+template <int D>
+struct DrawnParticles {
+  std::vector<Vec<D>> position;
+  std::vector<double> radius;  ///< largest first
+  std::optional<Grading> sizes;
+};
+
+/// `count`, `sizes`, `seed`, `low` and `high` (corners of the box of places; without them [cell], whose periodic axes
+/// are closed) of the table `t` = [particles]: largest first at random places, without overlap with each other, with
+/// `others` or with walls. Throws BadInput when one finds none.
+template <int D>
+DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
+                             const std::vector<NewBody<D>>& others);
+
+}  // namespace softgrain
