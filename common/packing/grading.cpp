@@ -68,7 +68,7 @@ Grading::Grading(GradingForm form, std::string text, std::vector<SizePiece> piec
       throw BadInput(fmt::format("sizes: {:g} is no share of the volume", p.volume));
     all += p.volume;
   }
-  if (!(all > 0.0)) throw BadInput("sizes: no grains");
+  if (!(all > 0.0)) throw BadInput("sizes: no grain has any of them");
   std::erase_if(pieces_, [](const SizePiece& p) { return p.volume == 0.0; });
   double number = 0.0;
   double below = 0.0;
@@ -78,6 +78,8 @@ Grading::Grading(GradingForm form, std::string text, std::vector<SizePiece> piec
     volume_.push_back(below);
     below += p.volume;
   }
+  if (!(number > 0.0) || !std::isfinite(number))
+    throw BadInput("sizes: so small, or so far apart, that their numbers are no numbers");
   for (double& n : number_) n /= number;
   number_.back() = 1.0;
   for (std::size_t k = 1; k < pieces_.size(); ++k)

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/core/random.h"
+#include "common/core/solid_sphere.h"
 #include "common/io/interrupt.h"
 #include "common/packing/grading_scene.h"
 #include "microsim/particles/scene_memory.h"
@@ -18,7 +20,9 @@ namespace {
 
 constexpr RandomPurpose kParticleRadii{40};
 constexpr RandomPurpose kParticlePlaces{41};
-constexpr int kTrials = 100000;  // per particle
+// For all together: so many each, and some for the last ones.
+constexpr std::int64_t kTrialsEach = 1000;
+constexpr std::int64_t kTrialsBeside = 1000000;
 
 /// Where centres may lie, and which axes are closed.
 template <int D>
@@ -136,7 +140,16 @@ Vec<D> random_place(const Region<D>& region, double r, RandomStream& random) {
 }
 
 template <int D>
-void require_room(const SceneTable& t, const Region<D>& region, double largest) {
+void require_room(const SceneTable& t, const Region<D>& region, const std::vector<double>& radii) {
+  constexpr double kDensest = D == 3 ? 0.74 : 0.907;  // of equal spheres and disks; places at random hold half of it
+  const double largest = radii.front();
+  double box = 1.0;
+  for (int k = 0; k < D; ++k) box *= region.high[k] - region.low[k];
+  double volume = 0.0;
+  for (const double r : radii) volume += D == 3 ? kSphereVolume * cube(r) : std::numbers::pi * r * r;
+  if (volume > kDensest * box)
+    t.reject("count", fmt::format("so many particles of these sizes have {:.3g} of the volume of the box of places",
+                                  volume / box));
   for (int k = 0; k < D; ++k)
     if (region.high[k] - region.low[k] < 2.0 * largest)
       t.reject("sizes",
@@ -150,17 +163,17 @@ void place(const SceneTable& t, const Region<D>& region, const std::vector<Scene
   for (const NewBody<D>& body : others) largest = std::max(largest, body.r);
   PlacedParticles<D> placed(region, largest);
   for (const NewBody<D>& body : others) placed.add(body.x, body.r);
+  std::int64_t left = kTrialsBeside + kTrialsEach * static_cast<std::int64_t>(out.radius.size());
   for (std::size_t k = 0; k < out.radius.size(); ++k) {
     stop_if_interrupted("placing particles");
     const double r = out.radius[k];
     Vec<D> x;
-    int trial = 0;
     do {
       x = random_place(region, r, random);
-    } while ((!clear_of_walls(walls, x, r) || !placed.has_room(x, r)) && ++trial < kTrials);
-    if (trial == kTrials)
-      t.reject("count", fmt::format("particle {} of {} finds no place in {} trials: fewer, or a larger box", k + 1,
-                                    out.radius.size(), kTrials));
+    } while ((!clear_of_walls(walls, x, r) || !placed.has_room(x, r)) && --left > 0);
+    if (left <= 0)
+      t.reject("count",
+               fmt::format("particle {} of {} finds no place: fewer, or a larger box", k + 1, out.radius.size()));
     placed.add(x, r);
     out.position.push_back(x);
   }
@@ -183,7 +196,7 @@ DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const 
   RandomStream radii(seed, kParticleRadii, 0);
   out.radius = out.sizes->draw(static_cast<std::size_t>(count), radii);
   std::reverse(out.radius.begin(), out.radius.end());
-  require_room<D>(t, region, out.radius.front());
+  require_room<D>(t, region, out.radius);
   RandomStream places(seed, kParticlePlaces, 0);
   place(t, region, walls, others, places, out);
   return out;

@@ -140,6 +140,20 @@ TEST_F(Sizes, KeptTasksOfAnotherCurveServeNone) {
   EXPECT_NE(again.output.find("belongs to another scene"), std::string::npos) << again.output;
 }
 
+TEST_F(Sizes, ParticlesThatFindNoPlace) {
+  const SizedScene scene = sized_scenes()[4];
+  const ProgramOutcome many = run(scene, "{ form = \"list\", radii = [\"12 mm\"] }", "check");
+  EXPECT_EQ(many.status, 2);
+  EXPECT_NE(many.output.find("of the volume of the box"), std::string::npos) << many.output;
+  const ProgramOutcome tight = run(scene, "{ form = \"list\", radii = [\"8 mm\"] }", "check");
+  EXPECT_EQ(tight.status, 2);
+  EXPECT_NE(tight.output.find("of 50 finds no place"), std::string::npos) << tight.output;
+  const ProgramOutcome wide =
+      run(scene, "{ form = \"list\", radii = [\"31 mm\"] }\nlow = [0, 0, 0]\nhigh = [1, 1, 0.05]", "check");
+  EXPECT_EQ(wide.status, 2);
+  EXPECT_NE(wide.output.find("wider than the box"), std::string::npos) << wide.output;
+}
+
 TEST_F(Sizes, SoftParticlesInVoidsAreAsLargeAsTheHoles) {
   SizedScene scene = sized_scenes()[3];
   scene.text.replace(scene.text.find("solid_sizes"), 11, "construction = \"voids\"\nsoft_sizes");

@@ -142,6 +142,9 @@ TEST(Grading, WhatIsNoDistributionIsRefused) {
   EXPECT_THROW((void)Grading::power_law(3.5, 0.0, 0.006), BadInput);
   EXPECT_THROW((void)Grading::power_law(3.5, 0.007, 0.006), BadInput);
   EXPECT_THROW((void)Grading::list({}), BadInput);
+  EXPECT_THROW((void)Grading::list({1e-120}), BadInput);
+  EXPECT_THROW((void)Grading::power_law(20.0, 1e-90, 1e90), BadInput);
+  EXPECT_THROW((void)Grading::log_normal(1e-3, 1.01, 1.0, 2.0), BadInput);
   EXPECT_THROW((void)Grading::classes({{1.0, 2.0, 4.0, -1.0}}), BadInput);
 }
 
