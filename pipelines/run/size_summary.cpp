@@ -56,7 +56,10 @@ SizesSummary summary_of(const DrawnSizes& sizes) {
                    .grains = worst.grains,
                    .largest_difference = worst.difference,
                    .largest_grain = largest_share(sizes, worst.grains),
-                   .unit = sizes.unit};
+                   .unit = sizes.unit,
+                   .diameter = {},
+                   .asked = {},
+                   .obtained = {}};
   for (const double r : radii_of_curves(sizes)) {
     Tally obtained;
     for (const std::vector<double>& radii : sizes.samples) obtained.add(sizes.asked.obtained_passing(radii, r));

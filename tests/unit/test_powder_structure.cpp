@@ -89,7 +89,7 @@ TEST(PowderStructure, TableAnalysisIsReadAndChecked) {
 }
 
 TEST(PowderSpecIo, EveryMemberComesBack) {
-  const PowderSpec spec{7, 0.6, 0.3, 2e4, 0.7, 0.15, 0.5, false, 2e-3, true, 3e-4, 4e-2, 0.02, 9.48};
+  const PowderSpec spec{7, 0.6, 0.3, 2e4, 0.7, 0.15, 0.5, false, 2e-3, true, 3e-4, 4e-2, 0.02, 9.48, {}};
   const test::TemporaryDirectory directory;
   {
     h5::AtomicFile file(directory.file("s.h5"));
