@@ -9,6 +9,7 @@
 #include "common/io/interrupt.h"
 #include "macrosim/box.h"
 #include "macrosim/placed_spheres.h"
+#include "macrosim/pressed_box.h"
 
 namespace softgrain {
 
@@ -68,23 +69,34 @@ DampedOptions preparation_options(const CompactionProtocol& protocol) {
   return options;
 }
 
-/// Shrinks the box in ever smaller steps: a step that overshoots the pressure is taken back and halved.
-void compact(System3& s, const Box& box, const CompactionProtocol& protocol, double youngs_modulus) {
-  const DampedOptions options = preparation_options(protocol);
-  double step = protocol.first_step;
-  for (int round = 0; round < protocol.most_rounds; ++round) {
-    const System3 before = s;
-    strain_box(s, box, {{step, step, step}});
-    DampedRelaxation<3>(options).relax(s);
-    const Vec3 stress = wall_stress(s, box);
-    const double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
-    if (mean < protocol.pressure) continue;
-    if (mean < protocol.overshoot * protocol.pressure) return;
-    s = before;
-    step *= 0.5;
-    if (step < protocol.smallest_step) break;
+/// As little as a body can be held by: a share of the stiffness of its contacts where all bear this pressure alike.
+double least_stiffness(const System3& s, const Vec3& size, double pressure, double youngs_modulus) {
+  double radii = 0.0;
+  for (Slot i = 0; i < s.particles.grains; ++i) radii += s.particles.sphere[at(i)].r;
+  const double n = s.particles.grains;
+  const double force = pressure * size[0] * size[1] / std::cbrt(n * n);
+  const double radius = radii / n;
+  return 0.6 * std::cbrt(force * youngs_modulus * youngs_modulus * radius) / radius;
+}
+
+/// Relaxes bodies and walls together under a pressure that falls to the one asked for.
+void compact(System3& s, const Box& box, const PressureLadder& ladder, double youngs_modulus) {
+  WallControl control{{true, true, true}, {}, true};
+  for (double over = ladder.first; over >= 1.0; over *= 0.5) {
+    const bool last = over < 2.0;
+    const double pressure = last ? ladder.pressure : over * ladder.pressure;
+    const Vec3 size = box_high(s, box) - box_low(s, box);
+    control.stress = {{pressure, pressure, pressure}};
+    control.tolerance = last ? ladder.tolerance : ladder.loose;
+    DampedOptions options;
+    options.tolerance = control.tolerance;
+    options.max_passes = ladder.max_passes;
+    options.force_floor = 1e-2 * pressure * size[0] * size[1] / static_cast<double>(s.particles.grains);
+    options.least_stiffness = least_stiffness(s, size, pressure, youngs_modulus);
+    PressedBox walls(box, control);
+    const RelaxationResult rest = DampedRelaxation<3>(options).relax(s, walls);
+    if (last && rest.end != RelaxationEnd::converged) throw NotUsable(not_jammed_text(ladder.pressure, youngs_modulus));
   }
-  throw NotUsable(not_jammed_text(protocol, youngs_modulus));
 }
 
 }  // namespace
@@ -119,15 +131,14 @@ CompactionProtocol compaction_protocol(const MacroSpec& spec, const Vec3& size, 
   return protocol;
 }
 
-std::string not_jammed_text(const CompactionProtocol& protocol, double youngs_modulus) {
-  return "macro: the preparation did not reach a pressure of " + std::to_string(protocol.pressure / youngs_modulus) +
-         " E";
+std::string not_jammed_text(double pressure, double youngs_modulus) {
+  return "macro: the preparation did not reach a pressure of " + std::to_string(pressure / youngs_modulus) + " E";
 }
 
 void bring_into_touch(const MacroSpec& spec, MacroPacking& packing) {
   Box box;
   System3 s = hard_system(spec, packing, box);
-  compact(s, box, compaction_protocol(spec, packing.size(), packing.bodies.size()), spec.youngs_modulus);
+  compact(s, box, {.pressure = spec.start_pressure * spec.youngs_modulus}, spec.youngs_modulus);
   take_over(s, box, packing);
 }
 

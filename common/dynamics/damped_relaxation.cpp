@@ -23,7 +23,7 @@ void limit_length(V& v, double longest) {
 }  // namespace
 
 template <int D>
-void DampedRelaxation<D>::scale_masses(System<D>& s) {
+void DampedRelaxation<D>::scale_masses(System<D>& s, RelaxingFrame<D>* frame) {
   const auto& p = s.particles;
   inverse_mass_.assign(static_cast<std::size_t>(p.size()), 0.0);
   inverse_inertia_.assign(static_cast<std::size_t>(p.size()), 0.0);
@@ -35,10 +35,11 @@ void DampedRelaxation<D>::scale_masses(System<D>& s) {
     if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(stiffness_.translation[u], r);
     if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = masses.inverse_inertia(stiffness_.rotation[u], r);
   }
+  if (frame != nullptr) frame->scale_masses(s, stiffness_, masses);
 }
 
 template <int D>
-void DampedRelaxation<D>::steer(System<D>& s) {
+void DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame) {
   auto& p = s.particles;
   double power = 0.0;
   double speed2 = 0.0;
@@ -55,7 +56,14 @@ void DampedRelaxation<D>::steer(System<D>& s) {
       pull2 += norm2(p.torque[u]) * inverse_inertia_[u];
     }
   }
+  if (frame != nullptr) {
+    const auto sums = frame->feel(s);
+    power += sums.power;
+    speed2 += sums.speed2;
+    pull2 += sums.pull2;
+  }
   const Fire::Steering steering = fire_.steer(power, speed2, pull2);
+  if (frame != nullptr) frame->steer(steering.keep, steering.pull);
   if (steering.stop) {
     stop_motion(p);
     return;
@@ -83,7 +91,7 @@ void DampedRelaxation<D>::move(System<D>& s) {
 }
 
 template <int D>
-RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
+RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* frame) {
   RelaxationResult result;
   stop_motion(s.particles);
   fire_ = {};
@@ -96,20 +104,22 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s) {
       result.residual = scale > 0.0 ? worst / scale : 0.0;
       if (!std::isfinite(worst))
         result.end = RelaxationEnd::diverged;
-      else if (worst <= options_.tolerance * scale)
+      else if (worst <= options_.tolerance * scale && (frame == nullptr || frame->residual(s) <= 1.0))
         result.end = RelaxationEnd::converged;
       else if (result.passes >= options_.max_passes)
         result.end = RelaxationEnd::capped;
       if (result.end != RelaxationEnd::not_run) break;
       stop_if_interrupted("relaxing");
-      scale_masses(s);
+      scale_masses(s, frame);
     }
-    steer(s);
+    steer(s, frame);
     move(s);
+    if (frame != nullptr) frame->carry(s, fire_.step);
     if ((result.passes + 1) % kMassInterval == 0)
       force_pass(s, fire_.step, stiffness_, History::advance);
     else
       force_pass(s, fire_.step, History::advance);
+    if (frame != nullptr) frame->release(s);
     add_gravity(s);
     ++result.passes;
   }

@@ -19,6 +19,32 @@ struct DampedOptions {
   double least_stiffness = 0.0;  ///< no body counts as softer than this times its radius [Pa]; 0: a share of the mean
 };
 
+/// What comes to rest together with the bodies and is none: walls or a cell held by stress. Its coordinates are strains
+/// that carry all bodies along; masses, forces and velocities are its own.
+template <int D>
+class RelaxingFrame {
+ public:
+  virtual ~RelaxingFrame() = default;
+  /// Sums over the coordinates, see Fire::steer.
+  struct Sums {
+    double power = 0.0;
+    double speed2 = 0.0;
+    double pull2 = 0.0;
+  };
+
+  virtual void scale_masses(const System<D>& system, const BodyStiffness& stiffness, const PseudoMasses& masses) = 0;
+  /// Takes the forces on the frame from those on the bodies.
+  virtual Sums feel(const System<D>& system) = 0;
+  /// v becomes keep v + pull F/m.
+  virtual void steer(double keep, double pull) = 0;
+  /// v += F/m step; moves everything by v step and adds that motion to the velocities of all bodies, which release()
+  /// takes off again: contacts between see the whole of it.
+  virtual void carry(System<D>& system, double step) = 0;
+  virtual void release(System<D>& system) = 0;
+  /// How far the stress is from the one asked for, over what it may be: at rest up to 1.
+  [[nodiscard]] virtual double residual(const System<D>& system) const = 0;
+};
+
 /// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate
 /// whatever their size. Damping adapts to the motion (FIRE, Bitzek et al. 2006): velocities are steered towards the
 /// forces, the step grows while the motion goes downhill, and everything stops when it goes uphill. It acts on the
@@ -30,11 +56,14 @@ class DampedRelaxation {
   explicit DampedRelaxation(const DampedOptions& options) : options_(options) {}
 
   /// Relaxes until the tolerance is met. Leaves all velocities zero and the forces of the final state in place.
-  RelaxationResult relax(System<D>& system);
+  RelaxationResult relax(System<D>& system) { return relax(system, nullptr); }
+  /// The same with a frame, until that is at rest too.
+  RelaxationResult relax(System<D>& system, RelaxingFrame<D>& frame) { return relax(system, &frame); }
 
  private:
-  void scale_masses(System<D>& system);
-  void steer(System<D>& system);
+  RelaxationResult relax(System<D>& system, RelaxingFrame<D>* frame);
+  void scale_masses(System<D>& system, RelaxingFrame<D>* frame);
+  void steer(System<D>& system, RelaxingFrame<D>* frame);
   void move(System<D>& system);
 
   DampedOptions options_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/statistics.h"
 #include "common/dynamics/force_pass.h"
 #include "macrosim/compression.h"
 #include "microsim/shell_packing.h"
@@ -158,8 +159,7 @@ TEST(Macro, TheStartingStateIsJustJammed) {
     const MacroSystem macro = as_hard_grains(spec, packing);
     const Vec3 stress = wall_stress(macro.system, macro.box);
     const double pressure = (stress[0] + stress[1] + stress[2]) / 3.0 / spec.youngs_modulus;
-    EXPECT_GE(pressure, spec.start_pressure * (1.0 - 1e-9));
-    EXPECT_LE(pressure, 1.5 * spec.start_pressure);
+    EXPECT_NEAR(pressure, spec.start_pressure, 1.1e-3 * spec.start_pressure);
     // Hertz: overlap/R ~ (p/E)^(2/3) = 5e-4; times up to 20 for the spread of forces.
     const auto& p = macro.system.particles;
     for (const auto& c : contact_records(macro.system))
@@ -340,7 +340,20 @@ TEST(Macro, OedometricStrainKeepsTheSidesStill) {
   EXPECT_EQ(after[1], before[1]);
   EXPECT_NEAR(after[2], before[2] * (1.0 - spec.strain_end), 1e-12);
   EXPECT_DOUBLE_EQ(curve.strain.back(), spec.strain_end);
-  EXPECT_LT(curve.stress_lateral.back(), curve.stress_axial.back());
+}
+
+/// Of thirty bodies one sample may well bear more sideways; the mean does not.
+TEST(Macro, OedometricStrainLoadsItsAxisMost) {
+  const MacroSpec spec = small_spec();
+  std::vector<double> ratio;
+  for (std::uint64_t sample = 0; sample < 40; ++sample) {
+    const MacroCurve curve = law_curve(spec, make_macro_packing(spec, 3, sample));
+    ratio.push_back(curve.stress_lateral.back() / curve.stress_axial.back());
+  }
+  const MeanError m = mean_error(ratio);
+  EXPECT_LT(m.error, 0.06);
+  EXPECT_LT(m.mean + 3.0 * m.error, 1.0) << m.mean << " +- " << m.error;
+  EXPECT_GT(m.mean, 0.4);
 }
 
 TEST(Macro, IsotropicStrainMovesAllSidesAlike) {
@@ -395,18 +408,14 @@ TEST(Macro, IsotropicStrainKnowsNoAxis) {
 TEST(Macro, IsotropicStrainGivesEqualStressesInTheMean) {
   const MacroSpec spec = isotropic_spec();
   constexpr int kSamples = 24;
-  double sum = 0.0;
-  double squares = 0.0;
+  std::vector<double> ratio;
   for (std::uint64_t sample = 0; sample < kSamples; ++sample) {
     const MacroCurve curve = law_curve(spec, make_macro_packing(spec, 3, sample));
-    const double x = std::log(curve.stress_lateral.back() / curve.stress_axial.back());
-    sum += x;
-    squares += x * x;
+    ratio.push_back(std::log(curve.stress_lateral.back() / curve.stress_axial.back()));
   }
-  const double mean = sum / kSamples;
-  const double error = std::sqrt((squares / kSamples - mean * mean) / (kSamples - 1));
-  EXPECT_LT(error, 0.06);
-  EXPECT_LT(std::abs(mean), 3.0 * error) << mean << " +- " << error;
+  const MeanError m = mean_error(ratio);
+  EXPECT_LT(m.error, 0.06);
+  EXPECT_LT(std::abs(m.mean), 3.0 * m.error) << m.mean << " +- " << m.error;
 }
 
 /// End stress with twice the increments over that with `increments` per step.
@@ -443,22 +452,11 @@ TEST(Macro, WithoutFrictionIncrementsDoNotMatterAtSmallStrain) {
     EXPECT_NEAR(halving_ratio(spec, 1, sample), 1.0, 1e-3) << "sample " << sample;
 }
 
-struct MeanError {
-  double mean = 0.0;
-  double error = 0.0;
-};
-
 /// Logarithm of halving_ratio over samples.
 MeanError drift_with_increments(const MacroSpec& spec, int samples) {
-  double sum = 0.0;
-  double squares = 0.0;
-  for (int k = 0; k < samples; ++k) {
-    const double x = std::log(halving_ratio(spec, 4, static_cast<std::uint64_t>(k)));
-    sum += x;
-    squares += x * x;
-  }
-  const double mean = sum / samples;
-  return {mean, std::sqrt((squares / samples - mean * mean) / (samples - 1))};
+  std::vector<double> drift;
+  for (int k = 0; k < samples; ++k) drift.push_back(std::log(halving_ratio(spec, 4, static_cast<std::uint64_t>(k))));
+  return mean_error(drift);
 }
 
 /// At large strain grains rearrange, and which way they go depends on the last digit: single small samples change by 5

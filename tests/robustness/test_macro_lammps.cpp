@@ -228,8 +228,9 @@ TEST_F(WithLammps, PreparesScenesItself) {
   const MacroCurve own = curve("own");
   const MacroCurve prep = curve("prep");
   EXPECT_NEAR(prep.solid_fraction, own.solid_fraction, 0.03);
-  // Both stop at start_pressure to 1.5 times that, of hard grains; the laws are softer.
-  EXPECT_NEAR(prep.stress_axial.back() / own.stress_axial.back(), 1.0, 0.5);
+  // Of hard grains ours ends at start_pressure, that of LAMMPS at up to 1.5 times it; thirty bodies scatter beside.
+  EXPECT_GT(prep.stress_axial.back() / own.stress_axial.back(), 0.8);
+  EXPECT_LT(prep.stress_axial.back() / own.stress_axial.back(), 1.5 * 1.2);
   EXPECT_TRUE(fs::exists(file("prep/macro_initial.h5")));
 }
 

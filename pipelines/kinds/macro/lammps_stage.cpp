@@ -115,8 +115,7 @@ class Sample {
     const double strain = strain_at(spec(), std::max<std::int64_t>(points - 1, 0));
     const std::string run = fmt::format("macro run '{}'", runs_.law.name);
     if (log.says(lammps::kNotJammed))
-      throw NotUsable(
-          not_jammed_text(compaction_protocol(spec(), packing_.size(), packing_.bodies.size()), spec().youngs_modulus));
+      throw NotUsable(not_jammed_text(spec().start_pressure * spec().youngs_modulus, spec().youngs_modulus));
     if (log.says("Lost atoms"))
       throw NotUsable(fmt::format("{}: the centre of a body is behind a wall beyond strain {:.6f}", run, strain));
     if (log.says("Non-numeric"))

@@ -1,0 +1,91 @@
+#include "macrosim/pressed_box.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrain {
+
+namespace {
+
+/// The body whose place says how far another one is carried.
+std::size_t leader_of(const Particles<3>& p, std::size_t u) {
+  return u < at(p.grains) && p.shell[u] >= 0 ? at(p.shell[u]) : u;
+}
+
+Vec3 centre_of(const System3& s, const Box& box) { return (box_low(s, box) + box_high(s, box)) * 0.5; }
+
+Vec3 by_axis(const Vec3& a, const Vec3& b) { return {{a[0] * b[0], a[1] * b[1], a[2] * b[2]}}; }
+
+}  // namespace
+
+void PressedBox::make_alike(Vec3& a) const {
+  if (!control_.alike) return;
+  const double mean = (a[0] + a[1] + a[2]) / 3.0;
+  a = {{mean, mean, mean}};
+}
+
+void PressedBox::scale_masses(const System3& s, const BodyStiffness& stiffness, const PseudoMasses& masses) {
+  const auto& p = s.particles;
+  double sum = 0.0;
+  for (std::size_t u = 0; u < at(p.first_plane()); ++u) {
+    const double r = p.sphere[u].r;
+    if (p.inverse_mass[u] > 0.0) sum += std::max(stiffness.translation[u], masses.floor(r)) * r * r;
+  }
+  inverse_mass_ = 1.0 / (4.0 / 3.0 * sum);
+}
+
+PressedBox::Sums PressedBox::feel(const System3& s) {
+  const auto& p = s.particles;
+  const Vec3 centre = centre_of(s, box_);
+  const Vec3 size = box_high(s, box_) - box_low(s, box_);
+  const double volume = size[0] * size[1] * size[2];
+  Vec3 resisted{};
+  for (std::size_t u = 0; u < at(p.size()); ++u) resisted += by_axis(p.force[u], p.sphere[leader_of(p, u)].x - centre);
+  force_ = control_.stress * volume - resisted;
+  make_alike(force_);
+  Sums sums;
+  for (int k = 0; k < 3; ++k) {
+    if (!control_.by_stress[static_cast<std::size_t>(k)]) force_[k] = 0.0;
+    sums.power += force_[k] * velocity_[k];
+    sums.speed2 += velocity_[k] * velocity_[k] / inverse_mass_;
+    sums.pull2 += force_[k] * force_[k] * inverse_mass_;
+  }
+  return sums;
+}
+
+void PressedBox::steer(double keep, double pull) { velocity_ = velocity_ * keep + force_ * (pull * inverse_mass_); }
+
+void PressedBox::carry(System3& s, double step) {
+  auto& p = s.particles;
+  const double most = control_.largest_strain / step;
+  velocity_ += force_ * (step * inverse_mass_);
+  for (int k = 0; k < 3; ++k) velocity_[k] = std::clamp(velocity_[k], -most, most);
+  const Vec3 centre = centre_of(s, box_);
+  carried_.resize(at(p.size()));
+  // Leaders of grains in shells come after them: all are still where they were.
+  for (std::size_t u = 0; u < carried_.size(); ++u) {
+    carried_[u] = by_axis(velocity_, centre - p.sphere[leader_of(p, u)].x);
+    p.sphere[u].x += carried_[u] * step;
+    p.velocity[u] += carried_[u];
+  }
+}
+
+void PressedBox::release(System3& s) {
+  for (std::size_t u = 0; u < carried_.size(); ++u) s.particles.velocity[u] -= carried_[u];
+}
+
+double PressedBox::residual(const System3& s) const {
+  const Vec3& asked = control_.stress;
+  Vec3 off = wall_stress(s, box_) - asked;
+  make_alike(off);
+  double worst = 0.0;
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (!control_.by_stress[static_cast<std::size_t>(k)]) continue;
+    worst = std::max(worst, std::abs(off[k]));
+    largest = std::max(largest, std::abs(asked[k]));
+  }
+  return worst / (control_.tolerance * largest);
+}
+
+}  // namespace softgrain
