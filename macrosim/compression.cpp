@@ -112,6 +112,7 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   curve.preload = preload_points(spec) > 0 ? spec.preload : 0.0;
   curve.soft_volume_share = packing.soft_volume_share();
   curve.solid_fraction = packing.solid_fraction();
+  curve.preparation = packing.cost;
   return curve;
 }
 

@@ -62,19 +62,21 @@ void add_soft(const MacroSpec& spec, MacroPacking& packing) {
 
 }  // namespace
 
-MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
+MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
+                                      const PreparationWatch& watch) {
   if (!(spec.soft_share < 1.0)) throw BadInput("macro: construction \"voids\" needs solid grains: soft_share below 1");
   const double fraction = spec.solid_fill > 0.0 ? spec.solid_fill : kFilledTogether * (1.0 - spec.soft_share);
   MacroPacking packing = place_loosely(drawn_bodies(spec, seed, sample), seed, sample, std::min(0.30, fraction));
   compact_to_fraction(spec, packing, fraction);
   if (spec.soft_share > 0.0) add_soft(spec, packing);
-  bring_into_touch(spec, packing);
+  bring_into_touch(spec, packing, watch);
   return packing;
 }
 
-MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  return spec.construction == Construction::voids ? make_constructed_packing(spec, seed, sample)
-                                                  : make_macro_packing(spec, seed, sample);
+MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
+                          const PreparationWatch& watch) {
+  return spec.construction == Construction::voids ? make_constructed_packing(spec, seed, sample, watch)
+                                                  : make_macro_packing(spec, seed, sample, watch);
 }
 
 SceneFacts describe(const MacroPacking& packing, const std::vector<ShellPacking>& contents) {

@@ -15,10 +15,12 @@ namespace softgrain {
 /// soft_radius_max, becomes a soft particle, again and again until they hold soft_share of the volume of all bodies;
 /// then all bodies are brought just into touch. Throws BadInput when the voids down to
 /// soft_radius_max/soft_polydispersity do not hold that share (saying what they hold), NotUsable when it does not jam.
-MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
+MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
+                                      const PreparationWatch& watch = {});
 
 /// The packing that the spec asks for: spec.construction.
-MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
+MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
+                          const PreparationWatch& watch = {});
 
 /// What a scene is made of, the contents of its soft particles included.
 struct SceneFacts {

@@ -85,9 +85,13 @@ std::int64_t MacroPacking::soft_count() const {
   return std::count_if(bodies.begin(), bodies.end(), [](const MacroBody& b) { return b.soft; });
 }
 
-MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
-  MacroPacking packing = place_loosely(drawn_bodies(spec, seed, sample), seed, sample);
-  if (spec.preparation == MacroEngine::softgrain) bring_into_touch(spec, packing);
+MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
+                                const PreparationWatch& watch) {
+  std::vector<MacroBody> bodies = drawn_bodies(spec, seed, sample);
+  const double fraction = spec.protocol.start_fraction;
+  if (spec.protocol.coarse_share < 1.0) return pack_densely(spec, std::move(bodies), seed, sample, watch);
+  MacroPacking packing = place_loosely(std::move(bodies), seed, sample, fraction);
+  if (spec.preparation != Preparation::lammps) bring_into_touch(spec, packing, watch);
   return packing;
 }
 
@@ -103,6 +107,9 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   group.write("box", corners);
   group.write("bodies", rows, {packing.bodies.size(), 4});
   group.write("soft", soft);
+  group.attribute("loop_passes", packing.cost.loop_passes);
+  group.attribute("contact_evaluations", packing.cost.contact_evaluations);
+  group.attribute("seconds", packing.cost.seconds);
 }
 
 MacroPacking read_macro_packing(const h5::Group& group) {
@@ -113,6 +120,8 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   MacroPacking packing{{{corners[0], corners[1], corners[2]}}, {{corners[3], corners[4], corners[5]}}, {}};
   for (std::size_t k = 0; k < soft.size(); ++k)
     packing.bodies.push_back({{{rows[4 * k], rows[4 * k + 1], rows[4 * k + 2]}}, rows[4 * k + 3], soft[k] != 0});
+  if (group.has_attribute("loop_passes"))
+    packing.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
   return packing;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "common/core/cost.h"
 #include "common/core/vec.h"
 #include "common/io/hdf5_file.h"
 #include "macrosim/macro_spec.h"
@@ -22,6 +24,7 @@ struct MacroPacking {
   Vec3 low{};  ///< corners of the box [m]
   Vec3 high{};
   std::vector<MacroBody> bodies;
+  Cost cost{};  ///< of its preparation
 
   [[nodiscard]] Vec3 size() const { return high - low; }
   [[nodiscard]] double body_volume() const;     ///< of solid grains and shells [m^3]
@@ -35,16 +38,20 @@ struct MacroPacking {
 /// distributions as Grading::draw does, in the numbers that make the share.
 std::vector<MacroBody> drawn_bodies(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
 
-/// Text of the distributions that a scene asks for.
+/// Text of the distributions, or of the packing, that a scene asks for.
 inline std::string sizes_text(const MacroSpec& spec) {
   return (spec.solid_sizes ? spec.solid_sizes->text() : "") +
-         (spec.soft_sizes ? "soft: " + spec.soft_sizes->text() : "");
+         (spec.soft_sizes ? "soft: " + spec.soft_sizes->text() : "") + spec.packing_text;
 }
 
-/// Drawn bodies, random non-overlapping start, frictionless isotropic compaction of all bodies as hard
-/// grains until the wall pressure reaches start_pressure * E; with preparation "lammps" no compaction. Throws BadInput
-/// when the shares cannot be met, NotUsable when it does not jam.
-MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
+/// Told the share of a preparation that is done.
+using PreparationWatch = std::function<void(double share)>;
+
+/// Drawn bodies, random non-overlapping start, isotropic compaction of all bodies as hard grains by
+/// spec.protocol until the wall pressure is start_pressure * E; with preparation "lammps" no compaction. Throws
+/// BadInput when the shares cannot be met, NotUsable when it does not jam.
+MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
+                                const PreparationWatch& watch = {});
 
 void write_macro_packing(const h5::Group& group, const MacroPacking& packing);
 MacroPacking read_macro_packing(const h5::Group& group);

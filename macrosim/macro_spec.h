@@ -20,33 +20,64 @@ template <>
 inline constexpr auto words<Construction> = word_list<Construction>({{Construction::mixed, "mixed"},
                                                                      {Construction::voids, "voids"}});
 
-/// Who makes a starting state, who runs a test.
+/// Who runs a test.
 enum class MacroEngine { softgrain, lammps };
 
 template <>
 inline constexpr auto words<MacroEngine> = word_list<MacroEngine>({{MacroEngine::softgrain, "softgrain"},
                                                                    {MacroEngine::lammps, "lammps"}});
 
+/// How bodies come into touch; protocol_of() says what each does.
+enum class Preparation {
+  frictionless,  ///< relaxed without friction under a pressure that falls to the one asked for
+  fast,          ///< shrunk at a high rate with the friction of the test, then relaxed: loose
+  slow,          ///< the same at a low rate
+  dense,         ///< fines grow in the voids of a jammed pack of the coarse bodies, then all are freed
+  lammps         ///< we place bodies loosely, and LAMMPS compacts them
+};
+
+template <>
+inline constexpr auto words<Preparation> = word_list<Preparation>({{Preparation::frictionless, "frictionless"},
+                                                                   {Preparation::fast, "fast"},
+                                                                   {Preparation::slow, "slow"},
+                                                                   {Preparation::dense, "dense"},
+                                                                   {Preparation::lammps, "lammps"},
+                                                                   {Preparation::frictionless, "softgrain"}});
+
+/// All that defines a preparation beside the bodies and the pressure at its end.
+struct PreparationProtocol {
+  double start_fraction = 0.30;      ///< of the box that bodies fill at random places; looser where they find none
+  double inertial_number = 0.0;      ///< rate of the strain of the sides times d sqrt(density/pressure); 0: no motion
+  double friction = 0.0;             ///< mu of all contacts
+  double restitution = 0.3;          ///< of the motion
+  double coarse_share = 1.0;         ///< of the volume, by the largest bodies, that jams first; fines grow between
+  double first_pressure = 128.0;     ///< of the relaxation, times that of its end; halved to it
+  double tolerance = 3e-2;           ///< at the end: largest net force over mean contact force; a third for stress
+  std::int64_t max_passes = 200000;  ///< of a relaxation
+};
+
 /// Solid grains and soft particles of any sizes in a box of six planes, compressed [SP 1.9]. SI units.
 struct MacroSpec {
   Construction construction = Construction::mixed;
-  std::int64_t bodies = 200;                         ///< mixed: solid grains + soft particles; voids: solid grains
-  MacroEngine preparation = MacroEngine::softgrain;  ///< lammps: we place bodies loosely, and LAMMPS compacts them
-  double soft_share = 0.45;                          ///< of the volume of all bodies, soft ones by their shell
-  double exponent = 3.5;                             ///< b of the radii of both kinds
-  double solid_radius_max = 0.016;                   ///< [m]
-  double solid_polydispersity = 2.0;                 ///< rmax/rmin of the solid grains
-  double soft_radius_max = 0.016;                    ///< [m]
-  double soft_polydispersity = 1.5;                  ///< of the shells; voids: smaller holes stay empty
+  std::int64_t bodies = 200;  ///< mixed: solid grains + soft particles; voids: solid grains
+  Preparation preparation = Preparation::frictionless;
+  PreparationProtocol protocol;        ///< of it, see protocol_of()
+  double soft_share = 0.45;            ///< of the volume of all bodies, soft ones by their shell
+  double exponent = 3.5;               ///< b of the radii of both kinds
+  double solid_radius_max = 0.016;     ///< [m]
+  double solid_polydispersity = 2.0;   ///< rmax/rmin of the solid grains
+  double soft_radius_max = 0.016;      ///< [m]
+  double soft_polydispersity = 1.5;    ///< of the shells; voids: smaller holes stay empty
   std::optional<Grading> solid_sizes;  ///< radii of another law, whose ends stand in the two numbers above
   std::optional<Grading> soft_sizes;
-  double solid_fill = 0.0;  ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
+  std::string packing_text;  ///< of a file that says where all bodies are; empty: they are drawn and prepared
+  double solid_fill = 0.0;   ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
   double youngs_modulus = 5.0e5;  ///< E of solid grains, walls and of what is inside the soft particles [Pa]
   double poisson_ratio = 0.3;
   double friction = 0.3;  ///< mu of solid contacts; stands in for mu_soft
   double wall_friction = 0.0;
   double density = 2500.0;
-  double start_pressure = 1.0e-5;  ///< of the frictionless preparation, over E
+  double start_pressure = 1.0e-5;  ///< of the preparation, over E
   MacroTest test = MacroTest::oedometric;
   double strain_end = 0.15;              ///< nominal; of shear: logarithmic
   double preload = 0.0;                  ///< shear: isotropic nominal strain before

@@ -1,4 +1,4 @@
-// How the bodies of a macro scene get into their box: random places, then frictionless compaction as hard grains.
+// How the bodies of a macro scene get into their box: random places, then compaction as hard grains.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@ namespace softgrain {
 
 inline constexpr RandomPurpose kMacroRadii{4};
 inline constexpr RandomPurpose kMacroPositions{5};
+inline constexpr RandomPurpose kMacroFines{9};
 
 /// Inverse cumulative distribution of P(r) ~ r^-b on [rmax/polydispersity, rmax] at u in (0, 1).
 double power_law_radius(double exponent, double rmax, double polydispersity, double u);
@@ -23,19 +24,20 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
                            double fraction = 0.30);
 
-/// How bodies that were placed loosely are compacted: walls and bodies come to rest together under a pressure that
-/// begins high, is halved whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the
-/// gaps in a few hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies
-/// would creep through ever so many rearrangements.
-struct PressureLadder {
-  double pressure = 0.0;    ///< of the walls, at the end [Pa]
-  double first = 128.0;     ///< times the pressure
-  double loose = 0.1;       ///< tolerance of stress and forces before the end
-  double tolerance = 1e-3;  ///< at the end
-  std::int64_t max_passes = 200000;
-};
+/// What the named preparations are:
+/// frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,
+/// is halved whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the gaps in a few
+/// hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies would creep
+/// through ever so many rearrangements.
+/// fast, slow: the box is shrunk at the rate of an inertial number by molecular dynamics, all bodies moving along at
+/// first, until its walls bear the pressure; then all is relaxed under it. Both with the friction of the test, and with
+/// nothing different but the rate.
+/// dense: the largest bodies, up to coarse_share of the volume, jam by themselves; the others grow in the voids between
+/// them, which stand still, until they have their size or jam; then all are freed and relaxed as in frictionless.
+/// `friction`: of the test.
+PreparationProtocol protocol_of(Preparation preparation, double friction);
 
-/// The same in steps, as LAMMPS does it: the box shrinks in steps and all is relaxed after each; a step
+/// Compaction in steps, as LAMMPS does it: the box shrinks in steps and all is relaxed after each; a step
 /// that overshoots the pressure is taken back and halved.
 struct CompactionProtocol {
   double pressure = 0.0;        ///< of the walls, at the end at least [Pa]
@@ -52,16 +54,21 @@ struct CompactionProtocol {
 CompactionProtocol compaction_protocol(const MacroSpec& spec, const Vec3& size, std::size_t bodies);
 
 /// What is said when a compaction ends without jamming.
-std::string not_jammed_text(double pressure, double youngs_modulus);
+std::string not_jammed_text(const MacroSpec& spec);
 
 /// All bodies as hard grains without friction.
 AnyLaw hard_law(const MacroSpec& spec);
 
-/// Frictionless isotropic compaction of all bodies as hard grains until the wall pressure reaches start_pressure * E.
-/// Throws NotUsable when it does not jam.
-void bring_into_touch(const MacroSpec& spec, MacroPacking& packing);
+/// Isotropic compaction of all bodies as hard grains by spec.protocol until the wall pressure is start_pressure * E.
+/// What it took is added to packing.cost. Throws NotUsable, saying what was reached, when it does not jam.
+void bring_into_touch(const MacroSpec& spec, MacroPacking& packing, const PreparationWatch& watch = {});
 
-/// The same, but only up to a share of the box filled with bodies, below jamming. Throws BadInput when they jam before.
+/// The whole of "dense": bodies are given largest first, without places. Throws NotUsable.
+MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed,
+                          std::uint64_t sample, const PreparationWatch& watch = {});
+
+/// Compaction in steps without friction, only up to a share of the box filled with bodies, below jamming. Throws
+/// BadInput when they jam before.
 void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fraction);
 
 }  // namespace softgrain

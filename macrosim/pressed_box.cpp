@@ -71,7 +71,9 @@ void PressedBox::carry(System3& s, double step) {
 }
 
 void PressedBox::release(System3& s) {
-  for (std::size_t u = 0; u < carried_.size(); ++u) s.particles.velocity[u] -= carried_[u];
+  auto& p = s.particles;
+  for (std::size_t u = 0; u < carried_.size(); ++u)
+    p.velocity[u] = p.force[u] == Stored<3>{} ? Vec3{} : Vec3(p.velocity[u]) - carried_[u];
 }
 
 double PressedBox::residual(const System3& s) const {

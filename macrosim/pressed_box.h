@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "common/dynamics/damped_relaxation.h"
@@ -21,9 +23,12 @@ struct WallControl {
 /// Coordinates: logarithmic strains e_k of the axes, x_k -> c_k + (x_k - c_k)(1 - de_k) for walls and bodies (grains in
 /// shells move with their shell). Generalised force P_k V - sum F_k (x_k - c_k) over all bodies, walls among them; mass
 /// 4/3 sum of the contact stiffness of a body times its radius squared, twice what the contacts of an axis resist with.
+/// A body that nothing pushes stops at once: it would hit its neighbours again and again while they come to rest.
 class PressedBox : public RelaxingFrame<3> {
  public:
-  PressedBox(const Box& box, const WallControl& control) : box_(box), control_(control) {}
+  /// `watch` is told how far the relaxation is, now and then.
+  PressedBox(const Box& box, const WallControl& control, std::function<void(const RelaxationResult&)> watch = {})
+      : box_(box), control_(control), watch_(std::move(watch)) {}
 
   void scale_masses(const System3& system, const BodyStiffness& stiffness, const PseudoMasses& masses) override;
   Sums feel(const System3& system) override;
@@ -31,12 +36,16 @@ class PressedBox : public RelaxingFrame<3> {
   void carry(System3& system, double step) override;
   void release(System3& system) override;
   [[nodiscard]] double residual(const System3& system) const override;
+  void see(const RelaxationResult& so_far) override {
+    if (watch_) watch_(so_far);
+  }
 
  private:
   void make_alike(Vec3& a) const;
 
   Box box_;
   WallControl control_;
+  std::function<void(const RelaxationResult&)> watch_;
   double inverse_mass_ = 0.0;
   Vec3 force_{};               ///< per logarithmic strain [N m]
   Vec3 velocity_{};            ///< of the strains

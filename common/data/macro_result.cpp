@@ -146,6 +146,9 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("contact_evaluations", curve.cost.contact_evaluations);
   group.attribute("seconds", curve.cost.seconds);
   group.attribute("preload", curve.preload);
+  group.attribute("preparation_loop_passes", curve.preparation.loop_passes);
+  group.attribute("preparation_contact_evaluations", curve.preparation.contact_evaluations);
+  group.attribute("preparation_seconds", curve.preparation.seconds);
   write_origin(group, curve);
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
@@ -164,6 +167,10 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   curve.cost = {read_count(group, "loop_passes"), read_count(group, "contact_evaluations"),
                 read_attribute(group, "seconds", kNotNegative)};
   if (group.has_attribute("preload")) curve.preload = read_attribute(group, "preload", Limits::flag());
+  if (group.has_attribute("preparation_seconds"))
+    curve.preparation = {read_count(group, "preparation_loop_passes"),
+                         read_count(group, "preparation_contact_evaluations"),
+                         read_attribute(group, "preparation_seconds", kNotNegative)};
   read_origin(group, curve);
   const std::size_t points = group.doubles(kColumns[0].name).size();
   for (const Column& c : kColumns) read_column(group, curve, c, points);

@@ -96,6 +96,7 @@ struct MacroCurve {
   bool usable = true;
   std::string note;
   Cost cost;
+  Cost preparation;  ///< of the state that it starts from, which other engines may share
 
   [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }  ///< empty: made by a law
 };

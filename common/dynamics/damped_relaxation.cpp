@@ -108,6 +108,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
         result.end = RelaxationEnd::converged;
       else if (result.passes >= options_.max_passes)
         result.end = RelaxationEnd::capped;
+      if (frame != nullptr) frame->see(result);
       if (result.end != RelaxationEnd::not_run) break;
       stop_if_interrupted("relaxing");
       scale_masses(s, frame);

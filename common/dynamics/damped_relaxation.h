@@ -43,6 +43,8 @@ class RelaxingFrame {
   virtual void release(System<D>& system) = 0;
   /// How far the stress is from the one asked for, over what it may be: at rest up to 1.
   [[nodiscard]] virtual double residual(const System<D>& system) const = 0;
+  /// Told at every test for convergence: how far the bodies are.
+  virtual void see(const RelaxationResult& /*so_far*/) {}
 };
 
 /// Every body gets the pseudo-mass of its own stiffness (sum over its contacts), so that all grains relax at one rate

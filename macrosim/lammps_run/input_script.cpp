@@ -60,7 +60,7 @@ std::string numbers(const ScriptScene& s) {
   const double largest = *std::max_element(s.types.largest.begin(), s.types.largest.end());
   std::string text = section("What may be changed");
   text += setting("from", fmt::format("{}", -1), "recorded point to go on from; -1: from the beginning");
-  if (spec.preparation == MacroEngine::lammps) text += compaction_settings(s);
+  if (spec.preparation == Preparation::lammps) text += compaction_settings(s);
   text += setting("strain_end", fmt::format("{}", spec.strain_end), "at the end of the test");
   text += setting("steps", fmt::format("{}", spec.steps), "recorded points up to there");
   if (preload_points(spec) > 0) {
@@ -91,7 +91,7 @@ std::string loading(const ScriptScene& s) {
   std::string text = section("Bodies and box");
   text += "units        si\natom_style   sphere\natom_modify  map yes\nnewton       off\nboundary     f f f\n";
   text += "if \"${from} >= 0\" then &\n  \"read_restart restart.${from}\" &\n";
-  if (s.spec.preparation == MacroEngine::lammps)
+  if (s.spec.preparation == Preparation::lammps)
     text +=
         "elif \"${prepared} > 0\" &\n  \"read_restart restart.prepared\" &\n"
         "elif \"${round_done} > 0\" &\n  \"read_restart restart.compaction.${round_done}\" &\n";
@@ -129,7 +129,7 @@ std::string bodies_file(const std::string& point) { return "bodies." + point + "
 std::string contacts_file(const std::string& point) { return "contacts." + point + ".txt"; }
 
 std::string script_text(const ScriptScene& s) {
-  const bool compacts = s.spec.preparation == MacroEngine::lammps;
+  const bool compacts = s.spec.preparation == Preparation::lammps;
   return heading(s) + numbers(s) + loading(s) + (compacts ? compaction(s) : "") + laws(s) + test_variables(s) +
          test_loop(s) + recording() + the_end();
 }

@@ -116,6 +116,10 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--law-cache", o.law_cache,
                    "Keeps finished measurements of law tables here and takes from here what is known already")
         ->option_text("DIR");
+  if (command.function == command_run || command.function == command_macrosim)
+    app.add_option("--packing-cache", o.packing_cache,
+                   "Keeps prepared packings of macro scenes here and takes from here what is known already")
+        ->option_text("DIR");
   if (command.function == command_compare)
     app.add_flag("--different", o.different,
                  "Compares runs that differ in bodies, materials, tests or packings too, and lists in what");
@@ -205,7 +209,8 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     if (options.out.empty()) options.out = observables + "_run";
   }
   if (!options.out.empty()) require_writable_directory(options.out);
-  if (!options.law_cache.empty()) require_writable_directory(options.law_cache);
+  for (const std::string& cache : {options.law_cache, options.packing_cache})
+    if (!cache.empty()) require_writable_directory(cache);
   if (chosen->saves) install_interrupt_handler();
   const ExitStatus status = chosen->function(options);
   if (!observables.empty()) write_observables(options.out, options.overrides, observables);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "pipelines/report/error_cost.h"
 #include "pipelines/report/html.h"
@@ -39,7 +40,11 @@ void add_measurements(HtmlTable& table, const Measurements& data) {
 }
 
 void add_macro(HtmlTable& table, const std::vector<MacroCurve>& macro) {
+  std::set<std::string> prepared;  // engines share their starting states
   for (const MacroCurve& c : macro) {
+    if (c.preparation.loop_passes > 0 && prepared.insert(c.start.bodies).second)
+      add_row(table, fmt::format("preparation, sample {}", c.sample), fmt::format("{} bodies", format_count(c.bodies)),
+              c.preparation);
     const std::string inside = c.grains > 0 ? fmt::format(", {} grains inside", format_count(c.grains)) : "";
     add_row(table, fmt::format("macro, {}, sample {}", c.engine, c.sample),
             fmt::format("{} bodies{}", format_count(c.bodies), inside), c.cost);

@@ -140,6 +140,10 @@ EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::strin
   for (const MacroCurve& c : curves) {
     if (c.engine != engine) continue;
     out.cost += c.cost;
+    if (c.preparation.loop_passes > 0) {
+      if (!out.preparation) out.preparation.emplace();
+      *out.preparation += c.preparation;
+    }
     out.bodies = std::max(out.bodies, c.bodies);
     out.grains_inside = std::max(out.grains_inside, c.grains);
     out.soft_volume_share += c.soft_volume_share;

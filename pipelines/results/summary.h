@@ -227,6 +227,7 @@ struct EngineSummary {
   std::int64_t grains_inside = 0;
   double soft_volume_share = 0.0;  ///< mean
   Cost cost;
+  std::optional<Cost> preparation;  ///< of the states that samples start from, which engines share
   bool usable = false;
   std::optional<LawIdentity> law;
 };
@@ -237,6 +238,7 @@ void fields(auto&& visit, Of<EngineSummary> auto& s) {
   visit("grains_inside", s.grains_inside);
   visit("soft_volume_share", s.soft_volume_share);
   fields(visit, s.cost);
+  visit("preparation", s.preparation, kLeftOut);
   visit("usable", s.usable);
   visit("law", s.law, kLeftOut);
 }

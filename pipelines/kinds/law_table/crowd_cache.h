@@ -7,6 +7,7 @@
 
 #include "common/data/crowd_measurements.h"
 #include "microsim/crowd_experiment.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 
@@ -15,27 +16,22 @@ namespace softgrain {
 std::string crowd_run_key(const SoftParticleSpec& spec, const CrowdConfiguration& configuration, const CrowdPlan& plan,
                           const CrowdOptions& options, const std::string& contents);
 
-/// "crowd-" and 16 hexadecimal digits (FNV-1a, 64 bits) of a key.
-std::string crowd_run_name(const std::string& key);
+/// The name of its file.
+inline std::string crowd_run_name(const std::string& key) { return ResultCache::name("crowd", key); }
 
 class CrowdCache {
  public:
   /// `directory` empty: nothing is ever found or kept. `say` takes remarks.
   CrowdCache(std::string directory, std::function<void(const std::string&)> say)
-      : directory_(std::move(directory)), say_(std::move(say)) {}
+      : cache_(std::move(directory), "crowd-run", "crowd", "measured again", std::move(say)) {}
 
   /// A file that is damaged or belongs to another key is ignored, with a remark.
   [[nodiscard]] std::optional<CrowdRun> find(const std::string& key) const;
-  /// Atomic, also among several processes. Throws FileTrouble.
+  /// Throws FileTrouble.
   void keep(const std::string& key, const CrowdRun& run) const;
 
  private:
-  [[nodiscard]] std::string file(const std::string& key) const {
-    return directory_ + "/" + crowd_run_name(key) + ".h5";
-  }
-
-  std::string directory_;
-  std::function<void(const std::string&)> say_;
+  ResultCache cache_;
 };
 
 }  // namespace softgrain

@@ -176,7 +176,7 @@ void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& ou
   // Measured with a million bodies on two ranks.
   constexpr double kFileBytes = 91.0;
   constexpr double kRankBytes = 800.0;
-  if (setup.spec.preparation != MacroEngine::lammps) return;
+  if (setup.spec.preparation != Preparation::lammps) return;
   const double files = count.all * kFileBytes * static_cast<double>(setup.samples);
   out.add(
       "engine", "lammps",
@@ -194,6 +194,24 @@ void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& ou
   } catch (const BadInput& e) {
     out.warn(e.what());
   }
+}
+
+void tell_preparation(const MacroSetup& setup, Findings& out) {
+  const MacroSpec& spec = setup.spec;
+  if (setup.given || spec.preparation == Preparation::lammps) return;
+  const PreparationProtocol& p = spec.protocol;
+  std::string how = fmt::format("preparation {}: ", to_string(spec.preparation));
+  if (spec.construction == Construction::mixed)
+    how += fmt::format("bodies begin at {:g} of the box, ", p.start_fraction);
+  if (p.coarse_share < 1.0)
+    how += fmt::format("the largest {:g} of their volume jam, the others grow between them, ", p.coarse_share);
+  if (p.inertial_number > 0.0)
+    how +=
+        fmt::format("the box shrinks at inertial number {:g} (restitution {:g}), ", p.inertial_number, p.restitution);
+  how += fmt::format(
+      "all relax with mu = {:g} under {:g} E{}, to {:g} of the mean contact force", p.friction, spec.start_pressure,
+      p.first_pressure > 1.0 ? fmt::format(" (from {:g} times that)", p.first_pressure) : "", p.tolerance);
+  out.add("preparation", to_string(spec.preparation), how);
 }
 
 void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
@@ -256,6 +274,7 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
     out.facts["twin_grains"] = resolved;
     out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
   }
+  tell_preparation(setup, out);
   warn_of_scene(setup, count, out);
   check_lammps(setup, count, out);
   if (laws != nullptr) check_laws_of(*laws, setup.spec, content.solid_fraction, out);

@@ -89,7 +89,7 @@ class Sample {
   }
 
   [[nodiscard]] RunOutcome outcome() {
-    if (spec().preparation == MacroEngine::lammps) take_over_preparation();
+    if (spec().preparation == Preparation::lammps) take_over_preparation();
     const auto rows = lammps::read_points(where_, key_);
     MacroSystem macro = make_law_system(spec(), packing_, runs_.law.laws, runs_.inner_solid_fraction);
     RunOutcome out{begin_curve(spec(), packing_, macro, runs_.law.name, number_), {}};
@@ -114,8 +114,7 @@ class Sample {
     const auto points = static_cast<std::int64_t>(lammps::read_points(where_, key_).size());
     const double strain = strain_at(spec(), std::max<std::int64_t>(points - 1, 0));
     const std::string run = fmt::format("macro run '{}'", runs_.law.name);
-    if (log.says(lammps::kNotJammed))
-      throw NotUsable(not_jammed_text(spec().start_pressure * spec().youngs_modulus, spec().youngs_modulus));
+    if (log.says(lammps::kNotJammed)) throw NotUsable(not_jammed_text(spec()));
     if (log.says("Lost atoms"))
       throw NotUsable(fmt::format("{}: the centre of a body is behind a wall beyond strain {:.6f}", run, strain));
     if (log.says("Non-numeric"))

@@ -39,7 +39,7 @@ std::string macro_memory_problem(const MacroSetup& setup, double grains, double 
 
 void require_macro_memory(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& content) {
   const double available = available_memory();
-  if (setup.spec.preparation == MacroEngine::lammps || macro_memory_problem(setup, kManyGrains, available).empty())
+  if (setup.spec.preparation == Preparation::lammps || macro_memory_problem(setup, kManyGrains, available).empty())
     return;
   const double grains =
       setup.twins.empty() ? 0.0 : static_cast<double>(generate_shell_packing(content, 1, 0).radius.size());

@@ -95,7 +95,7 @@ constexpr const char* kInitialFile = "macro_initial.h5";
 
 /// Bodies that LAMMPS is still to bring into touch are no starting state.
 void save_if_prepared(const MacroScene& scene, const std::vector<MacroPacking>& packings, const Run& run) {
-  if (scene.setup.spec.preparation == MacroEngine::softgrain) save_packings(packings, run, kInitialFile);
+  if (scene.setup.spec.preparation != Preparation::lammps) save_packings(packings, run, kInitialFile);
 }
 
 /// Where LAMMPS works on each sample.
@@ -134,7 +134,7 @@ std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::option
   const LammpsRuns runs = lammps_runs(scene, law, contents, run.provenance);
   write_lammps_files(runs, packings, run.context);
   auto outcomes = run_with_lammps(runs, *lammps, packings, run.context);
-  if (scene.setup.spec.preparation == MacroEngine::lammps) save_packings(packings, run, kInitialFile);
+  if (scene.setup.spec.preparation == Preparation::lammps) save_packings(packings, run, kInitialFile);
   auto curves = run_engines({scene.setup, packings, contents, run.seed, "macro"}, {}, run, "states_macro.h5",
                             std::move(outcomes));
   save_macro(curves, run.path("macro.h5"), run.provenance);
@@ -147,7 +147,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
     scene.root().reject(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
   const std::optional<LammpsEngine> lammps = read_engine(options);
-  if (macro.setup.spec.preparation == MacroEngine::lammps && !lammps)
+  if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
   const Run run(scene, options, "macrosim", macro.seed,
                 {macro.law.files, macro.law.text + sizes_text(macro.setup.spec)});

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/core/error.h"
+#include "common/io/text_file.h"
 #include "common/packing/grading_scene.h"
+#include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
 namespace softgrain {
@@ -31,6 +35,42 @@ void take_ends(const std::optional<Grading>& sizes, double& radius_max, double& 
   polydispersity = sizes->largest() / sizes->smallest();
 }
 
+void mistake_beside(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
+  for (const char* key : keys)
+    if (t.has(key)) t.mistake(key, problem);
+}
+
+/// A name stands for all that defines a preparation; keys beside it replace single parts.
+void read_preparation(const SceneTable& t, MacroSpec& spec) {
+  spec.preparation = t.choice<Preparation>("preparation", spec.preparation);
+  if (t.has("preparation") || t.has("mu")) spec.protocol = protocol_of(spec.preparation, spec.friction);
+  PreparationProtocol& p = spec.protocol;
+  p.start_fraction = t.number("start_fraction", Unit::none, Range{0.05, 0.4, false, false}, p.start_fraction);
+  p.inertial_number = t.number("inertial_number", Unit::none, Range::closed(0.0, 1.0), p.inertial_number);
+  p.friction = t.number("compaction_mu", Unit::none, Range::not_negative(), p.friction);
+  p.restitution = t.number("compaction_restitution", Unit::none, Range::closed(0.05, 1.0), p.restitution);
+  p.coarse_share = t.number("coarse_share", Unit::none, Range{0.0, 1.0, true, false}, p.coarse_share);
+  p.first_pressure = t.number("first_pressure", Unit::none, Range::closed(1.0, 1e6), p.first_pressure);
+  p.tolerance = t.number("preparation_tolerance", Unit::none, Range{0.0, 0.1, true, false}, p.tolerance);
+  p.max_passes = t.count("preparation_passes", 10, 100000000, p.max_passes);
+  if (spec.preparation == Preparation::lammps)
+    mistake_beside(t,
+                   {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
+                    "preparation_tolerance", "preparation_passes"},
+                   "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
+  if (!(p.inertial_number > 0.0))
+    mistake_beside(t, {"compaction_restitution"},
+                   "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");
+  if (spec.construction != Construction::voids) return;
+  if (spec.preparation == Preparation::lammps)
+    t.mistake("preparation",
+              "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
+  if (p.coarse_share < 1.0)
+    t.mistake(t.has("coarse_share") ? "coarse_share" : "preparation",
+              "fines grow between coarse bodies of construction \"mixed\" alone");
+  mistake_beside(t, {"start_fraction"}, "construction \"voids\" begins at solid_fill");
+}
+
 void read_bodies(const SceneTable& t, MacroSpec& spec) {
   spec.construction = t.choice<Construction>("construction", spec.construction);
   spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
@@ -53,10 +93,7 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
     t.mistake("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
-  spec.preparation = t.choice<MacroEngine>("preparation", spec.preparation);
-  if (spec.preparation == MacroEngine::lammps && spec.construction == Construction::voids)
-    t.mistake("preparation",
-              "\"lammps\" goes with construction \"mixed\": holes are filled in a packing that is compacted");
+  read_preparation(t, spec);
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
 
@@ -73,6 +110,62 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   spec.kt_secant =
       t.choice<TangentialSlope>("kt", spec.kt_secant ? TangentialSlope::secant : TangentialSlope::initial) ==
       TangentialSlope::secant;
+}
+
+/// `packing`: places, radii and kinds of all bodies from a file; what would make them otherwise has no place beside it.
+void read_given(const SceneTable& t, MacroSetup& setup) {
+  if (!t.has("packing")) return;
+  mistake_beside(t,
+                 {"bodies",
+                  "soft_share",
+                  "construction",
+                  "exponent",
+                  "solid_radius_max",
+                  "solid_polydispersity",
+                  "soft_radius_max",
+                  "soft_polydispersity",
+                  "solid_sizes",
+                  "soft_sizes",
+                  "solid_fill",
+                  "preparation",
+                  "start_pressure",
+                  "start_fraction",
+                  "inertial_number",
+                  "compaction_mu",
+                  "compaction_restitution",
+                  "coarse_share",
+                  "first_pressure",
+                  "preparation_tolerance",
+                  "preparation_passes"},
+                 "goes without packing, which says where all bodies are");
+  if (setup.samples > 1) t.mistake("samples", "a packing is one sample: must be 1");
+  t.part([&] {
+    const std::string file = t.resolve(t.text("packing"));
+    setup.given = read_packing_file(file);
+    const MacroPacking& p = *setup.given;
+    MacroSpec& spec = setup.spec;
+    spec.packing_text = read_text(file);
+    spec.construction = Construction::mixed;
+    spec.preparation = Preparation::frictionless;
+    spec.bodies = static_cast<std::int64_t>(p.bodies.size());
+    spec.soft_share = p.soft_volume_share();
+    spec.solid_sizes.reset();
+    spec.soft_sizes.reset();
+    const auto take_radii = [&](bool soft, double& largest, double& ratio) {
+      double low = HUGE_VAL;
+      double high = 0.0;
+      for (const MacroBody& b : p.bodies) {
+        if (b.soft != soft) continue;
+        low = std::min(low, b.r);
+        high = std::max(high, b.r);
+      }
+      if (!(high > 0.0)) return;
+      largest = high;
+      ratio = high / low;
+    };
+    take_radii(false, spec.solid_radius_max, spec.solid_polydispersity);
+    take_radii(true, spec.soft_radius_max, spec.soft_polydispersity);
+  });
 }
 
 /// `resolved`: true for the shelled twin, or a list of twins.
@@ -95,7 +188,7 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
 }  // namespace
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
-  if (setup.spec.preparation == MacroEngine::lammps)
+  if (setup.spec.preparation == Preparation::lammps)
     macro.mistake("preparation",
                   "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
 }
@@ -139,6 +232,7 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   read_bodies(macro, setup.spec);
   read_test(macro, setup.spec);
   setup.samples = macro.count("samples", 1, 10000, setup.samples);
+  read_given(macro, setup);
   setup.twins = read_twins(macro, setup.twins);
   return setup;
 }

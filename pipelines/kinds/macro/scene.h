@@ -2,11 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/io/scene.h"
-#include "macrosim/macro_spec.h"
+#include "macrosim/macro_packing.h"
 #include "pipelines/law/named_laws.h"
 #include "pipelines/run/scene_kind.h"
 
@@ -16,6 +17,7 @@ struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;
   std::vector<Twin> twins{Twin::shelled};  ///< resolved beside every sample
+  std::optional<MacroPacking> given{};     ///< that every test starts from, in place of prepared ones
   std::int64_t kept_states = 0;            ///< of the first sample of every engine, for pictures
   std::vector<std::string> assumed{};      ///< "nu = 0.3": of grains, where the law does not say them
 };

@@ -13,8 +13,10 @@
 #include "macrosim/constructed_packing.h"
 #include "macrosim/macro_snapshot.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/parallel_tasks.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 
@@ -106,15 +108,25 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
   return {state.curve, states.take()};
 }
 
-/// Made by an earlier part of this run, or now.
-MacroPacking kept_packing(const MacroSpec& spec, std::uint64_t seed, std::int64_t sample, const TaskStore& store,
-                          const std::string& file_name) {
+/// Given, made by an earlier part of this run, kept by another run, or made now.
+MacroPacking sample_packing(const MacroSetup& setup, const Run& run, std::int64_t sample, const std::string& file_name,
+                            const PreparationWatch& watch) {
+  if (setup.given) return *setup.given;
   const std::string task = file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample);
   std::optional<MacroPacking> packing;
-  store.load(task, [&](const h5::Group& g) { packing = read_macro_packing(g); });
+  const auto read = [&](const h5::Group& g) { packing = read_macro_packing(g); };
+  const auto write = [&](const h5::Group& g) { write_macro_packing(g, *packing); };
+  run.store.load(task, read);
   if (packing) return std::move(*packing);
-  packing = make_packing(spec, seed, static_cast<std::uint64_t>(sample));
-  store.save(task, [&](const h5::Group& g) { write_macro_packing(g, *packing); });
+  const ResultCache cache(run.context.packing_cache(), "macro packing", "packing", "prepared again",
+                          [&](const std::string& remark) { run.context.say(remark); });
+  const auto number = static_cast<std::uint64_t>(sample);
+  const std::string key = packing_key(setup.spec, run.seed, number);
+  if (!cache.find(key, read)) {
+    packing = make_packing(setup.spec, run.seed, number, watch);
+    cache.keep(key, write);
+  }
+  run.store.save(task, write);
   return std::move(*packing);
 }
 
@@ -184,8 +196,13 @@ std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& r
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), run.context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
-    packings[static_cast<std::size_t>(k)] = kept_packing(setup.spec, run.seed, k, run.store, file_name);
-    progress.advance();
+    double done = 0.0;
+    const auto watch = [&](double share) {
+      progress.advance(share - done);
+      done = share;
+    };
+    packings[static_cast<std::size_t>(k)] = sample_packing(setup, run, k, file_name, watch);
+    watch(1.0);
   });
   return packings;
 }

@@ -1,0 +1,55 @@
+#include "macrosim/hard_bodies.h"
+
+#include "common/core/solid_sphere.h"
+
+namespace softgrain {
+
+namespace {
+
+Material hard_material(const MacroSpec& spec) {
+  return {"hard", spec.density, spec.youngs_modulus, spec.poisson_ratio, false};
+}
+
+}  // namespace
+
+AnyLaw HardBodies::law(const MacroSpec& spec, double friction, double restitution) {
+  const Material hard = hard_material(spec);
+  return hertz_law(HertzCoefficients::of(hard, hard, friction, restitution), false);
+}
+
+HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction, double restitution) {
+  system.materials = {hard_material(spec)};
+  system.laws = LawSet(1);
+  system.laws.set(0, 0, law(spec, friction, restitution));
+  for (const MacroBody& b : packing.bodies) {
+    NewBody<3> grain;
+    grain.x = b.x;
+    grain.r = b.r;
+    grain.mass = spec.density * kSphereVolume * cube(b.r);
+    if (friction > 0.0) grain.inertia = 0.4 * grain.mass * b.r * b.r;
+    add_grain(system.particles, grain);
+  }
+  box = add_box(system, packing.low, packing.high, 0);
+}
+
+double HardBodies::pressure() const {
+  const Vec3 stress = wall_stress(system, box);
+  return (stress[0] + stress[1] + stress[2]) / 3.0;
+}
+
+double HardBodies::fraction() const {
+  double volume = 0.0;
+  for (std::size_t u = 0; u < at(system.particles.grains); ++u)
+    volume += kSphereVolume * cube(system.particles.sphere[u].r);
+  const Vec3 edge = size();
+  return volume / (edge[0] * edge[1] * edge[2]);
+}
+
+void HardBodies::take_over(MacroPacking& packing) const {
+  packing.low = box_low(system, box);
+  packing.high = box_high(system, box);
+  for (std::size_t k = 0; k < packing.bodies.size(); ++k) packing.bodies[k].x = system.particles.sphere[k].x;
+  packing.cost += {system.cost.loop_passes, system.cost.contact_evaluations, watch_.seconds()};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,29 @@
+// All bodies of a macro packing as hard grains in their box: what preparations move and press.
+#pragma once
+
+#include "common/core/stopwatch.h"
+#include "macrosim/box.h"
+#include "macrosim/macro_packing.h"
+
+namespace softgrain {
+
+struct HardBodies {
+  System3 system;
+  Box box;
+
+  explicit HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction = 0.0,
+                      double restitution = 1.0);
+
+  static AnyLaw law(const MacroSpec& spec, double friction, double restitution);
+
+  [[nodiscard]] Vec3 size() const { return box_high(system, box) - box_low(system, box); }
+  [[nodiscard]] double pressure() const;  ///< mean of the walls, of the last pass [Pa]
+  [[nodiscard]] double fraction() const;  ///< of the box that bodies fill
+  /// Places of bodies and walls go to the packing, what it took is added to its cost.
+  void take_over(MacroPacking& packing) const;
+
+ private:
+  Stopwatch watch_;
+};
+
+}  // namespace softgrain

@@ -1,0 +1,159 @@
+#include "pipelines/kinds/macro/packing_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+
+#include "common/core/error.h"
+#include "common/io/csv_file.h"
+
+namespace softgrain {
+
+enum class BodyKind { solid, soft };
+
+template <>
+inline constexpr auto words<BodyKind> = word_list<BodyKind>({{BodyKind::solid, "solid"}, {BodyKind::soft, "soft"}});
+
+namespace {
+
+/// Raised whenever the same key would give another packing.
+constexpr int kPackingSchema = 1;
+
+std::size_t column_of(const CsvFile& csv, const char* name, Unit unit, const char* example) {
+  for (std::size_t k = 0; k < csv.columns().size(); ++k) {
+    if (csv.columns()[k].name != name) continue;
+    csv.require_unit(k, unit, example);
+    return k;
+  }
+  std::string found;
+  for (const CsvColumn& c : csv.columns()) found += (found.empty() ? "" : ", ") + c.title;
+  throw BadInput(fmt::format("{}: needs a column \"{}\"; a packing has x [m], y [m], z [m], r [m], kind; found: {}",
+                             csv.where(csv.header_line()), example, found));
+}
+
+struct Columns {
+  std::size_t x, y, z, r, kind;
+};
+
+double required(const CsvFile& csv, const CsvRow& row, std::size_t column) {
+  const auto value = csv.number(row, column, Unit::length);
+  if (!value)
+    throw BadInput(fmt::format("{}: column \"{}\": is missing", csv.where(row.line), csv.columns()[column].title));
+  return *value;
+}
+
+MacroBody body_of(const CsvFile& csv, const CsvRow& row, const Columns& c) {
+  MacroBody body;
+  const std::array<std::size_t, 3> places{c.x, c.y, c.z};
+  for (int a = 0; a < 3; ++a) body.x[a] = required(csv, row, places[static_cast<std::size_t>(a)]);
+  body.r = required(csv, row, c.r);
+  const auto complain = [&](std::size_t column, const std::string& problem) {
+    throw BadInput(fmt::format("{}: column \"{}\": {}: {}", csv.where(row.line), csv.columns()[column].title,
+                               row.cells[column], problem));
+  };
+  if (!(body.r > 0.0)) complain(c.r, "a radius must be above 0");
+  const auto kind = from_word<BodyKind>(row.cells[c.kind]);
+  if (!kind) complain(c.kind, "must be solid or soft");
+  body.soft = kind == BodyKind::soft;
+  return body;
+}
+
+/// Low and high corner from the comment, else around all bodies.
+void read_box(const CsvFile& csv, MacroPacking& packing) {
+  const auto named = csv.setting({"box [m]", "box"});
+  if (!named) {
+    packing.low = packing.high = packing.bodies.front().x;
+    for (const MacroBody& b : packing.bodies)
+      for (int a = 0; a < 3; ++a) {
+        packing.low[a] = std::min(packing.low[a], b.x[a] - b.r);
+        packing.high[a] = std::max(packing.high[a], b.x[a] + b.r);
+      }
+    return;
+  }
+  std::istringstream words(named->value);
+  std::vector<double> corners;
+  try {
+    for (std::string word; words >> word;) corners.push_back(parse_quantity(word + " m", Unit::length));
+  } catch (const BadInput&) {  // said below
+    corners.clear();
+  }
+  if (corners.size() != 6)
+    throw BadInput(fmt::format("{}: box = {}: must be six lengths in m, the low corner and the high one",
+                               csv.where(named->line), named->value));
+  packing.low = {{corners[0], corners[1], corners[2]}};
+  packing.high = {{corners[3], corners[4], corners[5]}};
+  for (int a = 0; a < 3; ++a)
+    if (!(packing.low[a] < packing.high[a]))
+      throw BadInput(
+          fmt::format("{}: box = {}: the high corner must be above the low one", csv.where(named->line), named->value));
+}
+
+void require_inside(const CsvFile& csv, const MacroPacking& packing, const Columns& c) {
+  const std::array<std::size_t, 3> places{c.x, c.y, c.z};
+  for (std::size_t k = 0; k < packing.bodies.size(); ++k) {
+    const MacroBody& b = packing.bodies[k];
+    for (int a = 0; a < 3; ++a) {
+      const double out = std::max(packing.low[a] - (b.x[a] - b.r), b.x[a] + b.r - packing.high[a]);
+      if (out <= kGivenOverlap * b.r) continue;
+      const std::size_t column = places[static_cast<std::size_t>(a)];
+      throw BadInput(
+          fmt::format("{}: column \"{}\": {}: the body is outside the box by {:.3g} of its radius; allowed: up to {:g}",
+                      csv.where(csv.rows()[k].line), csv.columns()[column].title, csv.rows()[k].cells[column],
+                      out / b.r, kGivenOverlap));
+    }
+  }
+}
+
+/// Sorted along x, each against those that can reach it.
+void require_apart(const CsvFile& csv, const MacroPacking& packing) {
+  std::vector<std::size_t> order(packing.bodies.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto left = [&](std::size_t k) { return packing.bodies[k].x[0] - packing.bodies[k].r; };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const MacroBody& a = packing.bodies[order[i]];
+    for (std::size_t j = i + 1; j < order.size() && left(order[j]) < a.x[0] + a.r; ++j) {
+      const MacroBody& b = packing.bodies[order[j]];
+      const double smaller = std::min(a.r, b.r);
+      const double overlap = a.r + b.r - norm(a.x - b.x);
+      if (overlap <= kGivenOverlap * smaller) continue;
+      const auto [first, second] = std::minmax(csv.rows()[order[i]].line, csv.rows()[order[j]].line);
+      throw BadInput(
+          fmt::format("{}: columns x, y, z: overlaps the body of line {} by {:.3g} of the smaller radius; allowed: up "
+                      "to {:g}",
+                      csv.where(second), first, overlap / smaller, kGivenOverlap));
+    }
+  }
+}
+
+}  // namespace
+
+MacroPacking read_packing_file(const std::string& path) {
+  const CsvFile csv = CsvFile::read(path);
+  const Columns columns{column_of(csv, "x", Unit::length, "x [m]"), column_of(csv, "y", Unit::length, "y [m]"),
+                        column_of(csv, "z", Unit::length, "z [m]"), column_of(csv, "r", Unit::length, "r [m]"),
+                        column_of(csv, "kind", Unit::none, "kind")};
+  MacroPacking packing;
+  for (const CsvRow& row : csv.rows()) packing.bodies.push_back(body_of(csv, row, columns));
+  if (packing.bodies.empty()) throw BadInput(csv.where(csv.header_line()) + ": no body");
+  read_box(csv, packing);
+  require_inside(csv, packing, columns);
+  require_apart(csv, packing);
+  return packing;
+}
+
+std::string packing_key(const MacroSpec& s, std::uint64_t seed, std::uint64_t sample) {
+  std::string text = fmt::format("macro packing, schema {}\n{} {} {}\n", kPackingSchema, to_string(s.construction),
+                                 to_string(s.preparation), s.bodies);
+  const PreparationProtocol& p = s.protocol;
+  for (const double x :
+       {s.soft_share, s.exponent, s.solid_radius_max, s.solid_polydispersity, s.soft_radius_max, s.soft_polydispersity,
+        s.solid_fill, s.youngs_modulus, s.poisson_ratio, s.density, s.start_pressure, p.start_fraction,
+        p.inertial_number, p.friction, p.restitution, p.coarse_share, p.first_pressure, p.tolerance})
+    text += fmt::format(" {:.17g}", x);
+  return text + fmt::format(" {}\n{}\nseed {} sample {}\n", p.max_passes, sizes_text(s), seed, sample);
+}
+
+}  // namespace softgrain
