@@ -47,7 +47,9 @@ inline MacroScene macro_scene(std::int64_t bodies, bool unloading = false) {
   out.spec.bodies = bodies;
   out.spec.solid_radius_max = out.spec.soft_radius_max = 0.016;
   out.spec.wall_friction = 0.2;
-  out.packing = make_macro_packing(out.spec, 5, 0);
+  out.spec.protocol.tolerance =
+      1e-3;  // roundings grow a hundredfold in twenty passes while bodies rearrange; here few do
+  out.packing = make_macro_packing(out.spec, 3, 0);
   out.laws = unloading ? directional_laws<true>(out.spec) : directional_laws<false>(out.spec);
   return out;
 }

@@ -24,7 +24,7 @@ law = "law.toml"
 [macro]
 bodies = 6
 steps = 2
-strain = 0.05
+strain = 0.15
 resolved = false
 )";
 
