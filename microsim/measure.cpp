@@ -92,7 +92,7 @@ bool is_among(const std::vector<double>& values, double x) {
 
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
              const RunControl<MeasurementState>& control, const PointPicture& picture) {
-  constexpr const char* kDoing = "measuring; measured points are saved";
+  constexpr const char* kDoing = "measuring";
   RunKeeper keeper(control);
   const auto share = [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(plan.deltas.size()); };
   for (std::size_t k = state.run.normal.size(); k < plan.deltas.size(); ++k) {
