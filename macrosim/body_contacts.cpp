@@ -12,10 +12,15 @@ std::vector<Vec3> body_centres(const MacroSystem& macro) {
   const auto& p = macro.system.particles;
   std::vector<Vec3> centre(static_cast<std::size_t>(macro.bodies));
   std::vector<double> mass(centre.size(), 0.0);
+  std::vector<std::size_t> first(centre.size(), 0);
+  const Cell<3>& cell = macro.system.cell;
   for (std::size_t u = 0; u < static_cast<std::size_t>(p.grains); ++u) {
     const auto n = static_cast<std::size_t>(macro.body[u]);
     const double m = 1.0 / p.inverse_mass[u];
-    centre[n] += p.sphere[u].x * m;
+    if (mass[n] == 0.0) first[n] = u;
+    // Grains of a body that lies across a face of a periodic cell: those images that are near its first one.
+    const Vec3& near = p.sphere[first[n]].x;
+    centre[n] += (p.sphere[u].x + cell.image_shift(cell.image_near(near, p.sphere[u].x))) * m;
     mass[n] += m;
   }
   for (std::size_t n = 0; n < centre.size(); ++n)
@@ -25,6 +30,12 @@ std::vector<Vec3> body_centres(const MacroSystem& macro) {
     centre[static_cast<std::size_t>(macro.body[u])] = p.sphere[u].x;
   }
   return centre;
+}
+
+/// From the image of the other centre that is near.
+Vec3 between(const MacroSystem& macro, const Vec3& x, const Vec3& other) {
+  const Cell<3>& cell = macro.system.cell;
+  return x - other - cell.image_shift(cell.image_near(x, other));
 }
 
 Vec3 wall_branch(const MacroSystem& macro, const Vec3& centre, std::int32_t wall) {
@@ -56,8 +67,8 @@ std::vector<BodyContact> body_contacts(const MacroSystem& macro, const std::vect
   for (const auto& [pair, force] : forces) {
     BodyContact c{pair.first, pair.second, force, {}, 0.0};
     const Vec3& x = centre[static_cast<std::size_t>(c.a)];
-    c.branch =
-        c.b < macro.bodies ? x - centre[static_cast<std::size_t>(c.b)] : wall_branch(macro, x, c.b - macro.bodies);
+    c.branch = c.b < macro.bodies ? between(macro, x, centre[static_cast<std::size_t>(c.b)])
+                                  : wall_branch(macro, x, c.b - macro.bodies);
     c.normal_force = dot(force, c.branch) / norm(c.branch);
     out.push_back(c);
   }

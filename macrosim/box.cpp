@@ -22,6 +22,11 @@ Box add_box(System3& system, const Vec3& low, const Vec3& high, std::int32_t mat
   return box;
 }
 
+Box add_periodic_cell(System3& system, const Vec3& size) {
+  system.cell = box_cell<3>(size, {true, true, true});
+  return {{}, true};
+}
+
 namespace {
 
 double plane_coordinate(const System3& s, const Box& box, int axis, int side) {
@@ -31,26 +36,34 @@ double plane_coordinate(const System3& s, const Box& box, int axis, int side) {
 }  // namespace
 
 Vec3 box_low(const System3& s, const Box& box) {
+  if (box.periodic) return {};
   return {{plane_coordinate(s, box, 0, 0), plane_coordinate(s, box, 1, 0), plane_coordinate(s, box, 2, 0)}};
 }
 
 Vec3 box_high(const System3& s, const Box& box) {
+  if (box.periodic) return {{s.cell.edges[0][0], s.cell.edges[1][1], s.cell.edges[2][2]}};
   return {{plane_coordinate(s, box, 0, 1), plane_coordinate(s, box, 1, 1), plane_coordinate(s, box, 2, 1)}};
 }
 
-void strain_box(System3& s, const Box& box, const Vec3& strain) {
-  const auto& p = s.particles;
-  const Vec3 centre = (box_low(s, box) + box_high(s, box)) * 0.5;
-  std::vector<Vec3> moves(static_cast<std::size_t>(p.size()));
-  for (Slot i = 0; i < p.size(); ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    const auto leader = i < p.grains && p.shell[u] >= 0 ? static_cast<std::size_t>(p.shell[u]) : u;
-    for (int k = 0; k < 3; ++k) moves[u][k] = -strain[k] * (p.sphere[leader].x[k] - centre[k]);
-  }
-  displace(s, moves);
+Vec3 box_centre(const System3& s, const Box& box) {
+  return box.periodic ? Vec3{} : (box_low(s, box) + box_high(s, box)) * 0.5;
 }
 
-Vec3 wall_stress(const System3& s, const Box& box) {
+void strain_box(System3& s, const Box& box, const Vec3& strain) {
+  const Vec3 centre = box_centre(s, box);
+  std::vector<Vec3> moves(static_cast<std::size_t>(s.particles.size()));
+  for (std::size_t u = 0; u < moves.size(); ++u) {
+    const Vec3 place = carried_place(s, u);
+    for (int k = 0; k < 3; ++k) moves[u][k] = -strain[k] * (place[k] - centre[k]);
+  }
+  if (box.periodic)
+    displace(s, moves, -strain);
+  else
+    displace(s, moves);
+}
+
+Vec3 box_stress(const System3& s, const Box& box) {
+  if (box.periodic) return contact_stress(s, box);
   const Vec3 size = box_high(s, box) - box_low(s, box);
   const double volume = size[0] * size[1] * size[2];
   Vec3 out;

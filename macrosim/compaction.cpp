@@ -44,7 +44,7 @@ DampedOptions options_under(double pressure, const HardBodies& hard, const Macro
   return options;
 }
 
-[[noreturn]] void not_jammed(const MacroSpec& spec, const HardBodies& hard, const RelaxationResult& rest) {
+[[noreturn]] void not_jammed(const MacroSpec& spec, HardBodies& hard, const RelaxationResult& rest) {
   throw NotUsable(fmt::format(
       "{}: relaxation {} after {} passes; reached: walls at {:.3g} E, bodies fill {:.4f} of the box, largest net force "
       "{:.3g} of the mean contact force",
@@ -58,7 +58,7 @@ void press(HardBodies& hard, const MacroSpec& spec, double first, const Preparat
   for (double over = std::max(first, 1.0);; over = std::max(1.0, over * kFall)) {
     const bool last = over <= 1.0;
     const double pressure = over * asked;
-    WallControl control{{true, true, true}, {{pressure, pressure, pressure}}, true};
+    BoxControl control{{true, true, true}, {{pressure, pressure, pressure}}, true};
     control.tolerance = last ? spec.protocol.tolerance / 3.0 : kLoose;
     DampedOptions options = options_under(pressure, hard, spec);
     options.tolerance = last ? spec.protocol.tolerance : std::max(kLoose, spec.protocol.tolerance);
@@ -75,10 +75,12 @@ void press(HardBodies& hard, const MacroSpec& spec, double first, const Preparat
   }
 }
 
-/// Velocities of a box that shrinks at this rate [1/s]: of its walls, and of all bodies when it begins.
+/// Velocities of a box that shrinks at this rate [1/s]: of its walls or the cell, and of all bodies when it begins.
 void set_velocities(HardBodies& hard, double rate, bool bodies) {
   auto& p = hard.system.particles;
-  const Vec3 centre = (box_low(hard.system, hard.box) + box_high(hard.system, hard.box)) * 0.5;
+  const Vec3 centre = box_centre(hard.system, hard.box);
+  if (hard.box.periodic)
+    for (int k = 0; k < 3; ++k) hard.system.cell.velocity_gradient[k][k] = -rate;
   for (std::size_t u = bodies ? 0 : at(p.first_plane()); u < at(p.size()); ++u)
     p.velocity[u] = (centre - p.sphere[u].x) * rate;
 }
@@ -124,18 +126,18 @@ void shrink(MacroPacking& packing, const MacroSpec& spec, const PreparationWatch
 /// Fines at random places between the coarse bodies, their radii times the share that is returned, which is as small
 /// as it takes.
 double place_fines(const std::vector<MacroBody>& coarse, std::vector<MacroBody>& fines, const Vec3& low, double edge,
-                   RandomStream& random) {
+                   bool periodic, RandomStream& random) {
   constexpr int kTrials = 20000;
   std::vector<double> radii;
   for (const MacroBody& b : coarse) radii.push_back(b.r);
   for (const MacroBody& b : fines) radii.push_back(b.r);
   for (double share = 0.5;; share *= 0.7) {
-    PlacedSpheres placed(edge, radii);
+    PlacedSpheres placed(edge, radii, periodic);
     for (const MacroBody& b : coarse) placed.add(b.x - low, b.r);
     const bool all = std::all_of(fines.begin(), fines.end(), [&](MacroBody& b) {
       const double r = share * b.r;
       for (int trial = 0; trial < kTrials; ++trial) {
-        for (int a = 0; a < 3; ++a) b.x[a] = r + random.uniform() * (edge - 2.0 * r);
+        b.x = placed.place_of(r, random);
         if (placed.collides(b.x, r)) continue;
         placed.add(b.x, r);
         b.x = b.x + low;
@@ -199,7 +201,7 @@ MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, 
     sum += cube(bodies[coarse].r);
   std::vector<MacroBody> fines(bodies.begin() + static_cast<std::ptrdiff_t>(coarse), bodies.end());
   bodies.resize(coarse);
-  MacroPacking packing = place_loosely(std::move(bodies), seed, sample, spec.protocol.start_fraction);
+  MacroPacking packing = place_loosely(std::move(bodies), seed, sample, spec.protocol.start_fraction, spec.boundary);
   const auto from = [&](double begin, double length) {
     return [&watch, begin, length](double share) {
       if (watch) watch(begin + length * share);
@@ -208,7 +210,8 @@ MacroPacking pack_densely(const MacroSpec& spec, std::vector<MacroBody> bodies, 
   bring_into_touch(spec, packing, from(0.0, 0.2));
   if (fines.empty()) return packing;
   RandomStream random(seed, kMacroFines, sample);
-  const double share = place_fines(packing.bodies, fines, packing.low, packing.size()[0], random);
+  const double share =
+      place_fines(packing.bodies, fines, packing.low, packing.size()[0], spec.boundary == Boundary::periodic, random);
   packing.bodies.insert(packing.bodies.end(), fines.begin(), fines.end());
   const double grown = grow_fines(packing, spec, coarse, share, from(0.2, 0.3));
   // What did not find room has it in a box that is as much wider.

@@ -1,5 +1,7 @@
 #include "macrosim/compression.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/core/error.h"
@@ -12,14 +14,15 @@
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/curve_notes.h"
+#include "macrosim/pressed_box.h"
 
 namespace softgrain {
 
 namespace {
 
-DampedOptions relaxation_options(const MacroSpec& spec, const MacroSystem& macro) {
+DampedOptions relaxation_options(const MacroSpec& spec, const MacroStage& stage, const MacroSystem& macro) {
   DampedOptions options;
-  options.tolerance = spec.tolerance;
+  options.tolerance = stage.tolerance;
   options.max_passes = spec.max_passes;
   options.force_floor = test_force_floor(spec, macro.largest_radius);
   return options;
@@ -44,35 +47,108 @@ LawUse watch(CompressionState& state) {
   return c.grains > 0 || c.soft == 0 ? LawUse{} : seen.laws;
 }
 
-void record(CompressionState& state, const MacroSpec& spec, double strain, const RelaxationResult& rest) {
+/// How far the box is from its lengths at the start.
+void record_strains(const MacroSystem& macro, MacroCurve& c) {
+  const Vec3 size = box_high(macro.system, macro.box) - box_low(macro.system, macro.box);
+  c.strain_x.push_back(1.0 - size[0] / c.start.size_x);
+  c.strain_y.push_back(1.0 - size[1] / c.start.size_y);
+  c.strain_z.push_back(1.0 - size[2] / c.start.size_z);
+}
+
+void record(CompressionState& state, const MacroSpec& spec, const MacroStage& stage, std::int64_t number,
+            const RelaxationResult& rest) {
   const System3& s = state.macro.system;
-  const Vec3 wall = wall_stress(s, state.macro.box);
+  const Vec3 stress = box_stress(s, state.macro.box);
   const Residual r = residual(s);
   MacroCurve& c = state.curve;
+  record_strains(state.macro, c);
+  c.stage.push_back(static_cast<double>(number));
+  const bool staged = spec.test == MacroTest::stages;
+  const double strain = staged ? c.strain_z.back() : strain_at(spec, static_cast<std::int64_t>(c.strain.size()));
   c.strain.push_back(strain);
-  c.stress_axial.push_back(wall[2]);
-  c.stress_lateral.push_back(0.5 * (wall[0] + wall[1]));
-  c.stress_x.push_back(wall[0]);
-  c.stress_y.push_back(wall[1]);
-  c.stress_deviator.push_back(wall[2] - wall[0]);
+  c.stress_axial.push_back(stress[2]);
+  c.stress_lateral.push_back(0.5 * (stress[0] + stress[1]));
+  c.stress_x.push_back(stress[0]);
+  c.stress_y.push_back(stress[1]);
+  c.stress_deviator.push_back(stress[2] - stress[0]);
   c.stress_axial_contacts.push_back(contact_stress(s, state.macro.box)[2]);
   const auto bodies = static_cast<double>(c.grains > 0 ? s.particles.grains : c.bodies);
   c.coordination.push_back(2.0 * static_cast<double>(r.contacts) / bodies);
   c.residual.push_back(rest.residual);
   record_bodies(state.macro, c);
-  note_relaxation(c, rest, strain, spec.tolerance);
+  note_relaxation(c, rest, strain, stage.tolerance);
 }
 
-/// Strains the box and relaxes; what it cost goes to the curve.
-RelaxationResult counted_step(DampedRelaxation<3>& relaxation, CompressionState& state, const Vec3& strain) {
+/// Strain of one increment by stress that nothing but a flowing packing gives.
+constexpr double kFarthest = 0.3;
+
+BoxControl control_of(const MacroSpec& spec, const MacroStage& stage, const Vec3& stress) {
+  BoxControl control;
+  for (std::size_t k = 0; k < 3; ++k) control.by_stress[k] = stage.axis[k].by_stress;
+  control.stress = stress;
+  control.alike = stage.alike;
+  control.tolerance = stage.tolerance / 3.0;
+  control.least_stress = spec.start_pressure * spec.youngs_modulus;
+  control.farthest = kFarthest;
+  return control;
+}
+
+/// Where every axis goes to its stress, the mean stress comes first, without change of shape: a loose packing that is
+/// pressed from all sides at once hardly resists one, and would take any.
+void press_alike(MacroSystem& macro, const MacroSpec& spec, const MacroStage& stage, const Vec3& stress) {
+  constexpr double kRoughly = 10.0;
+  if (stage.alike || !stage.axis[0].by_stress || !stage.axis[1].by_stress || !stage.axis[2].by_stress) return;
+  const double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
+  BoxControl control = control_of(spec, stage, {{mean, mean, mean}});
+  control.alike = true;
+  control.tolerance *= kRoughly;
+  DampedOptions options = relaxation_options(spec, stage, macro);
+  options.tolerance *= kRoughly;
+  PressedBox pressed(macro.box, control);
+  DampedRelaxation<3>(options).relax(macro.system, pressed);
+}
+
+/// Strains the box and relaxes, the box too where it goes by stress; what it cost goes to the curve.
+RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, const MacroStage& stage,
+                              const Vec3& strain, const Vec3& stress) {
   const Stopwatch watch;
   const Cost before = state.macro.system.cost;
-  if (strain != Vec3{}) strain_box(state.macro.system, state.macro.box, strain);
-  const RelaxationResult rest = relaxation.relax(state.macro.system);
-  const Cost& now = state.macro.system.cost;
+  MacroSystem& macro = state.macro;
+  if (strain != Vec3{}) strain_box(macro.system, macro.box, strain);
+  DampedRelaxation<3> relaxation(relaxation_options(spec, stage, macro));
+  RelaxationResult rest;
+  if (stage.by_stress() && stress != Vec3{}) {
+    press_alike(macro, spec, stage, stress);
+    PressedBox pressed(macro.box, control_of(spec, stage, stress));
+    rest = relaxation.relax(macro.system, pressed);
+  } else {
+    rest = relaxation.relax(macro.system);
+  }
+  const Cost& now = macro.system.cost;
   state.curve.cost +=
       {now.loop_passes - before.loop_passes, now.contact_evaluations - before.contact_evaluations, watch.seconds()};
   return rest;
+}
+
+/// What was asked and what there is, where they differ.
+std::string off_text(const MacroCurve& c, const MacroStage& stage, const Vec3& asked) {
+  const Vec3 reached{{c.stress_x.back(), c.stress_y.back(), c.stress_axial.back()}};
+  std::string text;
+  for (int k = 0; k < 3; ++k)
+    if (stage.axis[static_cast<std::size_t>(k)].by_stress)
+      text += fmt::format("{}{} {:.4g} Pa asked, {:.4g} Pa reached", text.empty() ? "" : "; ", "xyz"[k], asked[k],
+                          reached[k]);
+  return text;
+}
+
+/// A stress that the packing cannot bear ends the test: what comes after would start from nowhere.
+bool out_of_reach(CompressionState& state, const MacroStage& stage, const Vec3& asked, const RelaxationResult& rest) {
+  if (!stage.by_stress() || rest.end == RelaxationEnd::converged) return false;
+  MacroCurve& c = state.curve;
+  c.usable = false;
+  c.note = fmt::format("stage '{}' ended at axial strain {:.4g}, where its stress was not reached: {} ({})",
+                       stage.record.name, c.strain.back(), off_text(c, stage, asked), c.note);
+  return state.over = true;
 }
 
 /// Of box and bodies, bit by bit.
@@ -93,8 +169,17 @@ MacroStart start_of(const MacroSpec& spec, const MacroPacking& packing) {
   const auto [least, most] = std::minmax_element(packing.bodies.begin(), packing.bodies.end(),
                                                  [](const MacroBody& a, const MacroBody& b) { return a.r < b.r; });
   const bool any = !packing.bodies.empty();
-  return {any ? least->r : 0.0, any ? most->r : 0.0, spec.youngs_modulus, spec.poisson_ratio,
-          spec.friction,        spec.wall_friction,  hash_of(packing)};
+  const Vec3 size = packing.size();
+  return {any ? least->r : 0.0,
+          any ? most->r : 0.0,
+          spec.youngs_modulus,
+          spec.poisson_ratio,
+          spec.friction,
+          spec.wall_friction,
+          size[0],
+          size[1],
+          size[2],
+          hash_of(packing)};
 }
 
 }  // namespace
@@ -104,6 +189,8 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   MacroCurve curve;
   curve.engine = engine;
   curve.test = spec.test;
+  curve.boundary = spec.boundary;
+  for (const MacroStage& stage : stages_of(spec)) curve.stages.push_back(stage.record);
   curve.sample = sample;
   curve.bodies = static_cast<std::int64_t>(packing.bodies.size());
   curve.soft = packing.soft_count();
@@ -118,31 +205,40 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
 
 void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control) {
   constexpr const char* kDoing = "straining; all up to here is saved";
-  DampedRelaxation<3> relaxation(relaxation_options(spec, state.macro));
+  const std::vector<MacroStage> stages = stages_of(spec);
   const std::int64_t points = recorded_points(spec);
   RunKeeper keeper(control);
-  const auto share = [&](std::int64_t point) {
-    const auto way = static_cast<double>(state.increments) / static_cast<double>(spec.increments_per_step);
-    return (static_cast<double>(point) + way) / static_cast<double>(points);
-  };
+  if (state.over) return;
   if (!state.curve.usable && watch_contacts(state.macro.system).laws.refused > 0) return;  // had ended here before
   while (static_cast<std::int64_t>(state.curve.strain.size()) < points) {
     const auto point = static_cast<std::int64_t>(state.curve.strain.size());
+    const StagePoint at = stage_point(stages, point);
+    const MacroStage& stage = stages[static_cast<std::size_t>(at.stage)];
+    const auto share = [&] {
+      const auto way = static_cast<double>(state.increments) / static_cast<double>(stage.increments_per_step);
+      return (static_cast<double>(point) + way) / static_cast<double>(points);
+    };
     RelaxationResult rest;
-    if (point == 0) rest = counted_step(relaxation, state, {});
-    while (point > 0 && state.increments < spec.increments_per_step) {
-      rest = counted_step(relaxation, state, strain_increment(spec, point, state.increments + 1));
+    Vec3 asked{};
+    if (point == 0) rest = counted_step(state, spec, stage, {}, {});
+    const auto starts = point > 0 ? stage_starts(stages, state.curve, point) : std::vector<Vec3>{};
+    while (point > 0 && state.increments < stage.increments_per_step) {
+      const std::int64_t n = (at.number - 1) * stage.increments_per_step + state.increments + 1;
+      asked = stress_at(stage, n, starts);
+      rest = counted_step(state, spec, stage, strain_increment(stage, n), asked);
       ++state.increments;
+      if (stage.by_stress() && rest.end != RelaxationEnd::converged) break;
       // After the last one the point is recorded, which needs what the relaxation said.
-      if (state.increments < spec.increments_per_step) keeper.between_points(state, share(point), kDoing);
+      if (state.increments < stage.increments_per_step) keeper.between_points(state, share(), kDoing);
     }
     state.increments = 0;
-    record(state, spec, strain_at(spec, point), rest);
+    record(state, spec, stage, at.stage, rest);
     const LawUse use = watch(state);
-    const bool last = point + 1 == points;
-    if (last || use.refused > 0) note_law_use(state.curve, use, strain_at(spec, point));
-    keeper.at_point(state, share(point + 1), kDoing);
-    if (use.refused > 0) return;
+    const bool over = point > 0 && out_of_reach(state, stage, asked, rest);
+    const bool last = point + 1 == points || over;
+    if (last || use.refused > 0) note_law_use(state.curve, use, state.curve.strain.back());
+    keeper.at_point(state, static_cast<double>(point + 1) / static_cast<double>(points), kDoing);
+    if (use.refused > 0 || over) return;
   }
 }
 

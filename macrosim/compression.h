@@ -1,4 +1,4 @@
-// Oedometric, isotropic and shear tests of a macro system, law-based or resolved, by relaxed strain increments.
+// Tests of a macro system, law-based or resolved, by relaxed increments of strain and stress.
 #pragma once
 
 #include "common/data/macro_result.h"
@@ -13,15 +13,16 @@ struct CompressionState {
   MacroSystem macro;
   MacroCurve curve;             ///< what was recorded so far; curve.strain.size() says where to go on
   std::int64_t increments = 0;  ///< done since, on the way to the next point
+  bool over = false;            ///< ended before its last point
 };
 
-/// Strains the box step by step to spec.strain_end, relaxing every increment. Oedometric: the z planes move, four
-/// stand; isotropic: all six; shear: all six to the nominal strain `preload`, then z shortens and x lengthens by equal
-/// logarithmic strains while y stands. Records strain (nominal from the start; in shear logarithmic from the end of
-/// the preload, which is recorded at -preload .. 0), wall and contact stresses, coordination, fabric, residual, and the
-/// forces between bodies of the last point.
+/// Takes the box through the stages of the test (stages_of), increment by increment: strains axes that go by strain,
+/// then relaxes the bodies, together with the axes that go by stress. Records strain (nominal from the start; of the
+/// short form "shear" logarithmic from the end of the preload, which is recorded at -preload .. 0), stresses on the box
+/// and from contacts, coordination, fabric, residual, and the forces between bodies of the last point.
 /// Points that did not converge make the curve not usable, with a note; so does a law asked beyond its range that does
-/// not allow it, and the test ends there. Throws NotUsable (lost grain) and Interrupted.
+/// not allow it, and a stress that cannot be reached, and the test ends there. Throws NotUsable (lost grain) and
+/// Interrupted.
 void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control = {});
 
 /// A curve with the facts of the packing filled in.

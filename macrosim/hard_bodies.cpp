@@ -21,19 +21,23 @@ HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, doubl
   system.materials = {hard_material(spec)};
   system.laws = LawSet(1);
   system.laws.set(0, 0, law(spec, friction, restitution));
+  const bool periodic = spec.boundary == Boundary::periodic;
+  const Vec3 corner = periodic ? packing.low : Vec3{};
   for (const MacroBody& b : packing.bodies) {
     NewBody<3> grain;
-    grain.x = b.x;
+    grain.x = b.x - corner;
     grain.r = b.r;
     grain.mass = spec.density * kSphereVolume * cube(b.r);
     if (friction > 0.0) grain.inertia = 0.4 * grain.mass * b.r * b.r;
     add_grain(system.particles, grain);
   }
-  box = add_box(system, packing.low, packing.high, 0);
+  box = periodic ? add_periodic_cell(system, packing.size()) : add_box(system, packing.low, packing.high, 0);
 }
 
-double HardBodies::pressure() const {
-  const Vec3 stress = wall_stress(system, box);
+double HardBodies::pressure() {
+  const Vec3 edge = size();
+  const Vec3 stress =
+      box.periodic ? virial_.of(system) * (1.0 / (edge[0] * edge[1] * edge[2])) : box_stress(system, box);
   return (stress[0] + stress[1] + stress[2]) / 3.0;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/core/stopwatch.h"
+#include "common/dynamics/contact_virial.h"
 #include "macrosim/box.h"
 #include "macrosim/macro_packing.h"
 
@@ -17,12 +18,13 @@ struct HardBodies {
   static AnyLaw law(const MacroSpec& spec, double friction, double restitution);
 
   [[nodiscard]] Vec3 size() const { return box_high(system, box) - box_low(system, box); }
-  [[nodiscard]] double pressure() const;  ///< mean of the walls, of the last pass [Pa]
+  [[nodiscard]] double pressure();        ///< mean of all axes, of the last pass [Pa]
   [[nodiscard]] double fraction() const;  ///< of the box that bodies fill
-  /// Places of bodies and walls go to the packing, what it took is added to its cost.
+  /// Places of bodies and the box go to the packing, what it took is added to its cost.
   void take_over(MacroPacking& packing) const;
 
  private:
+  ContactVirial<3> virial_;
   Stopwatch watch_;
 };
 

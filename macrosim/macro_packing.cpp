@@ -90,7 +90,7 @@ MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::
   std::vector<MacroBody> bodies = drawn_bodies(spec, seed, sample);
   const double fraction = spec.protocol.start_fraction;
   if (spec.protocol.coarse_share < 1.0) return pack_densely(spec, std::move(bodies), seed, sample, watch);
-  MacroPacking packing = place_loosely(std::move(bodies), seed, sample, fraction);
+  MacroPacking packing = place_loosely(std::move(bodies), seed, sample, fraction, spec.boundary);
   if (spec.preparation != Preparation::lammps) bring_into_touch(spec, packing, watch);
   return packing;
 }

@@ -1,6 +1,7 @@
 // What a macro scene asks for.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -56,8 +57,30 @@ struct PreparationProtocol {
   std::int64_t max_passes = 200000;  ///< of a relaxation
 };
 
-/// Solid grains and soft particles of any sizes in a box of six planes, compressed [SP 1.9]. SI units.
+/// What an axis does in a stage.
+struct AxisDrive {
+  bool by_stress = false;
+  double value = 0.0;  ///< nominal strain from the start of the stage (shear: logarithmic), or stress at its end [Pa]
+  std::int64_t as_at{-1};  ///< stress as it was when this stage began, in place of the value; -1: none
+};
+
+/// A part of a test: equal increments of strain, or of stress, from what it is when the stage begins.
+struct MacroStage {
+  StageRecord record;
+  std::array<AxisDrive, 3> axis{};
+  bool logarithmic = false;  ///< strains are
+  bool alike = false;        ///< all axes strain alike; by stress: that of their mean
+  std::int64_t steps = 30;   ///< recorded points
+  std::int64_t increments_per_step = 2;
+  double tolerance = 1e-2;  ///< largest net force over mean contact force; a third for stress, of the largest asked
+
+  [[nodiscard]] bool by_stress() const { return axis[0].by_stress || axis[1].by_stress || axis[2].by_stress; }
+};
+
+/// Solid grains and soft particles of any sizes in a box of six planes or a periodic cell, compressed [SP 1.9]. SI
+/// units.
 struct MacroSpec {
+  Boundary boundary = Boundary::walls;
   Construction construction = Construction::mixed;
   std::int64_t bodies = 200;  ///< mixed: solid grains + soft particles; voids: solid grains
   Preparation preparation = Preparation::frictionless;
@@ -79,6 +102,7 @@ struct MacroSpec {
   double density = 2500.0;
   double start_pressure = 1.0e-5;  ///< of the preparation, over E
   MacroTest test = MacroTest::oedometric;
+  std::vector<MacroStage> stages;        ///< of test "stages"; the numbers below are those of the other tests
   double strain_end = 0.15;              ///< nominal; of shear: logarithmic
   double preload = 0.0;                  ///< shear: isotropic nominal strain before
   std::int64_t preload_steps = 4;        ///< recorded points of it

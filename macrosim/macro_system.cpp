@@ -56,11 +56,16 @@ std::int64_t count_inner_grains(const MacroPacking& packing, const std::vector<S
   return inner;
 }
 
-/// Walls come last: they take the numbers after the bodies.
-void close_box(MacroSystem& out, const MacroPacking& packing, std::int32_t material) {
-  out.box = add_box(out.system, packing.low, packing.high, material);
+/// Walls come last: they take the numbers after the bodies. A periodic cell begins at the origin.
+void close_box(MacroSystem& out, const MacroSpec& spec, const MacroPacking& packing, std::int32_t material) {
   out.bodies = static_cast<std::int32_t>(packing.bodies.size());
-  for (std::int32_t wall = 0; wall < 6; ++wall) out.body.push_back(out.bodies + wall);
+  if (spec.boundary == Boundary::periodic) {
+    for (Sphere<3>& sphere : out.system.particles.sphere) sphere.x -= packing.low;
+    out.box = add_periodic_cell(out.system, packing.size());
+  } else {
+    out.box = add_box(out.system, packing.low, packing.high, material);
+    for (std::int32_t wall = 0; wall < 6; ++wall) out.body.push_back(out.bodies + wall);
+  }
   for (const MacroBody& b : packing.bodies) out.largest_radius = std::max(out.largest_radius, b.r);
 }
 
@@ -106,7 +111,7 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
     ++k;
   }
   if (shelled) add_shells(out, spec, packing, contents);
-  close_box(out, packing, 1);
+  close_box(out, spec, packing, 1);
   return out;
 }
 
@@ -139,7 +144,7 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
     add_grain(s.particles,
               solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
   }
-  close_box(out, packing, 2);
+  close_box(out, spec, packing, 2);
   return out;
 }
 

@@ -16,7 +16,7 @@ struct MacroSystem {
   Box box;
   std::int64_t inner_grains = 0;  ///< resolved inside soft particles
   /// Per slot: number of the body in its packing, for grains inside a soft particle and its shell that of the soft
-  /// particle; walls follow after the bodies, in the order of the box.
+  /// particle; walls, where there are any, follow after the bodies, in the order of the box.
   std::vector<std::int32_t> body;
   std::int32_t bodies = 0;
   double largest_radius = 0.0;  ///< of the bodies [m]: the scale of the force floor, the same for all engines

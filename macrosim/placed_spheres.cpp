@@ -16,7 +16,8 @@ std::int64_t cells_per_edge(double edge, double largest, std::size_t spheres) {
 
 }  // namespace
 
-PlacedSpheres::PlacedSpheres(double edge, const std::vector<double>& radii) {
+PlacedSpheres::PlacedSpheres(double edge, const std::vector<double>& radii, bool periodic)
+    : edge_(edge), periodic_(periodic) {
   std::vector<double> sorted = radii;
   std::sort(sorted.rbegin(), sorted.rend());
   for (std::size_t k = 0; k < sorted.size();) {
@@ -78,7 +79,30 @@ bool PlacedSpheres::collides(const Level& level, const Vec3& x, double r) const 
   return false;
 }
 
+Vec3 PlacedSpheres::place_of(double r, RandomStream& random) const {
+  Vec3 x;
+  for (int a = 0; a < 3; ++a) x[a] = periodic_ ? random.uniform() * edge_ : r + random.uniform() * (edge_ - 2.0 * r);
+  return x;
+}
+
+/// Spheres are kept once; what is near a face asks from all places where its images are.
 bool PlacedSpheres::collides(const Vec3& x, double r) const {
+  if (!periodic_) return collides_in_home(x, r);
+  const double reach = r + levels_.front().largest;
+  for (int image = 0; image < 27; ++image) {
+    const int steps[] = {image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
+    Vec3 y = x;
+    bool near = true;
+    for (int a = 0; a < 3; ++a) {
+      y[a] += steps[a] * edge_;
+      near = near && y[a] > -reach && y[a] < edge_ + reach;
+    }
+    if (near && collides_in_home(y, r)) return true;
+  }
+  return false;
+}
+
+bool PlacedSpheres::collides_in_home(const Vec3& x, double r) const {
   return std::any_of(levels_.begin(), levels_.end(), [&](const Level& level) { return collides(level, x, r); });
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/core/random.h"
 #include "common/core/vec.h"
 
 namespace softgrain {
@@ -13,10 +14,14 @@ namespace softgrain {
 /// how far sizes differ. Answers are those of testing all spheres, to the bit.
 class PlacedSpheres {
  public:
-  /// Spheres with centres in the cube [0, edge]^3 [m]; `radii` of all that will come, in any order.
-  PlacedSpheres(double edge, const std::vector<double>& radii);
+  /// Spheres with centres in the cube [0, edge]^3 [m]; `radii` of all that will come, in any order. Periodic: the cube
+  /// repeats along all axes, and is longer than two spheres that touch.
+  PlacedSpheres(double edge, const std::vector<double>& radii, bool periodic = false);
 
-  /// Whether |x - x_j| < r + r_j for any sphere j.
+  /// A random place: inside the cube for the whole sphere, periodic anywhere.
+  [[nodiscard]] Vec3 place_of(double r, RandomStream& random) const;
+
+  /// Whether |x - x_j| < r + r_j for any sphere j, periodic for any image of it.
   [[nodiscard]] bool collides(const Vec3& x, double r) const;
 
   void add(const Vec3& x, double r);
@@ -37,9 +42,12 @@ class PlacedSpheres {
 
   [[nodiscard]] bool collides(const Level& level, const Vec3& x, double r) const;
   [[nodiscard]] bool collides(const Placed& first, const Vec3& x, double r) const;
+  [[nodiscard]] bool collides_in_home(const Vec3& x, double r) const;
   [[nodiscard]] std::int64_t cell_of(const Level& level, double coordinate) const;
   [[nodiscard]] std::int32_t& head(Level& level, const Vec3& x) const;
 
+  double edge_;
+  bool periodic_;
   std::vector<Level> levels_;
   std::vector<Placed> spheres_;
 };

@@ -17,17 +17,17 @@ namespace softgrain {
 namespace {
 
 /// Largest first at random places of a cube; false when one finds none.
-bool place(std::vector<MacroBody>& bodies, double edge, RandomStream& random) {
+bool place(std::vector<MacroBody>& bodies, double edge, Boundary boundary, RandomStream& random) {
   constexpr int kTrials = 100000;
   std::vector<double> radii;
   for (const MacroBody& b : bodies) radii.push_back(b.r);
-  PlacedSpheres placed(edge, radii);
+  PlacedSpheres placed(edge, radii, boundary == Boundary::periodic);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     stop_if_interrupted("placing bodies");
     const double r = bodies[k].r;
     int trial = 0;
     do {
-      for (int a = 0; a < 3; ++a) bodies[k].x[a] = r + random.uniform() * (edge - 2.0 * r);
+      bodies[k].x = placed.place_of(r, random);
     } while (placed.collides(bodies[k].x, r) && ++trial < kTrials);
     if (trial == kTrials) return false;
     placed.add(bodies[k].x, r);
@@ -52,13 +52,14 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
   return std::pow(low + u * (high - low), 1.0 / power);
 }
 
-MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample, double fraction) {
+MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample, double fraction,
+                           Boundary boundary) {
   double volume = 0.0;
   for (const MacroBody& b : bodies) volume += kSphereVolume * cube(b.r);
   RandomStream random(seed, kMacroPositions, sample);
   for (; fraction > 0.05; fraction *= 0.8) {
     const double edge = std::cbrt(volume / fraction);
-    if (place(bodies, edge, random)) return {{}, {{edge, edge, edge}}, std::move(bodies)};
+    if (place(bodies, edge, boundary, random)) return {{}, {{edge, edge, edge}}, std::move(bodies)};
   }
   throw NotUsable("macro: could not place all bodies without overlap");
 }

@@ -19,10 +19,10 @@ inline constexpr RandomPurpose kMacroFines{9};
 /// Inverse cumulative distribution of P(r) ~ r^-b on [rmax/polydispersity, rmax] at u in (0, 1).
 double power_law_radius(double exponent, double rmax, double polydispersity, double u);
 
-/// At random places of a cube that they fill to `fraction`, largest first, without overlap; when so few bodies that
-/// walls are near find no place, in a larger one. Throws NotUsable.
+/// At random places of a cube that they fill to `fraction`, largest first, without overlap, periodic ones across its
+/// faces too; when so few bodies that walls are near find no place, in a larger one. Throws NotUsable.
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
-                           double fraction = 0.30);
+                           double fraction = 0.30, Boundary boundary = Boundary::walls);
 
 /// What the named preparations are:
 /// frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,

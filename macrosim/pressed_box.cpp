@@ -7,13 +7,6 @@ namespace softgrain {
 
 namespace {
 
-/// The body whose place says how far another one is carried.
-std::size_t leader_of(const Particles<3>& p, std::size_t u) {
-  return u < at(p.grains) && p.shell[u] >= 0 ? at(p.shell[u]) : u;
-}
-
-Vec3 centre_of(const System3& s, const Box& box) { return (box_low(s, box) + box_high(s, box)) * 0.5; }
-
 Vec3 by_axis(const Vec3& a, const Vec3& b) { return {{a[0] * b[0], a[1] * b[1], a[2] * b[2]}}; }
 
 }  // namespace
@@ -34,14 +27,19 @@ void PressedBox::scale_masses(const System3& s, const BodyStiffness& stiffness, 
   inverse_mass_ = 1.0 / (4.0 / 3.0 * sum);
 }
 
-PressedBox::Sums PressedBox::feel(const System3& s) {
+Vec3 PressedBox::resisted(System3& s) {
+  if (box_.periodic) return virial_.of(s);
   const auto& p = s.particles;
-  const Vec3 centre = centre_of(s, box_);
+  const Vec3 centre = box_centre(s, box_);
+  Vec3 sum{};
+  for (std::size_t u = 0; u < at(p.size()); ++u) sum += by_axis(p.force[u], carried_place(s, u) - centre);
+  return sum;
+}
+
+PressedBox::Sums PressedBox::feel(System3& s) {
   const Vec3 size = box_high(s, box_) - box_low(s, box_);
   const double volume = size[0] * size[1] * size[2];
-  Vec3 resisted{};
-  for (std::size_t u = 0; u < at(p.size()); ++u) resisted += by_axis(p.force[u], p.sphere[leader_of(p, u)].x - centre);
-  force_ = control_.stress * volume - resisted;
+  force_ = control_.stress * volume - resisted(s);
   make_alike(force_);
   Sums sums;
   for (int k = 0; k < 3; ++k) {
@@ -60,28 +58,43 @@ void PressedBox::carry(System3& s, double step) {
   const double most = control_.largest_strain / step;
   velocity_ += force_ * (step * inverse_mass_);
   for (int k = 0; k < 3; ++k) velocity_[k] = std::clamp(velocity_[k], -most, most);
-  const Vec3 centre = centre_of(s, box_);
+  strained_ += velocity_ * step;
+  const Vec3 centre = box_centre(s, box_);
   carried_.resize(at(p.size()));
-  // Leaders of grains in shells come after them: all are still where they were.
+  // Shells come after the grains in them: all are still where they were.
   for (std::size_t u = 0; u < carried_.size(); ++u) {
-    carried_[u] = by_axis(velocity_, centre - p.sphere[leader_of(p, u)].x);
+    carried_[u] = by_axis(velocity_, centre - carried_place(s, u));
     p.sphere[u].x += carried_[u] * step;
     p.velocity[u] += carried_[u];
   }
+  if (!box_.periodic) return;
+  for (int k = 0; k < 3; ++k) {
+    const double shrink = velocity_[k] * step;
+    s.cell.edges[k][k] *= 1.0 - shrink;
+    s.cell.velocity_gradient[k][k] = -velocity_[k] / (1.0 - shrink);
+  }
+  placed_.resize(carried_.size());
+  for (std::size_t u = 0; u < carried_.size(); ++u) placed_[u] = p.sphere[u].x;
 }
 
 void PressedBox::release(System3& s) {
   auto& p = s.particles;
+  // A body that went home through a face since has the velocity of the image that it is now.
+  if (box_.periodic)
+    for (std::size_t u = 0; u < carried_.size(); ++u)
+      if (const Vec3 way = placed_[u] - p.sphere[u].x; way != Vec3{}) carried_[u] -= s.cell.velocity_gradient * way;
   for (std::size_t u = 0; u < carried_.size(); ++u)
     p.velocity[u] = p.force[u] == Stored<3>{} ? Vec3{} : Vec3(p.velocity[u]) - carried_[u];
+  if (box_.periodic) s.cell.velocity_gradient = {};
 }
 
-double PressedBox::residual(const System3& s) const {
+double PressedBox::residual(System3& s) {
   const Vec3& asked = control_.stress;
-  Vec3 off = wall_stress(s, box_) - asked;
+  const Vec3 size = box_high(s, box_) - box_low(s, box_);
+  Vec3 off = (box_.periodic ? virial_.of(s) * (1.0 / (size[0] * size[1] * size[2])) : box_stress(s, box_)) - asked;
   make_alike(off);
   double worst = 0.0;
-  double largest = 0.0;
+  double largest = control_.least_stress;
   for (int k = 0; k < 3; ++k) {
     if (!control_.by_stress[static_cast<std::size_t>(k)]) continue;
     worst = std::max(worst, std::abs(off[k]));

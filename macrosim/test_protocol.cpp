@@ -12,12 +12,65 @@ double nominal_step(double end, std::int64_t k, std::int64_t total) {
   return 1.0 - (1.0 - at(k)) / (1.0 - at(k - 1));
 }
 
+MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps) {
+  MacroStage stage;
+  stage.record = {to_string(kind), kind, kind};
+  stage.steps = steps;
+  stage.increments_per_step = spec.increments_per_step;
+  stage.tolerance = spec.tolerance;
+  stage.axis[2].value = strain;
+  if (kind == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
+  if (kind == StageKind::shear) stage.axis[0].value = -strain;
+  stage.logarithmic = kind == StageKind::shear;
+  return stage;
+}
+
+double target(const AxisDrive& drive, int axis, const std::vector<Vec3>& starts) {
+  return drive.as_at < 0 ? drive.value : starts[static_cast<std::size_t>(drive.as_at)][axis];
+}
+
 }  // namespace
 
-std::int64_t recorded_points(const MacroSpec& spec) { return preload_points(spec) + spec.steps + 1; }
+std::vector<MacroStage> stages_of(const MacroSpec& spec) {
+  switch (spec.test) {
+    case MacroTest::stages:
+      return spec.stages;
+    case MacroTest::oedometric:
+      return {short_stage(spec, StageKind::oedometric, spec.strain_end, spec.steps)};
+    case MacroTest::isotropic:
+      return {short_stage(spec, StageKind::isotropic, spec.strain_end, spec.steps)};
+    case MacroTest::shear:
+      break;
+  }
+  std::vector<MacroStage> stages;
+  if (preload_points(spec) > 0) {
+    stages.push_back(short_stage(spec, StageKind::isotropic, spec.preload, spec.preload_steps));
+    stages.back().record.name = "preload";
+  }
+  stages.push_back(short_stage(spec, StageKind::shear, spec.strain_end, spec.steps));
+  return stages;
+}
+
+std::int64_t recorded_points(const MacroSpec& spec) {
+  const auto stages = stages_of(spec);
+  return first_point(stages, static_cast<std::int64_t>(stages.size())) + 1;
+}
 
 std::int64_t preload_points(const MacroSpec& spec) {
   return spec.test == MacroTest::shear && spec.preload > 0.0 ? spec.preload_steps : 0;
+}
+
+StagePoint stage_point(const std::vector<MacroStage>& stages, std::int64_t point) {
+  StagePoint at{0, point};
+  while (at.number > stages[static_cast<std::size_t>(at.stage)].steps)
+    at.number -= stages[static_cast<std::size_t>(at.stage++)].steps;
+  return at;
+}
+
+std::int64_t first_point(const std::vector<MacroStage>& stages, std::int64_t stage) {
+  std::int64_t point = 0;
+  for (std::int64_t k = 0; k < stage; ++k) point += stages[static_cast<std::size_t>(k)].steps;
+  return point;
 }
 
 double strain_at(const MacroSpec& spec, std::int64_t point) {
@@ -26,21 +79,35 @@ double strain_at(const MacroSpec& spec, std::int64_t point) {
   return spec.strain_end * static_cast<double>(point - before) / static_cast<double>(spec.steps);
 }
 
-Vec3 strain_increment(const MacroSpec& spec, std::int64_t point, std::int64_t k) {
-  const std::int64_t n = (point - 1) * spec.increments_per_step + k;
-  const std::int64_t preloading = preload_points(spec) * spec.increments_per_step;
-  const std::int64_t total = spec.steps * spec.increments_per_step;
-  if (spec.test == MacroTest::shear) {
-    if (n <= preloading) {
-      const double factor = nominal_step(spec.preload, n, preloading);
-      return {{factor, factor, factor}};
-    }
-    const double logarithmic = spec.strain_end / static_cast<double>(total);
-    return {{-std::expm1(logarithmic), 0.0, -std::expm1(-logarithmic)}};
+Vec3 strain_increment(const MacroStage& stage, std::int64_t n) {
+  const std::int64_t total = stage.steps * stage.increments_per_step;
+  Vec3 strain{};
+  for (int k = 0; k < 3; ++k) {
+    const AxisDrive& drive = stage.axis[static_cast<std::size_t>(k)];
+    if (drive.by_stress || drive.value == 0.0) continue;
+    strain[k] = stage.logarithmic ? -std::expm1(-drive.value / static_cast<double>(total))
+                                  : nominal_step(drive.value, n, total);
   }
-  const double factor = nominal_step(spec.strain_end, n, total);
-  if (spec.test == MacroTest::isotropic) return {{factor, factor, factor}};
-  return {{0.0, 0.0, factor}};
+  return strain;
+}
+
+Vec3 stress_at(const MacroStage& stage, std::int64_t n, const std::vector<Vec3>& starts) {
+  const double way = static_cast<double>(n) / static_cast<double>(stage.steps * stage.increments_per_step);
+  Vec3 stress{};
+  for (int k = 0; k < 3; ++k) {
+    const AxisDrive& drive = stage.axis[static_cast<std::size_t>(k)];
+    if (drive.by_stress) stress[k] = (1.0 - way) * starts.back()[k] + way * target(drive, k, starts);
+  }
+  return stress;
+}
+
+std::vector<Vec3> stage_starts(const std::vector<MacroStage>& stages, const MacroCurve& curve, std::int64_t point) {
+  std::vector<Vec3> starts;
+  for (std::int64_t k = 0; k <= stage_point(stages, point).stage; ++k) {
+    const auto first = static_cast<std::size_t>(first_point(stages, k));
+    starts.push_back({{curve.stress_x[first], curve.stress_y[first], curve.stress_axial[first]}});
+  }
+  return starts;
 }
 
 double test_force_floor(const MacroSpec& spec, double largest_radius) {

@@ -1,4 +1,4 @@
-// What a test of a macro scene does when: recorded points, strain increments between them, and when they are at rest.
+// What a test of a macro scene does when: stages, recorded points, increments between them, and when they are at rest.
 // One place for all engines.
 #pragma once
 
@@ -7,17 +7,39 @@
 
 namespace softgrain {
 
+/// The stages of a test: those of the scene, or of a short form: one; of "shear" with a preload two, the isotropic
+/// strain first.
+std::vector<MacroStage> stages_of(const MacroSpec& spec);
+
 /// Number of points that a test records, the unstrained one included.
 std::int64_t recorded_points(const MacroSpec& spec);
 
-/// Of them, those of the isotropic part of a shear test.
+/// Of them, those of the isotropic part of a test "shear".
 std::int64_t preload_points(const MacroSpec& spec);
 
-/// Nominal strain from the start; in shear logarithmic from the end of the preload, which is recorded at -preload .. 0.
+/// A recorded point, number 1 to `steps` of its stage; the first one of all is number 0 of the first stage.
+struct StagePoint {
+  std::int64_t stage = 0;
+  std::int64_t number = 0;
+};
+StagePoint stage_point(const std::vector<MacroStage>& stages, std::int64_t point);
+
+/// The recorded point at which a stage begins.
+std::int64_t first_point(const std::vector<MacroStage>& stages, std::int64_t stage);
+
+/// Nominal strain at a point of a short form, from the start; in shear logarithmic from the end of the preload, which
+/// is recorded at -preload .. 0.
 double strain_at(const MacroSpec& spec, std::int64_t point);
 
-/// Strain of the box, as strain_box takes it, in increment k (from 1) on the way to recorded point `point` (from 1).
-Vec3 strain_increment(const MacroSpec& spec, std::int64_t point, std::int64_t k);
+/// Strain of the box, as strain_box takes it, in increment n (from 1) of a stage; 0 along axes that go by stress.
+Vec3 strain_increment(const MacroStage& stage, std::int64_t n);
+
+/// Stress at the end of increment n of a stage [Pa]: on the straight way from what it was at its start to its target.
+/// `starts`: stresses at which the stages up to this one began. 0 along axes that go by strain.
+Vec3 stress_at(const MacroStage& stage, std::int64_t n, const std::vector<Vec3>& starts);
+
+/// Stress at which every stage up to that of `point` began, from what was recorded before.
+std::vector<Vec3> stage_starts(const std::vector<MacroStage>& stages, const MacroCurve& curve, std::int64_t point);
 
 /// The mean contact force never counts for less in a test [N]; `largest_radius` of the bodies [m].
 double test_force_floor(const MacroSpec& spec, double largest_radius);

@@ -1,7 +1,9 @@
 // The cell: a box or parallelepiped, open or periodic per axis, that may deform with a steady velocity gradient.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "common/core/vec.h"
@@ -57,6 +59,19 @@ struct Cell {
       image /= 3;
     }
     return edges * steps;
+  }
+
+  /// Number of the image whose place x + image_shift() is nearest to `from`, of bodies that are at most one period
+  /// apart.
+  [[nodiscard]] int image_near(const Vec<D>& from, const Vec<D>& x) const {
+    if (!any_periodic()) return home_image<D>();
+    const Vec<D> s = fractional(from - x);
+    int image = 0;
+    for (int k = D - 1; k >= 0; --k) {
+      const bool repeats = periodic[static_cast<std::size_t>(k)];
+      image = 3 * image + 1 + (repeats ? static_cast<int>(std::clamp(std::round(s[k]), -1.0, 1.0)) : 0);
+    }
+    return image;
   }
 
   /// Coordinates in units of the edges (open axes: metres, edge length 1 assumed by set_open).

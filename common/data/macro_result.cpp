@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/data/columns.h"
@@ -23,7 +25,7 @@ struct Column {
 
 constexpr Limits kNotNegative{0.0, kInfinity};
 
-constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-1.0, 1.0}},
+constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-kInfinity, 1.0}},
                                {"stress_axial", "Pa", &MacroCurve::stress_axial},
                                {"stress_lateral", "Pa", &MacroCurve::stress_lateral},
                                {"stress_axial_contacts", "Pa", &MacroCurve::stress_axial_contacts},
@@ -39,7 +41,11 @@ constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x}
                                        {"coordination_bodies", "1", &MacroCurve::coordination_bodies, kNotNegative},
                                        {"law_asked", "1", &MacroCurve::law_asked, kNotNegative},
                                        {"law_beyond", "1", &MacroCurve::law_beyond, kNotNegative},
-                                       {"law_largest", "1", &MacroCurve::law_largest, kNotNegative}};
+                                       {"law_largest", "1", &MacroCurve::law_largest, kNotNegative},
+                                       {"stage", "1", &MacroCurve::stage, kNotNegative},
+                                       {"strain_x", "1", &MacroCurve::strain_x},
+                                       {"strain_y", "1", &MacroCurve::strain_y},
+                                       {"strain_z", "1", &MacroCurve::strain_z}};
 constexpr Column kBodyForces{"body_forces", "N", &MacroCurve::body_forces};
 
 void write_quantity(const h5::Group& group, const MacroCurve& curve, const Column& c) {
@@ -49,6 +55,35 @@ void write_quantity(const h5::Group& group, const MacroCurve& curve, const Colum
 
 void write_if_any(const h5::Group& group, const MacroCurve& curve, const Column& c) {
   if (!(curve.*c.values).empty()) write_quantity(group, curve, c);
+}
+
+/// One line per stage: its kind, the kind whose way it goes, its name.
+void write_stage_records(const h5::Group& group, const std::vector<StageRecord>& stages) {
+  if (stages.empty()) return;
+  std::string text;
+  for (const StageRecord& s : stages) text += fmt::format("{} {} {}\n", to_string(s.kind), to_string(s.way), s.name);
+  group.attribute("stages", text);
+}
+
+std::vector<StageRecord> read_stage_records(const h5::Group& group) {
+  std::vector<StageRecord> stages;
+  if (!group.has_attribute("stages")) return stages;
+  std::istringstream lines(group.text("stages"));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    std::string way;
+    StageRecord record;
+    words >> kind >> way >> std::ws;
+    std::getline(words, record.name);
+    const auto known_kind = from_word<StageKind>(kind);
+    const auto known_way = from_word<StageKind>(way);
+    if (!known_kind || !known_way) throw FileTrouble("attribute 'stages': unknown kind in '" + line + "'");
+    record.kind = *known_kind;
+    record.way = *known_way;
+    stages.push_back(record);
+  }
+  return stages;
 }
 
 void read_column(const h5::Group& group, MacroCurve& curve, const Column& c, std::size_t length) {
@@ -85,11 +120,14 @@ constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radi
                                                 {"poisson_ratio", &MacroStart::poisson_ratio},
                                                 {"friction", &MacroStart::friction},
                                                 {"wall_friction", &MacroStart::wall_friction}};
+constexpr Number<MacroStart> kStartSizes[] = {
+    {"size_x", &MacroStart::size_x}, {"size_y", &MacroStart::size_y}, {"size_z", &MacroStart::size_z}};
 
 void write_origin(const h5::Group& group, const MacroCurve& curve) {
   if (!curve.start.bodies.empty()) {
     group.attribute("start", curve.start.bodies);
     for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
+    for (const auto& n : kStartSizes) group.attribute(n.name, curve.start.*n.value);
   }
   if (!curve.law.form) return;
   group.attribute("law_form", to_string(*curve.law.form));
@@ -104,6 +142,8 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
   if (group.has_attribute("start")) {
     curve.start.bodies = group.text("start");
     for (const auto& n : kStartNumbers) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
+    if (group.has_attribute("size_x"))
+      for (const auto& n : kStartSizes) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
   }
   if (!group.has_attribute("law_form")) return;
   curve.law.form = read_word<Crowd>(group, "law_form");
@@ -137,6 +177,8 @@ std::string identity_text(const LawIdentity& law) {
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("engine", curve.engine);
   group.attribute("test", to_string(curve.test));
+  group.attribute("boundary", to_string(curve.boundary));
+  write_stage_records(group, curve.stages);
   group.attribute("note", curve.note);
   group.attribute("usable", static_cast<std::int64_t>(curve.usable));
   for (const Count& c : kCounts) group.attribute(c.name, curve.*c.value);
@@ -159,6 +201,8 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   MacroCurve curve;
   curve.engine = group.text("engine");
   curve.test = read_word<MacroTest>(group, "test");
+  if (group.has_attribute("boundary")) curve.boundary = read_word<Boundary>(group, "boundary");
+  curve.stages = read_stage_records(group);
   curve.note = group.text("note");
   curve.usable = group.integer("usable") != 0;
   for (const Count& c : kCounts) curve.*c.value = read_count(group, c.name);

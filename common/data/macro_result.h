@@ -41,13 +41,58 @@ inline constexpr auto words<Twin> = word_list<Twin>({{Twin::shelled, "shelled"},
 enum class MacroTest {
   isotropic,
   oedometric,
-  shear  ///< z shortens, x lengthens, y stands, at constant volume
+  shear,  ///< z shortens, x lengthens, y stands, at constant volume
+  stages  ///< what its stages say
 };
 
 template <>
 inline constexpr auto words<MacroTest> = word_list<MacroTest>({{MacroTest::oedometric, "oedometric"},
                                                                {MacroTest::isotropic, "isotropic"},
-                                                               {MacroTest::shear, "shear"}});
+                                                               {MacroTest::shear, "shear"},
+                                                               {MacroTest::stages, "stages"}});
+
+/// What the axes of a box or cell do in a part of a test; the load is along z.
+enum class StageKind {
+  oedometric,     ///< z is driven, x and y stand
+  isotropic,      ///< all strain alike
+  shear,          ///< z shortens, x lengthens by equal logarithmic strains, y stands: constant volume
+  triaxial,       ///< z is driven, x and y are held by stress
+  consolidation,  ///< every axis goes to its stress
+  axes,           ///< every axis to a strain or a stress of its own
+  unload,         ///< the way of the last stage that was none of these three, back
+  reload,         ///< and forth again
+  hold            ///< nothing is driven
+};
+
+template <>
+inline constexpr auto words<StageKind> = word_list<StageKind>({{StageKind::oedometric, "oedometric"},
+                                                               {StageKind::isotropic, "isotropic"},
+                                                               {StageKind::shear, "shear"},
+                                                               {StageKind::triaxial, "triaxial"},
+                                                               {StageKind::consolidation, "consolidation"},
+                                                               {StageKind::axes, "axes"},
+                                                               {StageKind::unload, "unload"},
+                                                               {StageKind::reload, "reload"},
+                                                               {StageKind::hold, "hold"}});
+
+/// What is around the bodies.
+enum class Boundary {
+  walls,    ///< six planes
+  periodic  ///< none: the cell repeats along all axes
+};
+
+template <>
+inline constexpr auto words<Boundary> = word_list<Boundary>({{Boundary::walls, "walls"},
+                                                             {Boundary::periodic, "periodic"}});
+
+/// A part of a test as a curve knows it.
+struct StageRecord {
+  std::string name;
+  StageKind kind = StageKind::oedometric;
+  StageKind way = StageKind::oedometric;  ///< of unload, reload and hold: what they go back, forth or stand on
+
+  friend bool operator==(const StageRecord&, const StageRecord&) = default;
+};
 
 /// What a curve starts from; runs that are set side by side should agree in it. Zeros: not known.
 struct MacroStart {
@@ -57,16 +102,21 @@ struct MacroStart {
   double poisson_ratio = 0.0;
   double friction = 0.0;
   double wall_friction = 0.0;
+  double size_x = 0.0;  ///< of the box [m]
+  double size_y = 0.0;
+  double size_z = 0.0;
   std::string bodies;  ///< hash of the box and of places, radii and kinds of all bodies
 
   friend bool operator==(const MacroStart&, const MacroStart&) = default;
 };
 
-/// One macro run of one sample. Stresses are compressive positive [Pa]; strain is from the start of the test.
+/// One macro run of one sample. Stresses are compressive positive [Pa], on walls or, in a periodic cell, from the sum
+/// over contacts; strain is nominal, from the start of the test, of tests in stages that of z.
 struct MacroCurve {
   /// "law" (soft particles with the pair law of a card), "pair" (the same), or another law's name; or that of a twin
   std::string engine;
   MacroTest test = MacroTest::oedometric;
+  Boundary boundary = Boundary::walls;
   std::int64_t sample = 0;
   std::int64_t bodies = 0;  ///< solid grains + soft particles
   std::int64_t soft = 0;
@@ -75,16 +125,17 @@ struct MacroCurve {
   double solid_fraction = 0.0;  ///< of bodies in the box at the start
   MacroStart start;
   LawIdentity law;
-  double preload = 0.0;  ///< shear: isotropic strain before; recorded at strains from -preload to 0
+  double preload = 0.0;             ///< shear: isotropic strain before; recorded at strains from -preload to 0
+  std::vector<StageRecord> stages;  ///< of the test; empty: not recorded
   std::vector<double> strain;
-  std::vector<double> stress_axial;           ///< from wall forces
-  std::vector<double> stress_lateral;         ///< from wall forces, mean of both directions
+  std::vector<double> stress_axial;
+  std::vector<double> stress_lateral;         ///< mean of both directions
   std::vector<double> stress_axial_contacts;  ///< from the contact sum, a check on the walls
   std::vector<double> coordination;           ///< contacts per body (engine "law": force-carrying)
   std::vector<double> residual;               ///< largest net force over mean contact force
   // The rest may be empty: not recorded.
-  std::vector<double> stress_x;             ///< from wall forces
-  std::vector<double> stress_y;             ///< from wall forces
+  std::vector<double> stress_x;
+  std::vector<double> stress_y;
   std::vector<double> stress_deviator;      ///< axial (z) minus x
   std::vector<double> fabric;               ///< zz - xx of the fabric tensor of contacts between grains
   std::vector<double> fabric_bodies;        ///< the same of contacts between bodies, a soft particle being one
@@ -93,6 +144,10 @@ struct MacroCurve {
   std::vector<double> law_asked;            ///< soft contacts (pair laws) and soft particles (crowd laws) in contact
   std::vector<double> law_beyond;           ///< of them, those beyond the range that their law was measured in
   std::vector<double> law_largest;          ///< largest Delta or lost volume over the end of that range
+  std::vector<double> stage;                ///< that ends at the point or comes to it, counted from 0; 0 at the start
+  std::vector<double> strain_x;             ///< 1 - L/L0, L0 the length at the start
+  std::vector<double> strain_y;
+  std::vector<double> strain_z;
   bool usable = true;
   std::string note;
   Cost cost;

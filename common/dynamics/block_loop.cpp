@@ -480,7 +480,7 @@ void run_loop(System<D>& s, const Kernel<D>& kernel, const PairRange& range, con
   const auto with_order = [&](auto periodic) {
     range.order == nullptr ? run(periodic, std::false_type{}) : run(periodic, std::true_type{});
   };
-  if constexpr (kGeometry == Geometry::sphere_sphere)
+  if constexpr (kGeometry != Geometry::sphere_plane)
     if (s.cell.any_periodic()) return with_order(std::true_type{});
   with_order(std::false_type{});
 }

@@ -106,7 +106,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
         result.end = RelaxationEnd::diverged;
       else if (worst <= options_.tolerance * scale && (frame == nullptr || frame->residual(s) <= 1.0))
         result.end = RelaxationEnd::converged;
-      else if (result.passes >= options_.max_passes)
+      else if (result.passes >= options_.max_passes || (frame != nullptr && frame->out_of_reach()))
         result.end = RelaxationEnd::capped;
       if (frame != nullptr) frame->see(result);
       if (result.end != RelaxationEnd::not_run) break;

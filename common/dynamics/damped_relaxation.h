@@ -34,7 +34,7 @@ class RelaxingFrame {
 
   virtual void scale_masses(const System<D>& system, const BodyStiffness& stiffness, const PseudoMasses& masses) = 0;
   /// Takes the forces on the frame from those on the bodies.
-  virtual Sums feel(const System<D>& system) = 0;
+  virtual Sums feel(System<D>& system) = 0;
   /// v becomes keep v + pull F/m.
   virtual void steer(double keep, double pull) = 0;
   /// v += F/m step; moves everything by v step and adds that motion to the velocities of all bodies, which release()
@@ -42,7 +42,9 @@ class RelaxingFrame {
   virtual void carry(System<D>& system, double step) = 0;
   virtual void release(System<D>& system) = 0;
   /// How far the stress is from the one asked for, over what it may be: at rest up to 1.
-  [[nodiscard]] virtual double residual(const System<D>& system) const = 0;
+  [[nodiscard]] virtual double residual(System<D>& system) = 0;
+  /// Whether it has gone so far that going on is in vain: the relaxation ends there, as with its last pass.
+  [[nodiscard]] virtual bool out_of_reach() const { return false; }
   /// Told at every test for convergence: how far the bodies are.
   virtual void see(const RelaxationResult& /*so_far*/) {}
 };

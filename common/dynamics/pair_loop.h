@@ -115,18 +115,19 @@ void with_pairs(Of& s, const ContactSection& section, Work&& work, double dt = 0
         using G = Geometry;
         if constexpr (!law_serves<Law, D>()) {
           throw std::logic_error("a law for another number of dimensions");
-        } else if (section.geometry == G::sphere_shell) {
-          SystemPairs<D, G::sphere_shell, false, Of> source{s, dt, history};
-          work(law, source);
-        } else if (section.geometry == G::sphere_plane) {
-          SystemPairs<D, G::sphere_plane, false, Of> source{s, dt, history};
-          work(law, source);
-        } else if (periodic) {
-          SystemPairs<D, G::sphere_sphere, true, Of> source{s, dt, history};
-          work(law, source);
         } else {
-          SystemPairs<D, G::sphere_sphere, false, Of> source{s, dt, history};
-          work(law, source);
+          const auto with = [&](auto geometry, auto repeats) {
+            SystemPairs<D, decltype(geometry)::value, decltype(repeats)::value, Of> source{s, dt, history};
+            work(law, source);
+          };
+          using Shell = std::integral_constant<G, G::sphere_shell>;
+          using Sphere = std::integral_constant<G, G::sphere_sphere>;
+          if (section.geometry == G::sphere_plane)
+            with(std::integral_constant<G, G::sphere_plane>{}, std::false_type{});
+          else if (section.geometry == G::sphere_shell)
+            periodic ? with(Shell{}, std::true_type{}) : with(Shell{}, std::false_type{});
+          else
+            periodic ? with(Sphere{}, std::true_type{}) : with(Sphere{}, std::false_type{});
         }
       },
       s.laws.law(section.law));

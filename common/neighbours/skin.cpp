@@ -20,10 +20,10 @@ double frobenius(const Matrix<D>& m) {
   return std::sqrt(sum);
 }
 
-/// Whether bodies are followed relative to the cell. Walls do not flow with it.
+/// Whether bodies are followed relative to the cell. Planes do not flow with it.
 template <int D>
 bool follows_cell(const System<D>& s) {
-  return s.cell.any_periodic() && s.particles.shells == 0 && s.particles.planes == 0;
+  return s.cell.any_periodic() && s.particles.planes == 0;
 }
 
 /// F of the cell since the list was made.

@@ -76,7 +76,7 @@ std::vector<FoundPair> grain_pairs(const System<D>& s) {
   return out;
 }
 
-/// A grain meets the shell it lives in and, when that lives in another one, that too.
+/// A grain meets the shell it lives in, in its image near the grain, and, when that lives in another one, that too.
 template <int D>
 std::vector<FoundPair> shell_pairs(const System<D>& s) {
   const auto& p = s.particles;
@@ -88,8 +88,10 @@ std::vector<FoundPair> shell_pairs(const System<D>& s) {
       const auto b = static_cast<std::size_t>(shell);
       const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
       if (law == LawSet::kNoContact) continue;
-      const double gap = p.sphere[b].r - p.sphere[a].r - norm(p.sphere[a].x - p.sphere[b].x);
-      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back({i, shell, home_image<D>(), law});
+      const int image = s.cell.image_near(p.sphere[a].x, p.sphere[b].x);
+      const double gap =
+          p.sphere[b].r - p.sphere[a].r - norm(p.sphere[a].x - p.sphere[b].x - s.cell.image_shift(image));
+      if (gap < s.neighbours.skin[a] + s.neighbours.skin[b]) out.push_back({i, shell, image, law});
     }
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
               [](const FoundPair& x, const FoundPair& y) { return x.j < y.j; });
@@ -236,7 +238,7 @@ template <int D>
 }
 
 template <int D>
-void require_sound(const Particles<D>& p) {
+void require_sound(const Particles<D>& p, const Cell<D>& cell) {
   for (Slot i = 0; i < p.size(); ++i) {
     const auto u = static_cast<std::size_t>(i);
     const double distance2 = norm2(p.sphere[u].x);
@@ -245,7 +247,8 @@ void require_sound(const Particles<D>& p) {
     if (distance2 > kFarthest * kFarthest * p.sphere[u].r * p.sphere[u].r) lose(p, i);
     for (Slot k = p.shell[u]; k >= 0; k = p.shell[static_cast<std::size_t>(k)]) {
       const Sphere<D>& shell = p.sphere[static_cast<std::size_t>(k)];
-      const double outside = norm(p.sphere[u].x - shell.x) - p.sphere[u].r - shell.r;
+      const Vec<D> image = cell.image_shift(cell.image_near(p.sphere[u].x, shell.x));
+      const double outside = norm(p.sphere[u].x - shell.x - image) - p.sphere[u].r - shell.r;
       if (outside <= 0.0) continue;
       throw NotUsable("grain " + std::to_string(i) + " (radius " + std::to_string(p.sphere[u].r) +
                       " m) has been squeezed out of its shell (radius " + std::to_string(shell.r) +
@@ -275,7 +278,7 @@ void wrap(System<D>& s) {
       if (s.cell.periodic[static_cast<std::size_t>(r)] && s.cell.periodic[static_cast<std::size_t>(c)])
         reduce_tilt(s.cell, r, c);
   auto& p = s.particles;
-  for (Slot i = 0; i < p.grains; ++i) {
+  for (Slot i = 0; i < p.first_plane(); ++i) {
     const auto u = static_cast<std::size_t>(i);
     const Vec<D> frac = s.cell.fractional(p.sphere[u].x);
     Vec<D> back;
@@ -301,7 +304,7 @@ void adopt_list(System<D>& s) {
 
 template <int D>
 void rebuild_neighbours(System<D>& s) {
-  require_sound(s.particles);
+  require_sound(s.particles, s.cell);
   NeighbourState<D>& n = s.neighbours;
   if (n.skin.size() != static_cast<std::size_t>(s.particles.size())) n.skin = default_skin(s.particles);
   adapt_skin(s);

@@ -157,7 +157,7 @@ TEST(Macro, TheStartingStateIsJustJammed) {
     const MacroPacking packing = make_macro_packing(spec, 3, sample);
     ASSERT_EQ(packing.bodies.size(), 30U);
     const MacroSystem macro = as_hard_grains(spec, packing);
-    const Vec3 stress = wall_stress(macro.system, macro.box);
+    const Vec3 stress = box_stress(macro.system, macro.box);
     const double pressure = (stress[0] + stress[1] + stress[2]) / 3.0 / spec.youngs_modulus;
     EXPECT_NEAR(pressure, spec.start_pressure, 0.4 * spec.protocol.tolerance * spec.start_pressure);
     // Hertz: overlap/R ~ (p/E)^(2/3) = 5e-4; times up to 20 for the spread of forces.

@@ -49,7 +49,7 @@ MacroSystem compacted_in_steps(const MacroSpec& spec, std::uint64_t seed) {
     const System3 before = macro.system;
     strain_box(macro.system, macro.box, {{step, step, step}});
     DampedRelaxation<3>(options).relax(macro.system);
-    const Vec3 stress = wall_stress(macro.system, macro.box);
+    const Vec3 stress = box_stress(macro.system, macro.box);
     const double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
     if (mean < protocol.pressure) continue;
     if (mean < protocol.overshoot * protocol.pressure) return macro;
@@ -73,7 +73,7 @@ struct PackingStatistics {
     const auto contacts = contact_records(m.system);
     coordination.push_back(2.0 * static_cast<double>(contacts.size()) / p.grains);
     fabric.push_back(fabric_anisotropy(m, contacts));
-    const Vec3 stress = wall_stress(m.system, m.box);
+    const Vec3 stress = box_stress(m.system, m.box);
     anisotropy.push_back((stress[2] - stress[0]) / (stress[0] + stress[1] + stress[2]));
   }
 };
@@ -121,7 +121,7 @@ TEST(MacroPreparation, EndsInBalanceAtThePressureAskedFor) {
       const MacroSystem macro = as_grains(spec, packing);
       const Residual r = residual(macro.system);
       EXPECT_LT(r.relative(0.0), 1.1 * spec.protocol.tolerance) << start;
-      const Vec3 wall = wall_stress(macro.system, macro.box);
+      const Vec3 wall = box_stress(macro.system, macro.box);
       const Vec3 inside = contact_stress(macro.system, macro.box);
       EXPECT_NEAR(wall[0] + wall[1] + wall[2], 3.0 * pressure, 1.1 * spec.protocol.tolerance * pressure) << start;
       for (int k = 0; k < 3; ++k)
@@ -175,7 +175,7 @@ NamedStatistics statistics_of(MacroSpec spec, std::uint64_t samples) {
   for (std::uint64_t seed = 1; seed <= samples; ++seed) {
     const MacroPacking packing = make_macro_packing(spec, seed, 0);
     const MacroSystem macro = as_grains(solids(spec.bodies), packing);
-    const Vec3 wall = wall_stress(macro.system, macro.box);
+    const Vec3 wall = box_stress(macro.system, macro.box);
     const double pressure = spec.start_pressure * spec.youngs_modulus;
     EXPECT_NEAR(wall[0] + wall[1] + wall[2], 3.0 * pressure, 1.1 * spec.protocol.tolerance * pressure) << seed;
     fraction.add(packing.solid_fraction());

@@ -90,7 +90,7 @@ TEST(BodyContacts, AGrainBetweenSixWallsIsSymmetric) {
   const auto between = body_contacts(m, contact_records(m.system));
   ASSERT_EQ(between.size(), 6U);
   for (const BodyContact& c : between) EXPECT_DOUBLE_EQ(c.normal_force, between[0].normal_force);
-  const Vec3 stress = wall_stress(m.system, m.box);
+  const Vec3 stress = box_stress(m.system, m.box);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(stress[k], between[0].normal_force / (1.98 * 1.98), 1e-12 * stress[0]);
   EXPECT_DOUBLE_EQ(body_coordination(m, between), 6.0);
 }

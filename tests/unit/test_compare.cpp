@@ -275,7 +275,7 @@ TEST(CompareSides, ComparesEqualEnginesOrElseTheFirstOfEach) {
 std::vector<MacroCurve> stated(const std::string& engine, const std::string& hash = "law 1") {
   std::vector<MacroCurve> curves = curves_of(synthetic::macro(), engine);
   for (MacroCurve& c : curves) {
-    c.start = {0.01, 0.016, 5e5, 0.3, 0.3, 0.0, "start " + std::to_string(c.sample)};
+    c.start = {0.01, 0.016, 5e5, 0.3, 0.3, 0.0, 0.16, 0.16, 0.16, "start " + std::to_string(c.sample)};
     if (engine == "law") c.law = {Crowd::directional, 0.7, 5e5, 0.3, 0.3, hash};
   }
   return curves;

@@ -29,7 +29,7 @@ struct OneGrain {
     box = add_box(system, grain.x - half, grain.x + half, 0);
   }
 
-  [[nodiscard]] RelaxationResult press(const WallControl& control, double tolerance = 1e-6) {
+  [[nodiscard]] RelaxationResult press(const BoxControl& control, double tolerance = 1e-6) {
     DampedOptions options;
     options.tolerance = tolerance;
     options.max_passes = 20000;
@@ -57,7 +57,7 @@ TEST(PressedBox, OneGrainIsPressedAsHertzSays) {
       for (int k = 0; k < 3; ++k) {
         const double overlap = one.overlap_of(pressure * size[0] * size[1]);
         EXPECT_NEAR(size[k], 2.0 * (kRadius - overlap), 3e-6 * overlap) << pressure << ", " << gap;
-        EXPECT_NEAR(wall_stress(one.system, one.box)[k], pressure, 1e-6 * pressure);
+        EXPECT_NEAR(box_stress(one.system, one.box)[k], pressure, 1e-6 * pressure);
       }
     }
 }
@@ -86,13 +86,13 @@ TEST(PressedBox, AxesWithoutStressStand) {
 TEST(PressedBox, AxesAlikeKeepTheShapeOfTheBox) {
   OneGrain one(Vec3{{0.1 * kRadius, 0.11 * kRadius, 0.12 * kRadius}});
   const Vec3 before = one.size();
-  WallControl control{.by_stress = {true, true, true}, .stress = {{10.0, 10.0, 10.0}}, .alike = true};
+  BoxControl control{.by_stress = {true, true, true}, .stress = {{10.0, 10.0, 10.0}}, .alike = true};
   control.tolerance = 1e-6;
   ASSERT_EQ(one.press(control).end, RelaxationEnd::converged);
   const Vec3 after = one.size();
   EXPECT_NEAR(after[1] / after[0], before[1] / before[0], 1e-12);
   EXPECT_NEAR(after[2] / after[0], before[2] / before[0], 1e-12);
-  const Vec3 stress = wall_stress(one.system, one.box);
+  const Vec3 stress = box_stress(one.system, one.box);
   EXPECT_NEAR((stress[0] + stress[1] + stress[2]) / 3.0, 10.0, 1e-5);
 }
 

@@ -9,9 +9,11 @@
 #include "common/data/law_remarks.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/lammps_run/lammps_program.h"
+#include "macrosim/test_protocol.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/law/law_values.h"
@@ -225,18 +227,35 @@ void warn_of_scene(const MacroSetup& setup, const BodyCounts& count, Findings& o
                     setup.samples, setup.samples == 1 ? "" : "s", count.all));
   if (setup.spec.soft_share > 0.0 && count.soft < 1.0)
     out.warn("soft_share is so small that the scene has no soft particle");
-  const double step = setup.spec.strain_end / static_cast<double>(setup.spec.steps * setup.spec.increments_per_step);
   constexpr double kLargeStep = 0.01;
-  if (step > kLargeStep)
-    out.warn(
-        fmt::format("an increment strains by {:.2g}: bodies jump by a good part of an overlap; more steps or "
-                    "increments_per_step",
-                    step));
+  for (const MacroStage& stage : stages_of(setup.spec)) {
+    double step = 0.0;
+    for (const AxisDrive& drive : stage.axis)
+      if (!drive.by_stress)
+        step = std::max(step, std::abs(drive.value) / static_cast<double>(stage.steps * stage.increments_per_step));
+    if (step > kLargeStep)
+      out.warn(fmt::format(
+          "{}an increment strains by {:.2g}: bodies jump by a good part of an overlap; more steps or "
+          "increments_per_step",
+          setup.spec.test == MacroTest::stages ? fmt::format("stage '{}': ", stage.record.name) : "", step));
+  }
+}
+
+std::string test_text(const MacroSpec& spec) {
+  if (spec.test != MacroTest::stages)
+    return fmt::format("{} test to a strain of {}", to_string(spec.test), spec.strain_end);
+  std::string names;
+  for (const MacroStage& stage : spec.stages) names += (names.empty() ? "" : ", ") + stage.record.name;
+  return fmt::format("test in {} stage{}: {}", spec.stages.size(), spec.stages.size() == 1 ? "" : "s", names);
 }
 
 }  // namespace
 
 AffineOverlap affine_overlap(const MacroSpec& spec) {
+  if (spec.test == MacroTest::stages) {
+    const RoughStrains rough = rough_strains(spec);
+    return {2.0 / 3.0 * rough.largest_volumetric, 2.0 * rough.largest_axial};
+  }
   const double strain = spec.test == MacroTest::shear ? spec.strain_end + spec.preload : spec.strain_end;
   const double along = 2.0 * strain;
   if (spec.test == MacroTest::isotropic) return {along, along};
@@ -263,9 +282,10 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
   const double resolved = count.all + count.soft * content.grains_per_soft;
   const double memory = macro_memory(resolved);
   out.add("macro_bodies", count.all,
-          fmt::format("macro: {} sample{} of {:.0f} bodies, about {:.0f} of them soft, {} test to a strain of {}",
-                      setup.samples, setup.samples == 1 ? "" : "s", count.all, count.soft, to_string(setup.spec.test),
-                      setup.spec.strain_end));
+          fmt::format("macro: {} sample{} of {:.0f} bodies{}, about {:.0f} of them soft, {}", setup.samples,
+                      setup.samples == 1 ? "" : "s", count.all,
+                      setup.spec.boundary == Boundary::periodic ? " in a periodic cell" : "", count.soft,
+                      test_text(setup.spec)));
   const AffineOverlap overlap = affine_overlap(setup.spec);
   out.add("affine_overlap", {{"mean", overlap.mean}, {"largest", overlap.largest}}, load_text(setup.spec));
   for (const Twin twin : setup.twins)

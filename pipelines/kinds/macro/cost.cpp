@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
+#include "pipelines/kinds/macro/stages.h"
 #include "pipelines/run/trial_times.h"
 
 namespace softgrain {
@@ -15,9 +16,12 @@ namespace {
 /// Scenes with more bodies are tried in small.
 constexpr std::int64_t kTrialBodies = 60;
 
-/// Strain increments of a test, those of its preload included.
+/// Increments of all stages of a test.
 double increments_of(const MacroSpec& spec) {
-  return static_cast<double>((recorded_points(spec) - 1) * spec.increments_per_step);
+  double increments = 0.0;
+  for (const MacroStage& stage : stages_of(spec))
+    increments += static_cast<double>(stage.steps * stage.increments_per_step);
+  return increments;
 }
 
 /// Stands for laws that are still to be measured: those of results/published.
@@ -74,7 +78,7 @@ double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLa
 /// 1650 per one of 0.01 to 0.02 (macro_vs_resolved); grains without shells rearrange more.
 double twin_passes(const MacroSpec& spec, Twin twin) {
   const double increments = increments_of(spec);
-  const double strain = (spec.strain_end + spec.preload) / increments;
+  const double strain = rough_strains(spec).way / increments;
   return (twin == Twin::free ? 1.5 : 1.0) * increments * 650.0 * std::pow(strain / 0.005, 0.3);
 }
 

@@ -147,6 +147,7 @@ MacroPacking read_packing_file(const std::string& path) {
 std::string packing_key(const MacroSpec& s, std::uint64_t seed, std::uint64_t sample) {
   std::string text = fmt::format("macro packing, schema {}\n{} {} {}\n", kPackingSchema, to_string(s.construction),
                                  to_string(s.preparation), s.bodies);
+  if (s.boundary != Boundary::walls) text += to_string(s.boundary) + "\n";
   const PreparationProtocol& p = s.protocol;
   for (const double x :
        {s.soft_share, s.exponent, s.solid_radius_max, s.solid_polydispersity, s.soft_radius_max, s.soft_polydispersity,

@@ -11,6 +11,7 @@
 #include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
 namespace softgrain {
@@ -72,6 +73,7 @@ void read_preparation(const SceneTable& t, MacroSpec& spec) {
 }
 
 void read_bodies(const SceneTable& t, MacroSpec& spec) {
+  spec.boundary = t.choice<Boundary>("boundary", spec.boundary);
   spec.construction = t.choice<Construction>("construction", spec.construction);
   spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
   spec.soft_share = t.number("soft_share", Unit::none, Range::closed(0.0, 1.0), spec.soft_share);
@@ -93,12 +95,14 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
     t.mistake("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
+  if (spec.boundary == Boundary::periodic) mistake_beside(t, {"wall_mu"}, "a periodic cell has no walls");
   read_preparation(t, spec);
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
 
 void read_test(const SceneTable& t, MacroSpec& spec) {
-  spec.test = t.choice<MacroTest>("test", spec.test);
+  if (t.has("test"))
+    spec.test = t.choice<MacroTest>("test", {MacroTest::oedometric, MacroTest::isotropic, MacroTest::shear});
   spec.strain_end = t.number("strain", Unit::none, Range{0.0, 0.5, true, false}, spec.strain_end);
   spec.preload = t.number("preload", Unit::none, Range{0.0, 0.5, false, false}, spec.preload);
   spec.preload_steps = t.count("preload_steps", 1, 100000, spec.preload_steps);
@@ -253,6 +257,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   }
   const SceneTable macro = root.table("macro");
   out.setup = read_macro_setup(macro, out.spec);
+  read_stages(root, macro, out.setup.spec);
   require_known_contents(macro, out.setup, out.spec, law_file);
   if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
   out.setup.kept_states = read_kept_states(root);

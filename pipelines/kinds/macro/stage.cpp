@@ -24,12 +24,14 @@ namespace {
 
 void write_progress(const h5::Group& group, const CompressionState& state) {
   group.attribute("increments", state.increments);
+  group.attribute("over", static_cast<std::int64_t>(state.over));
   write_macro_curve(group.create("curve"), state.curve);
   write_system(group.create("system"), state.macro.system);
 }
 
 void read_progress(const h5::Group& group, CompressionState& state) {
   state.increments = group.integer("increments");
+  state.over = group.has_attribute("over") && group.integer("over") != 0;
   state.curve = read_macro_curve(group.open("curve"));
   read_system(group.open("system"), state.macro.system);
 }

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -26,6 +27,7 @@ ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const So
                            const std::vector<ComparisonScene>& before, bool sound) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
+  read_stages(t, t, scene.setup.spec);
   require_own_preparation(t, scene.setup);
   if (sound) require_macro_memory(t, scene.setup, content);
   std::string name = default_name(scene.setup.spec);
@@ -50,6 +52,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     setup.contents = root.table_or_empty("packing").count("count", 1, 100000, setup.contents);
     const SceneTable macro = root.table("macro");
     MacroSetup base = read_macro_setup(macro, setup.spec);
+    read_stages(root, macro, base.spec);
     require_own_preparation(macro, base);
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);

@@ -1,6 +1,7 @@
 #include "pipelines/kinds/pipeline/scene.h"
 
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/stages.h"
 #include "pipelines/law/fit_settings.h"
 
 namespace softgrain {
@@ -15,6 +16,7 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     if (!root.has("macro")) return setup;
     const SceneTable macro = root.table("macro");
     setup.macro = read_macro_setup(macro, setup.measure.spec);
+    read_stages(root, macro, setup.macro->spec);
     setup.macro->kept_states = setup.measure.kept_states;
     require_own_preparation(macro, *setup.macro);
     if (root.sound()) require_macro_memory(macro, *setup.macro, setup.measure.spec);

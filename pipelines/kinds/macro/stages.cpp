@@ -1,0 +1,289 @@
+#include "pipelines/kinds/macro/stages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "macrosim/test_protocol.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr const char* kCycles = "cycles";
+constexpr double kLargestStrain = 0.5;
+
+bool goes_a_way(StageKind kind) {
+  return kind != StageKind::unload && kind != StageKind::reload && kind != StageKind::hold;
+}
+
+std::string quoted(StageKind kind) { return fmt::format("kind = \"{}\"", to_string(kind)); }
+
+/// One table [[stage]] after the other.
+class StageReader {
+ public:
+  StageReader(const MacroSpec& spec, std::vector<MacroStage>& stages) : spec_(spec), stages_(stages) {}
+
+  void read(const SceneTable& t) {
+    std::vector<const char*> kinds = all_words<StageKind>();
+    kinds.push_back(kCycles);
+    const std::string word = t.choice("kind", kinds);
+    if (word == kCycles) return read_cycles(t);
+    const StageKind kind = *from_word<StageKind>(word);
+    refuse_foreign_keys(t, word);
+    stages_.push_back(begin(t, kind));
+    stages_.back().record.name = name_of(t, word);
+    switch (kind) {
+      case StageKind::unload:
+        return unload(t);
+      case StageKind::reload:
+        return reload(t);
+      case StageKind::hold:
+        return hold(t);
+      default:
+        return drive(t, stages_.back().record.way, 1.0);
+    }
+  }
+
+ private:
+  MacroStage begin(const SceneTable& t, StageKind kind) {
+    const bool hold = kind == StageKind::hold;
+    MacroStage stage;
+    stage.record.kind = kind;
+    stage.record.way = goes_a_way(kind) ? kind : way_before(t);
+    stage.steps = t.count("steps", 1, 100000, hold ? 1 : spec_.steps);
+    stage.increments_per_step = t.count("increments_per_step", 1, 10000, hold ? 1 : spec_.increments_per_step);
+    stage.tolerance =
+        t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, hold ? 0.1 * spec_.tolerance : spec_.tolerance);
+    return stage;
+  }
+
+  /// The kind of the last stage that goes a way of its own.
+  StageKind way_before(const SceneTable& t) const {
+    for (auto s = stages_.rbegin(); s != stages_.rend(); ++s)
+      if (goes_a_way(s->record.kind)) return s->record.kind;
+    t.mistake("kind", "there is no stage before it whose way it could go");
+    return StageKind::oedometric;
+  }
+
+  std::string name_of(const SceneTable& t, const std::string& word) const {
+    std::string name = t.text("name", "");
+    if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
+      t.mistake("name", "must be one line of text");
+    if (!name.empty()) return name;
+    const auto same = [&](const MacroStage& s) {
+      return s.record.name == word || s.record.name.starts_with(word + " ");
+    };
+    const auto before = std::count_if(stages_.begin(), stages_.end() - 1, same);
+    return before == 0 ? word : fmt::format("{} {}", word, before + 1);
+  }
+
+  static void refuse(const SceneTable& t, std::initializer_list<const char*> keys, const std::string& problem) {
+    for (const char* key : keys)
+      if (t.has(key)) t.mistake(key, problem);
+  }
+
+  static void refuse_foreign_keys(const SceneTable& t, const std::string& word) {
+    const auto is = [&](StageKind kind) { return word == to_string(kind); };
+    if (!is(StageKind::triaxial)) refuse(t, {"lateral_stress"}, "goes with " + quoted(StageKind::triaxial));
+    if (!is(StageKind::axes))
+      refuse(t, {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"},
+             "goes with " + quoted(StageKind::axes));
+    if (!is(StageKind::hold)) refuse(t, {"by"}, "goes with " + quoted(StageKind::hold));
+    if (word != kCycles) refuse(t, {"count"}, "goes with kind = \"cycles\"");
+    if (is(StageKind::axes) || is(StageKind::hold))
+      refuse(t, {"strain", "stress"},
+             is(StageKind::hold) ? "nothing is driven while all is held" : "give strain_x or stress_x, and so on");
+    if (is(StageKind::consolidation)) refuse(t, {"strain"}, "a consolidation goes to a stress");
+  }
+
+  [[nodiscard]] std::int64_t here() const { return static_cast<std::int64_t>(stages_.size()) - 1; }
+
+  static double read_strain(const SceneTable& t, bool back) {
+    const Range range = back ? Range{0.0, kLargestStrain, true, false} : Range::closed(-kLargestStrain, kLargestStrain);
+    const double strain = t.number("strain", Unit::none, range);
+    if (strain == 0.0) t.mistake("strain", "must not be 0: kind = \"hold\" keeps the box as it is");
+    return strain;
+  }
+
+  /// Axes in the order x, y, z; a single number is that of all.
+  static Vec3 read_stresses(const SceneTable& t) {
+    if (!t.is_list("stress")) {
+      const double stress = t.number("stress", Unit::pressure, Range::positive());
+      return {{stress, stress, stress}};
+    }
+    const Vec3 stress = t.vector3("stress", Unit::pressure);
+    for (int k = 0; k < 3; ++k)
+      if (!(stress[k] > 0.0)) t.mistake("stress", "must be above 0 along all axes: grains cannot be pulled");
+    return stress;
+  }
+
+  /// Sets the axes of the last stage for a way; `sign` -1: back.
+  void drive(const SceneTable& t, StageKind way, double sign) {
+    MacroStage& stage = stages_.back();
+    if (way == StageKind::axes) return read_axes(t, stage);
+    if (way == StageKind::consolidation) return by_stress(stage, way, read_stresses(t));
+    const bool strain = t.has("strain");
+    const bool stress = t.has("stress");
+    if (strain == stress) {
+      t.mistake(strain ? "stress" : "strain",
+                strain ? "contradicts strain: give one of both" : "missing; give strain or stress");
+      return;
+    }
+    if (stress && way == StageKind::shear) {
+      t.mistake("stress", "shear at constant volume goes by strain");
+      return;
+    }
+    if (stress) {
+      const double value = t.number("stress", Unit::pressure, Range::positive());
+      by_stress(stage, way, {{value, value, value}});
+    } else {
+      by_strain(stage, way, sign * read_strain(t, sign < 0.0 || stage.record.kind != stage.record.way));
+    }
+    if (way == StageKind::triaxial) hold_sides(t, stage);
+  }
+
+  static void by_strain(MacroStage& stage, StageKind way, double strain) {
+    stage.axis[2].value = strain;
+    if (way == StageKind::isotropic) stage.axis[0].value = stage.axis[1].value = strain;
+    if (way == StageKind::shear) stage.axis[0].value = -strain;
+    stage.logarithmic = way == StageKind::shear;
+    stage.alike = way == StageKind::isotropic;
+  }
+
+  static void by_stress(MacroStage& stage, StageKind way, const Vec3& stress) {
+    const bool all = way == StageKind::isotropic || way == StageKind::consolidation;
+    for (int k = all ? 0 : 2; k < 3; ++k) stage.axis[static_cast<std::size_t>(k)] = {true, stress[k], -1};
+    stage.alike = way == StageKind::isotropic;
+  }
+
+  /// As they are when the stage begins, unless it says to what they go.
+  void hold_sides(const SceneTable& t, MacroStage& stage) const {
+    const bool given = t.has("lateral_stress");
+    const double stress = given ? t.number("lateral_stress", Unit::pressure, Range::positive()) : 0.0;
+    for (const std::size_t k : {0U, 1U}) stage.axis[k] = {true, stress, given ? -1 : here()};
+  }
+
+  static void read_axes(const SceneTable& t, MacroStage& stage) {
+    bool any = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string strain = std::string("strain_") + "xyz"[k];
+      const std::string stress = std::string("stress_") + "xyz"[k];
+      if (t.has(strain) && t.has(stress)) t.mistake(stress, "contradicts " + strain + ": give one of both");
+      any = any || t.has(strain) || t.has(stress);
+      if (t.has(stress))
+        stage.axis[k] = {true, t.number(stress, Unit::pressure, Range::positive()), -1};
+      else
+        stage.axis[k].value = t.number(strain, Unit::none, Range::closed(-kLargestStrain, kLargestStrain), 0.0);
+    }
+    if (!any) t.mistake("kind", "no axis is driven: give strain_x, stress_z, ...; kind = \"hold\" drives none");
+  }
+
+  bool refuse_axes(const SceneTable& t) const {
+    if (stages_.back().record.way != StageKind::axes) return false;
+    t.mistake("kind", "after " + quoted(StageKind::axes) + " another stage of that kind says how every axis goes back");
+    return true;
+  }
+
+  void unload(const SceneTable& t) {
+    if (!refuse_axes(t)) drive(t, stages_.back().record.way, -1.0);
+  }
+
+  /// Back to where the unloading before it began, unless it says how far.
+  void reload(const SceneTable& t) {
+    if (refuse_axes(t)) return;
+    MacroStage& stage = stages_.back();
+    if (t.has("strain") || t.has("stress")) return drive(t, stage.record.way, 1.0);
+    std::int64_t from = here() - 1;
+    while (from >= 0 && stages_[static_cast<std::size_t>(from)].record.kind == StageKind::hold) --from;
+    if (from < 0 || stages_[static_cast<std::size_t>(from)].record.kind != StageKind::unload) {
+      t.mistake("kind", "nothing was unloaded before it: give strain or stress, or a stage of kind = \"unload\"");
+      return;
+    }
+    turn_back(stages_[static_cast<std::size_t>(from)], from, stage);
+  }
+
+  /// The way of the unloading, the other way round.
+  void turn_back(const MacroStage& unload, std::int64_t from, MacroStage& stage) const {
+    stage.axis = unload.axis;
+    stage.logarithmic = unload.logarithmic;
+    stage.alike = unload.alike;
+    for (AxisDrive& drive : stage.axis) {
+      if (!drive.by_stress)
+        drive.value = drive.value == 0.0 ? 0.0 : unload.logarithmic ? -drive.value : -drive.value / (1.0 - drive.value);
+      else
+        drive.as_at = drive.as_at == from ? here() : from;
+    }
+  }
+
+  void hold(const SceneTable& t) {
+    if (t.choice("by", {"strain", "stress"}, "strain") == "strain") return;
+    for (AxisDrive& drive : stages_.back().axis) drive = {true, 0.0, here()};
+  }
+
+  void read_cycles(const SceneTable& t) {
+    refuse_foreign_keys(t, kCycles);
+    const std::int64_t count = t.count("count", 1, 1000);
+    const std::string name = t.text("name", "cycle");
+    for (std::int64_t k = 1; k <= count; ++k) {
+      stages_.push_back(begin(t, StageKind::unload));
+      stages_.back().record.name = fmt::format("{} {} unload", name, k);
+      unload(t);
+      const MacroStage& down = stages_.back();
+      MacroStage up = down;
+      up.record = {fmt::format("{} {} reload", name, k), StageKind::reload, down.record.way};
+      stages_.push_back(up);
+      turn_back(MacroStage(stages_[stages_.size() - 2]), here() - 1, stages_.back());
+      if (!t.sound()) return;
+    }
+  }
+
+  const MacroSpec& spec_;
+  std::vector<MacroStage>& stages_;
+};
+
+/// What a packing is shortened by until it bears a stress, from nothing: p = 0.045 E x^1.75, x its relative loss of
+/// pores, 1.8 times the loss of volume.
+double strain_under(double stress, const MacroSpec& spec) {
+  return std::pow(stress / (0.045 * spec.youngs_modulus), 1.0 / 1.75) / 1.8;
+}
+
+}  // namespace
+
+void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec) {
+  const std::vector<SceneTable> tables = holder.tables("stage");
+  if (tables.empty()) return;
+  for (const char* key : {"test", "strain", "preload", "preload_steps"})
+    if (macro.has(key)) macro.mistake(key, "goes without [[stage]], which says the whole test");
+  std::vector<MacroStage> stages;
+  StageReader reader(spec, stages);
+  for (const SceneTable& t : tables) t.part([&] { reader.read(t); });
+  spec.test = MacroTest::stages;
+  spec.stages = std::move(stages);
+}
+
+RoughStrains rough_strains(const MacroSpec& spec) {
+  RoughStrains rough;
+  Vec3 now{};
+  for (const MacroStage& stage : stages_of(spec)) {
+    double largest = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const AxisDrive& drive = stage.axis[static_cast<std::size_t>(k)];
+      const double before = now[k];
+      if (!drive.by_stress)
+        now[k] += drive.value;
+      else if (drive.as_at < 0)
+        now[k] = strain_under(drive.value, spec) / 3.0;
+      largest = std::max(largest, std::abs(now[k] - before));
+    }
+    rough.way += largest;
+    rough.largest_axial = std::max({rough.largest_axial, now[0], now[2]});
+    rough.largest_volumetric = std::max(rough.largest_volumetric, now[0] + now[1] + now[2]);
+  }
+  return rough;
+}
+
+}  // namespace softgrain
