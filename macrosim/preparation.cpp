@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -52,10 +53,28 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
   return std::pow(low + u * (high - low), 1.0 / power);
 }
 
+void require_room_for_images(const std::vector<MacroBody>& bodies) {
+  constexpr double kPacked = 0.75;  ///< share of the cell, more than most preparations reach
+  constexpr double kPeriod = 4.1;   ///< in the largest radius
+  double volume = 0.0;
+  double largest = 0.0;
+  for (const MacroBody& b : bodies) {
+    volume += kSphereVolume * cube(b.r);
+    largest = std::max(largest, b.r);
+  }
+  const double edge = std::cbrt(volume / kPacked);
+  if (edge >= kPeriod * largest) return;
+  throw BadInput(fmt::format(
+      "macro: {} bodies are too few for a periodic cell: packed, its edge is about {:.3g} m, and images of the largest "
+      "body (radius {:.3g} m) must be at least two diameters apart: more bodies, or boundary = \"walls\"",
+      bodies.size(), edge, largest));
+}
+
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample, double fraction,
                            Boundary boundary) {
   double volume = 0.0;
   for (const MacroBody& b : bodies) volume += kSphereVolume * cube(b.r);
+  if (boundary == Boundary::periodic) require_room_for_images(bodies);
   RandomStream random(seed, kMacroPositions, sample);
   for (; fraction > 0.05; fraction *= 0.8) {
     const double edge = std::cbrt(volume / fraction);
