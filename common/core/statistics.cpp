@@ -1,9 +1,11 @@
 #include "common/core/statistics.h"
 
+#include <gsl/gsl_multifit.h>
 #include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "common/core/error.h"
@@ -44,6 +46,29 @@ double quantile(std::vector<double> values, double p) {
   const auto last = static_cast<double>(values.size() - 1);
   const double at = std::clamp(p * static_cast<double>(values.size() + 1) - 1.0, 0.0, last);
   return gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), last > 0.0 ? at / last : 0.0);
+}
+
+double slope_at_first(const std::vector<double>& x, const std::vector<double>& y) {
+  double span = 0.0;
+  for (const double one : x) span = std::max(span, std::abs(one - x.front()));
+  if (x.size() < 2 || !(span > 0.0)) return kNaN;
+  const std::size_t powers = std::min<std::size_t>(x.size(), 3);
+  using Matrix = std::unique_ptr<gsl_matrix, decltype(&gsl_matrix_free)>;
+  using Vector = std::unique_ptr<gsl_vector, decltype(&gsl_vector_free)>;
+  using Space = std::unique_ptr<gsl_multifit_linear_workspace, decltype(&gsl_multifit_linear_free)>;
+  const Matrix a(gsl_matrix_alloc(x.size(), powers), gsl_matrix_free);
+  const Matrix covariance(gsl_matrix_alloc(powers, powers), gsl_matrix_free);
+  const Vector b(gsl_vector_alloc(x.size()), gsl_vector_free);
+  const Vector found(gsl_vector_alloc(powers), gsl_vector_free);
+  const Space space(gsl_multifit_linear_alloc(x.size(), powers), gsl_multifit_linear_free);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double t = (x[k] - x.front()) / span;
+    for (std::size_t j = 0; j < powers; ++j) gsl_matrix_set(a.get(), k, j, std::pow(t, static_cast<double>(j)));
+    gsl_vector_set(b.get(), k, y[k]);
+  }
+  double squares = 0.0;
+  gsl_multifit_linear(a.get(), b.get(), found.get(), covariance.get(), &squares, space.get());
+  return gsl_vector_get(found.get(), 1) / span;
 }
 
 RatioError paired_ratio(std::span<const double> candidate, std::span<const double> reference) {

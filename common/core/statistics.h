@@ -45,6 +45,10 @@ class Tally {
 /// p (n + 1), within the extremes. NaN without values.
 double quantile(std::vector<double> values, double p);
 
+/// Slope dy/dx at the first of some points near each other, of a parabola by least squares through all of them (of the
+/// line through two). NaN with fewer points or where all x are alike.
+double slope_at_first(const std::vector<double>& x, const std::vector<double>& y);
+
 /// A ratio of two means with its standard error; NaN where it cannot be had.
 struct RatioError {
   double ratio;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "common/core/error.h"
@@ -53,28 +54,34 @@ double square_integral(double width, double left, double right) {
 double difference_or_nan(const MacroCurve& c, const MacroCurve& r, const std::vector<double>& cy,
                          const std::vector<double>& ry) {
   try {
-    return relative_difference(c.strain, cy, r.strain, ry);
+    return relative_difference(abscissa_of(c), cy, abscissa_of(r), ry);
   } catch (const BadInput&) {
     return kNaN;
   }
 }
 
 double value_or_nan(const MacroCurve& c, const std::vector<double>& y, double at) {
-  return y.size() == c.strain.size() && !y.empty() ? interpolate_linear(c.strain, y, at) : kNaN;
+  return y.size() == c.strain.size() && !y.empty() ? interpolate_linear(abscissa_of(c), y, at) : kNaN;
 }
 
 SampleComparison compare_sample(const MacroCurve& candidate, const MacroCurve& reference) {
   SampleComparison s;
   s.sample = candidate.sample;
   s.test = candidate.test;
-  s.axial_difference =
-      relative_difference(candidate.strain, candidate.stress_axial, reference.strain, reference.stress_axial);
+  const std::vector<double> x_c = abscissa_of(candidate);
+  const std::vector<double> x_r = abscissa_of(reference);
+  s.axial_difference = relative_difference(x_c, candidate.stress_axial, x_r, reference.stress_axial);
   s.lateral_difference = difference_or_nan(candidate, reference, candidate.stress_lateral, reference.stress_lateral);
-  std::tie(s.strain_low, s.strain_high) = common_range(candidate.strain, reference.strain);
-  const double axial_c = interpolate_linear(candidate.strain, candidate.stress_axial, s.strain_high);
-  const double axial_r = interpolate_linear(reference.strain, reference.stress_axial, s.strain_high);
-  const double lateral_c = value_or_nan(candidate, candidate.stress_lateral, s.strain_high);
-  const double lateral_r = value_or_nan(reference, reference.stress_lateral, s.strain_high);
+  s.strain_difference = candidate.test == MacroTest::stages
+                            ? difference_or_nan(candidate, reference, candidate.strain, reference.strain)
+                            : kNaN;
+  const auto [low, high] = common_range(x_c, x_r);
+  s.strain_low = interpolate_linear(x_c, candidate.strain, low);
+  s.strain_high = interpolate_linear(x_c, candidate.strain, high);
+  const double axial_c = interpolate_linear(x_c, candidate.stress_axial, high);
+  const double axial_r = interpolate_linear(x_r, reference.stress_axial, high);
+  const double lateral_c = value_or_nan(candidate, candidate.stress_lateral, high);
+  const double lateral_r = value_or_nan(reference, reference.stress_lateral, high);
   const auto ratio = [](double a, double b) { return b == 0.0 ? kNaN : a / b; };
   s.axial_end_ratio = ratio(axial_c, axial_r);
   s.lateral_end_ratio = ratio(lateral_c, lateral_r);
@@ -149,12 +156,20 @@ void add_speedups(Comparison& result) {
 void add_means(Comparison& result) {
   result.axial_difference = mean_of(result.samples, &SampleComparison::axial_difference);
   result.lateral_difference = mean_of(result.samples, &SampleComparison::lateral_difference);
+  result.strain_difference = mean_of(result.samples, &SampleComparison::strain_difference);
   result.axial_end_ratio = mean_of(result.samples, &SampleComparison::axial_end_ratio);
   result.lateral_stress_ratio_candidate = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_candidate);
   result.lateral_stress_ratio_reference = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_reference);
 }
 
 }  // namespace
+
+std::vector<double> abscissa_of(const MacroCurve& c) {
+  if (c.test != MacroTest::stages) return c.strain;
+  std::vector<double> points(c.strain.size());
+  std::iota(points.begin(), points.end(), 0.0);
+  return points;
+}
 
 double interpolate_linear(const std::vector<double>& x, const std::vector<double>& y, double at) {
   const auto next = std::upper_bound(x.begin(), x.end(), at);

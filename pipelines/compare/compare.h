@@ -26,14 +26,19 @@ double relative_difference(const std::vector<double>& candidate_x, const std::ve
 /// Value of a piecewise linear curve inside its range.
 double interpolate_linear(const std::vector<double>& x, const std::vector<double>& y, double at);
 
+/// What curves are set side by side over: strain, or, in tests in stages, whose strain goes forth and back, the number
+/// of the recorded point.
+std::vector<double> abscissa_of(const MacroCurve& curve);
+
 /// One sample seen by both sides.
 struct SampleComparison {
   std::int64_t sample = 0;
   MacroTest test{};
   double strain_low = 0.0;  ///< common range of strain
   double strain_high = 0.0;
-  double axial_difference = 0.0;    ///< relative L2 difference of the axial stress
+  double axial_difference = 0.0;    ///< relative L2 difference of the axial stress over abscissa_of()
   double lateral_difference = 0.0;  ///< of the lateral stress; NaN when it was not recorded or is zero
+  double strain_difference = 0.0;   ///< of the axial strain; NaN where every test strains alike
   double axial_end_ratio = 0.0;     ///< candidate over reference at the end of the common range
   double lateral_end_ratio = 0.0;
   double lateral_stress_ratio_candidate = 0.0;  ///< lateral over axial stress at the end of the common range
@@ -48,6 +53,7 @@ struct Comparison {
   std::vector<std::string> undefined;  ///< one for each side that carries no stress, so that ratios are not defined
   MeanError axial_difference;          ///< over samples
   MeanError lateral_difference;
+  MeanError strain_difference;
   MeanError axial_end_ratio;
   MeanError lateral_stress_ratio_candidate;
   MeanError lateral_stress_ratio_reference;

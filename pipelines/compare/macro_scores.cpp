@@ -42,6 +42,8 @@ double difference(const std::vector<double>& xa, const std::vector<double>& a, c
 }
 
 double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
+  if (c.test == MacroTest::stages)
+    return difference(abscissa_of(c), c.stress_deviator, abscissa_of(twin), twin.stress_deviator);
   if (c.test != MacroTest::shear) return kNaN;
   const auto [xa, a] = sheared(c);
   const auto [xb, b] = sheared(twin);
@@ -97,7 +99,8 @@ MeanError mean_of(const Pairs& pairs, const std::function<double(const MacroCurv
 TwinErrors errors_against(const Pairs& pairs) {
   using C = const MacroCurve&;
   TwinErrors e;
-  e.axial = mean_of(pairs, [](C c, C t) { return difference(c.strain, c.stress_axial, t.strain, t.stress_axial); });
+  e.axial = mean_of(
+      pairs, [](C c, C t) { return difference(abscissa_of(c), c.stress_axial, abscissa_of(t), t.stress_axial); });
   e.axial_end = mean_of(pairs, [](C c, C t) { return ratio(last(c.stress_axial), last(t.stress_axial)); });
   e.deviator = mean_of(pairs, deviator_difference);
   e.lateral_ratio = mean_of(pairs, [](C c, C t) { return lateral_ratio(c) - lateral_ratio(t); });

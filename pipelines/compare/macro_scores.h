@@ -14,7 +14,7 @@ namespace softgrain {
 struct TwinErrors {
   MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference
   MeanError axial_end;           ///< axial stress over that of the twin, at the end
-  MeanError deviator;            ///< shear: relative L2 difference of axial minus x stress after the preload
+  MeanError deviator;            ///< shear and stages: relative L2 difference of axial minus x stress after the preload
   MeanError lateral_ratio;       ///< lateral over axial stress at the end, minus that of the twin
   MeanError coordination;        ///< of bodies at the end, minus that of the twin
   MeanError fabric;              ///< of bodies at the end, minus that of the twin

@@ -153,6 +153,7 @@ EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::strin
   }
   out.usable = usable && out.samples > 0;
   if (out.samples > 0) out.soft_volume_share /= static_cast<double>(out.samples);
+  out.stages = stage_means(curves, engine);
   return out;
 }
 
@@ -160,6 +161,7 @@ ComparisonSummary summary_of(const Comparison& c) {
   ComparisonSummary out{c.axial_difference.mean,
                         c.axial_difference.error,
                         c.lateral_difference.mean,
+                        c.strain_difference.n > 0 ? std::optional(c.strain_difference.mean) : std::nullopt,
                         c.axial_end_ratio.mean,
                         c.lateral_stress_ratio_candidate.mean,
                         c.lateral_stress_ratio_reference.mean,

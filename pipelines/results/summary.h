@@ -15,6 +15,7 @@
 #include "common/io/provenance.h"
 #include "macrosim/macro_spec.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -220,6 +221,24 @@ void fields(auto&& visit, Of<LawIdentity> auto& law) {
     law.solid_fraction = fraction > 0.0 ? fraction : 0.0;
 }
 
+/// Of a stage, in the mean of samples with its error; moduli and stresses in Pa.
+void fields(auto&& visit, Of<StageMeans> auto& s) {
+  visit("name", s.record.name);
+  visit("kind", s.record.kind);
+  visit("way", s.record.way);
+  if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>) visit("modulus", modulus_of(s.record.way));
+  visit("modulus_begin", s.modulus_begin, kLeftOut);
+  visit("modulus_end", s.modulus_end, kLeftOut);
+  visit("poisson_begin", s.poisson_begin, kLeftOut);
+  visit("axial_strain_end", s.strain_end, kLeftOut);
+  visit("volumetric_strain_end", s.volumetric_end, kLeftOut);
+  visit("axial_stress_end", s.axial_end, kLeftOut);
+  visit("lateral_stress_end", s.lateral_end, kLeftOut);
+  visit("q_over_p_peak", s.ratio_peak, kLeftOut);
+  visit("axial_strain_at_peak", s.ratio_peak_strain, kLeftOut);
+  visit("q_over_p_end", s.ratio_end, kLeftOut);
+}
+
 /// Of one engine: the largest number of bodies and grains, costs summed over its samples.
 struct EngineSummary {
   std::int64_t samples = 0;
@@ -230,6 +249,7 @@ struct EngineSummary {
   std::optional<Cost> preparation;  ///< of the states that samples start from, which engines share
   bool usable = false;
   std::optional<LawIdentity> law;
+  std::vector<StageMeans> stages;
 };
 
 void fields(auto&& visit, Of<EngineSummary> auto& s) {
@@ -241,6 +261,7 @@ void fields(auto&& visit, Of<EngineSummary> auto& s) {
   visit("preparation", s.preparation, kLeftOut);
   visit("usable", s.usable);
   visit("law", s.law, kLeftOut);
+  visit("stages", s.stages, kLeftOut);
 }
 
 EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::string& engine);
@@ -265,6 +286,7 @@ struct ComparisonSummary {
   double stress_error = kNaN;  ///< relative L2 difference of the axial stress, mean over samples
   double stress_error_standard_error = kNaN;
   double lateral_stress_error = kNaN;
+  std::optional<double> strain_error;  ///< of the axial strain, of tests in stages
   double end_stress_ratio = kNaN;
   double lateral_stress_ratio_law = kNaN;
   double lateral_stress_ratio_resolved = kNaN;
@@ -278,6 +300,7 @@ void fields(auto&& visit, Of<ComparisonSummary> auto& s) {
   visit("stress_error", s.stress_error);
   visit("stress_error_standard_error", s.stress_error_standard_error);
   visit("lateral_stress_error", s.lateral_stress_error);
+  visit("strain_error", s.strain_error, kLeftOut);
   visit("end_stress_ratio", s.end_stress_ratio);
   visit("lateral_stress_ratio_law", s.lateral_stress_ratio_law);
   visit("lateral_stress_ratio_resolved", s.lateral_stress_ratio_resolved);

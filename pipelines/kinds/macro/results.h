@@ -11,4 +11,10 @@ namespace report {
 std::string macro_section(const RunData& run);  ///< stress and strain, law against resolved twin
 }
 
+namespace report {
+/// Of the section of macro scenes: moduli and strength of all stages, and of tests in stages q/p and the change of
+/// volume over the axial strain. Empty where curves do not say their stages.
+std::string stage_parts(const std::vector<MacroCurve>& curves, MacroTest test);
+}  // namespace report
+
 }  // namespace softgrain

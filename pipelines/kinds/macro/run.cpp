@@ -22,12 +22,34 @@ std::string lateral_ratio(const MacroCurve& c) {
   return fmt::format("{:.3f}", c.stress_lateral.back() / c.stress_axial.back());
 }
 
+std::string with_error(const MeanError& m) {
+  return m.n > 1 ? fmt::format("{:.4g} +- {:.2g}", m.mean, m.error) : fmt::format("{:.4g}", m.mean);
+}
+
+/// Moduli and strength of one stage of one engine.
+std::string stage_line(const std::string& engine, const StageMeans& s) {
+  std::string line = fmt::format("{}, stage {}:", engine, s.record.name);
+  if (s.modulus_begin && s.record.kind != StageKind::hold)
+    line += fmt::format(" {} modulus {} Pa at its begin,", to_string(modulus_of(s.record.way)),
+                        with_error(*s.modulus_begin));
+  if (s.axial_end) line += fmt::format(" axial stress {} Pa,", with_error(*s.axial_end));
+  if (s.ratio_peak) line += fmt::format(" q/p {} at most,", with_error(*s.ratio_peak));
+  if (s.ratio_end) line += fmt::format(" {} at its end,", with_error(*s.ratio_end));
+  line.back() = '\n';
+  return line;
+}
+
 std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& curves) {
   std::string text = "law: " + identity_text(law.identity) + "\n";
   for (const MacroCurve& c : curves)
     text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
                         c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
                         c.usable ? "" : " (" + c.note + ")");
+  std::vector<std::string> engines;
+  for (const MacroCurve& c : curves)
+    if (std::find(engines.begin(), engines.end(), c.engine) == engines.end()) engines.push_back(c.engine);
+  for (const std::string& engine : engines)
+    for (const StageMeans& s : stage_means(curves, engine)) text += stage_line(engine, s);
   return text;
 }
 

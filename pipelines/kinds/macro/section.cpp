@@ -53,12 +53,17 @@ constexpr double kStressHeight = 310.0;
 constexpr double kDifferenceHeight = 210.0;
 constexpr double kLeftMargin = 66.0;  // [px] for labels of either
 
+/// Strain, from end to end of all curves; of tests in stages, which go forth and back, as the data ask.
+AxisOptions strain_axis(const std::vector<MacroCurve>& curves, MacroTest test) {
+  if (test == MacroTest::stages) return {.label = "axial strain [%]"};
+  return {.label = "strain [%]", .low = 100.0 * first_strain(curves), .high = 102.0 * last_strain(curves)};
+}
+
 Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
   const SiPrefix prefix = si_prefix(largest_stress(curves));
-  const double first = first_strain(curves);
   Plot plot({.id = "macro-" + to_string(test) + (axial ? "-axial" : "-lateral"),
              .title = std::string(axial ? "Axial" : "Lateral") + " stress, " + to_string(test),
-             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 102.0 * last_strain(curves)},
+             .x = strain_axis(curves, test),
              .y = {.label = fmt::format("{} stress [{}Pa]", axial ? "axial" : "lateral", prefix.symbol)},
              .height = kStressHeight,
              .left_margin = kLeftMargin});
@@ -66,15 +71,17 @@ Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axi
   return plot;
 }
 
-/// (law - twin)/twin at the strains of the twin, where the twin's stress is above 2 % of its largest.
+/// (law - twin)/twin at the points of the twin, where the twin's stress is above 2 % of its largest.
 Series difference_series(const MacroCurve& law, const MacroCurve& twin, Stress member) {
   Series s;
+  const std::vector<double> x_law = abscissa_of(law);
+  const std::vector<double> x_twin = abscissa_of(twin);
   const double floor = std::max(0.02 * *std::max_element((twin.*member).begin(), (twin.*member).end()), 0.0);
   for (std::size_t i = 0; i < twin.strain.size(); ++i) {
     const double reference = (twin.*member)[i];
-    if (reference <= floor || twin.strain[i] < law.strain.front() || twin.strain[i] > law.strain.back()) continue;
+    if (reference <= floor || x_twin[i] < x_law.front() || x_twin[i] > x_law.back()) continue;
     s.x.push_back(100.0 * twin.strain[i]);
-    s.y.push_back(100.0 * (interpolate_linear(law.strain, law.*member, twin.strain[i]) / reference - 1.0));
+    s.y.push_back(100.0 * (interpolate_linear(x_law, law.*member, x_twin[i]) / reference - 1.0));
   }
   return s;
 }
@@ -103,11 +110,11 @@ void add_differences(Plot& plot, const std::vector<MacroCurve>& laws, const std:
 Plot difference_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
   const auto laws = curves_of(curves, "law");
   const auto twins = curves_of(curves, "shelled");
-  const double first = first_strain(curves);
+  const double first = test == MacroTest::stages ? 0.0 : first_strain(curves);
   const double last = last_strain(curves);
   Plot plot({.id = "macro-" + to_string(test) + (axial ? "-axial" : "-lateral") + "-difference",
              .title = std::string("Law minus resolved twin, ") + (axial ? "axial" : "lateral"),
-             .x = {.label = "strain [%]", .low = 100.0 * first, .high = 102.0 * last},
+             .x = strain_axis(curves, test),
              .y = {.label = "difference [%]"},
              .height = kDifferenceHeight,
              .left_margin = kLeftMargin});
@@ -121,13 +128,17 @@ Plot difference_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool
   return plot;
 }
 
+std::string stress_source(const std::vector<MacroCurve>& curves) {
+  const bool periodic = !curves.empty() && curves.front().boundary == Boundary::periodic;
+  return periodic ? "Stress from the contacts of a periodic cell" : "Stress from the wall forces";
+}
+
 /// Stress above, and below how far the law is from the twin.
 std::string stress_figure(const std::vector<MacroCurve>& curves, MacroTest test, bool axial) {
   const Plot stress = stress_plot(curves, test, axial);
   if (stress.empty()) return "";
   const Plot difference = difference_plot(curves, test, axial);
-  std::string caption =
-      axial ? "Stress from the wall forces; one line per sample." : "Mean of both lateral directions.";
+  std::string caption = axial ? stress_source(curves) + "; one line per sample." : "Mean of both lateral directions.";
   if (!difference.empty())
     caption += " Below: relative to the twin of the same sample, where its stress exceeds 2 % of its largest value.";
   return figure(stress.svg() + (difference.empty() ? "" : difference.svg()), caption);
@@ -150,8 +161,12 @@ std::string comparison_table(const Comparison& c) {
              mean_text(c.lateral_stress_ratio_reference, 1)});
   std::string out = table.html();
   out += paragraph(
-      "Difference: square root of ∫(law − twin)² over ∫ twin², over the common strain range. Mean over samples ± "
-      "standard error.");
+      "Difference: square root of ∫(law − twin)² over ∫ twin², over the common strain range, of tests in stages over "
+      "the "
+      "recorded points. Mean over samples ± standard error.");
+  if (c.strain_difference.n > 0)
+    out +=
+        paragraph("Axial strain, over the recorded points: difference " + mean_text(c.strain_difference, 100) + " %.");
   if (std::isfinite(c.speedup_seconds)) {
     out +=
         paragraph(fmt::format("Speed-up of the law over the resolved twin: {} in seconds, {} in contact evaluations.",
@@ -194,6 +209,7 @@ std::string macro_section(const RunData& run) {
     const auto twins = curves_of(curves, "shelled");
     if (tests.size() > 1) body += "<h3>" + escape(to_string(test)) + "</h3>\n";
     body += figure_row({stress_figure(curves, test, true), stress_figure(curves, test, false)});
+    body += stage_parts(curves, test);
     body += comparison_part(laws, twins) + bodies_table(curves) + law_paragraph(curves);
   }
   return section("macro", "Macro scene", body);

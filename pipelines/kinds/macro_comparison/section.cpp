@@ -37,7 +37,10 @@ std::string stress_figure(const ComparedCurves& scene, Stress member, const std:
              .x = {.label = "strain [%]"},
              .y = {.label = fmt::format("{} stress [{}Pa]", what, prefix.symbol)}});
   add_curves(plot, scene.curves, member, prefix.factor);
-  return plot.empty() ? "" : figure(plot.svg(), "From the wall forces; one line per sample.");
+  const bool periodic = !scene.curves.empty() && scene.curves.front().boundary == Boundary::periodic;
+  return plot.empty() ? ""
+                      : figure(plot.svg(), periodic ? "From the contacts of a periodic cell; one line per sample."
+                                                    : "From the wall forces; one line per sample.");
 }
 
 std::string force_figure(const ComparedCurves& scene) {
@@ -100,7 +103,8 @@ std::string facts_of(const std::vector<ComparedScene>& scenes, const std::string
 }
 
 std::string scene_part(const std::vector<ComparedScene>& compared, const ComparedCurves& scene) {
-  const bool shear = !scene.curves.empty() && scene.curves.front().test == MacroTest::shear;
+  const bool shear = !scene.curves.empty() &&
+                     (scene.curves.front().test == MacroTest::shear || scene.curves.front().test == MacroTest::stages);
   std::string body = "<h3>" + escape(scene.name) + "</h3>\n";
   body += figure_row({stress_figure(scene, &MacroCurve::stress_axial, "axial"),
                       shear ? stress_figure(scene, &MacroCurve::stress_deviator, "deviator")

@@ -1,0 +1,78 @@
+// What the stages of a test came to: moduli, strength, change of volume.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
+#include "common/data/macro_result.h"
+
+namespace softgrain {
+
+/// The slope that a stage defines; strains are logarithmic, compression positive.
+enum class Modulus {
+  constrained,  ///< M = d sigma_z / d eps_z, x and y standing
+  young,        ///< E = d sigma_z / d eps_z, x and y at constant stress
+  bulk,         ///< K = d p / d eps_v
+  shear,        ///< G = d (sigma_z - sigma_x) / (2 d (eps_z - eps_x))
+  axial,        ///< d sigma_z / d eps_z, whatever the other axes do
+  none          ///< nothing is driven
+};
+
+template <>
+inline constexpr auto words<Modulus> = word_list<Modulus>({{Modulus::constrained, "constrained"},
+                                                           {Modulus::young, "Young"},
+                                                           {Modulus::bulk, "bulk"},
+                                                           {Modulus::shear, "shear"},
+                                                           {Modulus::axial, "axial"},
+                                                           {Modulus::none, "none"}});
+
+Modulus modulus_of(StageKind way);
+
+/// Of one stage of one sample. p = (sigma_x + sigma_y + sigma_z)/3, q = sqrt(3 J2), which is |sigma_z - sigma_x| where
+/// two axes bear alike. NaN where it is not defined.
+struct StageResult {
+  StageRecord record;
+  double strain_begin = kNaN;  ///< nominal, of z, from the start of the test
+  double strain_end = kNaN;
+  double volumetric_begin = kNaN;  ///< loss of volume over the volume at the start of the test
+  double volumetric_end = kNaN;
+  double axial_end = kNaN;  ///< stress [Pa]
+  double lateral_end = kNaN;
+  double modulus_begin = kNaN;      ///< tangent at the first point: of unload the unloading modulus [Pa]
+  double modulus_end = kNaN;        ///< tangent at the last point [Pa]
+  double poisson_begin = kNaN;      ///< Young's way: -d(eps_x + eps_y)/(2 d eps_z) at the first point
+  double ratio_peak = kNaN;         ///< largest q/p
+  double ratio_peak_strain = kNaN;  ///< of z, where it is
+  double ratio_end = kNaN;          ///< q/p
+};
+
+/// Of every stage that has two points at least; empty for curves that do not say their stages. Tangents are those of a
+/// parabola by least squares through the four points (or as many as there are) next to that end; where that is no
+/// continuation of the points, of another sign than the secant of the last two or beyond thrice it, the secant.
+std::vector<StageResult> stage_results(const MacroCurve& curve);
+
+/// The same over the usable samples of one engine; empty where no sample has a value.
+struct StageMeans {
+  StageRecord record;
+  std::optional<MeanError> strain_end;
+  std::optional<MeanError> volumetric_end;
+  std::optional<MeanError> axial_end;
+  std::optional<MeanError> lateral_end;
+  std::optional<MeanError> modulus_begin;
+  std::optional<MeanError> modulus_end;
+  std::optional<MeanError> poisson_begin;
+  std::optional<MeanError> ratio_peak;
+  std::optional<MeanError> ratio_peak_strain;
+  std::optional<MeanError> ratio_end;
+};
+
+std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const std::string& engine);
+
+/// q/p of all recorded points; NaN where p is not above a hundredth of its largest value: what bears next to nothing
+/// has no strength to speak of.
+std::vector<double> stress_ratios(const MacroCurve& curve);
+
+}  // namespace softgrain
