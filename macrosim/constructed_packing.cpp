@@ -28,7 +28,10 @@ VoidFilling fill(const MacroSpec& spec, const MacroPacking& packing) {
   options.r_max = spec.soft_radius_max;
   options.r_min = spec.soft_radius_max / spec.soft_polydispersity;
   options.volume = soft_volume(spec.soft_share, packing.body_volume());
-  return fill_voids(placed, VoidDomain::box(packing.low, packing.high), options);
+  const bool periodic = spec.boundary == Boundary::periodic;
+  return fill_voids(placed,
+                    periodic ? VoidDomain::cell(packing.low, packing.high) : VoidDomain::box(packing.low, packing.high),
+                    options);
 }
 
 [[noreturn]] void refuse(const MacroSpec& spec, double fraction, double reached) {
@@ -66,7 +69,8 @@ MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed,
                                       const PreparationWatch& watch) {
   if (!(spec.soft_share < 1.0)) throw BadInput("macro: construction \"voids\" needs solid grains: soft_share below 1");
   const double fraction = spec.solid_fill > 0.0 ? spec.solid_fill : kFilledTogether * (1.0 - spec.soft_share);
-  MacroPacking packing = place_loosely(drawn_bodies(spec, seed, sample), seed, sample, std::min(0.30, fraction));
+  MacroPacking packing =
+      place_loosely(drawn_bodies(spec, seed, sample), seed, sample, std::min(0.30, fraction), spec.boundary);
   compact_to_fraction(spec, packing, fraction);
   if (spec.soft_share > 0.0) add_soft(spec, packing);
   bring_into_touch(spec, packing, watch);

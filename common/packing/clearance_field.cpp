@@ -11,9 +11,42 @@ constexpr int kMostCells = 64;  ///< per axis
 
 }  // namespace
 
-ClearanceField::ClearanceField(std::vector<PackedSphere> spheres, const VoidDomain& domain, double reach)
-    : spheres_(std::move(spheres)), domain_(domain) {
+ClearanceField::ClearanceField(const std::vector<PackedSphere>& spheres, const VoidDomain& domain, double reach)
+    : domain_(domain), reach_(reach) {
+  for (const PackedSphere& s : spheres) append(s);
   set_reach(reach);
+}
+
+Vec3 ClearanceField::home(Vec3 x) const {
+  if (domain_.shape != VoidDomain::Shape::cell) return x;
+  for (int k = 0; k < 3; ++k) {
+    const double period = domain_.high[k] - domain_.low[k];
+    x[k] -= period * std::floor((x[k] - domain_.low[k]) / period);
+  }
+  return x;
+}
+
+void ClearanceField::append(const PackedSphere& sphere) {
+  if (domain_.shape == VoidDomain::Shape::cell)
+    append_images({home(sphere.x), sphere.r}, sphere.r + reach_);
+  else
+    spheres_.push_back(sphere);
+}
+
+/// Those that come within `reach` of the cell; the one in it first.
+void ClearanceField::append_images(const PackedSphere& sphere, double far) {
+  const Vec3 period = domain_.high - domain_.low;
+  spheres_.push_back(sphere);
+  for (int image = 0; image < 27; ++image) {
+    const int steps[] = {image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
+    PackedSphere copy = sphere;
+    bool near = image != 13;
+    for (int k = 0; k < 3; ++k) {
+      copy.x[k] += steps[k] * period[k];
+      near = near && copy.x[k] > domain_.low[k] - far && copy.x[k] < domain_.high[k] + far;
+    }
+    if (near) spheres_.push_back(copy);
+  }
 }
 
 void ClearanceField::set_reach(double reach) {
@@ -50,18 +83,21 @@ void ClearanceField::list(std::int32_t sphere) {
 }
 
 void ClearanceField::add(const PackedSphere& sphere) {
-  spheres_.push_back(sphere);
-  list(static_cast<std::int32_t>(spheres_.size() - 1));
+  const std::size_t before = spheres_.size();
+  append(sphere);
+  for (std::size_t s = before; s < spheres_.size(); ++s) list(static_cast<std::int32_t>(s));
 }
 
 double ClearanceField::wall_clearance(const Vec3& x) const {
+  if (domain_.shape == VoidDomain::Shape::cell) return reach_;
   if (domain_.shape == VoidDomain::Shape::sphere) return 1.0 - norm(x);
   double room = domain_.high[0] - x[0];
   for (int k = 0; k < 3; ++k) room = std::min({room, domain_.high[k] - x[k], x[k] - domain_.low[k]});
   return room;
 }
 
-double ClearanceField::clearance(const Vec3& x) const {
+double ClearanceField::clearance(const Vec3& place) const {
+  const Vec3 x = home(place);
   double room = std::min(reach_, wall_clearance(x));
   for (const std::int32_t s : listed(x)) {
     const PackedSphere& sphere = spheres_[static_cast<std::size_t>(s)];
@@ -74,6 +110,7 @@ double ClearanceField::clearance(const Vec3& x) const {
 }
 
 void ClearanceField::append_walls(const Vec3& x, double most, std::vector<NearSurface>& out) const {
+  if (domain_.shape == VoidDomain::Shape::cell) return;
   if (domain_.shape == VoidDomain::Shape::sphere) {
     const double distance = norm(x);
     if (1.0 - distance <= most && distance > 0.0) out.push_back({1.0 - distance, x * (-1.0 / distance)});
@@ -87,7 +124,8 @@ void ClearanceField::append_walls(const Vec3& x, double most, std::vector<NearSu
   }
 }
 
-void ClearanceField::near(const Vec3& x, double most, std::vector<NearSurface>& out) const {
+void ClearanceField::near(const Vec3& place, double most, std::vector<NearSurface>& out) const {
+  const Vec3 x = home(place);
   out.clear();
   append_walls(x, most, out);
   for (const std::int32_t s : listed(x)) {

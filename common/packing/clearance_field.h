@@ -16,21 +16,23 @@ struct NearSurface {
 };
 
 /// Spheres in cells, each listed wherever it may be the nearest surface within `reach`. Clearances are exact up to
-/// `reach`, beyond it they are only known to exceed it.
+/// `reach`, beyond it they are only known to exceed it. In a periodic cell a place stands for all its images.
 class ClearanceField {
  public:
-  ClearanceField(std::vector<PackedSphere> spheres, const VoidDomain& domain, double reach);
+  ClearanceField(const std::vector<PackedSphere>& spheres, const VoidDomain& domain, double reach);
 
   void add(const PackedSphere& sphere);
   /// Makes the cells smaller: clearances above `reach` no longer matter. Ends what was exact beyond it.
   void set_reach(double reach);
   [[nodiscard]] double reach() const { return reach_; }
-  [[nodiscard]] const std::vector<PackedSphere>& spheres() const { return spheres_; }
 
-  /// Radius of the largest sphere around x, cut at reach(); negative where x lies in a sphere or outside.
-  [[nodiscard]] double clearance(const Vec3& x) const;
-  /// All surfaces within `most` of x, nearest first.
-  void near(const Vec3& x, double most, std::vector<NearSurface>& out) const;
+  /// The place in a periodic cell that x is an image of; x itself otherwise.
+  [[nodiscard]] Vec3 home(Vec3 x) const;
+
+  /// Radius of the largest sphere around a place, cut at reach(); negative where it lies in a sphere or outside.
+  [[nodiscard]] double clearance(const Vec3& place) const;
+  /// All surfaces within `most` of a place, nearest first.
+  void near(const Vec3& place, double most, std::vector<NearSurface>& out) const;
 
  private:
   [[nodiscard]] int cell(double x, int axis) const;
@@ -43,10 +45,12 @@ class ClearanceField {
     return lists_[index(cell(x[0], 0), cell(x[1], 1), cell(x[2], 2))];
   }
   void list(std::int32_t sphere);
+  void append(const PackedSphere& sphere);
+  void append_images(const PackedSphere& sphere, double far);
   void append_walls(const Vec3& x, double most, std::vector<NearSurface>& out) const;
   [[nodiscard]] double wall_clearance(const Vec3& x) const;
 
-  std::vector<PackedSphere> spheres_;
+  std::vector<PackedSphere> spheres_;  ///< of a periodic cell with those images that are near it
   VoidDomain domain_;
   double reach_ = 0.0;
   std::array<int, 3> cells_{1, 1, 1};

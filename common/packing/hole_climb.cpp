@@ -144,7 +144,10 @@ PackedSphere climb(const ClearanceField& field, const Vec3& x) {
 Vec3 settle(const ClearanceField& field, const Vec3& x, double r) {
   Vec3 best = x;
   // In the open, where no surface is near enough to be known: along -z, by steps that can meet nothing.
-  while (field.clearance(best) >= field.reach() && r < field.reach()) best[2] -= field.reach() - r;
+  // In a periodic cell there may be none at all.
+  constexpr int kFarEnough = 10000;
+  for (int k = 0; k < kFarEnough && field.clearance(best) >= field.reach() && r < field.reach(); ++k)
+    best[2] -= field.reach() - r;
   for (std::size_t n = 1; n <= 3; ++n)
     if (!touch(field, best, r, n)) break;
   return best;

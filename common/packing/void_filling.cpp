@@ -167,6 +167,7 @@ VoidFilling fill_voids(const std::vector<PackedSphere>& placed, const VoidDomain
     if (sphere.r >= cap) sphere.x = settle(search.field(), hole->x, cap);
     sphere.r = std::min(cap, search.field().clearance(sphere.x));
     if (sphere.r < options.r_min) break;
+    sphere.x = search.field().home(sphere.x);
     search.add(sphere);
     out.added.push_back(sphere);
     out.volume += 4.0 / 3.0 * std::numbers::pi * sphere.r * sphere.r * sphere.r;

@@ -14,14 +14,16 @@ struct PackedSphere {
   double r = 0.0;
 };
 
-/// Where spheres may lie: inside a box with corners `low` and `high`, or inside a sphere. SI units, or any other.
+/// Where spheres may lie: inside a box with corners `low` and `high`, inside a sphere, or anywhere in a periodic cell
+/// with these corners, between all images of the others. SI units, or any other.
 struct VoidDomain {
-  enum class Shape { box, sphere };
+  enum class Shape { box, sphere, cell };
   Shape shape = Shape::box;
   Vec3 low{};  ///< of the box around it, for both shapes
   Vec3 high{};
 
   static VoidDomain box(const Vec3& low, const Vec3& high) { return {Shape::box, low, high}; }
+  static VoidDomain cell(const Vec3& low, const Vec3& high) { return {Shape::cell, low, high}; }
   static VoidDomain unit_sphere() { return {Shape::sphere, {{-1.0, -1.0, -1.0}}, {{1.0, 1.0, 1.0}}}; }
 };
 
@@ -40,8 +42,9 @@ struct VoidFilling {
 };
 
 /// Adds spheres one by one at the largest hole, each as large as fits: it touches its neighbours there (four of them,
-/// or as many as r_max lets it reach). No overlap beyond rounding, nothing outside the domain. Depends on its arguments
-/// alone: no random numbers. Throws BadInput when r_min is not positive or exceeds r_max, or the domain is empty.
+/// or as many as r_max lets it reach). No overlap beyond rounding, nothing outside the domain (of a cell: centres).
+/// Depends on its arguments alone: no random numbers. Throws BadInput when r_min is not positive or exceeds r_max, or
+/// the domain is empty.
 VoidFilling fill_voids(const std::vector<PackedSphere>& placed, const VoidDomain& domain,
                        const VoidFillingOptions& options);
 

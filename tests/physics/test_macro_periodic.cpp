@@ -10,6 +10,7 @@
 #include "common/dynamics/force_pass.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/compression.h"
+#include "macrosim/constructed_packing.h"
 #include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
@@ -181,6 +182,23 @@ TEST(PeriodicCell, EveryPreparationJams) {
     for (const auto& c : contact_records(hard.system))
       EXPECT_LT(c.overlap, 0.02 * hard.system.particles.sphere[static_cast<std::size_t>(c.i)].r);
   }
+}
+
+/// Soft particles in the voids of a cell: the share is met, nobody overlaps across a face.
+TEST(PeriodicCell, VoidsAreFilledAcrossFaces) {
+  MacroSpec spec = periodic_spec(80);
+  spec.construction = Construction::voids;
+  spec.soft_share = 0.3;
+  spec.solid_polydispersity = 1.5;
+  spec.soft_polydispersity = 3.0;
+  const MacroPacking packing = make_packing(spec, 1, 0);
+  EXPECT_NEAR(packing.soft_volume_share(), 0.3, 0.02);
+  EXPECT_GT(packing.soft_count(), 20);
+  HardBodies hard(spec, packing);
+  force_pass(hard.system, 0.0, History::none);
+  EXPECT_NEAR(hard.pressure() / spec.youngs_modulus, spec.start_pressure, 0.03 * spec.start_pressure);
+  for (const auto& c : contact_records(hard.system))
+    EXPECT_LT(c.overlap, 0.03 * hard.system.particles.sphere[static_cast<std::size_t>(c.i)].r);
 }
 
 /// Too few bodies for a cell that must be longer than two of the largest: said before any work.

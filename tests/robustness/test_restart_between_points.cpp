@@ -102,4 +102,42 @@ TEST(RestartBetweenPoints, ACompressionGoesOnFromEveryIncrement) {
   }
 }
 
+/// Stages by stress, whose way begins at what was measured, in a cell that is taken up anywhere.
+TEST(RestartBetweenPoints, StagesGoOnFromEveryIncrement) {
+  MacroSpec spec;
+  spec.boundary = Boundary::periodic;
+  spec.bodies = 60;
+  spec.soft_share = 0.2;
+  spec.test = MacroTest::stages;
+  for (const StageKind kind : {StageKind::consolidation, StageKind::triaxial, StageKind::unload}) {
+    MacroStage stage;
+    stage.record = {to_string(kind), kind, kind};
+    stage.steps = 2;
+    spec.stages.push_back(stage);
+  }
+  for (AxisDrive& axis : spec.stages[0].axis) axis = {true, 300.0, -1};
+  for (const std::size_t k : {1U, 2U})
+    spec.stages[k].axis[0] = spec.stages[k].axis[1] = {true, 0.0, static_cast<std::int64_t>(k)};
+  spec.stages[1].axis[2].value = 0.02;
+  spec.stages[2].axis[2] = {true, 0.0, 1};
+  const MacroPacking packing = make_macro_packing(spec, 1, 0);
+  CompressionState whole;
+  whole.macro = make_shelled_system(spec, packing, {generate_shell_packing(coarse_spec(), 1, 0)}, 1, 0);
+  whole.curve = begin_curve(spec, packing, whole.macro, "shelled", 0);
+  std::vector<CompressionState> saved;
+  RunControl<CompressionState> control{.seconds = 0.0};
+  control.save = [&](const CompressionState& s) { saved.push_back(s); };
+  compress(whole, spec, control);
+  ASSERT_TRUE(whole.curve.usable) << whole.curve.note;
+  ASSERT_EQ(saved.size(), 13U);
+  for (std::size_t k = 0; k < saved.size(); k += 3) {
+    compress(saved[k], spec);
+    EXPECT_EQ(whole.curve.stress_axial, saved[k].curve.stress_axial) << k;
+    EXPECT_EQ(whole.curve.stress_x, saved[k].curve.stress_x) << k;
+    EXPECT_EQ(whole.curve.strain_x, saved[k].curve.strain_x) << k;
+    EXPECT_EQ(whole.curve.stage, saved[k].curve.stage) << k;
+    expect_same(whole.curve.cost, saved[k].curve.cost);
+  }
+}
+
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "common/core/error.h"
@@ -13,7 +14,20 @@
 namespace softgrain {
 namespace {
 
+/// Over all images of a periodic cell.
+double periodic_clearance(const std::vector<PackedSphere>& spheres, const VoidDomain& domain, const Vec3& x) {
+  const Vec3 period = domain.high - domain.low;
+  double room = std::numeric_limits<double>::infinity();
+  for (const PackedSphere& s : spheres)
+    for (int image = 0; image < 27; ++image) {
+      const Vec3 shift{{(image % 3 - 1) * period[0], (image / 3 % 3 - 1) * period[1], (image / 9 - 1) * period[2]}};
+      room = std::min(room, norm(x - s.x - shift) - s.r);
+    }
+  return room;
+}
+
 double clearance(const std::vector<PackedSphere>& spheres, const VoidDomain& domain, const Vec3& x) {
+  if (domain.shape == VoidDomain::Shape::cell) return periodic_clearance(spheres, domain, x);
   double room = 1.0 - norm(x);
   if (domain.shape == VoidDomain::Shape::box) {
     room = domain.high[0] - x[0];
@@ -145,6 +159,47 @@ TEST(VoidFilling, VolumeAndCountEndIt) {
   const VoidFilling filling = fill_voids({}, domain, options);
   EXPECT_GE(filling.volume, 0.1);
   EXPECT_LT(filling.volume, 0.1 + 4.2e-3);
+}
+
+/// The holes of a simple cubic lattice, none at a wall: those on the faces of the cell count once.
+TEST(VoidFilling, ACellHasTheHolesOfItsLattice) {
+  const auto domain = VoidDomain::cell({{0.1, -0.2, 0.0}}, {{1.1, 0.8, 1.0}});
+  std::vector<PackedSphere> lattice;
+  for (int k = 0; k < 27; ++k)
+    lattice.push_back({{{0.1 + (k % 3) / 3.0, -0.2 + (k / 3 % 3) / 3.0, (k / 9) / 3.0}}, 1.0 / 6.0});
+  VoidFillingOptions options;
+  const double hole = (std::sqrt(3.0) - 1.0) / 6.0;
+  options.r_min = 0.9 * hole;
+  const VoidFilling filling = fill_voids(lattice, domain, options);
+  ASSERT_EQ(filling.added.size(), 27U);
+  for (const PackedSphere& s : filling.added) {
+    EXPECT_NEAR(s.r, hole, 1e-6);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GE(s.x[k], domain.low[k]);
+      EXPECT_LT(s.x[k], domain.high[k]);
+    }
+  }
+}
+
+/// Nobody overlaps across a face, and sampling finds no larger hole, where faces are or elsewhere.
+TEST(VoidFilling, ACellIsFilledAcrossItsFaces) {
+  const auto domain = VoidDomain::cell({}, {{1.0, 1.0, 1.0}});
+  for (const std::uint64_t index : {1U, 2U}) {
+    const auto spheres = random_spheres(domain, 60, 0.12, index);
+    VoidFillingOptions options;
+    options.r_max = 0.15;
+    options.r_min = 0.05;
+    const VoidFilling filling = fill_voids(spheres, domain, options);
+    ASSERT_GT(filling.added.size(), 30U);
+    expect_sound(spheres, domain, filling, options.r_min, options.r_max);
+    std::vector<PackedSphere> all = spheres;
+    all.insert(all.end(), filling.added.begin(), filling.added.end());
+    RandomStream random(6, RandomPurpose::test, index);
+    for (int k = 0; k < 20000; ++k) {
+      const Vec3 x{{random.uniform(), random.uniform(), random.uniform()}};
+      EXPECT_LT(clearance(all, domain, x), options.r_min * (1.0 + 1e-9));
+    }
+  }
 }
 
 TEST(VoidFilling, BadArgumentsAreNamed) {

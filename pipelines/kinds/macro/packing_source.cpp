@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
+#include "common/neighbours/hierarchical_grid.h"
 
 namespace softgrain {
 
@@ -90,12 +91,14 @@ void read_box(const CsvFile& csv, MacroPacking& packing) {
           fmt::format("{}: box = {}: the high corner must be above the low one", csv.where(named->line), named->value));
 }
 
-void require_inside(const CsvFile& csv, const MacroPacking& packing, const Columns& c) {
+/// Of a periodic cell centres alone must be in it.
+void require_inside(const CsvFile& csv, const MacroPacking& packing, const Columns& c, Boundary boundary) {
   const std::array<std::size_t, 3> places{c.x, c.y, c.z};
   for (std::size_t k = 0; k < packing.bodies.size(); ++k) {
     const MacroBody& b = packing.bodies[k];
     for (int a = 0; a < 3; ++a) {
-      const double out = std::max(packing.low[a] - (b.x[a] - b.r), b.x[a] + b.r - packing.high[a]);
+      const double r = boundary == Boundary::periodic ? 0.0 : b.r;
+      const double out = std::max(packing.low[a] - (b.x[a] - r), b.x[a] + r - packing.high[a]);
       if (out <= kGivenOverlap * b.r) continue;
       const std::size_t column = places[static_cast<std::size_t>(a)];
       throw BadInput(
@@ -106,31 +109,51 @@ void require_inside(const CsvFile& csv, const MacroPacking& packing, const Colum
   }
 }
 
-/// Sorted along x, each against those that can reach it.
-void require_apart(const CsvFile& csv, const MacroPacking& packing) {
-  std::vector<std::size_t> order(packing.bodies.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto left = [&](std::size_t k) { return packing.bodies[k].x[0] - packing.bodies[k].r; };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b); });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const MacroBody& a = packing.bodies[order[i]];
-    for (std::size_t j = i + 1; j < order.size() && left(order[j]) < a.x[0] + a.r; ++j) {
-      const MacroBody& b = packing.bodies[order[j]];
-      const double smaller = std::min(a.r, b.r);
-      const double overlap = a.r + b.r - norm(a.x - b.x);
-      if (overlap <= kGivenOverlap * smaller) continue;
-      const auto [first, second] = std::minmax(csv.rows()[order[i]].line, csv.rows()[order[j]].line);
-      throw BadInput(
-          fmt::format("{}: columns x, y, z: overlaps the body of line {} by {:.3g} of the smaller radius; allowed: up "
-                      "to {:g}",
-                      csv.where(second), first, overlap / smaller, kGivenOverlap));
-    }
+/// Pairs that overlap by more than is allowed, across the faces of a periodic cell too.
+void require_apart(const CsvFile& csv, const MacroPacking& packing, Boundary boundary) {
+  Particles<3> particles;
+  for (const MacroBody& b : packing.bodies) {
+    NewBody<3> grain;
+    grain.x = b.x - packing.low;
+    grain.r = b.r;
+    add_grain(particles, grain);
+  }
+  const bool periodic = boundary == Boundary::periodic;
+  const Cell<3> cell = periodic ? box_cell<3>(packing.size(), {true, true, true}) : open_cell<3>();
+  for (const CandidatePair& pair : candidate_pairs(particles, cell, std::vector<double>(packing.bodies.size(), 0.0))) {
+    const Sphere<3>& a = particles.sphere[at(pair.i)];
+    const Sphere<3>& b = particles.sphere[at(pair.j)];
+    const double smaller = std::min(a.r, b.r);
+    const double overlap = a.r + b.r - norm(a.x - b.x - cell.image_shift(pair.image));
+    if (overlap <= kGivenOverlap * smaller) continue;
+    const auto [first, second] = std::minmax(csv.rows()[at(pair.i)].line, csv.rows()[at(pair.j)].line);
+    throw BadInput(
+        fmt::format("{}: columns x, y, z: overlaps the body of line {} by {:.3g} of the smaller radius; allowed: up "
+                    "to {:g}",
+                    csv.where(second), first, overlap / smaller, kGivenOverlap));
+  }
+}
+
+/// A cell must be given, and be longer than two diameters of the largest body. All centres go home into it.
+void make_periodic(const CsvFile& csv, MacroPacking& packing) {
+  if (!csv.setting({"box [m]", "box"}))
+    throw BadInput(fmt::format(
+        "{}: a periodic packing says its cell: \"# box [m] = 0 0 0 0.1 0.1 0.1\", the low corner and the high one",
+        csv.where(csv.header_line())));
+  const Vec3 size = packing.size();
+  const double shortest = std::min({size[0], size[1], size[2]});
+  for (std::size_t k = 0; k < packing.bodies.size(); ++k) {
+    MacroBody& b = packing.bodies[k];
+    if (4.1 * b.r > shortest)
+      throw BadInput(fmt::format("{}: images of a body must be at least two diameters apart: the cell is {:.3g} m long",
+                                 csv.where(csv.rows()[k].line), shortest));
+    for (int a = 0; a < 3; ++a) b.x[a] -= size[a] * std::floor((b.x[a] - packing.low[a]) / size[a]);
   }
 }
 
 }  // namespace
 
-MacroPacking read_packing_file(const std::string& path) {
+MacroPacking read_packing_file(const std::string& path, Boundary boundary) {
   const CsvFile csv = CsvFile::read(path);
   const Columns columns{column_of(csv, "x", Unit::length, "x [m]"), column_of(csv, "y", Unit::length, "y [m]"),
                         column_of(csv, "z", Unit::length, "z [m]"), column_of(csv, "r", Unit::length, "r [m]"),
@@ -139,8 +162,9 @@ MacroPacking read_packing_file(const std::string& path) {
   for (const CsvRow& row : csv.rows()) packing.bodies.push_back(body_of(csv, row, columns));
   if (packing.bodies.empty()) throw BadInput(csv.where(csv.header_line()) + ": no body");
   read_box(csv, packing);
-  require_inside(csv, packing, columns);
-  require_apart(csv, packing);
+  require_inside(csv, packing, columns, boundary);
+  if (boundary == Boundary::periodic) make_periodic(csv, packing);
+  require_apart(csv, packing, boundary);
   return packing;
 }
 

@@ -12,10 +12,11 @@ namespace softgrain {
 std::string packing_key(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
 
 /// A table of bodies as CSV: columns "x [m]", "y [m]", "z [m]", "r [m]" (or other lengths) and "kind", which is solid
-/// or soft. The box in a comment "# box [m] = x y z x y z", its low and its high corner; without it the tightest one.
+/// or soft. The box in a comment "# box [m] = x y z x y z", its low and its high corner; without it the tightest one. A
+/// periodic cell must be said.
 /// Throws FileTrouble, and BadInput with line and column for what is no body, for a body outside the box and for two
 /// that overlap by more than kGivenOverlap of the smaller radius.
-MacroPacking read_packing_file(const std::string& path);
+MacroPacking read_packing_file(const std::string& path, Boundary boundary = Boundary::walls);
 
 /// More than any test here presses bodies into each other at its start; soft particles that overlap by more would be
 /// beyond the range of any measured law in most of their contacts.

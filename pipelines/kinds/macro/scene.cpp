@@ -145,7 +145,7 @@ void read_given(const SceneTable& t, MacroSetup& setup) {
   if (setup.samples > 1) t.mistake("samples", "a packing is one sample: must be 1");
   t.part([&] {
     const std::string file = t.resolve(t.text("packing"));
-    setup.given = read_packing_file(file);
+    setup.given = read_packing_file(file, setup.spec.boundary);
     const MacroPacking& p = *setup.given;
     MacroSpec& spec = setup.spec;
     spec.packing_text = read_text(file);

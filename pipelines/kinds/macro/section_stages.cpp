@@ -78,16 +78,18 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
         return {holds ? "–" : to_string(modulus_of(s.record.way)), cell(s.modulus_begin, modulus.factor),
                 cell(s.modulus_end, modulus.factor), cell(s.poisson_begin)};
       }};
-  const StageTable ends{{"axial strain at its end [%]", "volume lost [%]", "axial stress" + stress_unit,
-                         "lateral stress" + stress_unit, "q/p", "largest q/p", "at axial strain [%]"},
+  const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
+                         "lateral stress" + stress_unit, "q/p", "largest q/p"},
                         [&](const StageMeans& s) -> std::vector<std::string> {
+                          const std::string where =
+                              s.ratio_peak_strain ? " at " + format_number(100.0 * s.ratio_peak_strain->mean, 3) + " %"
+                                                  : "";
                           return {cell(s.strain_end, 0.01),
                                   cell(s.volumetric_end, 0.01),
                                   cell(s.axial_end, stress.factor),
                                   cell(s.lateral_end, stress.factor),
                                   cell(s.ratio_end),
-                                  cell(s.ratio_peak),
-                                  cell(s.ratio_peak_strain, 0.01)};
+                                  cell(s.ratio_peak) + where};
                         }};
   const std::string text = table_of(curves, moduli) + table_of(curves, ends);
   if (text.empty()) return "";
@@ -96,7 +98,9 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
              "Moduli are tangents over logarithmic strains: constrained dσz/dεz, Young dσz/dεz at constant lateral "
              "stress, "
              "bulk dp/dεv, shear d(σz − σx)/2d(εz − εx); at the begin of an unloading they are those of unloading. "
-             "q = √(3J₂), p the mean stress. Mean over usable samples ± standard error; one sample has none.");
+             "The second table has what there is at the end of each stage, and the largest q/p with the axial strain "
+             "where "
+             "it is; q = √(3J₂), p the mean stress. Mean over usable samples ± standard error; one sample has none.");
 }
 
 }  // namespace

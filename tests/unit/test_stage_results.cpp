@@ -1,0 +1,146 @@
+// Moduli and strength of stages from curves whose numbers are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipelines/compare/compare.h"
+#include "pipelines/compare/stage_results.h"
+
+namespace softgrain {
+namespace {
+
+/// Linear elastic: logarithmic strains in, stresses by Hooke's law out.
+struct Elastic {
+  double bulk = 3e6;
+  double shear = 1e6;
+  MacroCurve curve;
+
+  void add(double stage, const Vec3& strain) {
+    const double volume = strain[0] + strain[1] + strain[2];
+    Vec3 s;
+    for (int k = 0; k < 3; ++k) s[k] = 1e5 + bulk * volume + 2.0 * shear * (strain[k] - volume / 3.0);
+    curve.stage.push_back(stage);
+    curve.strain_x.push_back(-std::expm1(-strain[0]));
+    curve.strain_y.push_back(-std::expm1(-strain[1]));
+    curve.strain_z.push_back(-std::expm1(-strain[2]));
+    curve.strain.push_back(curve.strain_z.back());
+    curve.stress_x.push_back(s[0]);
+    curve.stress_y.push_back(s[1]);
+    curve.stress_axial.push_back(s[2]);
+    curve.stress_lateral.push_back(0.5 * (s[0] + s[1]));
+  }
+};
+
+TEST(StageResults, ModuliAreThoseOfHooke) {
+  Elastic e;
+  e.curve.engine = "law";
+  e.curve.test = MacroTest::stages;
+  using K = StageKind;
+  e.curve.stages = {{"a", K::oedometric, K::oedometric}, {"b", K::isotropic, K::isotropic},
+                    {"c", K::shear, K::shear},           {"d", K::triaxial, K::triaxial},
+                    {"e", K::unload, K::triaxial},       {"f", K::hold, K::triaxial}};
+  const double poisson = (3.0 * e.bulk - 2.0 * e.shear) / (2.0 * (3.0 * e.bulk + e.shear));
+  const double young = 9.0 * e.bulk * e.shear / (3.0 * e.bulk + e.shear);
+  Vec3 strain{};
+  e.add(0, strain);
+  const auto go = [&](double stage, const Vec3& step, int steps) {
+    for (int k = 0; k < steps; ++k) e.add(stage, strain += step);
+  };
+  go(0, {{0.0, 0.0, 0.001}}, 5);
+  go(1, {{0.001, 0.001, 0.001}}, 3);
+  go(2, {{-0.001, 0.0, 0.001}}, 4);
+  go(3, {{-poisson * 0.001, -poisson * 0.001, 0.001}}, 6);
+  go(4, {{poisson * 0.001, poisson * 0.001, -0.001}}, 2);
+  go(5, {}, 1);
+  const auto r = stage_results(e.curve);
+  ASSERT_EQ(r.size(), 6U);
+  const double expected[] = {e.bulk + 4.0 / 3.0 * e.shear, e.bulk, e.shear, young, young};
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(r[k].modulus_begin, expected[k], 1e-8 * expected[k]) << k;
+    EXPECT_NEAR(r[k].modulus_end, expected[k], 1e-8 * expected[k]) << k;
+  }
+  EXPECT_NEAR(r[3].poisson_begin, poisson, 1e-9);
+  EXPECT_TRUE(std::isnan(r[0].poisson_begin));
+  EXPECT_TRUE(std::isnan(r[5].modulus_begin));
+  EXPECT_NEAR(r[0].volumetric_end, -std::expm1(-0.005), 1e-12);
+  EXPECT_NEAR(r[4].strain_begin, e.curve.strain_z[18], 1e-15);
+  EXPECT_NEAR(r[4].strain_end, e.curve.strain_z[20], 1e-15);
+}
+
+TEST(StageResults, StrengthIsTheLargestRatio) {
+  MacroCurve c;
+  c.engine = "law";
+  c.stages = {{"a", StageKind::triaxial, StageKind::triaxial}};
+  for (int k = 0; k < 6; ++k) {
+    c.stage.push_back(0);
+    c.strain.push_back(0.01 * k);
+    c.strain_z.push_back(0.01 * k);
+    c.strain_x.push_back(-0.004 * k);
+    c.strain_y.push_back(-0.004 * k);
+    c.stress_x.push_back(100.0);
+    c.stress_y.push_back(100.0);
+  }
+  c.stress_axial = {100.0, 200.0, 310.0, 400.0, 370.0, 340.0};
+  const auto r = stage_results(c);
+  ASSERT_EQ(r.size(), 1U);
+  EXPECT_NEAR(r[0].ratio_peak, 300.0 / 200.0, 1e-12);
+  EXPECT_NEAR(r[0].ratio_peak_strain, 0.03, 1e-15);
+  EXPECT_NEAR(r[0].ratio_end, 240.0 / 180.0, 1e-12);
+  EXPECT_NEAR(stress_ratios(c)[0], 0.0, 1e-12);
+  c.stress_x[1] = 0.0;  // q of unequal stresses: sqrt(((x-y)^2 + (y-z)^2 + (z-x)^2)/2)
+  EXPECT_NEAR(stress_ratios(c)[1], std::sqrt(0.5 * (1e4 + 1e4 + 4e4)) / 100.0, 1e-12);
+}
+
+/// A first step over a gap that closes: the parabola would fall, the secant does not.
+TEST(StageResults, AnEndThatNoParabolaContinuesHasItsSecant) {
+  MacroCurve c;
+  c.engine = "law";
+  c.stages = {{"a", StageKind::oedometric, StageKind::oedometric}};
+  c.strain_z = c.strain = {0.0, 0.02, 0.023, 0.025};
+  c.strain_x = c.strain_y = c.stage = {0.0, 0.0, 0.0, 0.0};
+  c.stress_x = c.stress_y = {0.0, 0.0, 0.0, 0.0};
+  c.stress_axial = {0.0, 60.0, 120.0, 180.0};
+  EXPECT_NEAR(stage_results(c)[0].modulus_begin, 60.0 / -std::log1p(-0.02), 1e-9);
+}
+
+TEST(StageResults, MeansLeaveOutWhatIsNotUsable) {
+  Elastic e;
+  e.curve.engine = "law";
+  e.curve.stages = {{"a", StageKind::oedometric, StageKind::oedometric}};
+  e.add(0, {});
+  e.add(0, {{0.0, 0.0, 0.01}});
+  MacroCurve other = e.curve;
+  other.stress_axial[1] *= 2.0;
+  MacroCurve bad = other;
+  bad.usable = false;
+  const auto m = stage_means({e.curve, other, bad}, "law");
+  ASSERT_EQ(m.size(), 1U);
+  EXPECT_EQ(m[0].axial_end->n, 2U);
+  EXPECT_NEAR(m[0].axial_end->mean, 1.5 * e.curve.stress_axial[1], 1e-6);
+  EXPECT_TRUE(stage_means({e.curve}, "shelled").empty());
+  MacroCurve silent = e.curve;
+  silent.stages.clear();
+  EXPECT_TRUE(stage_results(silent).empty());
+}
+
+/// Strain goes forth and back: curves of tests in stages meet point by point, and differ in strain where stress was
+/// given.
+TEST(StageResults, StagesAreComparedPointByPoint) {
+  MacroCurve twin;
+  twin.engine = "shelled";
+  twin.test = MacroTest::stages;
+  twin.strain = {0.0, 0.02, 0.01, 0.02};
+  twin.stress_axial = {0.0, 200.0, 100.0, 200.0};
+  twin.stress_lateral = {0.0, 100.0, 100.0, 100.0};
+  MacroCurve law = twin;
+  law.engine = "law";
+  for (double& s : law.stress_axial) s *= 1.1;
+  for (double& e : law.strain) e *= 0.95;
+  const Comparison c = compare_curves({law}, {twin});
+  EXPECT_NEAR(c.axial_difference.mean, 0.1, 1e-12);
+  EXPECT_NEAR(c.lateral_difference.mean, 0.0, 1e-12);
+  EXPECT_NEAR(c.strain_difference.mean, 0.05, 1e-12);
+}
+
+}  // namespace
+}  // namespace softgrain

@@ -1,0 +1,155 @@
+// [[stage]] of macro scenes: what every kind of stage makes of its keys, and what is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/io/scene.h"
+#include "macrosim/test_protocol.h"
+#include "pipelines/kinds/macro/stages.h"
+
+namespace {
+
+using namespace softgrain;
+
+MacroSpec read(const std::string& stages, const std::string& macro = "") {
+  const Scene scene = Scene::parse("[macro]\n" + macro + "\n" + stages, "scene.toml");
+  return scene.read([](const SceneTable& root) {
+    const SceneTable table = root.table("macro");
+    MacroSpec spec;
+    spec.steps = 7;
+    for (const char* key : {"test", "strain", "preload", "preload_steps"}) (void)table.has(key);
+    read_stages(root, table, spec);
+    return spec;
+  });
+}
+
+MacroStage one(const std::string& keys) { return read("[[stage]]\n" + keys).stages.at(0); }
+
+void expect_axis(const AxisDrive& axis, bool by_stress, double value, std::int64_t as_at = -1) {
+  EXPECT_EQ(axis.by_stress, by_stress);
+  EXPECT_DOUBLE_EQ(axis.value, value);
+  EXPECT_EQ(axis.as_at, as_at);
+}
+
+TEST(Stages, EveryKindDrivesItsAxes) {
+  const MacroStage oedometric = one("kind = \"oedometric\"\nstrain = 0.1");
+  expect_axis(oedometric.axis[0], false, 0.0);
+  expect_axis(oedometric.axis[2], false, 0.1);
+  EXPECT_EQ(oedometric.steps, 7);
+  EXPECT_EQ(oedometric.record.name, "oedometric");
+  expect_axis(one("kind = \"oedometric\"\nstress = \"2 kPa\"").axis[2], true, 2000.0);
+  const MacroStage isotropic = one("kind = \"isotropic\"\nstress = 500");
+  for (const AxisDrive& axis : isotropic.axis) expect_axis(axis, true, 500.0);
+  EXPECT_TRUE(isotropic.alike);
+  const MacroStage shear = one("kind = \"shear\"\nstrain = 0.02\nsteps = 3");
+  expect_axis(shear.axis[0], false, -0.02);
+  expect_axis(shear.axis[1], false, 0.0);
+  expect_axis(shear.axis[2], false, 0.02);
+  EXPECT_TRUE(shear.logarithmic);
+  EXPECT_EQ(shear.steps, 3);
+  const MacroStage triaxial = one("kind = \"triaxial\"\nstrain = 0.05");
+  expect_axis(triaxial.axis[0], true, 0.0, 0);
+  expect_axis(triaxial.axis[2], false, 0.05);
+  expect_axis(one("kind = \"triaxial\"\nstrain = 0.05\nlateral_stress = 300").axis[1], true, 300.0);
+  const MacroStage consolidation = one("kind = \"consolidation\"\nstress = [100, 200, 300]");
+  for (int k = 0; k < 3; ++k) expect_axis(consolidation.axis[static_cast<std::size_t>(k)], true, 100.0 * (k + 1));
+  EXPECT_FALSE(consolidation.alike);
+  const MacroStage axes = one("kind = \"axes\"\nstrain_x = -0.01\nstress_z = \"1 kPa\"");
+  expect_axis(axes.axis[0], false, -0.01);
+  expect_axis(axes.axis[1], false, 0.0);
+  expect_axis(axes.axis[2], true, 1000.0);
+}
+
+TEST(Stages, UnloadingGoesTheWayBackAndReloadingForth) {
+  const MacroSpec spec = read(
+      "[[stage]]\nkind = \"triaxial\"\nstrain = 0.05\n[[stage]]\nkind = \"unload\"\nstrain = 0.01\n"
+      "[[stage]]\nkind = \"hold\"\n[[stage]]\nkind = \"reload\"\n"
+      "[[stage]]\nkind = \"unload\"\nstress = 50\n[[stage]]\nkind = \"reload\"");
+  ASSERT_EQ(spec.stages.size(), 6U);
+  EXPECT_EQ(spec.test, MacroTest::stages);
+  const auto& s = spec.stages;
+  expect_axis(s[1].axis[2], false, -0.01);
+  expect_axis(s[1].axis[0], true, 0.0, 1);
+  EXPECT_EQ(s[1].record.way, StageKind::triaxial);
+  expect_axis(s[2].axis[2], false, 0.0);
+  EXPECT_EQ(s[2].steps, 1);
+  EXPECT_DOUBLE_EQ(s[2].tolerance, 0.1 * spec.tolerance);
+  EXPECT_NEAR((1.0 - s[1].axis[2].value) * (1.0 - s[3].axis[2].value), 1.0, 1e-15) << "back to the same length";
+  expect_axis(s[3].axis[0], true, 0.0, 3);
+  expect_axis(s[4].axis[2], true, 50.0);
+  expect_axis(s[5].axis[2], true, 50.0, 4);  // as it was when the unloading began
+  expect_axis(s[5].axis[0], true, 0.0, 5);
+  EXPECT_EQ(s[4].record.name, "unload 2");
+  EXPECT_EQ(recorded_points(spec), 1 + 7 + 7 + 1 + 7 + 7 + 7);
+}
+
+TEST(Stages, CyclesAreUnloadingsAndReloadings) {
+  const MacroSpec spec = read(
+      "[[stage]]\nkind = \"shear\"\nstrain = 0.05\n[[stage]]\nkind = \"cycles\"\ncount = 3\nstrain = 0.01\nsteps = 2");
+  ASSERT_EQ(spec.stages.size(), 7U);
+  for (std::size_t k = 1; k < 7; ++k) {
+    const double sign = k % 2 == 1 ? -1.0 : 1.0;
+    expect_axis(spec.stages[k].axis[2], false, sign * 0.01);
+    expect_axis(spec.stages[k].axis[0], false, -sign * 0.01);
+    EXPECT_EQ(spec.stages[k].record.kind, k % 2 == 1 ? StageKind::unload : StageKind::reload);
+    EXPECT_EQ(spec.stages[k].record.way, StageKind::shear);
+  }
+  EXPECT_EQ(spec.stages[3].record.name, "cycle 2 unload");
+}
+
+TEST(Stages, WithoutAnyTheTestIsThatOfTheTable) { EXPECT_EQ(read("", "strain = 0.1").test, MacroTest::oedometric); }
+
+TEST(Stages, WhatContradictsIsNamed) {
+  const std::string load = "[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n";
+  const std::string axes = "[[stage]]\nkind = \"axes\"\nstrain_x = 0.01\n";
+  const auto stage = [](const std::string& keys) { return "[[stage]]\n" + keys; };
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {stage("kind = \"oedometric\""), "give strain or stress"},
+      {stage("kind = \"oedometric\"\nstrain = 0.1\nstress = 5"), "contradicts strain"},
+      {stage("kind = \"oedometric\"\nstrain = 0.7"), "0.5"},
+      {stage("kind = \"oedometric\"\nstrain = 0"), "must not be 0"},
+      {stage("kind = \"oedometric\"\nstress = -5"), "above 0"},
+      {stage("kind = \"oedometric\"\nstrain = 0.1\nlateral_stress = 5"), "goes with kind = \"triaxial\""},
+      {stage("kind = \"oedometrik\"\nstrain = 0.1"), "oedometric"},
+      {stage("kind = \"shear\"\nstress = 5"), "goes by strain"},
+      {stage("kind = \"consolidation\"\nstrain = 0.1\nstress = 5"), "goes to a stress"},
+      {stage("kind = \"consolidation\"\nstress = [1, 2, 0]"), "cannot be pulled"},
+      {stage("kind = \"unload\"\nstrain = 0.1"), "no stage before it"},
+      {stage("kind = \"axes\""), "no axis is driven"},
+      {stage("kind = \"axes\"\nstrain_x = 0.1\nstress_x = 5"), "contradicts strain_x"},
+      {load + stage("kind = \"reload\""), "nothing was unloaded before"},
+      {load + stage("kind = \"unload\"\nstrain = -0.01"), "above 0"},
+      {load + stage("kind = \"hold\"\nstrain = 0.1"), "nothing is driven"},
+      {load + stage("kind = \"hold\"\nby = \"weight\""), "stress"},
+      {load + stage("kind = \"cycles\"\nstrain = 0.1"), "count"},
+      {axes + stage("kind = \"unload\"\nstrain = 0.01"), "another stage of that kind"},
+      {load + stage("kind = \"unload\"\nstrain = 0.01\ncount = 3"), "goes with kind = \"cycles\""},
+      {load + stage("kind = \"unload\"\nstrain = 0.01\nstepps = 3"), "steps"},
+  };
+  for (const auto& [text, expected] : cases) {
+    try {
+      (void)read(text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const BadInput& e) {
+      EXPECT_NE(std::string(e.what()).find(expected), std::string::npos) << text << "\n" << e.what();
+      EXPECT_NE(std::string(e.what()).find("scene.toml:"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_THROW((void)read(load, "test = \"shear\""), BadInput);
+  EXPECT_THROW((void)read(load, "strain = 0.1"), BadInput);
+}
+
+/// Increments of a stage take the box to its nominal strain, and stresses go a straight way.
+TEST(Stages, IncrementsComeToTheEnd) {
+  MacroStage stage = one("kind = \"oedometric\"\nstrain = 0.2\nsteps = 4\nincrements_per_step = 3");
+  double length = 1.0;
+  for (std::int64_t n = 1; n <= 12; ++n) length *= 1.0 - strain_increment(stage, n)[2];
+  EXPECT_NEAR(length, 0.8, 1e-15);
+  stage = one("kind = \"consolidation\"\nstress = [100, 200, 300]\nsteps = 5\nincrements_per_step = 2");
+  const std::vector<Vec3> starts{{{0.0, 50.0, 500.0}}};
+  EXPECT_EQ(stress_at(stage, 5, starts), (Vec3{{50.0, 125.0, 400.0}}));
+  EXPECT_EQ(stress_at(stage, 10, starts), (Vec3{{100.0, 200.0, 300.0}}));
+}
+
+}  // namespace
