@@ -14,6 +14,7 @@
 #include "common/state/checkpoint.h"
 #include "macrosim/body_contacts.h"
 #include "macrosim/curve_notes.h"
+#include "macrosim/grain_record.h"
 #include "macrosim/pressed_box.h"
 
 namespace softgrain {
@@ -76,6 +77,7 @@ void record(CompressionState& state, const MacroSpec& spec, const MacroStage& st
   c.coordination.push_back(2.0 * static_cast<double>(r.contacts) / bodies);
   c.residual.push_back(rest.residual);
   record_bodies(state.macro, c);
+  if (!spec.splits.empty()) record_grains(state.macro, spec, c);
   note_relaxation(c, rest, strain, stage.tolerance);
 }
 

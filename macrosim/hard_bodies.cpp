@@ -18,6 +18,7 @@ AnyLaw HardBodies::law(const MacroSpec& spec, double friction, double restitutio
 }
 
 HardBodies::HardBodies(const MacroSpec& spec, const MacroPacking& packing, double friction, double restitution) {
+  frictional_ = friction > 0.0;
   system.materials = {hard_material(spec)};
   system.laws = LawSet(1);
   system.laws.set(0, 0, law(spec, friction, restitution));
@@ -49,10 +50,23 @@ double HardBodies::fraction() const {
   return volume / (edge[0] * edge[1] * edge[2]);
 }
 
+std::vector<BodySpring> HardBodies::springs() const {
+  std::vector<BodySpring> out;
+  const auto& list = system.contacts;
+  if (!frictional_ || !list.has_spring) return out;
+  for (const ContactSection& section : list.sections) {
+    if (section.geometry != Geometry::sphere_sphere) continue;
+    for (auto c = at(section.begin); c < at(section.end); ++c)
+      if (list.spring[c] != Stored<3>{}) out.push_back({list.i[c], list.j[c], list.spring[c]});
+  }
+  return out;
+}
+
 void HardBodies::take_over(MacroPacking& packing) const {
   packing.low = box_low(system, box);
   packing.high = box_high(system, box);
   for (std::size_t k = 0; k < packing.bodies.size(); ++k) packing.bodies[k].x = system.particles.sphere[k].x;
+  packing.springs = springs();
   packing.cost += {system.cost.loop_passes, system.cost.contact_evaluations, watch_.seconds()};
 }
 

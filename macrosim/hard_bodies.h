@@ -20,10 +20,13 @@ struct HardBodies {
   [[nodiscard]] Vec3 size() const { return box_high(system, box) - box_low(system, box); }
   [[nodiscard]] double pressure();        ///< mean of all axes, of the last pass [Pa]
   [[nodiscard]] double fraction() const;  ///< of the box that bodies fill
-  /// Places of bodies and the box go to the packing, what it took is added to its cost.
+  /// Places of bodies, springs and the box go to the packing, what it took is added to its cost.
   void take_over(MacroPacking& packing) const;
 
  private:
+  [[nodiscard]] std::vector<BodySpring> springs() const;
+
+  bool frictional_ = false;
   ContactVirial<3> virial_;
   Stopwatch watch_;
 };

@@ -95,6 +95,37 @@ MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::
   return packing;
 }
 
+namespace {
+
+void write_springs(const h5::Group& group, const std::vector<BodySpring>& springs) {
+  if (springs.empty()) return;
+  std::vector<std::int64_t> pairs;
+  std::vector<double> values;
+  for (const BodySpring& s : springs) {
+    pairs.insert(pairs.end(), {s.i, s.j});
+    values.insert(values.end(), {s.spring[0], s.spring[1], s.spring[2]});
+  }
+  group.write("spring_bodies", pairs);
+  group.write("springs", values, {springs.size(), 3});
+}
+
+void read_springs(const h5::Group& group, MacroPacking& packing) {
+  if (!group.has("springs")) return;
+  const auto pairs = group.integers("spring_bodies");
+  const auto values = group.doubles("springs");
+  const auto bodies = static_cast<std::int64_t>(packing.bodies.size());
+  if (2 * values.size() != 3 * pairs.size()) throw FileTrouble("macro packing: springs of wrong length");
+  for (std::size_t k = 0; 2 * k < pairs.size(); ++k) {
+    if (pairs[2 * k] < 0 || pairs[2 * k] >= bodies || pairs[2 * k + 1] < 0 || pairs[2 * k + 1] >= bodies)
+      throw FileTrouble("macro packing: a spring of bodies that are not there");
+    packing.springs.push_back({static_cast<std::int32_t>(pairs[2 * k]),
+                               static_cast<std::int32_t>(pairs[2 * k + 1]),
+                               {{values[3 * k], values[3 * k + 1], values[3 * k + 2]}}});
+  }
+}
+
+}  // namespace
+
 void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   std::vector<double> rows;
   std::vector<std::int64_t> soft;
@@ -107,6 +138,7 @@ void write_macro_packing(const h5::Group& group, const MacroPacking& packing) {
   group.write("box", corners);
   group.write("bodies", rows, {packing.bodies.size(), 4});
   group.write("soft", soft);
+  write_springs(group, packing.springs);
   group.attribute("loop_passes", packing.cost.loop_passes);
   group.attribute("contact_evaluations", packing.cost.contact_evaluations);
   group.attribute("seconds", packing.cost.seconds);
@@ -120,6 +152,7 @@ MacroPacking read_macro_packing(const h5::Group& group) {
   MacroPacking packing{{{corners[0], corners[1], corners[2]}}, {{corners[3], corners[4], corners[5]}}, {}};
   for (std::size_t k = 0; k < soft.size(); ++k)
     packing.bodies.push_back({{{rows[4 * k], rows[4 * k + 1], rows[4 * k + 2]}}, rows[4 * k + 3], soft[k] != 0});
+  read_springs(group, packing);
   if (group.has_attribute("loop_passes"))
     packing.cost = {group.integer("loop_passes"), group.integer("contact_evaluations"), group.number("seconds")};
   return packing;

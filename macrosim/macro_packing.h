@@ -20,11 +20,19 @@ struct MacroBody {
   bool soft = false;
 };
 
+/// The tangential spring of two bodies in touch, as laws keep it.
+struct BodySpring {
+  std::int32_t i = 0;
+  std::int32_t j = 0;
+  Vec3 spring{};
+};
+
 struct MacroPacking {
   Vec3 low{};  ///< corners of the box [m]
   Vec3 high{};
   std::vector<MacroBody> bodies;
-  Cost cost{};  ///< of its preparation
+  Cost cost{};                        ///< of its preparation
+  std::vector<BodySpring> springs{};  ///< of a preparation with friction, in the order of i, then j
 
   [[nodiscard]] Vec3 size() const { return high - low; }
   [[nodiscard]] double body_volume() const;     ///< of solid grains and shells [m^3]

@@ -102,6 +102,7 @@ struct MacroSpec {
   double density = 2500.0;
   double start_pressure = 1.0e-5;  ///< of the preparation, over E
   MacroTest test = MacroTest::oedometric;
+  std::vector<double> splits;  ///< of grains into coarse and fine, over the largest radius: who bears what is recorded
   std::vector<MacroStage> stages;        ///< of test "stages"; the numbers below are those of the other tests
   double strain_end = 0.15;              ///< nominal; of shear: logarithmic
   double preload = 0.0;                  ///< shear: isotropic nominal strain before

@@ -7,6 +7,7 @@
 #include "common/core/error.h"
 #include "common/core/random.h"
 #include "common/core/solid_sphere.h"
+#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
 
@@ -67,6 +68,25 @@ void close_box(MacroSystem& out, const MacroSpec& spec, const MacroPacking& pack
     for (std::int32_t wall = 0; wall < 6; ++wall) out.body.push_back(out.bodies + wall);
   }
   for (const MacroBody& b : packing.bodies) out.largest_radius = std::max(out.largest_radius, b.r);
+}
+
+/// Solid grains go on bearing what they bore along their contacts when the preparation ended; what soft particles bore
+/// is that of hard bodies, and forgotten.
+void load_springs(System3& s, const MacroPacking& packing) {
+  if (packing.springs.empty()) return;
+  rebuild_neighbours(s);
+  auto& list = s.contacts;
+  for (const ContactSection& section : list.sections) {
+    if (section.geometry != Geometry::sphere_sphere) continue;
+    auto c = at(section.begin);
+    for (const BodySpring& b : packing.springs) {
+      const auto before = [&](std::size_t k) { return list.i[k] != b.i ? list.i[k] < b.i : list.j[k] < b.j; };
+      while (c < at(section.end) && before(c)) ++c;
+      if (c == at(section.end)) break;
+      const bool solid = !packing.bodies[at(b.i)].soft && !packing.bodies[at(b.j)].soft;
+      if (list.i[c] == b.i && list.j[c] == b.j && solid) list.spring[c] = b.spring;
+    }
+  }
 }
 
 void add_shells(MacroSystem& out, const MacroSpec& spec, const MacroPacking& packing,
@@ -145,6 +165,7 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
               solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
   }
   close_box(out, spec, packing, 2);
+  if (spec.friction > 0.0) load_springs(out.system, packing);
   return out;
 }
 

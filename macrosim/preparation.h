@@ -24,8 +24,8 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
                            double fraction = 0.30, Boundary boundary = Boundary::walls);
 
-/// Images of a body must stay two diameters of the largest one apart. Throws BadInput when the bodies of a periodic cell
-/// are so few that they would not once they are packed.
+/// Images of a body must stay two diameters of the largest one apart. Throws BadInput when the bodies of a periodic
+/// cell are so few that they would not once they are packed.
 void require_room_for_images(const std::vector<MacroBody>& bodies);
 
 /// What the named preparations are:

@@ -195,6 +195,9 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
   write_if_any(group, curve, kBodyForces);
+  if (curve.more.empty()) return;
+  const h5::Group more = group.create("more");
+  for (const auto& [name, values] : curve.more) more.write(name, std::span<const double>(values));
 }
 
 MacroCurve read_macro_curve(const h5::Group& group) {
@@ -220,6 +223,15 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   for (const Column& c : kColumns) read_column(group, curve, c, points);
   for (const Column& c : kOptionalColumns)
     if (group.has(c.name)) read_column(group, curve, c, points);
+  if (group.has("more")) {
+    const h5::Group more = group.open("more");
+    for (const std::string& name : more.children()) {
+      curve.more[name] = more.doubles(name);
+      if (curve.more[name].size() != points)
+        throw FileTrouble(
+            fmt::format("data set 'more/{}' has {} values for {} points", name, curve.more[name].size(), points));
+    }
+  }
   if (group.has(kBodyForces.name)) read_column(group, curve, kBodyForces, group.doubles(kBodyForces.name).size());
   return curve;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -148,6 +149,7 @@ struct MacroCurve {
   std::vector<double> strain_x;             ///< 1 - L/L0, L0 the length at the start
   std::vector<double> strain_y;
   std::vector<double> strain_z;
+  std::map<std::string, std::vector<double>> more;  ///< per point, by name: what one kind of scene alone records
   bool usable = true;
   std::string note;
   Cost cost;

@@ -49,6 +49,7 @@ enum class Place {
   relaxations,
   macro,
   macro_scenes,
+  material,
   packing,
   radii,
   particles,

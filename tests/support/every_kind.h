@@ -235,6 +235,27 @@ end = )" + end + "\n";
   return text;
 }
 
+inline constexpr const char* kTinyMaterial = R"(kind = "material"
+seed = 1
+samples = 2
+[grains]
+count = 80
+ratio = 1.5
+[packing]
+preparation = "fast"
+[test]
+steps = 2
+increments_per_step = 2
+[[stage]]
+kind = "isotropic"
+strain = 0.02
+[[stage]]
+kind = "triaxial"
+strain = 0.02
+[output]
+snapshots = 2
+)";
+
 struct KindScene {
   std::string name;
   std::string command;
@@ -249,6 +270,7 @@ inline std::vector<KindScene> every_kind() {
   std::vector<KindScene> kinds{{"pipeline", "", kTinyPipeline, 3},
                                {"soft-particle", "", kTinySoftParticle, 0},
                                {"macro", "", kTinyMacro, 0},
+                               {"material", "", kTinyMaterial, 0},
                                {"macro-comparison", "", kTinyComparison, 0},
                                {"law-table", "", std::string(kTinyLawTable) + kTinyLawFit, 0},
                                {"hierarchy", "", kTinyHierarchy, 3},

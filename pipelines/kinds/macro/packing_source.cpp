@@ -20,7 +20,7 @@ inline constexpr auto words<BodyKind> = word_list<BodyKind>({{BodyKind::solid, "
 namespace {
 
 /// Raised whenever the same key would give another packing.
-constexpr int kPackingSchema = 1;
+constexpr int kPackingSchema = 2;
 
 std::size_t column_of(const CsvFile& csv, const char* name, Unit unit, const char* example) {
   for (std::size_t k = 0; k < csv.columns().size(); ++k) {

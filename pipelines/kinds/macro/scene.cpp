@@ -41,10 +41,13 @@ void mistake_beside(const SceneTable& t, std::initializer_list<const char*> keys
     if (t.has(key)) t.mistake(key, problem);
 }
 
+}  // namespace
+
 /// A name stands for all that defines a preparation; keys beside it replace single parts.
 void read_preparation(const SceneTable& t, MacroSpec& spec) {
   spec.preparation = t.choice<Preparation>("preparation", spec.preparation);
   if (t.has("preparation") || t.has("mu")) spec.protocol = protocol_of(spec.preparation, spec.friction);
+  spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
   PreparationProtocol& p = spec.protocol;
   p.start_fraction = t.number("start_fraction", Unit::none, Range{0.05, 0.4, false, false}, p.start_fraction);
   p.inertial_number = t.number("inertial_number", Unit::none, Range::closed(0.0, 1.0), p.inertial_number);
@@ -72,6 +75,8 @@ void read_preparation(const SceneTable& t, MacroSpec& spec) {
   mistake_beside(t, {"start_fraction"}, "construction \"voids\" begins at solid_fill");
 }
 
+namespace {
+
 void read_bodies(const SceneTable& t, MacroSpec& spec) {
   spec.boundary = t.choice<Boundary>("boundary", spec.boundary);
   spec.construction = t.choice<Construction>("construction", spec.construction);
@@ -97,8 +102,9 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
   if (spec.boundary == Boundary::periodic) mistake_beside(t, {"wall_mu"}, "a periodic cell has no walls");
   read_preparation(t, spec);
-  spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
 }
+
+}  // namespace
 
 void read_test(const SceneTable& t, MacroSpec& spec) {
   if (t.has("test"))
@@ -111,10 +117,9 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
   spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
   spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
-  spec.kt_secant =
-      t.choice<TangentialSlope>("kt", spec.kt_secant ? TangentialSlope::secant : TangentialSlope::initial) ==
-      TangentialSlope::secant;
 }
+
+namespace {
 
 /// `packing`: places, radii and kinds of all bodies from a file; what would make them otherwise has no place beside it.
 void read_given(const SceneTable& t, MacroSetup& setup) {
@@ -235,6 +240,10 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   MacroSetup setup = base;
   read_bodies(macro, setup.spec);
   read_test(macro, setup.spec);
+  MacroSpec& spec = setup.spec;
+  spec.kt_secant =
+      macro.choice<TangentialSlope>("kt", spec.kt_secant ? TangentialSlope::secant : TangentialSlope::initial) ==
+      TangentialSlope::secant;
   setup.samples = macro.count("samples", 1, 10000, setup.samples);
   read_given(macro, setup);
   setup.twins = read_twins(macro, setup.twins);

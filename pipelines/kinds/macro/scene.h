@@ -32,6 +32,10 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
 /// Replaces what a table says, keeps the rest. Throws BadInput.
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
 
+/// Parts of [macro] that other kinds of scene share. The first needs spec.friction. Throw BadInput.
+void read_preparation(const SceneTable& t, MacroSpec& spec);
+void read_test(const SceneTable& t, MacroSpec& spec);
+
 /// Twins are filled with packings like the one that was measured. Throws BadInput, at key `resolved`, when the scene
 /// has twins and `spec` of the law in this file does not say what is inside.
 void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,

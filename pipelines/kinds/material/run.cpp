@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/io/text_file.h"
+#include "macrosim/grain_record.h"
+#include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/scene.h"
+#include "pipelines/kinds/material/summary.h"
+#include "pipelines/run/run.h"
+#include "pipelines/run/text_table.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Nothing soft is there: the laws of soft particles are never asked.
+NamedLaws no_laws() {
+  NamedLaws laws;
+  laws.name = kMaterialEngine;
+  laws.laws = pair_soft_laws({}, {}, 0.0);
+  return laws;
+}
+
+struct VariantResult {
+  const MaterialVariant* variant = nullptr;
+  std::string file;
+  std::vector<MacroCurve> curves;
+};
+
+std::string file_of(const MaterialScene& scene, const MaterialVariant& v, const std::string& kind) {
+  return scene.variants.size() == 1 && v.name == "material" ? kind + ".h5" : kind + "_" + v.name + ".h5";
+}
+
+VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Run& run) {
+  const auto packings = make_macro_packings(v.setup, run, file_of(scene, v, "material_initial"));
+  VariantResult r{&v, file_of(scene, v, "material"), {}};
+  r.curves =
+      run_engines({v.setup, packings, {}, run.seed, v.name}, {no_laws()}, run, file_of(scene, v, "states_material"));
+  for (MacroCurve& c : r.curves) c.law = {};
+  save_macro(r.curves, run.path(r.file), run.provenance);
+  return r;
+}
+
+std::optional<MeanError> mean_at_start(const std::vector<MacroCurve>& curves,
+                                       const std::function<const std::vector<double>&(const MacroCurve&)>& column) {
+  std::vector<double> values;
+  for (const MacroCurve& c : curves)
+    if (c.usable && !column(c).empty()) values.push_back(column(c).front());
+  return values.empty() ? std::nullopt : std::optional(mean_error(values));
+}
+
+MaterialVariantSummary summary_of(const VariantResult& r) {
+  const MacroSpec& spec = r.variant->setup.spec;
+  MaterialVariantSummary s;
+  s.name = r.variant->name;
+  s.file = r.file;
+  s.grains = spec.bodies;
+  s.size_ratio = spec.solid_polydispersity;
+  s.preparation = spec.preparation;
+  s.friction = spec.friction;
+  const auto more = [&](const char* name) {
+    return mean_at_start(r.curves,
+                         [name](const MacroCurve& c) -> const std::vector<double>& { return c.more.at(name); });
+  };
+  s.solid_fraction_start = more(kSolidFraction);
+  s.rattlers_start = more(kRattlers);
+  s.coordination_start =
+      mean_at_start(r.curves, [](const MacroCurve& c) -> const std::vector<double>& { return c.coordination; });
+  s.runs = softgrain::summary_of(r.curves, kMaterialEngine);
+  return s;
+}
+
+/// One row per recorded point of every sample of every variant.
+TextTable points_of(const std::vector<VariantResult>& results) {
+  TextTable table{{"variant", "sample", "stage", "strain_x", "strain_y", "strain_z", "stress_x [Pa]", "stress_y [Pa]",
+                   "stress_z [Pa]", "p/E", "q/p", "coordination", "residual"},
+                  {}};
+  for (const auto& [name, values] : results.front().curves.front().more) table.header.push_back(name);
+  for (const VariantResult& r : results)
+    for (const MacroCurve& c : r.curves) {
+      const std::vector<double> p = mean_stresses(c);
+      const std::vector<double> ratio = stress_ratios(c);
+      for (std::size_t k = 0; k < c.strain.size(); ++k) {
+        std::vector<std::string> row{r.variant->name, std::to_string(c.sample),
+                                     c.stages[static_cast<std::size_t>(c.stage[k])].name};
+        for (const double x :
+             {c.strain_x[k], c.strain_y[k], c.strain_z[k], c.stress_x[k], c.stress_y[k], c.stress_axial[k],
+              p[k] / c.start.youngs_modulus, ratio[k], c.coordination[k], c.residual[k]})
+          row.push_back(std::isfinite(x) ? fmt::format("{:.8g}", x) : "");
+        for (const auto& [name, values] : c.more) row.push_back(fmt::format("{:.6g}", values[k]));
+        table.rows.push_back(std::move(row));
+      }
+    }
+  return table;
+}
+
+std::string people_text(const MaterialSummary& s) {
+  std::string text;
+  for (const MaterialVariantSummary& v : s.variants) {
+    text +=
+        fmt::format("{}: {} sample{} of {} grains", v.name, v.runs.samples, v.runs.samples == 1 ? "" : "s", v.grains);
+    if (v.solid_fraction_start)
+      text +=
+          fmt::format(", solid fraction {:.4f}{} at the start", v.solid_fraction_start->mean,
+                      v.solid_fraction_start->n > 1 ? fmt::format(" +- {:.4f}", v.solid_fraction_start->error) : "");
+    text += "\n";
+    for (const StageMeans& m : v.runs.stages)
+      if (m.axial_end && m.ratio_end)
+        text += fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}\n", m.record.name,
+                            m.axial_end->mean / s.youngs_modulus, m.lateral_end->mean / s.youngs_modulus,
+                            m.ratio_end->mean);
+  }
+  return text;
+}
+
+MaterialSummary summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run) {
+  MaterialSummary s;
+  s.head.title = scene.title;
+  s.youngs_modulus = scene.variants.front().setup.spec.youngs_modulus;
+  for (const VariantResult& r : results) {
+    s.variants.push_back(summary_of(r));
+    s.head.files[r.variant->name] = run.path(r.file);
+    for (const MacroCurve& c : r.curves)
+      if (!c.usable || !(c.stress_axial.back() > 0.0))
+        s.head.reject(fmt::format("{}, sample {}: {}", r.variant->name, c.sample,
+                                  c.note.empty() ? "bears no stress at its end" : c.note));
+    for (const SizesSummary& sizes :
+         summaries_of(drawn_sizes(r.variant->setup, run.seed, scene.variants.size() > 1 ? r.variant->name + ": " : "")))
+      s.head.sizes.push_back(sizes);
+  }
+  s.head.files["points"] = run.path("material.csv");
+  s.head.files["report"] = run.path("report.html");
+  return s;
+}
+
+ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
+  const MaterialScene material = read_material_scene(scene);
+  std::string sizes;
+  for (const MaterialVariant& v : material.variants) sizes += sizes_text(v.setup.spec);
+  const Run run(scene, options, "run", material.seed, {.text = sizes});
+  std::vector<VariantResult> results;
+  run.context.guard([&] {
+    for (const MaterialVariant& v : material.variants) results.push_back(run_variant(material, v, run));
+  });
+  const MaterialSummary summary = summarise(material, results, run);
+  write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
+  return run.finish(json_of(summary), people_text(summary));
+}
+
+}  // namespace
+
+SceneKind material_kind() {
+  return {.name = "material",
+          .command = "run",
+          .run = run_material,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_material(scene, out); },
+          .read = [](const Scene& scene) { (void)read_material_scene(scene); },
+          .results = material_results()};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,155 @@
+#include "pipelines/kinds/material/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "common/core/error.h"
+#include "common/packing/grading_scene.h"
+#include "macrosim/preparation.h"
+#include "microsim/particles/scene_memory.h"
+#include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/stages.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+#include "pipelines/run/variant_name.h"
+
+namespace softgrain {
+
+namespace {
+
+/// A third: what counts as coarse in most pages about mixtures; a half beside it.
+const std::vector<double> kSplits{1.0 / 3.0, 0.5};
+
+MacroSetup defaults() {
+  MacroSetup setup;
+  setup.twins.clear();
+  MacroSpec& spec = setup.spec;
+  spec.boundary = Boundary::periodic;
+  spec.soft_share = 0.0;
+  spec.bodies = 2000;
+  spec.solid_polydispersity = 6.0;
+  spec.splits = kSplits;
+  spec.start_pressure = 1e-4;
+  return setup;
+}
+
+void read_matter(const SceneTable& t, MacroSpec& spec) {
+  spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
+  spec.poisson_ratio = t.number("nu", Unit::none, Range{-1.0, 0.5, true, false}, spec.poisson_ratio);
+  spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
+  spec.density = t.number("density", Unit::density, Range::positive(), spec.density);
+}
+
+void read_grains(const SceneTable& t, MacroSpec& spec) {
+  spec.bodies = t.count("count", 8, 100000000, spec.bodies);
+  if (t.has("exponent") || t.has("radius_max") || t.has("ratio")) spec.solid_sizes.reset();
+  spec.exponent = t.number("exponent", Unit::none, Range::above(1.0), spec.exponent);
+  spec.solid_radius_max = t.number("radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
+  spec.solid_polydispersity = t.number("ratio", Unit::none, Range::above(1.0), spec.solid_polydispersity);
+  if (!t.has("sizes")) return;
+  spec.solid_sizes = read_sizes(t, "sizes", {"exponent", "radius_max", "ratio"});
+  if (!spec.solid_sizes) return;
+  spec.solid_radius_max = spec.solid_sizes->largest();
+  spec.solid_polydispersity = spec.solid_sizes->largest() / spec.solid_sizes->smallest();
+}
+
+void read_splits(const SceneTable& t, MacroSpec& spec) {
+  spec.splits = t.numbers("splits", Unit::none, Range{0.0, 1.0, true, true}, spec.splits);
+  std::set<double> once(spec.splits.begin(), spec.splits.end());
+  if (once.size() != spec.splits.size()) t.mistake("splits", "one is there twice");
+  if (spec.splits.empty()) t.mistake("splits", "at least one value is needed");
+}
+
+void require_memory(const SceneTable& t, const MacroSetup& setup) {
+  const std::string problem = macro_memory_problem(setup, 0.0, available_memory());
+  if (!problem.empty()) t.reject("count", problem);
+}
+
+/// Preparations of materials end at a finer tolerance: at 0.03 the curve after one starts too soft.
+constexpr double kPreparationTolerance = 3e-3;
+
+void read_finer_preparation(const SceneTable& t, MacroSpec& spec) {
+  read_preparation(t, spec);
+  if (!t.has("preparation_tolerance") && (t.has("preparation") || t.has("mu")))
+    spec.protocol.tolerance = kPreparationTolerance;
+  if (spec.preparation == Preparation::lammps)
+    t.mistake("preparation",
+              "\"lammps\" goes with scenes of kind \"macro\": known here are frictionless, fast, slow, dense");
+}
+
+/// Keys of all tables of the scene, in one.
+MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool sound) {
+  MaterialVariant v{read_variant_name(t), base};
+  MacroSpec& spec = v.setup.spec;
+  read_matter(t, spec);
+  read_grains(t, spec);
+  read_finer_preparation(t, spec);
+  if (t.has("test")) spec.stages.clear();
+  read_test(t, spec);
+  read_stages(t, t, spec);
+  v.setup.samples = t.count("samples", 1, 10000, v.setup.samples);
+  if (sound && t.sound()) require_memory(t, v.setup);
+  return v;
+}
+
+}  // namespace
+
+MaterialScene read_material_scene(const Scene& scene) {
+  return scene.read([](const SceneTable& root) {
+    MaterialScene out;
+    (void)root.choice("kind", {"material"});
+    out.title = root.text("title", "");
+    out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    MacroSetup base = defaults();
+    const SceneTable grains = root.table("grains");
+    const SceneTable packing = root.table_or_empty("packing");
+    const SceneTable test = root.table_or_empty("test");
+    read_matter(root.table_or_empty("material"), base.spec);
+    read_grains(grains, base.spec);
+    read_splits(grains, base.spec);
+    base.spec.protocol = protocol_of(base.spec.preparation, base.spec.friction);
+    base.spec.protocol.tolerance = kPreparationTolerance;
+    read_finer_preparation(packing, base.spec);
+    read_test(test, base.spec);
+    read_stages(root, test, base.spec);
+    base.samples = root.count("samples", 1, 10000, base.samples);
+    base.kept_states = read_kept_states(root);
+    std::set<std::string> names;
+    const bool sound = root.sound();
+    for (const SceneTable& t : root.tables("variant")) {
+      out.variants.push_back(read_variant(t, base, sound));
+      if (!names.insert(out.variants.back().name).second) t.mistake("name", "is used twice");
+    }
+    if (!out.variants.empty()) return out;
+    if (root.sound()) require_memory(grains, base);
+    out.variants.push_back({"material", base});
+    return out;
+  });
+}
+
+void check_material(const Scene& scene, Findings& out) {
+  const MaterialScene material = read_material_scene(scene);
+  nlohmann::json variants = nlohmann::json::array();
+  for (const MaterialVariant& v : material.variants) {
+    const nlohmann::json common = std::exchange(out.facts, nlohmann::json{{"name", v.name}});
+    if (material.variants.size() > 1) out.lines += "  variant " + v.name + ":\n";
+    require_room_for_images(drawn_bodies(v.setup.spec, material.seed, 0));
+    add_sizes(out, drawn_sizes(v.setup, material.seed));
+    check_macro(v.setup, {}, nullptr, out);
+    constexpr double kCoarse = 100.0;  // above a third of the largest radius
+    double coarse = 0.0;
+    for (const MacroBody& b : drawn_bodies(v.setup.spec, material.seed, 0))
+      coarse += b.r > v.setup.spec.solid_radius_max / 3.0 ? 1.0 : 0.0;
+    if (coarse < kCoarse)
+      out.warn(
+          fmt::format("{}: {:.0f} grains above a third of the largest radius are few: stresses of samples will "
+                      "scatter by more than 5 %",
+                      v.name, coarse));
+    variants.push_back(std::exchange(out.facts, common));
+  }
+  out.facts["variants"] = variants;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,34 @@
+// Scenes of kind "material": packings of grains in a periodic cell, and tests of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/run/findings.h"
+
+namespace softgrain {
+
+/// One material, its preparation and its test.
+struct MaterialVariant {
+  std::string name;  ///< in files and tables
+  MacroSetup setup;  ///< without soft particles, periodic
+};
+
+struct MaterialScene {
+  std::string title;
+  std::uint64_t seed = 1;
+  std::vector<MaterialVariant> variants;  ///< one per [[variant]]; without any, the scene itself
+};
+
+/// Reads the whole scene. Throws BadInput, FileTrouble.
+MaterialScene read_material_scene(const Scene& scene);
+
+/// Number, sizes, memory and time of every variant, and what to mind. Throws BadInput, FileTrouble.
+void check_material(const Scene& scene, Findings& out);
+
+/// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5, the kept states,
+/// material.csv, summary.json and the report. Status not_usable when a curve is not usable or carries no stress.
+SceneKind material_kind();
+
+}  // namespace softgrain

@@ -1,0 +1,152 @@
+// Resolved packings: pressure over solid fraction, stresses and their ratio over strain, who bears them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "macrosim/grain_record.h"
+#include "pipelines/kinds/macro/results.h"
+#include "pipelines/kinds/material/results.h"
+#include "pipelines/kinds/material/summary.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/svg_plot.h"
+
+namespace softgrain::report {
+namespace {
+
+struct Variant {
+  std::string name;
+  std::vector<MacroCurve> curves;
+};
+
+std::vector<Variant> variants_of(const RunData& run) {
+  std::vector<Variant> out;
+  for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants)
+    if (const auto* curves = run.file(v.file, load_macro)) out.push_back({v.name, *curves});
+  return out;
+}
+
+const std::vector<double>& more_of(const MacroCurve& c, const std::string& name) {
+  static const std::vector<double> kNone;
+  const auto found = c.more.find(name);
+  return found == c.more.end() ? kNone : found->second;
+}
+
+using Column = std::function<std::vector<double>(const MacroCurve&)>;
+
+/// One line per sample, one colour per variant.
+void add_lines(Plot& plot, const std::vector<Variant>& variants, const Column& x, const Column& y) {
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    bool named = false;
+    for (const MacroCurve& c : variants[v].curves) {
+      Series s{.label = named ? "" : variants[v].name, .hover = "", .x = x(c), .y = y(c)};
+      if (s.x.size() != s.y.size() || s.x.empty()) continue;
+      named = true;
+      s.hover = fmt::format("{}, sample {}{}", variants[v].name, c.sample, c.usable ? "" : " (not usable)");
+      s.style = {.color = palette::cycle(v), .width = 1.4, .marker = Marker::circle, .marker_size = 2.2};
+      if (!c.usable) s.style.opacity = 0.4;
+      s.group = variants[v].name;
+      plot.add(std::move(s));
+    }
+  }
+}
+
+std::vector<double> scaled(std::vector<double> values, double by) {
+  for (double& v : values) v *= by;
+  return values;
+}
+
+std::string line_figure(const std::vector<Variant>& variants, PlotOptions options, const char* caption, const Column& x,
+                        const Column& y) {
+  Plot plot(std::move(options));
+  add_lines(plot, variants, x, y);
+  return plot.empty() ? "" : figure(plot.svg(), caption);
+}
+
+std::vector<double> axial_strain(const MacroCurve& c) { return scaled(c.strain_z, 100.0); }
+
+std::string state_figure(const std::vector<Variant>& variants) {
+  return line_figure(
+      variants,
+      {.id = "material-state",
+       .title = "Mean stress over solid fraction",
+       .x = {.label = "solid fraction"},
+       .y = {.label = "p/E", .scale = Scale::logarithmic}},
+      "Full volume of all grains over that of the cell; p the mean stress from the contacts. One line per sample.",
+      [](const MacroCurve& c) { return more_of(c, kSolidFraction); },
+      [](const MacroCurve& c) { return scaled(mean_stresses(c), 1.0 / c.start.youngs_modulus); });
+}
+
+std::string stress_figure(const std::vector<Variant>& variants) {
+  return line_figure(variants,
+                     {.id = "material-axial",
+                      .title = "Axial stress",
+                      .x = {.label = "axial strain [%]"},
+                      .y = {.label = "axial stress over E"}},
+                     "Nominal strain from the start of the test.", axial_strain,
+                     [](const MacroCurve& c) { return scaled(c.stress_axial, 1.0 / c.start.youngs_modulus); });
+}
+
+std::string ratio_figure(const std::vector<Variant>& variants) {
+  return line_figure(
+      variants,
+      {.id = "material-ratio", .title = "Stress ratio", .x = {.label = "axial strain [%]"}, .y = {.label = "q/p"}},
+      "q = √(3J₂), p the mean stress.", axial_strain, [](const MacroCurve& c) { return stress_ratios(c); });
+}
+
+std::string rattler_figure(const std::vector<Variant>& variants) {
+  return line_figure(variants,
+                     {.id = "material-rattlers",
+                      .title = "Rattlers",
+                      .x = {.label = "axial strain [%]"},
+                      .y = {.label = "share of the grains [%]"}},
+                     "Grains with fewer than four contacts (with friction: two) to grains that do not rattle.",
+                     axial_strain, [](const MacroCurve& c) { return scaled(more_of(c, kRattlers), 100.0); });
+}
+
+/// Shares at start and end, mean over samples.
+std::string share_table(const std::vector<Variant>& variants) {
+  HtmlTable table({"variant", "contacts", "share of p at the start [%]", "share of p at the end [%]"}, 2);
+  for (const Variant& v : variants) {
+    if (v.curves.empty()) continue;
+    for (const auto& [name, ignored] : v.curves.front().more) {
+      if (name == kSolidFraction || name == kRattlers) continue;
+      std::vector<double> first;
+      std::vector<double> last;
+      for (const MacroCurve& c : v.curves) {
+        const auto& values = more_of(c, name);
+        if (!c.usable || values.empty()) continue;
+        first.push_back(100.0 * values.front());
+        last.push_back(100.0 * values.back());
+      }
+      const MeanError a = mean_error(first);
+      const MeanError b = mean_error(last);
+      table.row({v.name, name, format_with_error(a.mean, a.error), format_with_error(b.mean, b.error)});
+    }
+  }
+  if (table.empty()) return "";
+  return table.html() +
+         paragraph(
+             "Shares of the mean stress by the virial of the contacts; a grain is coarse above the named "
+             "share of the largest radius. Mean over samples ± standard error.");
+}
+
+}  // namespace
+
+std::string material_section(const RunData& run) {
+  const std::vector<Variant> variants = variants_of(run);
+  if (variants.empty()) return "";
+  std::string body = figure_row({state_figure(variants), stress_figure(variants)});
+  body += figure_row({ratio_figure(variants), rattler_figure(variants)});
+  for (const Variant& v : variants) {
+    if (v.curves.empty()) continue;
+    if (variants.size() > 1) body += "<h3>" + escape(v.name) + "</h3>\n";
+    body += stage_parts(v.curves, MacroTest::oedometric);
+  }
+  return section("material", "Material", body + share_table(variants));
+}
+
+}  // namespace softgrain::report

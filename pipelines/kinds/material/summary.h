@@ -1,0 +1,47 @@
+// What a material came to: summary.json of its run, which the report reads back.
+#pragma once
+
+#include "pipelines/results/summary.h"
+
+namespace softgrain {
+
+/// Of the samples of one variant.
+struct MaterialVariantSummary {
+  std::string name;
+  std::string file;  ///< of its curves
+  std::int64_t grains = 0;
+  double size_ratio = 0.0;  ///< largest over smallest radius
+  Preparation preparation = Preparation::frictionless;
+  double friction = 0.0;
+  std::optional<MeanError> solid_fraction_start;
+  std::optional<MeanError> rattlers_start;
+  std::optional<MeanError> coordination_start;
+  EngineSummary runs;
+};
+
+void fields(auto&& visit, Of<MaterialVariantSummary> auto& s) {
+  visit("name", s.name);
+  visit("file", s.file);
+  visit("grains", s.grains);
+  visit("size_ratio", s.size_ratio);
+  visit("preparation", s.preparation);
+  visit("mu", s.friction);
+  visit("solid_fraction_start", s.solid_fraction_start, kLeftOut);
+  visit("rattlers_start", s.rattlers_start, kLeftOut);
+  visit("coordination_start", s.coordination_start, kLeftOut);
+  fields(visit, s.runs);
+}
+
+struct MaterialSummary {
+  SummaryHead head;
+  double youngs_modulus = 0.0;  ///< E of the grains [Pa]
+  std::vector<MaterialVariantSummary> variants;
+};
+
+void fields(auto&& visit, Of<MaterialSummary> auto& s) {
+  fields(visit, s.head);
+  visit("E", s.youngs_modulus);
+  visit("variants", s.variants);
+}
+
+}  // namespace softgrain
