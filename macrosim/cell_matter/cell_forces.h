@@ -1,0 +1,61 @@
+// Forces on the sites of cells, stress and loads of walls: derivatives of the energy of the matter in them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/tessellation/radical_cells.h"
+#include "macrosim/cell_matter/equation_of_state.h"
+#include "macrosim/cell_matter/face_springs.h"
+
+namespace softgrain {
+
+struct CellLaw {
+  EquationOfState equation;
+  PoreGuard guard;
+  FaceFriction friction;
+};
+
+/// One state of all cells. With U = sum U_i(V_i), dU_i/dV_i = -p_i, and for the face between i and j (area A, distance
+/// d, centroid c) dV_i/dx_j = (A/d)(x_j - c), which is the motion of its plane when j moves [radical cells: the plane
+/// stays perpendicular to x_j - x_i]:
+///   force on j: sum over its faces of (p_i - p_j)(A/d)(x_j - c) + T,
+///   stress in a periodic cell: 1/V sum over faces, each once, of {(A/d)[p_i (x_j - c) + p_j (c - x_i)] + T} (x) (x_j -
+///   x_i),
+/// compression positive, T of FaceSprings. The resolved grains have no contact force on top: it is in p.
+struct CellForces {
+  std::vector<CellResponse> response;
+  std::vector<FaceSpring> springs;  ///< trial springs of the faces, in their order
+  std::vector<Vec3> force;          ///< [N]
+  std::vector<double> mass;         ///< of relaxations: half the sum of a row of the stiffness matrix [N/m]
+  Matrix<3> stress;                 ///< of a periodic cell; between planes see wall_loads [Pa]
+  double energy = 0.0;              ///< of the cells [J]
+  double spring_energy = 0.0;       ///< [J]
+  double mean_load = 0.0;           ///< mean of p A over the faces [N]
+  double largest_force = 0.0;       ///< [N]
+  int guarded = 0;  ///< cells that only the guard keeps from collapse: beyond what the law was measured for
+  int sliding = 0;  ///< faces at the Coulomb limit
+
+  /// Largest net force over the mean load of a face; 0 where nothing bears.
+  [[nodiscard]] double residual() const { return mean_load > 0.0 ? largest_force / mean_load : 0.0; }
+  /// Every cell has pores, and every force is a number.
+  [[nodiscard]] bool possible() const;
+};
+
+/// `volume` of the room, `keys` of the faces as springs remember them.
+CellForces cell_forces(const CellLaw& law, const std::vector<CellContent>& content, const std::vector<Sphere<3>>& sites,
+                       const RadicalCells& cells, double volume, const std::vector<FaceKey>& keys,
+                       const FaceSprings& springs);
+
+/// Keys of faces whose sites stay at one image (between planes, or where nobody moves far).
+std::vector<FaceKey> face_keys(const RadicalCells& cells);
+/// The same where site i has been moved back by periods[i] periods.
+std::vector<FaceKey> face_keys(const RadicalCells& cells, const std::vector<std::array<std::int32_t, 3>>& periods);
+
+/// Outward force on each of the six planes: the sum of p_i A over the cells at it. No excess pores beside a wall.
+std::array<double, 6> wall_loads(const RadicalCells& cells, const std::vector<CellResponse>& response);
+
+/// Throws BadInput for what no state can be made of, with the cell: contents without pores or solid, sizes that differ.
+void require_sound(const CellLaw& law, const std::vector<CellContent>& content, std::size_t sites);
+
+}  // namespace softgrain

@@ -1,0 +1,165 @@
+#include "macrosim/cell_matter/cell_start.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "common/core/error.h"
+#include "common/core/solid_sphere.h"
+
+namespace softgrain {
+
+namespace {
+
+double fines_in_cell(const EquationOfState& equation, double volume, double grain, double excess, double void_ratio,
+                     double state) {
+  return std::visit([&](const auto& form) { return form.fines(volume, grain, excess, void_ratio, state); }, equation);
+}
+
+/// Sums over the cells, and each cell's share of the surface.
+struct Mixture {
+  const FinesLaw& law;
+  const CoarseBodies& bodies;
+  const std::vector<double>& volume;
+  double fines = 0.0;
+  double room = 0.0;
+  double coarse = 0.0;
+  double surface = 0.0;
+  double excess = 0.0;  ///< W
+
+  Mixture(const FinesLaw& law_, const CoarseBodies& bodies_, const std::vector<double>& volume_, double fines_)
+      : law(law_), bodies(bodies_), volume(volume_), fines(fines_) {
+    require_values();
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+      room += volume[i];
+      coarse += bodies.grain(i);
+      surface += bodies.surface(i);
+    }
+    excess = coarse > 0.0 ? law.excess.volume(fines, coarse) : 0.0;
+    if (!(room > coarse + fines))
+      throw BadInput(
+          fmt::format("start of cells: coarse grains and fines fill {:.4g} of the room, which leaves no pores",
+                      (coarse + fines) / room));
+  }
+
+  void require_values() const {
+    require_sound(law.equation, {});
+    if (!(law.void_ratio > 0.0))
+      throw BadInput(fmt::format("start of cells: void ratio of the fines {}; it must be above 0", law.void_ratio));
+    if (!(law.excess.alone >= 0.0 && law.excess.many >= 0.0 && law.excess.decay > 0.0))
+      throw BadInput("start of cells: excess pores need void ratios from 0 on and a decay above 0");
+    if (!(fines >= 0.0) || !std::isfinite(fines))
+      throw BadInput(fmt::format("start of cells: {} m^3 of fines; a volume from 0 on is needed", fines));
+    if (volume.empty() || volume.size() != bodies.radius.size() ||
+        (!bodies.soft.empty() && bodies.soft.size() != volume.size()))
+      throw BadInput("start of cells: one volume, one radius and one kind for each body are needed");
+    for (std::size_t i = 0; i < volume.size(); ++i)
+      if (!(volume[i] > bodies.grain(i)) || !std::isfinite(volume[i]))
+        throw BadInput(fmt::format("start of cells: cell {} has a volume of {:.6g} m^3 and its grain {:.6g} m^3", i,
+                                   volume[i], bodies.grain(i)));
+  }
+
+  [[nodiscard]] double excess_of(std::size_t i, double s) const {
+    return surface > 0.0 ? s * excess * bodies.surface(i) / surface : 0.0;
+  }
+  [[nodiscard]] double fines_of(std::size_t i, double s, double state) const {
+    return fines_in_cell(law.equation, volume[i], bodies.grain(i), excess_of(i, s), law.void_ratio, state);
+  }
+  /// Not a number counts as none.
+  [[nodiscard]] double fines_of_all(double s, double state) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+      const double v = fines_of(i, s, state);
+      if (!std::isnan(v)) sum += v;
+    }
+    return sum;
+  }
+
+  [[nodiscard]] CellStart at(double s, double state) const {
+    CellStart out;
+    out.excess_share = s;
+    out.state = state;
+    out.pressure = modulus(law.equation) * std::pow(state, exponent(law.equation));
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+      const double v = fines_of(i, s, state);
+      if (!(v >= 0.0))
+        throw BadInput(fmt::format(
+            "start of cells: cell {} (volume {:.4g} m^3, grain {:.4g} m^3) would hold {:.3g} m^3 of fines: its grain "
+            "and "
+            "their excess pores are more than the pressure allows; take a lower pressure or fewer coarse bodies",
+            i, volume[i], bodies.grain(i), v));
+      out.fines.push_back(v);
+      out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s)});
+    }
+    return out;
+  }
+};
+
+/// Where a falling function is 0; f(low) >= 0 >= f(high).
+template <class F>
+double bisect(double low, double high, const F& f) {
+  for (int k = 0; k < 200; ++k) {
+    const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
+    (f(middle) > 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+double ExcessPores::volume(double fines, double coarse) const {
+  return coarse * (many + (alone - many) * std::exp(-fines / coarse / decay));
+}
+
+double CoarseBodies::grain(std::size_t i) const { return is_soft(i) ? 0.0 : kSphereVolume * cube(radius[i]); }
+
+double CoarseBodies::surface(std::size_t i) const {
+  return is_soft(i) ? 0.0 : 4.0 * std::numbers::pi * radius[i] * radius[i];
+}
+
+CellStart start_at_pressure(const FinesLaw& law, const CoarseBodies& bodies, const std::vector<double>& volume,
+                            double fines, double pressure) {
+  const Mixture mixture(law, bodies, volume, fines);
+  const double state = state_at(law.equation, pressure);
+  if (!(pressure > 0.0) || !(state < 1.0))
+    throw BadInput(
+        fmt::format("start of cells: start pressure {} Pa; it must be above 0 and below {} Pa, where no pores are left",
+                    pressure, modulus(law.equation)));
+  if (!(mixture.excess > 0.0))
+    throw BadInput(
+        "start of cells: a start pressure sets the excess pores of coarse grains, and there are none; give the density "
+        "alone");
+  if (!(mixture.fines_of_all(0.0, state) >= fines))
+    throw BadInput(fmt::format(
+        "start of cells: at {} Pa there is no room for {:.6g} m^3 of fines even without excess pores (at most {:.6g} "
+        "m^3): the start pressure is too low, or the fines jam denser than their void ratio says",
+        pressure, fines, mixture.fines_of_all(0.0, state)));
+  if (std::holds_alternative<PoreForm>(law.equation)) {
+    const double left = 1.0 - state;
+    return mixture.at((mixture.room - mixture.coarse - fines * (1.0 + left * law.void_ratio)) / (left * mixture.excess),
+                      state);
+  }
+  const auto too_many = [&](double s) { return mixture.fines_of_all(s, state) - fines; };
+  double high = 1.0;
+  while (too_many(high) > 0.0 && high < 1e6) high *= 2.0;
+  return mixture.at(bisect(0.0, high, too_many), state);
+}
+
+CellStart start_at_density(const FinesLaw& law, const CoarseBodies& bodies, const std::vector<double>& volume,
+                           double fines) {
+  const Mixture mixture(law, bodies, volume, fines);
+  const double pores = mixture.room - mixture.coarse - fines;
+  const double jammed = mixture.excess + fines * law.void_ratio;
+  const auto too_few = [&](double state) { return fines - mixture.fines_of_all(1.0, state); };
+  if (!(pores < jammed) || !(too_few(0.0) > 0.0))
+    throw BadInput(fmt::format(
+        "start of cells: the mixture does not jam at this density: its pores are {:.4g} of those at which it would",
+        pores / jammed));
+  if (std::holds_alternative<PoreForm>(law.equation)) return mixture.at(1.0, 1.0 - pores / jammed);
+  return mixture.at(1.0, bisect(0.0, 1.0, too_few));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,91 @@
+#include "macrosim/cell_matter/equation_of_state.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_sf_hyperg.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/core/error.h"
+
+namespace softgrain {
+
+CellResponse PoreForm::at(const CellContent& c, double volume) const {
+  const double y = 1.0 - relative_pores(c, volume);
+  if (!(y > 0.0)) return {};
+  const double p = modulus * std::pow(y, exponent);
+  return {p, exponent * p / (y * c.pores), c.pores * p * y / (exponent + 1.0)};
+}
+
+double PoreForm::fines(double volume, double grain, double excess, double void_ratio, double y) const {
+  return (volume - grain - (1.0 - y) * excess) / (1.0 + (1.0 - y) * void_ratio);
+}
+
+CellResponse PorosityForm::at(const CellContent& c, double volume) const {
+  const double onset = c.solid / (c.solid + c.pores);
+  const double phi = c.solid / volume;
+  const double t = phi - onset;
+  if (!(t > 0.0)) return {};
+  const double x = t * (c.solid + c.pores) / c.pores;
+  const double p = modulus * std::pow(x, exponent);
+  const double stiffness = exponent * p / t * phi / volume;
+  // Beyond phi = 1, where the guard refuses the cell, the series is not needed.
+  const double series = phi < 1.0 ? gsl_sf_hyperg_2F1(1.0, 2.0, exponent + 2.0, t / phi) : 1.0;
+  return {p, stiffness, p * c.solid * t / ((exponent + 1.0) * phi * phi) * series};
+}
+
+double PorosityForm::fines(double volume, double grain, double excess, double void_ratio, double x) const {
+  const double a = 1.0 + void_ratio;
+  const double b = grain * (1.0 + a) + excess - volume * (1.0 + x * void_ratio);
+  const double c = grain * (grain + excess) - volume * (grain + x * excess);
+  const double root = std::sqrt(b * b - 4.0 * a * c);
+  return b < 0.0 ? (-b + root) / (2.0 * a) : -2.0 * c / (b + root);
+}
+
+double modulus(const EquationOfState& equation) {
+  return std::visit([](const auto& form) { return form.modulus; }, equation);
+}
+
+double exponent(const EquationOfState& equation) {
+  return std::visit([](const auto& form) { return form.exponent; }, equation);
+}
+
+double state_at(const EquationOfState& equation, double pressure) {
+  return std::pow(pressure / modulus(equation), 1.0 / exponent(equation));
+}
+
+CellResponse PoreGuard::at(const CellContent& c, double volume, double modulus) const {
+  const double q = relative_pores(c, volume);
+  if (q >= from) return {};
+  const double u = from / q;
+  return {modulus * (u - 1.0) * (u - 1.0), 2.0 * modulus * (u - 1.0) * u / (q * c.pores),
+          modulus * c.pores * from * (u - 1.0 / u - 2.0 * std::log(u))};
+}
+
+CellResponse respond(const EquationOfState& equation, const PoreGuard& guard, const CellContent& c, double volume) {
+  if (!(volume > c.solid)) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    return {kNone, kNone, kNone};
+  }
+  CellResponse out = std::visit([&](const auto& form) { return form.at(c, volume); }, equation);
+  const CellResponse more = guard.at(c, volume, modulus(equation));
+  out.pressure += more.pressure;
+  out.stiffness += more.stiffness;
+  out.energy += more.energy;
+  return out;
+}
+
+void require_sound(const EquationOfState& equation, const PoreGuard& guard) {
+  const double a = modulus(equation);
+  const double n = exponent(equation);
+  if (!(a > 0.0) || !std::isfinite(a))
+    throw BadInput(fmt::format("equation of state: modulus {} Pa; it must be above 0", a));
+  if (!(n > 1.0) || !std::isfinite(n))
+    throw BadInput(
+        fmt::format("equation of state: exponent {}; it must be above 1, or stiffness jumps at the onset", n));
+  if (!(guard.from >= 0.0 && guard.from < 1.0))
+    throw BadInput(
+        fmt::format("equation of state: guard from {} of the pores on; it must be within [0, 1)", guard.from));
+}
+
+}  // namespace softgrain

@@ -1,0 +1,73 @@
+// Friction between cells: a tangential spring at every face, with memory from one strain step to the next.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include "common/tessellation/radical_cells.h"
+#include "macrosim/cell_matter/equation_of_state.h"
+
+namespace softgrain {
+
+struct FaceFriction {
+  double coefficient = 0.0;  ///< mu_f; 0: none
+  double stiffness = 1.0;    ///< chi: spring stiffness over B A/d, B the mean of -V dp/dV of both cells
+};
+
+/// A face, whichever image its sites are kept at: i, j and the periods from i to j along the paths of both.
+struct FaceKey {
+  std::int32_t i = 0;
+  std::int32_t j = 0;
+  std::array<std::int32_t, 3> periods{};
+
+  friend auto operator<=>(const FaceKey&, const FaceKey&) = default;
+};
+
+struct FaceSpring {
+  FaceKey key;
+  Vec3 force;              ///< on j from i, in the plane of the face [N]
+  double stiffness = 0.0;  ///< k [N/m]
+  Vec3 separation;         ///< x_j - x_i when it was kept [m]
+  bool slides = false;     ///< at the Coulomb limit
+
+  [[nodiscard]] double energy() const { return stiffness > 0.0 ? norm2(force) / (2.0 * stiffness) : 0.0; }
+};
+
+/// Springs of the last kept state. A trial state never changes them, so a relaxation may try what it likes and friction
+/// depends on where it ends alone.
+///
+/// From a kept spring (T0, k0, D0) the trial spring of a face with separation D, stiffness k = chi B A/d and limit
+/// mu_f p A is T = P [T0 min(1, k/k0) - min(k, (k + k0)/2) (D - D0)], cut to the limit; P projects on the face
+/// (perpendicular to D), B and p are means of both cells. So
+/// - the motion counts as the bodies move, the affine part of an imposed strain included (D holds it);
+/// - the face may turn: T turns with it by projection, which only takes energy away;
+/// - a face that shrinks or unloads (k < k0) keeps its displacement, T = k u; one that grows keeps its force and
+/// stiffens
+///   on the way, dT = k du, here by the mean of both ends (the stiffness of the end alone makes stresses depend on the
+///   strain step, by 4 % at steps of 0.04; the mean leaves 0.1 %). Either way T^2/(2 k) falls with D at rest, so no
+///   change of stiffness makes energy, and work in a step is at least the energy gained;
+/// - a new face begins with zero, once it is kept; a vanished one is forgotten with its energy; without pressure no
+/// limit
+///   and no force.
+/// T acts on j and -T on i, both at the centres: sites have no rotation, so a coarse grain gets no moment from its
+/// faces. (The mantle of fines around it shears and rolls with it; a spin of the grain would need a stiffness of its
+/// own that nothing measures. The price: a rotation of the whole sample as a rigid body would load the springs, and
+/// stress has a small antisymmetric part. Strains without rotation have no such spin on average.) Walls are smooth.
+class FaceSprings {
+ public:
+  /// Trial springs of all faces, in their order. `keys`, `response` and `volume` belong to the trial state.
+  [[nodiscard]] std::vector<FaceSpring> trial(const FaceFriction& friction, const RadicalCells& cells,
+                                              const std::vector<FaceKey>& keys,
+                                              const std::vector<CellResponse>& response) const;
+
+  void keep(std::vector<FaceSpring> springs);
+
+  [[nodiscard]] const std::vector<FaceSpring>& kept() const { return kept_; }
+
+ private:
+  std::vector<FaceSpring> kept_;  ///< ordered by key
+};
+
+}  // namespace softgrain
