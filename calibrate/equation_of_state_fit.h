@@ -1,0 +1,66 @@
+// Fit of the equation of state of packings without shells: pressure over solid fraction, for many spans at once.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calibrate/least_squares.h"
+#include "calibrate/state_curves.h"
+
+namespace softgrain {
+
+struct StateEstimate {
+  double value = 0.0;
+  double error = 0.0;  ///< standard deviation of the replicates; infinite where samples tell none
+  double low = 0.0;    ///< 95 % interval
+  double high = 0.0;
+};
+
+struct StateGroup {
+  std::string name;
+  double span = 1.0;
+  int samples = 0;
+  int points = 0;
+  StateEstimate onset;       ///< phi_J with K and n of all groups
+  double own_modulus = 0.0;  ///< K with this group's own K (n shared): for the test of the collapse
+};
+
+struct StateFitOptions {
+  StateForm form = StateForm::porosity;
+  int replicates = 400;
+  std::uint64_t seed = 1;
+};
+
+struct StateFit {
+  bool usable = false;
+  std::string message = "not run";
+  LeastSquaresFit fit;  ///< parameters ln K, n, phi_J of the groups
+  StateEstimate modulus;
+  StateEstimate exponent;
+  std::vector<StateGroup> groups;  ///< by span, then name
+  double pressure_deviation =
+      0.0;  ///< rms of ln(p/p_fit) within samples (each at its own onset): how well the form holds
+  double sample_deviation = 0.0;  ///< of the onsets of samples within their groups
+  int degrees = 0;                ///< samples less groups: what intervals know of the scatter
+  double modulus_scatter = 0.0;   ///< standard deviation over mean of own_modulus
+  double collapse_probability =
+      0.0;  ///< of a scatter between groups as large as this if K is the same for all; below 0.05 it hardly is
+  std::vector<std::vector<double>> replicates;  ///< ln K, n, phi_J of the groups
+  int left_out = 0;                             ///< points without pressure
+};
+
+/// Least squares of phi at given p: near the onset pressures vanish and samples differ by their onsets above all, a
+/// shift in phi that is the same at every pressure. Points with p <= 0 lie below the onset, of which they tell nothing
+/// more. Points of one sample belong together, so errors come from samples: the residual curve of each sample (over ln
+/// p, about a fit with K of its own for every group) is a unit, and replicates put curves drawn from all samples with
+/// replacement on the fitted model, scaled by sqrt(N/(N - G)) for the N samples that determined G onsets, and fit
+/// again. Intervals are Student's, N - G degrees. This takes the scatter to be alike in all groups; a group of one
+/// sample then has an error too. Whether K is the same for all
+/// is judged by the ln K of single samples: their scatter between groups against that within (F test).
+/// Throws BadInput for curves that read_state_curves refuses and options
+/// out of range. Not usable with the reason: no convergence, parameters that the data do not determine. With one sample
+/// in every group errors are infinite, and the message says so.
+StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const StateFitOptions& options = {});
+
+}  // namespace softgrain

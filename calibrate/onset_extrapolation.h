@@ -1,0 +1,55 @@
+// Onset of pressure (phi_J) of spans that nobody can resolve, from that of smaller ones.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calibrate/equation_of_state_fit.h"
+
+namespace softgrain {
+
+/// void_power: 1 - phi_J = c r^-b, the void fraction falls by one factor for each factor in the span r = r_max/r_min
+/// (Brouwers 2006, PRE 74, 031309, derives it for power-law gradings, with b from the gap-free two-size packing).
+/// saturating: phi_J = phi_inf - a r^-b, phi_inf <= 1: what fines of ever smaller size can still fill is a share of the
+/// volume that itself falls as a power of r (number of grains ~ r^-(1 + D), D < 3: volume below r_min ~ r_min^(3 - D)).
+/// The first is the second with phi_inf = 1, its upper end: a real mixture lies between that and no growth at all.
+enum class OnsetForm { void_power, saturating };
+std::string to_string(OnsetForm form);
+
+struct OnsetFormFit {
+  OnsetForm form = OnsetForm::void_power;
+  bool usable = false;
+  std::string message = "not run";
+  std::vector<double> parameters;  ///< ln c, b; or phi_inf, a, b
+  double chi2 = 0.0;               ///< sum of squared residuals in units of the errors
+  double probability = 1.0;  ///< of one as large (F test, errors known with the degrees of the fit); 1 without freedom
+  StateEstimate onset;       ///< at the span asked for
+};
+
+struct OnsetExtrapolation {
+  bool usable = false;
+  std::string message = "not run";
+  double span = 1.0;                ///< asked for
+  double largest_span = 1.0;        ///< fitted
+  std::vector<OnsetFormFit> forms;  ///< both
+  /// Middle of the forms that the data allow; the interval reaches from the lowest to the highest of theirs, so it
+  /// holds the difference of the forms too.
+  StateEstimate onset;
+};
+
+struct OnsetOptions {
+  double largest_span = 0.0;        ///< groups above are left out; 0: none. For a check on spans that are known.
+  std::vector<std::string> groups;  ///< of these alone (one preparation); empty: all
+  double refused_below = 0.01;      ///< probability below which a form is not used
+};
+
+/// Fits both forms to the onsets of the groups, each with the weight of its error, and to every replicate of the fit.
+/// Replicates are drawn away from the estimate by Student's over the normal 97.5 % quantile, as intervals of the fit
+/// are. A form needs as many groups of different span as it has parameters, and is refused where its chi^2 is too
+/// improbable; the saturating one only together with the void power that it contains. Throws BadInput for a fit that is
+/// not usable or has no errors, groups that are unknown or fewer than two of different span, a span that is not finite
+/// or below 1. Not usable: both forms are refused.
+OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const OnsetOptions& options = {});
+
+}  // namespace softgrain
