@@ -1,4 +1,5 @@
-// Radical (power) Voronoi cells of spheres: the points whose power |x - x_i|^2 - r_i^2 is smallest for sphere i.
+// Radical (power) Voronoi cells of spheres: the points whose power |x - x_i|^2 - r_i^2 is smallest for sphere i
+// [Gellatly and Finney 1982, J. Non-Cryst. Solids 50, 313; cells cut by voro++, Rycroft 2009, Chaos 19, 041111].
 #pragma once
 
 #include <cstdint>

@@ -17,8 +17,8 @@ struct CellLaw {
 };
 
 /// One state of all cells. With U = sum U_i(V_i), dU_i/dV_i = -p_i, and for the face between i and j (area A, distance
-/// d, centroid c) dV_i/dx_j = (A/d)(x_j - c), which is the motion of its plane when j moves [radical cells: the plane
-/// stays perpendicular to x_j - x_i]:
+/// d, centroid c) dV_i/dx_j = (A/d)(x_j - c), which is the motion of its plane when j moves [Reynolds' transport
+/// theorem: the plane stays perpendicular to x_j - x_i]:
 ///   force on j: sum over its faces of (p_i - p_j)(A/d)(x_j - c) + T,
 ///   stress in a periodic cell: 1/V sum over faces, each once, of {(A/d)[p_i (x_j - c) + p_j (c - x_i)] + T} (x) (x_j -
 ///   x_i),

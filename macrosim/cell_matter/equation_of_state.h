@@ -34,8 +34,10 @@ struct PoreForm {
 };
 
 /// p = A x^n, x = (phi - phiJ)/(1 - phiJ), phi = m/V, phiJ = m/(m + VpJ): the form in which packings of any span fall
-/// on one curve. With t = phi - phiJ: U = A m x^n t/[(n+1) phi^2] 2F1(1, 2; n+2; t/phi), the integral of p over V after
-/// V = m/phi and Pfaff's transformation (all terms positive, t/phi < 1).
+/// on one curve. (Equal frictionless Hertzian spheres just above their onset: n = 1.5 [O'Hern et al. 2003, PRE 68,
+/// 011306]; power-law packings over a wider range: about 1.75.) With t = phi - phiJ: U = A m x^n t/[(n+1) phi^2]
+/// 2F1(1, 2; n+2; t/phi), the integral of p over V after V = m/phi and Pfaff's transformation (all terms positive,
+/// t/phi < 1).
 struct PorosityForm {
   double modulus = 0.0;   ///< A = E K [Pa]
   double exponent = 0.0;  ///< n > 1

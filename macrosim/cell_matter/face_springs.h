@@ -43,14 +43,12 @@ struct FaceSpring {
 /// (perpendicular to D), B and p are means of both cells. So
 /// - the motion counts as the bodies move, the affine part of an imposed strain included (D holds it);
 /// - the face may turn: T turns with it by projection, which only takes energy away;
-/// - a face that shrinks or unloads (k < k0) keeps its displacement, T = k u; one that grows keeps its force and
-/// stiffens
-///   on the way, dT = k du, here by the mean of both ends (the stiffness of the end alone makes stresses depend on the
-///   strain step, by 4 % at steps of 0.04; the mean leaves 0.1 %). Either way T^2/(2 k) falls with D at rest, so no
-///   change of stiffness makes energy, and work in a step is at least the energy gained;
-/// - a new face begins with zero, once it is kept; a vanished one is forgotten with its energy; without pressure no
-/// limit
-///   and no force.
+/// - a face that shrinks or unloads (k < k0) keeps its displacement, T = k u (as the rescaled Mindlin springs of
+///   LAMMPS); one that grows keeps its force and gets stiffer on the way, dT = k du, here by the mean of both ends (the
+///   stiffness of the end alone makes stresses depend on the strain step, by 4 % at steps of 0.04; the mean leaves
+///   0.1 %). Either way T^2/(2 k) falls with D at rest, so no change of stiffness makes energy;
+/// - a new face begins with zero, once it is kept; a vanished one is forgotten with its energy;
+/// - without pressure there is no force.
 /// T acts on j and -T on i, both at the centres: sites have no rotation, so a coarse grain gets no moment from its
 /// faces. (The mantle of fines around it shears and rolls with it; a spin of the grain would need a stiffness of its
 /// own that nothing measures. The price: a rotation of the whole sample as a rigid body would load the springs, and

@@ -211,6 +211,11 @@ TEST_P(OnsetGrowth, IntervalsFromSmallSpansHoldTheOnsetsOfLargeOnes) {
       const OnsetExtrapolation found = extrapolate_onset(fit, span);
       if (!found.usable) continue;
       EXPECT_EQ(found.largest_span, 6.0);
+      for (const OnsetFormFit& form : found.forms) {
+        if (!form.usable) continue;
+        EXPECT_LE(found.onset.low, form.onset.low);
+        EXPECT_GE(found.onset.high, form.onset.high);
+      }
       EXPECT_LE(found.onset.low, found.onset.value);
       EXPECT_GE(found.onset.high, found.onset.value);
       hits[k] += found.onset.low <= onset_of(t, span) && onset_of(t, span) <= found.onset.high ? 1 : 0;
