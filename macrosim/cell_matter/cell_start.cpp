@@ -85,11 +85,11 @@ struct Mixture {
     for (std::size_t i = 0; i < volume.size(); ++i) {
       const double v = fines_of(i, s, state);
       if (!(v >= 0.0))
-        throw BadInput(fmt::format(
-            "start of cells: cell {} (volume {:.4g} m^3, grain {:.4g} m^3) would hold {:.3g} m^3 of fines: its grain "
-            "and "
-            "their excess pores are more than the pressure allows; take a lower pressure or fewer coarse bodies",
-            i, volume[i], bodies.grain(i), v));
+        throw BadInput(
+            fmt::format("start of cells: cell {} (volume {:.4g} m^3, grain {:.4g} m^3) would hold {:.3g} m^3 of fines: "
+                        "it is too small for its grain and the excess pores beside it; take a lower pressure, more "
+                        "fines, fewer coarse bodies, or places where they are less close",
+                        i, volume[i], bodies.grain(i), v));
       out.fines.push_back(v);
       out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s)});
     }
