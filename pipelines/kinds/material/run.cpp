@@ -97,6 +97,46 @@ TextTable points_of(const std::vector<VariantResult>& results) {
   return table;
 }
 
+/// Variants of one preparation, friction and form of sizes differ in their span alone.
+std::string family_of(const MacroSpec& spec) {
+  return fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction,
+                     spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent));
+}
+
+std::optional<EquationSummary> equation(const MaterialScene& scene, const std::vector<VariantResult>& results,
+                                        std::uint64_t seed) {
+  std::vector<EquationInput> inputs;
+  for (const VariantResult& r : results) {
+    const MacroSpec& spec = r.variant->setup.spec;
+    inputs.push_back({r.variant->name, spec.solid_polydispersity, family_of(spec), r.curves});
+  }
+  return equation_of(inputs, scene.equation, seed);
+}
+
+std::string interval_text(const StateEstimate& e) {
+  return std::isfinite(e.low) && std::isfinite(e.high)
+             ? fmt::format("{:.4g} ({:.4g} to {:.4g})", e.value, e.low, e.high)
+             : fmt::format("{:.4g}", e.value);
+}
+
+std::string equation_text(const EquationSummary& s) {
+  if (!s.usable) return "equation of state: not usable: " + s.message + "\n";
+  std::string text =
+      fmt::format("equation of state, {} form: K = {}, n = {}; pressures follow it to {:.2g} %\n", to_string(s.form),
+                  interval_text(s.modulus), interval_text(s.exponent), 100.0 * s.pressure_deviation);
+  for (const OnsetSummary& o : s.onsets)
+    text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, interval_text(o.onset), o.own_modulus);
+  if (s.onsets.size() > 1)
+    text +=
+        fmt::format("  K of variants scatters by {:.2g} %; as much or more with a probability of {:.2g} if it is one\n",
+                    100.0 * s.modulus_scatter, s.collapse_probability);
+  for (const ExtrapolationSummary& e : s.extrapolations)
+    text += fmt::format("  {}, span {:g}: {}{}\n", e.family, e.span,
+                        e.onset ? "phi_J = " + interval_text(*e.onset) : "not extrapolated: " + e.message,
+                        e.measured ? ", measured " + interval_text(*e.measured) : "");
+  return text;
+}
+
 std::string people_text(const MaterialSummary& s) {
   std::string text;
   for (const MaterialVariantSummary& v : s.variants) {
@@ -113,7 +153,7 @@ std::string people_text(const MaterialSummary& s) {
                             m.axial_end->mean / s.youngs_modulus, m.lateral_end->mean / s.youngs_modulus,
                             m.ratio_end->mean);
   }
-  return text;
+  return text + (s.equation ? equation_text(*s.equation) : "");
 }
 
 MaterialSummary summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run) {
@@ -131,6 +171,9 @@ MaterialSummary summarise(const MaterialScene& scene, const std::vector<VariantR
          summaries_of(drawn_sizes(r.variant->setup, run.seed, scene.variants.size() > 1 ? r.variant->name + ": " : "")))
       s.head.sizes.push_back(sizes);
   }
+  s.equation = equation(scene, results, run.seed);
+  if (s.equation && !s.equation->usable)
+    s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   s.head.files["points"] = run.path("material.csv");
   s.head.files["report"] = run.path("report.html");
   return s;

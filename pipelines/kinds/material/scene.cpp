@@ -116,6 +116,7 @@ MaterialScene read_material_scene(const Scene& scene) {
     read_stages(root, test, base.spec);
     base.samples = root.count("samples", 1, 10000, base.samples);
     base.kept_states = read_kept_states(root);
+    out.equation = read_equation(root.table_or_empty("equation"));
     std::set<std::string> names;
     const bool sound = root.sound();
     for (const SceneTable& t : root.tables("variant")) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipelines/kinds/macro/scene.h"
+#include "pipelines/kinds/material/equation.h"
 #include "pipelines/run/findings.h"
 
 namespace softgrain {
@@ -18,6 +19,7 @@ struct MaterialVariant {
 struct MaterialScene {
   std::string title;
   std::uint64_t seed = 1;
+  EquationSettings equation;
   std::vector<MaterialVariant> variants;  ///< one per [[variant]]; without any, the scene itself
 };
 

@@ -1,6 +1,7 @@
 // What a material came to: summary.json of its run, which the report reads back.
 #pragma once
 
+#include "pipelines/kinds/material/equation.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {
@@ -36,12 +37,14 @@ struct MaterialSummary {
   SummaryHead head;
   double youngs_modulus = 0.0;  ///< E of the grains [Pa]
   std::vector<MaterialVariantSummary> variants;
+  std::optional<EquationSummary> equation;
 };
 
 void fields(auto&& visit, Of<MaterialSummary> auto& s) {
   fields(visit, s.head);
   visit("E", s.youngs_modulus);
   visit("variants", s.variants);
+  visit("equation_of_state", s.equation, kLeftOut);
 }
 
 }  // namespace softgrain

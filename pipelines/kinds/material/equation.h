@@ -1,0 +1,121 @@
+// The equation of state of a scene's materials: pressure over solid fraction, and where it begins at other spans.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/equation_of_state_fit.h"
+#include "calibrate/onset_extrapolation.h"
+#include "common/data/fields.h"
+#include "common/data/macro_result.h"
+#include "common/io/json_record.h"
+#include "common/io/scene.h"
+#include "macrosim/macro_spec.h"
+
+namespace softgrain {
+
+template <>
+inline constexpr auto words<StateForm> = word_list<StateForm>({{StateForm::porosity, "porosity"},
+                                                               {StateForm::pores, "pores"}});
+
+/// [equation].
+struct EquationSettings {
+  StateForm form = StateForm::porosity;
+  double largest_span = 0.0;  ///< that extrapolations use; 0: all
+  std::vector<double> spans;  ///< to which onsets are extrapolated
+  std::int64_t replicates = 400;
+};
+
+/// Throws BadInput.
+EquationSettings read_equation(const SceneTable& t);
+
+/// A variant as the fit sees it.
+struct EquationInput {
+  std::string name;
+  double span = 1.0;   ///< largest over smallest radius
+  std::string family;  ///< variants that differ in the span alone
+  std::vector<MacroCurve> curves;
+};
+
+void fields(auto&& visit, Of<StateEstimate> auto& e) {
+  visit("value", e.value);
+  visit("standard_error", e.error);
+  range_field(visit, "interval", e.low, e.high);
+}
+
+/// phi_J of one variant.
+struct OnsetSummary {
+  std::string name;
+  double span = 0.0;
+  int samples = 0;
+  StateEstimate onset;
+  double own_modulus = 0.0;  ///< K of this variant alone, n being that of all
+};
+
+void fields(auto&& visit, Of<OnsetSummary> auto& s) {
+  visit("name", s.name);
+  visit("span", s.span);
+  visit("samples", s.samples);
+  visit("onset", s.onset);
+  visit("own_K", s.own_modulus);
+}
+
+/// phi_J at a span, from those of smaller ones.
+struct ExtrapolationSummary {
+  std::string family;
+  double span = 0.0;
+  double largest_fitted = 0.0;
+  bool usable = false;
+  std::string message;
+  std::optional<StateEstimate> onset;
+  std::optional<StateEstimate> measured;  ///< where a variant has that span
+};
+
+void fields(auto&& visit, Of<ExtrapolationSummary> auto& s) {
+  visit("family", s.family);
+  visit("span", s.span);
+  visit("largest_fitted_span", s.largest_fitted);
+  visit("usable", s.usable);
+  visit("message", s.message);
+  visit("onset", s.onset, kLeftOut);
+  visit("measured", s.measured, kLeftOut);
+}
+
+/// p/E = K x^n (porosity), x = (phi - phi_J)/(1 - phi_J), or K (1 - Vp/Vp_J)^n (pores).
+struct EquationSummary {
+  StateForm form = StateForm::porosity;
+  bool usable = false;
+  std::string message;
+  StateEstimate modulus;
+  StateEstimate exponent;
+  double pressure_deviation = 0.0;
+  double modulus_scatter = 0.0;
+  double collapse_probability = 0.0;
+  std::vector<OnsetSummary> onsets;
+  std::vector<ExtrapolationSummary> extrapolations;
+};
+
+void fields(auto&& visit, Of<EquationSummary> auto& s) {
+  visit("form", s.form);
+  visit("usable", s.usable);
+  visit("message", s.message);
+  visit("K", s.modulus);
+  visit("n", s.exponent);
+  visit("pressure_deviation", s.pressure_deviation);
+  visit("K_scatter", s.modulus_scatter);
+  visit("collapse_probability", s.collapse_probability);
+  visit("onsets", s.onsets);
+  visit("extrapolations", s.extrapolations, kLeftOut);
+}
+
+/// Of what every sample does from its start as long as it is compressed: up to where its volume grows, or a stage
+/// begins that shears it or is held by stress at its sides. Nothing where that is less than four points of every
+/// sample.
+std::optional<EquationSummary> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
+                                           std::uint64_t seed);
+
+/// The points of one sample that take part.
+StateCurve state_curve(const MacroCurve& curve, const std::string& group, double span);
+
+}  // namespace softgrain
