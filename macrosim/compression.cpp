@@ -110,21 +110,27 @@ void press_alike(MacroSystem& macro, const MacroSpec& spec, const MacroStage& st
   DampedRelaxation<3>(options).relax(macro.system, pressed);
 }
 
+RelaxationResult step_of(MacroSystem& macro, const MacroSpec& spec, const MacroStage& stage, const Vec3& strain,
+                         const Vec3& stress) {
+  if (strain != Vec3{}) strain_box(macro.system, macro.box, strain);
+  DampedRelaxation<3> relaxation(relaxation_options(spec, stage, macro));
+  if (!stage.by_stress() || stress == Vec3{}) return relaxation.relax(macro.system);
+  press_alike(macro, spec, stage, stress);
+  PressedBox pressed(macro.box, control_of(spec, stage, stress));
+  return relaxation.relax(macro.system, pressed);
+}
+
 /// Strains the box and relaxes, the box too where it goes by stress; what it cost goes to the curve.
 RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, const MacroStage& stage,
                               const Vec3& strain, const Vec3& stress) {
   const Stopwatch watch;
   const Cost before = state.macro.system.cost;
   MacroSystem& macro = state.macro;
-  if (strain != Vec3{}) strain_box(macro.system, macro.box, strain);
-  DampedRelaxation<3> relaxation(relaxation_options(spec, stage, macro));
   RelaxationResult rest;
-  if (stage.by_stress() && stress != Vec3{}) {
-    press_alike(macro, spec, stage, stress);
-    PressedBox pressed(macro.box, control_of(spec, stage, stress));
-    rest = relaxation.relax(macro.system, pressed);
-  } else {
-    rest = relaxation.relax(macro.system);
+  try {
+    rest = step_of(macro, spec, stage, strain, stress);
+  } catch (const BadInput& e) {  // a cell that has become too small: no fault of the scene
+    throw NotUsable(e.what());
   }
   const Cost& now = macro.system.cost;
   state.curve.cost +=
@@ -132,24 +138,10 @@ RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, co
   return rest;
 }
 
-/// What was asked and what there is, where they differ.
-std::string off_text(const MacroCurve& c, const MacroStage& stage, const Vec3& asked) {
-  const Vec3 reached{{c.stress_x.back(), c.stress_y.back(), c.stress_axial.back()}};
-  std::string text;
-  for (int k = 0; k < 3; ++k)
-    if (stage.axis[static_cast<std::size_t>(k)].by_stress)
-      text += fmt::format("{}{} {:.4g} Pa asked, {:.4g} Pa reached", text.empty() ? "" : "; ", "xyz"[k], asked[k],
-                          reached[k]);
-  return text;
-}
-
 /// A stress that the packing cannot bear ends the test: what comes after would start from nowhere.
 bool out_of_reach(CompressionState& state, const MacroStage& stage, const Vec3& asked, const RelaxationResult& rest) {
   if (!stage.by_stress() || rest.end == RelaxationEnd::converged) return false;
-  MacroCurve& c = state.curve;
-  c.usable = false;
-  c.note = fmt::format("stage '{}' ended at axial strain {:.4g}, where its stress was not reached: {} ({})",
-                       stage.record.name, c.strain.back(), off_text(c, stage, asked), c.note);
+  note_out_of_reach(state.curve, stage, asked);
   return state.over = true;
 }
 

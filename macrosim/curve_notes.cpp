@@ -1,8 +1,31 @@
 #include "macrosim/curve_notes.h"
 
+#include <fmt/format.h>
+
 #include <numeric>
 
 namespace softgrain {
+
+namespace {
+
+/// What was asked and what there is, where they differ.
+std::string off_text(const MacroCurve& c, const MacroStage& stage, const Vec3& asked) {
+  const Vec3 reached{{c.stress_x.back(), c.stress_y.back(), c.stress_axial.back()}};
+  std::string text;
+  for (int k = 0; k < 3; ++k)
+    if (stage.axis[static_cast<std::size_t>(k)].by_stress)
+      text += fmt::format("{}{} {:.4g} Pa asked, {:.4g} Pa reached", text.empty() ? "" : "; ", "xyz"[k], asked[k],
+                          reached[k]);
+  return text;
+}
+
+}  // namespace
+
+void note_out_of_reach(MacroCurve& c, const MacroStage& stage, const Vec3& asked) {
+  c.usable = false;
+  c.note = fmt::format("stage '{}' ended at axial strain {:.4g}, where its stress was not reached: {} ({})",
+                       stage.record.name, c.strain.back(), off_text(c, stage, asked), c.note);
+}
 
 void note_relaxation(MacroCurve& c, const RelaxationResult& rest, double strain, double tolerance) {
   if (rest.end == RelaxationEnd::converged) return;

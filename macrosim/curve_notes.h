@@ -6,11 +6,16 @@
 #include "common/data/macro_result.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/relaxation_result.h"
+#include "macrosim/macro_spec.h"
 
 namespace softgrain {
 
 /// A relaxation that did not converge makes the curve not usable. `tolerance` is what was asked for.
 void note_relaxation(MacroCurve& curve, const RelaxationResult& rest, double strain, double tolerance);
+
+/// A stage whose stress the packing does not bear makes the curve not usable: what was asked along axes that go by
+/// stress, what there is, and where. After note_relaxation().
+void note_out_of_reach(MacroCurve& curve, const MacroStage& stage, const Vec3& asked);
 
 /// Records how far laws were asked at a point; nothing for twins, which have no fitted law, and without soft particles.
 void record_law_use(MacroCurve& curve, const LawUse& use);

@@ -38,7 +38,7 @@ PAGES = {
     "own_data.md": (["pipelines/commands/calibrate_curves.cpp", "pipelines/law/fit_settings.cpp", "pipelines/kinds/inverse/scene.cpp"],
                     {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"}, {"kind", "title"}),
     "scene_material.md": (
-        ["pipelines/kinds/material/scene.cpp", "pipelines/run/variant_name.cpp"],
+        ["pipelines/kinds/material/scene.cpp", "pipelines/kinds/material/equation.cpp", "pipelines/run/variant_name.cpp"],
         {"preparation", "start_pressure", "preparation_tolerance", "strain", "steps", "increments_per_step", "preload", "preload_steps",
                 "tolerance", "force_floor", "max_passes", "snapshots", "stage", "test", "output"}, {"solid_fraction", "rattlers"}),
     "stages.md": (["pipelines/kinds/macro/stages.cpp"], {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"}, {"stage", "macro"}),

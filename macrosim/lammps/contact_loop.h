@@ -20,7 +20,18 @@ struct Bodies {
   const int* tag = nullptr;
   const int* type = nullptr;
   int own = 0;  ///< atoms of this rank; the rest are ghosts
+  bool flows =
+      false;  ///< the box moves, and whatever is in it, ghosts across its faces too: by rate times (x - centre)
+  Vec<3> rate{};
+  Vec<3> centre{};
 
+  /// By its own motion and that of the box.
+  [[nodiscard]] Vec<3> velocity(int i) const {
+    Vec<3> out = vec(v[i]);
+    if (flows)
+      for (int k = 0; k < 3; ++k) out[k] += rate[k] * (x[i][k] - centre[k]);
+    return out;
+  }
   [[nodiscard]] double r(int i) const { return radius[i]; }
   [[nodiscard]] static Vec<3> vec(const double* a) { return {{a[0], a[1], a[2]}}; }
 };
@@ -42,8 +53,8 @@ struct AtomSurface {
   [[nodiscard]] Vec<3> turning(int i, int j) const { return Bodies::vec(b.omega[i]) - Bodies::vec(b.omega[j]); }
   [[nodiscard]] double radius_j(int j) const { return b.r(j); }
   void move(int i, int j, const ContactGeometry<3>& g, ContactState<3>& state) const {
-    split_motion(Bodies::vec(b.v[i]) - Bodies::vec(b.v[j]),
-                 Bodies::vec(b.omega[i]) * g.arm_i + Bodies::vec(b.omega[j]) * g.arm_j, g.normal, state);
+    split_motion(b.velocity(i) - b.velocity(j), Bodies::vec(b.omega[i]) * g.arm_i + Bodies::vec(b.omega[j]) * g.arm_j,
+                 g.normal, state);
   }
 };
 
@@ -59,7 +70,7 @@ struct PlaneSurface {
   [[nodiscard]] static double radius_j(int) { return 0.0; }
   [[nodiscard]] Vec<3> turning(int i, int) const { return Bodies::vec(b.omega[i]); }
   void move(int i, int j, const ContactGeometry<3>& g, ContactState<3>& state) const {
-    split_motion(Bodies::vec(b.v[i]) - planes[static_cast<std::size_t>(j)].velocity, Bodies::vec(b.omega[i]) * g.arm_i,
+    split_motion(b.velocity(i) - planes[static_cast<std::size_t>(j)].velocity, Bodies::vec(b.omega[i]) * g.arm_i,
                  g.normal, state);
   }
 };

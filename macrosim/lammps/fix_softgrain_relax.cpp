@@ -40,14 +40,11 @@ void limit_length(double* v, double longest) {
 }  // namespace
 
 FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : Fix(engine, count, words) {
-  for (int at = 3; at < count; at += 2) {
-    if (at + 1 >= count) error->all(FLERR, std::string("fix softgrain/relax: '") + words[at] + "' needs a value");
-    set(words[at], words[at + 1]);
-  }
+  for (int at = 3; at < count;) at += set(count - at, words + at);
   time_integrate = 1;
   nevery = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 6;
+  size_vector = 10;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -58,9 +55,32 @@ FixSoftgrainRelax::FixSoftgrainRelax(LAMMPS* engine, int count, char** words) : 
   atom->add_callback(Atom::GROW);
 }
 
-void FixSoftgrainRelax::set(const std::string& key, const std::string& word) {
-  if (key == "follow" && (word == "yes" || word == "no")) {
-    follow_ = word == "yes";
+/// One key and what belongs to it; how many words that were.
+int FixSoftgrainRelax::set(int count, char** words) {
+  const std::string key = words[0];
+  const int values = key == "stress" ? 3 : 1;
+  if (count < 1 + values)
+    error->all(FLERR, "fix softgrain/relax: '" + key + "' needs " + (values == 3 ? "three values" : "a value"));
+  if (key == "stress")
+    set_stress(words + 1);
+  else
+    set_number(key, words[1]);
+  box_change = pressed() ? BOX_CHANGE_SIZE : NO_BOX_CHANGE;
+  return 1 + values;
+}
+
+void FixSoftgrainRelax::set_stress(char** words) {
+  for (int k = 0; k < 3; ++k) {
+    const std::string word = words[k];
+    by_stress_[static_cast<std::size_t>(k)] = word != "no";
+    asked_[k] = word == "no" ? 0.0 : bridge::number(word, "stress", error);
+    if (!std::isfinite(asked_[k])) error->all(FLERR, "fix softgrain/relax: stress " + word + ": a number, or no");
+  }
+}
+
+void FixSoftgrainRelax::set_number(const std::string& key, const std::string& word) {
+  if ((key == "follow" || key == "alike") && (word == "yes" || word == "no")) {
+    (key == "alike" ? alike_ : follow_) = word == "yes";
     return;
   }
   const double value = bridge::number(word, key, error);
@@ -72,22 +92,30 @@ void FixSoftgrainRelax::set(const std::string& key, const std::string& word) {
     max_passes_ = value;
   else if (key == "max_move" && value > 0.0)
     max_move_ = value;
+  else if (key == "stress_tolerance" && value > 0.0)
+    stress_tolerance_ = value;
+  else if (key == "least_stress" && value >= 0.0)
+    least_stress_ = value;
+  else if (key == "farthest" && value > 0.0)
+    farthest_ = value;
   else
-    error->all(FLERR, "fix softgrain/relax: '" + key + " " + word +
-                          "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0 and follow yes|no");
+    error->all(FLERR,
+               "fix softgrain/relax: '" + key + " " + word +
+                   "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, follow yes|no, stress "
+                   "SX|no SY|no SZ|no, alike yes|no, stress_tolerance > 0, least_stress >= 0 and farthest > 0");
 }
 
 int FixSoftgrainRelax::modify_param(int count, char** words) {
   if (count < 2) error->all(FLERR, std::string("fix_modify of softgrain/relax: KEY VALUE"));
-  set(words[0], words[1]);
-  return 2;
+  return set(count, words);
 }
 
 FixSoftgrainRelax::~FixSoftgrainRelax() {
   atom->delete_callback(id, Atom::GROW);
   if (pair_ != nullptr && force != nullptr && force->pair == pair_) {
     pair_->spring_dt = -1.0;
-    pair_->gathered.wanted = false;
+    pair_->flows = false;
+    pair_->gathered.wanted = pair_->gathered.pressed = false;
   }
 }
 
@@ -105,6 +133,9 @@ void FixSoftgrainRelax::init() {
     if (!before && dynamic_cast<FixSoftgrainWall*>(modify->fix[k]) != nullptr)
       error->all(FLERR, std::string("fix softgrain/wall must come before fix softgrain/relax in the script"));
   }
+  const bool periodic = domain->xperiodic != 0 && domain->yperiodic != 0 && domain->zperiodic != 0;
+  if (pressed() && !periodic && box_walls() == nullptr)
+    error->all(FLERR, std::string("fix softgrain/relax: stress needs boundary p p p, or fix softgrain/wall box"));
 }
 
 void FixSoftgrainRelax::stop_motion() {
@@ -123,26 +154,32 @@ void FixSoftgrainRelax::setup_pre_exchange() {
   const softgrain::Vec<3> before = box_;
   note_box();
   stop_motion();
-  pair_->strained = follow_ && before != box_;
+  pair_->strained = pair_->flows = follow_ && before != box_;
+  for (int k = 0; k < 3; ++k) pair_->flow[k] = 0.0;
   if (!pair_->strained) return;
-  for (int k = 0; k < 3; ++k) pair_->strain[k] = 1.0 - box_[k] / before[k];
-  for (int i = 0; i < atom->nlocal; ++i)
-    for (int k = 0; k < 3; ++k) atom->v[i][k] = pair_->strain_move(k, atom->x[i][k]);
+  for (int k = 0; k < 3; ++k) {
+    const double strain = 1.0 - box_[k] / before[k];
+    pair_->flow[k] = -strain / (1.0 - strain);
+  }
 }
 
 /// Before the pass of the setup.
 void FixSoftgrainRelax::setup_pre_force(int) {
   pair_->gathered.wanted = true;
+  pair_->gathered.pressed = pressed();
   if (update->nsteps == 0) return;  // a look at the state as it is
   fire_ = {};
+  box_velocity_ = {};
+  box_strain_ = {};
   passes_before_ += passes_;
   passes_ = 0.0;
   end_ = not_run;
 }
 
 void FixSoftgrainRelax::setup(int) {
-  pair_->strained = false;
+  pair_->strained = pair_->flows = false;
   stop_motion();
+  take_box_sums();
   if (update->nsteps > 0) judge();
 }
 
@@ -171,9 +208,10 @@ void FixSoftgrainRelax::judge() {
   residual_ = scale > 0.0 ? worst / scale : 0.0;
   if (!std::isfinite(worst))
     end_ = diverged;
-  else if (worst <= tolerance_ * scale)
+  else if (worst <= tolerance_ * scale && (!pressed() || box_residual() <= 1.0))
     end_ = converged;
-  else if (passes_ >= max_passes_)
+  else if (passes_ >= max_passes_ || (pressed() && std::max({std::abs(box_strain_[0]), std::abs(box_strain_[1]),
+                                                             std::abs(box_strain_[2])}) > farthest_))
     end_ = capped;
   if (end_ != not_run) finish();
 }
@@ -181,6 +219,7 @@ void FixSoftgrainRelax::judge() {
 /// Ends the loop of LAMMPS as fix halt does, with output of this step.
 void FixSoftgrainRelax::finish() {
   stop_motion();
+  pair_->flows = false;
   if (update->setupflag == 0) output->next = output->next_thermo = update->ntimestep;
   timer->force_timeout();
 }
@@ -200,6 +239,105 @@ void FixSoftgrainRelax::scale_masses() {
     inverse_mass_[i] = masses.inverse_mass(gathered.translation[i], atom->radius[i]);
     inverse_inertia_[i] = masses.inverse_inertia(gathered.rotation[i], atom->radius[i]);
   }
+  if (pressed()) scale_box(masses);
+}
+
+FixSoftgrainWall* FixSoftgrainRelax::box_walls() const {
+  for (FixSoftgrainWall* wall : pair_->walls)
+    if (wall->in_box()) return wall;
+  return nullptr;
+}
+
+void FixSoftgrainRelax::make_alike(softgrain::Vec<3>& a) const {
+  if (!alike_) return;
+  const double mean = (a[0] + a[1] + a[2]) / 3.0;
+  a = {{mean, mean, mean}};
+}
+
+/// What the bodies and walls resist a strain with, and the stress on the box, both from the forces of the last pass.
+void FixSoftgrainRelax::take_box_sums() {
+  FixSoftgrainWall* const walls = box_walls();
+  if (walls == nullptr && domain->nonperiodic != 0) return;
+  softgrain::Vec<3> own = pair_->gathered.virial;
+  if (walls != nullptr) {
+    own = {};
+    for (int i = 0; i < atom->nlocal; ++i)
+      for (int k = 0; k < 3; ++k)
+        own[k] += atom->f[i][k] * (atom->x[i][k] - 0.5 * (domain->boxlo[k] + domain->boxhi[k]));
+  }
+  std::array<double, 3> mine{own[0], own[1], own[2]};
+  std::array<double, 3> all{};
+  MPI_Allreduce(mine.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
+  double volume = 1.0;
+  for (int k = 0; k < 3; ++k) volume *= domain->boxhi[k] - domain->boxlo[k];
+  for (int k = 0; k < 3; ++k) {
+    resisted_[k] = all[static_cast<std::size_t>(k)];
+    stress_[k] = resisted_[k] / volume;
+    if (walls == nullptr) continue;
+    const double length = domain->boxhi[k] - domain->boxlo[k];
+    const double push = 0.5 * (walls->compute_vector(2 * k) + walls->compute_vector(2 * k + 1)) * length;
+    resisted_[k] += push;
+    stress_[k] = push / volume;
+  }
+}
+
+void FixSoftgrainRelax::scale_box(const PseudoMasses& masses) {
+  double own = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double r = atom->radius[i];
+    own += std::max(pair_->gathered.translation[static_cast<std::size_t>(i)], masses.floor(r)) * r * r;
+  }
+  double all = 0.0;
+  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  box_inverse_mass_ = 1.0 / (4.0 / 3.0 * all);
+}
+
+/// Adds what the box has to the sums of power, speed and pull; the same on every rank.
+void FixSoftgrainRelax::steer_box(double* sums) {
+  double volume = 1.0;
+  for (int k = 0; k < 3; ++k) volume *= domain->boxhi[k] - domain->boxlo[k];
+  box_force_ = asked_ * volume - resisted_;
+  make_alike(box_force_);
+  for (int k = 0; k < 3; ++k) {
+    if (!by_stress_[static_cast<std::size_t>(k)]) box_force_[k] = 0.0;
+    sums[0] += box_force_[k] * box_velocity_[k];
+    sums[1] += box_velocity_[k] * box_velocity_[k] / box_inverse_mass_;
+    sums[2] += box_force_[k] * box_force_[k] * box_inverse_mass_;
+  }
+}
+
+/// The box one step on, and all in it; contacts see the motion (PairSoftgrain::flow).
+void FixSoftgrainRelax::carry() {
+  constexpr double kLargestStrain = 2e-3;  // per pass
+  const double most = kLargestStrain / fire_.step;
+  box_velocity_ += box_force_ * (fire_.step * box_inverse_mass_);
+  for (int k = 0; k < 3; ++k) {
+    box_velocity_[k] = std::clamp(box_velocity_[k], -most, most);
+    const double centre = 0.5 * (domain->boxlo[k] + domain->boxhi[k]);
+    const double shrink = box_velocity_[k] * fire_.step;
+    for (int i = 0; i < atom->nlocal; ++i) atom->x[i][k] += (centre - atom->x[i][k]) * shrink;
+    domain->boxlo[k] += (centre - domain->boxlo[k]) * shrink;
+    domain->boxhi[k] += (centre - domain->boxhi[k]) * shrink;
+    pair_->flow[k] = -box_velocity_[k] / (1.0 - shrink);
+    box_strain_[k] += shrink;
+  }
+  domain->set_global_box();
+  domain->set_local_box();
+  pair_->flows = true;
+  note_box();
+}
+
+double FixSoftgrainRelax::box_residual() const {
+  softgrain::Vec<3> off = stress_ - asked_;
+  make_alike(off);
+  double worst = 0.0;
+  double largest = least_stress_;
+  for (int k = 0; k < 3; ++k) {
+    if (!by_stress_[static_cast<std::size_t>(k)]) continue;
+    worst = std::max(worst, std::abs(off[k]));
+    largest = std::max(largest, std::abs(asked_[k]));
+  }
+  return worst / (stress_tolerance_ * largest);
 }
 
 void FixSoftgrainRelax::steer() {
@@ -217,7 +355,9 @@ void FixSoftgrainRelax::steer() {
   }
   std::array<double, 3> all{};
   MPI_Allreduce(sum.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
+  if (pressed()) steer_box(all.data());
   const softgrain::Fire::Steering steering = fire_.steer(all[0], all[1], all[2]);
+  if (pressed()) box_velocity_ = box_velocity_ * steering.keep + box_force_ * (steering.pull * box_inverse_mass_);
   if (steering.stop) {
     stop_motion();
     return;
@@ -250,12 +390,19 @@ void FixSoftgrainRelax::initial_integrate(int) {
   if (pass % PseudoMasses::kInterval == 0) scale_masses();
   steer();
   move();
+  if (pressed()) carry();
   pair_->spring_dt = fire_.step;
   pair_->gathered.wanted = (pass + 1) % PseudoMasses::kInterval == 0;
 }
 
 void FixSoftgrainRelax::end_of_step() {
   passes_ += 1.0;
+  if (pressed()) {
+    take_box_sums();
+    // A body that nothing pushes would hit its neighbours again and again while they come to rest.
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (norm2(atom->f[i]) == 0.0) std::fill(atom->v[i], atom->v[i] + 3, 0.0);
+  }
   if (static_cast<std::int64_t>(passes_) % PseudoMasses::kInterval == 0) judge();
 }
 
@@ -264,6 +411,7 @@ void FixSoftgrainRelax::post_run() {
 }
 
 double FixSoftgrainRelax::compute_vector(int k) {
+  if (k > 5) return stress_[k - 6];
   if (k == 5) {
     double all = 0.0;
     MPI_Allreduce(&pair_->evaluations, &all, 1, MPI_DOUBLE, MPI_SUM, world);

@@ -1,6 +1,7 @@
 // Fix softgrain/relax: the damped relaxation of the program (common/dynamics/damped_relaxation.h) as time integration.
 //
 //   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [follow yes|no]
+//     [stress SX|no SY|no SZ|no] [alike yes|no] [stress_tolerance T] [least_stress P] [farthest F]
 //   fix_modify ID KEY VALUE ...         the same keys, later
 //
 // A box that was strained since the last run (change_box ... remap) takes the springs of the contacts along, unless
@@ -8,9 +9,18 @@
 // Every run relaxes anew, from rest. Ends it when the largest net force is below T times the mean contact force (which
 // never counts for less than F [N]), or after N passes. Time steps are pseudo-time. Fixes with forces come before it in
 // the script. Scalar: residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3
-// diverged), mean contact force [N], passes of all runs, near pairs looked at in all passes.
+// diverged), mean contact force [N], passes of all runs, near pairs looked at in all passes, stress on the box along x,
+// y, z [Pa].
+//
+// `stress` holds the simulation box by stress [Pa, compression positive] along the axes that have a number: its faces
+// come to rest together with the bodies, which they carry along (macrosim/pressed_box.h), at `stress_tolerance` times
+// the largest stress asked for, which counts as `least_stress` at least. `alike`: all axes strain alike, by the mean of
+// their stresses. A logarithmic strain beyond `farthest` since the run began ends it as capped: the stress is out of
+// reach. The box has walls in all faces (boundary f f f and fix softgrain/wall box) or is periodic (p p p); the stress
+// is that on the walls, or that of the contacts.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,6 +30,7 @@
 
 namespace LAMMPS_NS {
 
+class FixSoftgrainWall;
 class PairSoftgrain;
 
 class FixSoftgrainRelax : public Fix {
@@ -51,7 +62,17 @@ class FixSoftgrainRelax : public Fix {
  private:
   enum End { not_run, converged, capped, diverged };
 
-  void set(const std::string& key, const std::string& word);
+  int set(int count, char** words);
+  void set_number(const std::string& key, const std::string& word);
+  void set_stress(char** words);
+  void take_box_sums();
+  void scale_box(const softgrain::PseudoMasses& masses);
+  void steer_box(double* sums);
+  void carry();
+  void make_alike(softgrain::Vec<3>& a) const;
+  [[nodiscard]] double box_residual() const;
+  [[nodiscard]] bool pressed() const { return by_stress_[0] || by_stress_[1] || by_stress_[2]; }
+  [[nodiscard]] FixSoftgrainWall* box_walls() const;
   void stop_motion();
   void note_box();
   void judge();
@@ -77,6 +98,19 @@ class FixSoftgrainRelax : public Fix {
   double mean_force_ = 0.0;
   End end_ = not_run;
   PairSoftgrain* pair_ = nullptr;
+
+  std::array<bool, 3> by_stress_{};
+  softgrain::Vec<3> asked_{};  ///< [Pa]
+  bool alike_ = false;
+  double stress_tolerance_ = 1e-3;
+  double least_stress_ = 0.0;
+  double farthest_ = 0.3;
+  softgrain::Vec<3> stress_{};     ///< on the box, of the last pass [Pa]
+  softgrain::Vec<3> resisted_{};   ///< by what is in it [N m]
+  softgrain::Vec<3> box_force_{};  ///< per logarithmic strain [N m]
+  softgrain::Vec<3> box_velocity_{};
+  softgrain::Vec<3> box_strain_{};  ///< since the run began
+  double box_inverse_mass_ = 0.0;
 };
 
 }  // namespace LAMMPS_NS

@@ -125,7 +125,7 @@ void FixSoftgrainWall::follow_box() {
     const bool one_on = update->setupflag == 0 && followed_ == update->ntimestep - 1 && update->dt > 0.0;
     p.velocity = {};
     if (one_on) p.velocity[axis] = (point[axis] - p.point[axis]) / update->dt;
-    if (update->setupflag != 0 && pair_->strained) p.velocity[axis] = pair_->strain_move(axis, point[axis]);
+    if (pair_->flows) p.velocity[axis] = pair_->flow_at(axis, point[axis]);
     p.point = point;
   }
 }
@@ -172,7 +172,8 @@ void FixSoftgrainWall::build(const bridge::Bodies& b, const std::vector<bridge::
 void FixSoftgrainWall::ask_for_list() {
   double way = 0.0;
   for (std::size_t k = 0; k < planes.size(); ++k) {
-    const double step = std::abs(dot(planes[k].velocity, planes[k].normal)) * update->dt;
+    const double time = pair_->flows ? std::max(pair_->spring_dt, 0.0) : update->dt;
+    const double step = std::abs(dot(planes[k].velocity, planes[k].normal)) * time;
     way = std::max(way, std::abs(dot(planes[k].point - listed_[k], planes[k].normal)) + 2.0 * step);
   }
   if (way > 0.5 * neighbor->skin) next_reneighbor = update->ntimestep + 1;

@@ -33,6 +33,8 @@ class FixSoftgrainWall : public Fix {
   double compute_vector(int k) override;
   double memory_usage() override;
 
+  /// Its planes are the faces of the simulation box.
+  [[nodiscard]] bool in_box() const { return box_; }
   /// Brings the planes to where they are at this step.
   void follow();
   /// Near pairs of atoms and planes; `before`: planes of other fixes, whose numbers come first.

@@ -188,7 +188,11 @@ double PairSoftgrain::init_one(int i, int j) {
 }
 
 bridge::Bodies PairSoftgrain::bodies() const {
-  return {atom->x, atom->v, atom->omega, atom->radius, atom->rmass, atom->tag, atom->type, atom->nlocal};
+  bridge::Bodies b{atom->x, atom->v, atom->omega, atom->radius, atom->rmass, atom->tag, atom->type, atom->nlocal};
+  b.flows = flows;
+  b.rate = flow;
+  for (int k = 0; k < 3; ++k) b.centre[k] = 0.5 * (domain->boxlo[k] + domain->boxhi[k]);
+  return b;
 }
 
 bridge::Pass PairSoftgrain::pass() {
@@ -196,9 +200,9 @@ bridge::Pass PairSoftgrain::pass() {
   return {true, spring_dt >= 0.0 ? spring_dt : update->dt, sums.data()};
 }
 
-double PairSoftgrain::strain_move(int axis, double x) const {
+double PairSoftgrain::flow_at(int axis, double x) const {
   const double centre = 0.5 * (domain->boxlo[axis] + domain->boxhi[axis]);
-  return -strain[axis] / (1.0 - strain[axis]) * (x - centre);
+  return flow[axis] * (x - centre);
 }
 
 void PairSoftgrain::build(const std::vector<bridge::AtomMemory>& memory_of) {
@@ -258,6 +262,8 @@ void PairSoftgrain::compute(int eflag, int vflag) {
     gathered.rotation.assign(static_cast<std::size_t>(b.own), 0.0);
     gathered.force_sum = gathered.contacts = 0.0;
   }
+  const bool virial = gathered.wanted || gathered.pressed;
+  gathered.virial = {};
   double** f = atom->f;
   double** torque = atom->torque;
   auto sink = bridge::to_sink([&](int i, int j, const ContactGeometry<3>& g, const ContactResponse<3>& r) {
@@ -271,6 +277,8 @@ void PairSoftgrain::compute(int eflag, int vflag) {
       torque[j][k] -= r.rolling_moment[k] + moment[k] * g.arm_j;
     }
     if (gathered.wanted) gather(gathered, i, j, b.own, g, r);
+    if (virial)
+      for (int k = 0; k < 3; ++k) gathered.virial[k] += (j < b.own ? 1.0 : 0.5) * push[k] * g.branch[k];
     if (evflag)
       ev_tally_xyz(i, j, b.own, 0, 0.0, 0.0, push[0], push[1], push[2], g.branch[0], g.branch[1], g.branch[2]);
   });

@@ -23,6 +23,9 @@ class PairSoftgrain : public Pair {
     bool wanted = false;
     std::vector<double> translation;  ///< sum over the contacts of normal and tangential stiffness [N/m]
     std::vector<double> rotation;     ///< sum of tangential stiffness times the arm squared [N m]
+    bool pressed = false;             ///< the virial too, at every pass
+    softgrain::Vec<3> virial{};       ///< per axis, force times branch of the contacts between atoms [N m]; one across
+                                      ///< ranks counts half on each
     double force_sum = 0.0;           ///< of |normal force|; a contact across ranks counts half on each
     double contacts = 0.0;            ///< that carry force
 
@@ -52,8 +55,8 @@ class PairSoftgrain : public Pair {
   [[nodiscard]] softgrain::lammps::Bodies bodies() const;
   /// What passes do now: history goes on unless LAMMPS sets up.
   [[nodiscard]] softgrain::lammps::Pass pass();
-  /// How far the strain of the box has moved what is at x along an axis [m].
-  [[nodiscard]] double strain_move(int axis, double x) const;
+  /// How the box moves what is at x along an axis: a velocity, or after a strain of the box the way [m].
+  [[nodiscard]] double flow_at(int axis, double x) const;
   [[nodiscard]] bool is_soft(int type) const { return soft_[static_cast<std::size_t>(type)] != 0; }
   /// The law for bodies of these kinds, turned round where that makes it fit; refuses one that does not.
   softgrain::AnyLaw oriented(const softgrain::AnyLaw& law, const std::string& name, bool first_soft, bool second_soft);
@@ -66,9 +69,10 @@ class PairSoftgrain : public Pair {
   /// The box has been strained since the last run: the pass of the setup lets the springs follow, velocities being
   /// moves.
   bool strained = false;
-  softgrain::Vec<3> strain{};  ///< lengths became 1 - strain of what they were
-  double spring_dt = -1.0;     ///< for the history, of a relaxation; negative: the time step
-  double evaluations = 0.0;    ///< near pairs looked at by all passes of this rank
+  bool flows = false;        ///< the box moves: what contacts see is the motion of bodies and that of the box
+  softgrain::Vec<3> flow{};  ///< rate of its lengths; of a strained box growth over the length that it has now
+  double spring_dt = -1.0;   ///< for the history, of a relaxation; negative: the time step
+  double evaluations = 0.0;  ///< near pairs looked at by all passes of this rank
 
  private:
   void allocate();

@@ -54,20 +54,12 @@ double smallest_radius(const MacroPacking& packing) {
   return r;
 }
 
-/// Lists are made for bodies that move by half the skin; the smallest bodies have the most to do with it.
-std::string numbers(const ScriptScene& s) {
+/// What every test has. Lists are made for bodies that move by half the skin; the smallest bodies have the most to do
+/// with it.
+std::string common_numbers(const ScriptScene& s) {
   const MacroSpec& spec = s.spec;
   const double largest = *std::max_element(s.types.largest.begin(), s.types.largest.end());
-  std::string text = section("What may be changed");
-  text += setting("from", fmt::format("{}", -1), "recorded point to go on from; -1: from the beginning");
-  if (spec.preparation == Preparation::lammps) text += compaction_settings(s);
-  text += setting("strain_end", fmt::format("{}", spec.strain_end), "at the end of the test");
-  text += setting("steps", fmt::format("{}", spec.steps), "recorded points up to there");
-  if (preload_points(spec) > 0) {
-    text += setting("preload", fmt::format("{}", spec.preload), "isotropic strain before");
-    text += setting("preload_steps", fmt::format("{}", spec.preload_steps), "recorded points of it");
-  }
-  text += setting("increments", fmt::format("{}", spec.increments_per_step), "relaxed strain increments per point");
+  std::string text;
   text += setting("tolerance", fmt::format("{}", spec.tolerance), "largest net force over mean contact force, at rest");
   text += setting("floor", fmt::format("{}", test_force_floor(spec, largest)),
                   "the mean contact force counts for this at least [N]");
@@ -77,6 +69,22 @@ std::string numbers(const ScriptScene& s) {
   text += setting("skin", fmt::format("{}", 0.2 * smallest_radius(s.packing)),
                   "lists of near pairs reach farther by this [m]");
   return text;
+}
+
+std::string numbers(const ScriptScene& s) {
+  const MacroSpec& spec = s.spec;
+  std::string text = section("What may be changed");
+  text += setting("from", fmt::format("{}", -1), "recorded point to go on from; -1: from the beginning");
+  if (spec.preparation == Preparation::lammps) text += compaction_settings(s);
+  if (spec.test == MacroTest::stages) return text + stage_settings(s) + common_numbers(s);
+  text += setting("strain_end", fmt::format("{}", spec.strain_end), "at the end of the test");
+  text += setting("steps", fmt::format("{}", spec.steps), "recorded points up to there");
+  if (preload_points(spec) > 0) {
+    text += setting("preload", fmt::format("{}", spec.preload), "isotropic strain before");
+    text += setting("preload_steps", fmt::format("{}", spec.preload_steps), "recorded points of it");
+  }
+  text += setting("increments", fmt::format("{}", spec.increments_per_step), "relaxed strain increments per point");
+  return text + common_numbers(s);
 }
 
 /// Large bodies among small ones have many neighbours: lists of LAMMPS have room for 2000 unless told.
@@ -89,7 +97,8 @@ std::string room_for_neighbours(const ScriptScene& s) {
 
 std::string loading(const ScriptScene& s) {
   std::string text = section("Bodies and box");
-  text += "units        si\natom_style   sphere\natom_modify  map yes\nnewton       off\nboundary     f f f\n";
+  text += "units        si\natom_style   sphere\natom_modify  map yes\nnewton       off\nboundary     " +
+          std::string(s.spec.boundary == Boundary::periodic ? "p p p" : "f f f") + "\n";
   text += "if \"${from} >= 0\" then &\n  \"read_restart restart.${from}\" &\n";
   if (s.spec.preparation == Preparation::lammps)
     text +=
@@ -112,10 +121,13 @@ std::string laws(const ScriptScene& s) {
   if (!solid.empty() && !soft.empty())
     text += fmt::format("pair_coeff   {} {} {} soft-solid\n", soft, solid, kLawsFile);
   if (!soft.empty()) text += fmt::format("pair_coeff   {} {} {} soft-soft\n", soft, soft, kLawsFile);
-  text += "fix          walls all softgrain/wall box";
-  if (!solid.empty()) text += fmt::format(" law {} {} solid-wall", solid, kLawsFile);
-  if (!soft.empty()) text += fmt::format(" law {} {} soft-wall", soft, kLawsFile);
-  text += "\n" + watching();
+  if (s.spec.boundary == Boundary::walls) {
+    text += "fix          walls all softgrain/wall box";
+    if (!solid.empty()) text += fmt::format(" law {} {} solid-wall", solid, kLawsFile);
+    if (!soft.empty()) text += fmt::format(" law {} {} soft-wall", soft, kLawsFile);
+    text += "\n";
+  }
+  text += watching();
   text += "fix          relax all softgrain/relax tolerance ${tolerance} floor ${floor} max_passes ${max_passes}\n";
   return text +
          "# a look at the start: from here on the box may change, after a restart file too\n"
@@ -131,7 +143,7 @@ std::string contacts_file(const std::string& point) { return "contacts." + point
 std::string script_text(const ScriptScene& s) {
   const bool compacts = s.spec.preparation == Preparation::lammps;
   return heading(s) + numbers(s) + loading(s) + (compacts ? compaction(s) : "") + laws(s) + test_variables(s) +
-         test_loop(s) + recording() + the_end();
+         test_loop(s) + recording(s) + the_end();
 }
 
 }  // namespace softgrain::lammps

@@ -36,22 +36,40 @@ void add_stresses(const PointRow& row, MacroCurve& c) {
   const double ly = row[Point::ly];
   const double lz = row[Point::lz];
   if (!(lx > 0.0 && ly > 0.0 && lz > 0.0)) throw FileTrouble("points.txt: a box without room");
-  const double x = wall_stress(row, Point::wall_xlo, Point::wall_xhi, ly * lz);
-  const double y = wall_stress(row, Point::wall_ylo, Point::wall_yhi, lx * lz);
-  const double z = wall_stress(row, Point::wall_zlo, Point::wall_zhi, lx * ly);
+  const double volume = lx * ly * lz;
+  const bool periodic = c.boundary == Boundary::periodic;
+  const double x =
+      periodic ? row[Point::branch_xx] / volume : wall_stress(row, Point::wall_xlo, Point::wall_xhi, ly * lz);
+  const double y =
+      periodic ? row[Point::branch_yy] / volume : wall_stress(row, Point::wall_ylo, Point::wall_yhi, lx * lz);
+  const double z =
+      periodic ? row[Point::branch_zz] / volume : wall_stress(row, Point::wall_zlo, Point::wall_zhi, lx * ly);
+  c.strain_x.push_back(1.0 - lx / c.start.size_x);
+  c.strain_y.push_back(1.0 - ly / c.start.size_y);
+  c.strain_z.push_back(1.0 - lz / c.start.size_z);
   c.stress_axial.push_back(z);
   c.stress_lateral.push_back(0.5 * (x + y));
   c.stress_x.push_back(x);
   c.stress_y.push_back(y);
   c.stress_deviator.push_back(z - x);
-  c.stress_axial_contacts.push_back(row[Point::branch_zz] / (lx * ly * lz));
+  c.stress_axial_contacts.push_back(row[Point::branch_zz] / volume);
 }
 
-void add_point(const PointRow& row, const MacroSpec& spec, MacroCurve& c) {
+/// What the row says, of tests in stages; else what the test has at this point, which the row must agree with.
+double strain_of(const PointRow& row, const MacroSpec& spec, const MacroCurve& c) {
+  if (spec.test == MacroTest::stages) return 1.0 - row[Point::lz] / c.start.size_z;
   const double strain = strain_at(spec, static_cast<std::int64_t>(c.strain.size()));
   if (std::abs(row[Point::strain] - strain) > 1e-9)
     throw FileTrouble(fmt::format("points.txt: point {} is at strain {}, the test has {} there: another test was run",
                                   row[Point::number], row[Point::strain], strain));
+  return strain;
+}
+
+void add_point(const PointRow& row, const MacroSpec& spec, const std::vector<MacroStage>& stages, MacroCurve& c) {
+  const double strain = strain_of(row, spec, c);
+  const std::int64_t number = stage_point(stages, static_cast<std::int64_t>(c.strain.size())).stage;
+  const MacroStage& stage = stages[static_cast<std::size_t>(number)];
+  c.stage.push_back(static_cast<double>(number));
   c.strain.push_back(strain);
   add_stresses(row, c);
   const auto bodies = static_cast<double>(c.bodies);
@@ -63,16 +81,21 @@ void add_point(const PointRow& row, const MacroSpec& spec, MacroCurve& c) {
   c.cost += {static_cast<std::int64_t>(row[Point::passes]), static_cast<std::int64_t>(row[Point::looked_at]),
              row[Point::seconds]};
   const auto passes = static_cast<std::int64_t>(row[Point::passes]);
-  note_relaxation(c, {end_of(row[Point::end]), passes, row[Point::residual]}, strain, spec.tolerance);
+  note_relaxation(c, {end_of(row[Point::end]), passes, row[Point::residual]}, strain, stage.tolerance);
+  if (row[Point::over] > 0.0)
+    note_out_of_reach(c, stage, {{row[Point::asked_x], row[Point::asked_y], row[Point::asked_z]}});
   record_law_use(c, law_use(row));
 }
 
 }  // namespace
 
-bool ended_early(const PointRow& row) { return row[Point::law_refused] > 0.0 || row[Point::behind_walls] > 0.0; }
+bool ended_early(const PointRow& row) {
+  return row[Point::law_refused] > 0.0 || row[Point::behind_walls] > 0.0 || row[Point::over] > 0.0;
+}
 
 void add_points(const std::vector<PointRow>& rows, const MacroSpec& spec, MacroCurve& curve) {
-  for (const PointRow& row : rows) add_point(row, spec, curve);
+  const std::vector<MacroStage> stages = stages_of(spec);
+  for (const PointRow& row : rows) add_point(row, spec, stages, curve);
   if (!rows.empty() && curve.soft > 0) note_law_use(curve, law_use(rows.back()), curve.strain.back());
 }
 
@@ -84,6 +107,12 @@ std::vector<double> normal_forces(const std::vector<DumpedContact>& contacts) {
 
 void move_to(const DumpedBodies& bodies, MacroSystem& macro) {
   auto& p = macro.system.particles;
+  if (macro.box.periodic) {
+    const Vec3 size = bodies.high - bodies.low;
+    for (std::size_t k = 0; k < bodies.x.size(); ++k) p.sphere[k].x = bodies.x[k] - bodies.low;
+    for (int k = 0; k < 3; ++k) macro.system.cell.edges[k][k] = size[k];
+    return;
+  }
   for (std::size_t k = 0; k < bodies.x.size(); ++k) p.sphere[k].x = bodies.x[k];
   const Vec3 middle = (bodies.low + bodies.high) * 0.5;
   for (int wall = 0; wall < 6; ++wall) {
@@ -108,6 +137,11 @@ std::vector<SnapshotContact> snapshot_contacts_of(const std::vector<DumpedContac
     const double overlap = r + (wall ? 0.0 : sphere[static_cast<std::size_t>(c.j)].r) - length;
     s.point = s.from - c.branch * ((r - 0.5 * overlap) / length);
     s.to = wall ? s.point : s.from - c.branch;
+    if (!wall && macro.box.periodic) {
+      const Vec3& partner = sphere[static_cast<std::size_t>(c.j)].x;
+      s.shift = macro.system.cell.image_shift(macro.system.cell.image_near(s.from, partner));
+      s.to = partner + s.shift;
+    }
     s.force = c.force;
     s.normal_force = c.normal_force;
     out.push_back(s);

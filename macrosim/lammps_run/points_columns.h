@@ -47,11 +47,19 @@ enum class Point : std::size_t {
   mean_force,
   looked_at,
   seconds,
+  stress_x,
+  stress_y,
+  stress_z,
+  asked_x,
+  asked_y,
+  asked_z,
+  over,
   count
 };
 
 /// Forces of bodies on walls [N], pushing positive; branch: force times branch [N m]; end: 1 converged, 2 capped,
-/// 3 diverged; looked_at: near pairs in all passes.
+/// 3 diverged; looked_at: near pairs in all passes; stress: on the box [Pa], asked: of axes that go by stress; over: 1
+/// where that was not reached. Columns of walls are 0 in a periodic cell.
 inline constexpr std::array<PointColumn, static_cast<std::size_t>(Point::count)> kPointColumns{{
     {"point", "v_point"},
     {"strain", "v_strain"},
@@ -87,9 +95,16 @@ inline constexpr std::array<PointColumn, static_cast<std::size_t>(Point::count)>
     {"mean_force", "v_mean_force"},
     {"looked_at", "v_looked_at"},
     {"seconds", "v_seconds"},
+    {"stress_x", "f_relax[7]"},
+    {"stress_y", "f_relax[8]"},
+    {"stress_z", "f_relax[9]"},
+    {"asked_x", "v_wantx"},
+    {"asked_y", "v_wanty"},
+    {"asked_z", "v_wantz"},
+    {"over", "v_over"},
 }};
 
 /// First words of points.txt; the name of the scene follows (scene_key).
-inline constexpr const char* kPointsHead = "# softgrain points 1";
+inline constexpr const char* kPointsHead = "# softgrain points 2";
 
 }  // namespace softgrain::lammps

@@ -9,6 +9,7 @@
 #include "macrosim/lammps_run/input_script.h"
 #include "macrosim/lammps_run/lammps_curve.h"
 #include "macrosim/lammps_run/points_file.h"
+#include "macrosim/lammps_run/script_parts.h"
 
 namespace softgrain::lammps {
 
@@ -34,7 +35,8 @@ std::vector<std::string> last_round(const std::string& directory) {
 
 }  // namespace
 
-ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points) {
+ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
+                              const std::vector<MacroStage>& stages) {
   auto rows = read_points(directory, key);
   const auto there = [&](const std::string& file) { return fs::exists(directory + "/" + file); };
   const bool early = !rows.empty() && ended_early(rows.back());
@@ -46,7 +48,11 @@ ResumePoint find_resume_point(const std::string& directory, const std::string& k
   fs::remove(directory + "/" + kEndFile);
   if (rows.empty()) return {false, last_round(directory)};
   write_points(directory, key, rows);
-  return {false, {"-var", "from", std::to_string(rows.size() - 1)}};
+  ResumePoint out{false, {"-var", "from", std::to_string(rows.size() - 1)}};
+  if (stages.empty()) return out;
+  const auto begins = begin_settings(stages, rows);
+  out.settings.insert(out.settings.end(), begins.begin(), begins.end());
+  return out;
 }
 
 }  // namespace softgrain::lammps

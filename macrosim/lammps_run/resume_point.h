@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "macrosim/macro_spec.h"
+
 namespace softgrain::lammps {
 
 struct ResumePoint {
@@ -12,7 +14,9 @@ struct ResumePoint {
 };
 
 /// From the tables and restart files in the directory of a sample. Brings points.txt to the point that the run goes on
-/// after. Throws what read_points() throws.
-ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points);
+/// after. `stages` of a test that has them: the script is told at which stresses they began. Throws what read_points()
+/// throws.
+ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
+                              const std::vector<MacroStage>& stages = {});
 
 }  // namespace softgrain::lammps

@@ -12,11 +12,13 @@ namespace {
 constexpr std::size_t kRowWidth = 90;
 
 /// All columns of a row as one print command, over several lines.
-std::string row_command() {
+std::string row_command(bool periodic) {
   std::string text = "print \"${point}";
   std::size_t width = text.size();
   for (std::size_t k = 1; k < kPointColumns.size(); ++k) {
-    const std::string cell = fmt::format(" $({}:%.17g)", kPointColumns[k].expression);
+    const std::string expression = kPointColumns[k].expression;
+    const bool none = periodic && expression.starts_with("f_walls");
+    const std::string cell = none ? " 0" : fmt::format(" $({}:%.17g)", expression);
     if (width + cell.size() > kRowWidth) {
       text += " &\n ";
       width = 1;
@@ -34,12 +36,6 @@ std::string nominal_factor(const std::string& end, const std::string& total) {
 
 std::string variable(const std::string& name, const std::string& formula) {
   return fmt::format("variable {} equal \"{}\"\n", name, formula);
-}
-
-/// As is_snapshot() has it.
-std::string kept_states() {
-  return variable("share", "(v_states-1)/v_last") +
-         variable("kept", "floor(v_point*v_share) > floor((v_point-1)*v_share)");
 }
 
 /// Commands that dump bodies and contacts at the next `run 0`, each between `before` and `after`.
@@ -69,6 +65,13 @@ std::string column_names() {
   return text + line;
 }
 
+}  // namespace
+
+std::string kept_states() {
+  return variable("share", "(v_states-1)/v_last") +
+         variable("kept", "floor(v_point*v_share) > floor((v_point-1)*v_share)");
+}
+
 std::string heads(const ScriptScene& s) {
   return section("Heads of the tables of points") + fmt::format(
                                                         "variable file index {} {}\n"
@@ -79,8 +82,6 @@ std::string heads(const ScriptScene& s) {
                                                         "next file\njump SELF head\n",
                                                         kPointsFile, kPointsCopy, kPointsHead, s.key, column_names());
 }
-
-}  // namespace
 
 std::string section(const std::string& title) {
   std::string line = "\n# ---- " + title + " ";
@@ -102,9 +103,12 @@ std::string watching() {
 }
 
 std::string test_variables(const ScriptScene& s) {
+  if (s.spec.test == MacroTest::stages) return stage_variables(s);
   const std::string total = "(v_steps*v_increments)";
   std::string text = section("The test: strain of the box in increment n of all");
   text += variable("n", "(v_point-1)*v_increments + v_k");
+  text += "# every axis goes by strain\n" + variable("wantx", "0") + variable("wanty", "0") + variable("wantz", "0") +
+          variable("over", "0");
   if (s.spec.test == MacroTest::shear) {
     const std::string grow = "exp(v_strain_end/" + total + ")";
     const std::string shrink = "exp(-v_strain_end/" + total + ")";
@@ -152,6 +156,8 @@ std::string one_increment() {
 }  // namespace
 
 std::string test_loop(const ScriptScene& s) {
+  if (s.spec.test == MacroTest::stages)
+    return heads(s) + section("The test: points, and increments between them") + stage_loop(s);
   std::string text = heads(s) + section("The test: points, and increments between them");
   text +=
       "if \"${from} >= ${last}\" then \"jump SELF end\"\n"
@@ -172,7 +178,8 @@ std::string test_loop(const ScriptScene& s) {
   return text + "next k\njump SELF increment\n";
 }
 
-std::string recording() {
+std::string recording(const ScriptScene& s) {
+  const bool staged = s.spec.test == MacroTest::stages;
   std::string states = dumps("${point}", "  \"", "\" &\n");
   states.erase(states.size() - 3, 2);  // nothing follows the last command
   return section("A recorded point: restart file, state, row") +
@@ -187,11 +194,12 @@ std::string recording() {
          "if \"${kept} > 0\" then \"undump bodies\" \"undump contacts\"\n"
          "# twice: a table that is cut short or damaged differs from its copy\n"
          "variable file index " +
-         kPointsFile + " " + kPointsCopy + "\nlabel row\n" + row_command() +
+         kPointsFile + " " + kPointsCopy + "\nlabel row\n" + row_command(s.spec.boundary == Boundary::periodic) +
          "next file\njump SELF row\n"
          "# a law that is asked beyond its range and does not allow it, or a body behind a wall,\n"
          "# ends the test\n"
-         "if \"$(c_contacts[15]) > 0 || $(c_contacts[17]) > 0\" then \"jump SELF end\"\n"
+         "if \"$(c_contacts[15]) > 0 || $(c_contacts[17]) > 0\" then \"jump SELF end\"\n" +
+         (staged ? "if \"${over} > 0\" then \"jump SELF end\"\n" + stage_begins(s) : "") +
          "next point\njump SELF point\n";
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "macrosim/lammps_run/input_script.h"
+#include "macrosim/lammps_run/points_file.h"
 
 namespace softgrain::lammps {
 
@@ -26,8 +28,23 @@ std::string test_variables(const ScriptScene& scene);
 /// The loop over points and increments, up to rest.
 std::string test_loop(const ScriptScene& scene);
 
+/// The same of a test in stages: a table of them with what may be changed, formulas of each, the loop, and the stresses
+/// at which stages begin, which a row is written with.
+std::string stage_settings(const ScriptScene& scene);
+std::string stage_variables(const ScriptScene& scene);
+std::string stage_loop(const ScriptScene& scene);
+std::string stage_begins(const ScriptScene& scene);
+/// What goes on after these points needs to know of them: words for the command line.
+std::vector<std::string> begin_settings(const std::vector<MacroStage>& stages, const std::vector<PointRow>& rows);
+
+/// Which points keep their state, as is_snapshot() has it.
+std::string kept_states();
+
+/// Names of the tables of points, at the beginning of a test.
+std::string heads(const ScriptScene& scene);
+
 /// A row of points.txt, a restart file, and the end of the loop.
-std::string recording();
+std::string recording(const ScriptScene& scene);
 
 /// The last state, for the report.
 std::string the_end();

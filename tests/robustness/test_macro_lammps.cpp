@@ -234,6 +234,115 @@ TEST_F(WithLammps, PreparesScenesItself) {
   EXPECT_TRUE(fs::exists(file("prep/macro_initial.h5")));
 }
 
+constexpr const char* kStages = R"([[stage]]
+kind = "consolidation"
+stress = "4 kPa"
+steps = 2
+[[stage]]
+kind = "triaxial"
+strain = 0.01
+[[stage]]
+kind = "unload"
+strain = 0.002
+steps = 2
+[[stage]]
+kind = "reload"
+steps = 2
+[[stage]]
+kind = "isotropic"
+stress = "6 kPa"
+steps = 1
+[[stage]]
+kind = "hold"
+[[stage]]
+kind = "oedometric"
+stress = "9 kPa"
+steps = 2
+)";
+
+/// Strain and stress per axis, in walls and in a periodic cell, on one rank and two.
+class Staged : public WithLammps {
+ protected:
+  void scene(const std::string& boundary, const std::string& stages, const std::string& keys = "") const {
+    const std::string head =
+        "kind = \"macro\"\nlaw = \"law.toml\"\n[macro]\nbodies = 100\nsteps = 3\n"
+        "start_pressure = 3e-3\ntolerance = 1e-4\nresolved = false\nboundary = \"";
+    write_text_atomic(file("scene.toml"), head + boundary + "\"\n" + keys + stages);
+  }
+};
+
+TEST_F(Staged, AgreesWithOurOwnEngineOnOneAndTwoRanks) {
+  for (const std::string boundary : {"walls", "periodic"}) {
+    scene(boundary, kStages, boundary == "walls" ? "mu = 0.0\n" : "");
+    expect(macro("own", ""), 0, {});
+    const MacroCurve own = curve("own");
+    for (const char* ranks : {"1", "2"}) {
+      expect(macro("other", std::string("--engine lammps --ranks ") + ranks), 0, {});
+      const MacroCurve other = curve("other");
+      EXPECT_EQ(own.stages, other.stages);
+      EXPECT_EQ(own.stage, other.stage);
+      EXPECT_EQ(own.boundary, other.boundary);
+      ASSERT_EQ(own.strain.size(), other.strain.size());
+      for (std::size_t k = 0; k < own.strain.size(); ++k) {
+        EXPECT_NEAR(own.strain_x[k], other.strain_x[k], 2e-5) << boundary << ", " << k;
+        EXPECT_NEAR(own.strain_z[k], other.strain_z[k], 2e-5) << boundary << ", " << k;
+        EXPECT_NEAR(own.stress_x[k] / other.stress_x[k], 1.0, 2e-3) << boundary << ", " << k;
+        EXPECT_NEAR(own.stress_axial[k] / other.stress_axial[k], 1.0, 2e-3) << boundary << ", " << k;
+        EXPECT_NEAR(own.stress_axial_contacts[k] / other.stress_axial_contacts[k], 1.0, 2e-3) << k;
+      }
+    }
+  }
+}
+
+/// In the middle of any stage: what a stage began at is known again.
+TEST_F(Staged, GoesOnAfterAStop) {
+  scene("periodic", kStages);
+  const std::string more = "--engine lammps ";
+  expect(macro("whole", more), 0, {});
+  const MacroCurve whole = curve("whole");
+  for (const int points : {2, 5, 9, 12}) {
+    fs::remove_all(file("stopped"));
+    // As a run leaves it that ends after so many points.
+    expect(macro("stopped", more + "--write-only"), 0, {});
+    fs::remove(file("stopped/summary.json"));
+    const std::string run = fmt::format(
+        "cd '{}' && sed -e 's/^next point$/if \"${{point}} == {}\" then quit\\nnext point/' "
+        "scene.in > short.in && '{}' -in short.in > short.log 2>&1",
+        file("stopped/lammps-0"), points, beside_the_program());
+    ASSERT_EQ(std::system(run.c_str()), 0) << run;
+    ASSERT_EQ(lammps::count_points(file("stopped/lammps-0")), points + 1);
+    expect(macro("stopped", more + "--resume"), 0, {});
+    const MacroCurve resumed = curve("stopped");
+    ASSERT_EQ(whole.strain.size(), resumed.strain.size());
+    for (std::size_t k = 0; k < whole.strain.size(); ++k) {
+      EXPECT_NEAR(resumed.stress_axial[k] / whole.stress_axial[k], 1.0, 1e-4) << points << ", " << k;
+      EXPECT_NEAR(resumed.strain_x[k], whole.strain_x[k], 1e-6) << points << ", " << k;
+    }
+  }
+}
+
+TEST_F(Staged, AStressThatCannotBeReachedEndsTheTest) {
+  for (const std::string boundary : {"walls", "periodic"}) {
+    scene(boundary,
+          "[[stage]]\nkind = \"consolidation\"\nstress = 2000\nsteps = 1\n[[stage]]\nkind = \"triaxial\"\nstress = "
+          "\"20 kPa\"\nsteps = 4\n[[stage]]\nkind = \"hold\"\n",
+          "max_passes = 3000\n");
+    for (const char* engine : {"softgrain", "lammps"}) {
+      const std::string bodies = boundary == "periodic" ? " --set macro.bodies=250" : "";
+      expect(macro(engine, std::string("--engine ") + engine + bodies), 3,
+             {"stage 'triaxial' ended at axial strain", "Pa asked"});
+      EXPECT_FALSE(curve(engine).usable);
+      EXPECT_LT(curve(engine).strain.size(), 7U) << boundary;
+      EXPECT_GE(curve(engine).strain.size(), 3U) << boundary;
+    }
+  }
+}
+
+TEST_F(Staged, LammpsCompactsNoPeriodicCell) {
+  scene("periodic", kStages, "preparation = \"lammps\"\n");
+  expect(macro("run", "--engine lammps"), 2, {"compacts a box of walls"});
+}
+
 /// What stands in a run that was stopped is what a run without stop has.
 TEST_F(WithLammps, GoesOnAfterAStop) {
   const std::string settings = "--set macro.bodies=300 --set macro.steps=12 ";

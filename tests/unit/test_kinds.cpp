@@ -121,6 +121,21 @@ overlaps = [0.2, 0.1]
 s:4: levels = 1: must be a whole number from 2 to 100
 s:6: tolerance = 2: must be above 0 and below 1
 s:8: overlaps = [ 0.2, 0.1 ]: must ascend)"},
+    {R"(kind = "material"
+[grains]
+count = 3
+[packing]
+preparation = "lammps"
+[test]
+strain = 0.1
+[[stage]]
+kind = "unload"
+)",
+     R"(s:3: count = 3: must be a whole number from 8 to 100000000
+s:5: preparation = "lammps": "lammps" compacts a box of walls: with boundary = "periodic" known are frictionless, fast, slow, dense
+s:7: strain = 0.1: goes without [[stage]], which says the whole test
+s:8: strain: missing; give strain or stress
+s:9: kind = "unload": there is no stage before it whose way it could go)"},
     {R"(kind = "macro"
 seed = -1
 [macro]

@@ -89,9 +89,31 @@ MacroSpec spec_of(MacroTest test, double preload = 0.0, Preparation preparation 
   return spec;
 }
 
+/// Stages of every kind, in a periodic cell.
+MacroSpec staged_spec() {
+  MacroSpec spec;
+  spec.boundary = Boundary::periodic;
+  spec.test = MacroTest::stages;
+  const auto add = [&](StageKind kind) -> MacroStage& {
+    spec.stages.emplace_back();
+    spec.stages.back().record = {to_string(kind), kind, kind};
+    return spec.stages.back();
+  };
+  for (AxisDrive& axis : add(StageKind::consolidation).axis) axis = {true, 300.0, -1};
+  MacroStage& triaxial = add(StageKind::triaxial);
+  triaxial.axis[0] = triaxial.axis[1] = {true, 0.0, 1};
+  triaxial.axis[2].value = 0.05;
+  MacroStage& shear = add(StageKind::shear);
+  shear.axis[0].value = -0.01;
+  shear.axis[2].value = 0.01;
+  shear.logarithmic = true;
+  add(StageKind::hold);
+  return spec;
+}
+
 TEST(LammpsFiles, ScriptsAreForPeople) {
   for (const MacroSpec& spec :
-       {spec_of(MacroTest::oedometric), spec_of(MacroTest::isotropic), spec_of(MacroTest::shear),
+       {staged_spec(), spec_of(MacroTest::oedometric), spec_of(MacroTest::isotropic), spec_of(MacroTest::shear),
         spec_of(MacroTest::shear, 0.02), spec_of(MacroTest::oedometric, 0.0, Preparation::lammps)}) {
     std::istringstream in(script_of(spec));
     for (std::string line; std::getline(in, line);) {
@@ -119,16 +141,29 @@ TEST(LammpsFiles, ScriptsSayWhatTheSceneAsksFor) {
 
 /// Every label that is jumped to is there, once.
 TEST(LammpsFiles, JumpsOfScriptsHaveTheirLabels) {
-  const std::string text = script_of(spec_of(MacroTest::shear, 0.02, Preparation::lammps));
-  std::size_t jumps = 0;
-  for (std::size_t at = text.find("jump SELF "); at != std::string::npos; at = text.find("jump SELF ", at + 1)) {
-    const std::string name = text.substr(at + 10, text.find_first_of("\"\n", at) - at - 10);
-    const std::string label = "label " + name + "\n";
-    EXPECT_NE(text.find(label), std::string::npos) << name;
-    EXPECT_EQ(text.find(label), text.rfind(label)) << name;
-    ++jumps;
+  for (const MacroSpec& spec : {spec_of(MacroTest::shear, 0.02, Preparation::lammps), staged_spec()}) {
+    const std::string text = script_of(spec);
+    std::size_t jumps = 0;
+    for (std::size_t at = text.find("jump SELF "); at != std::string::npos; at = text.find("jump SELF ", at + 1)) {
+      const std::string name = text.substr(at + 10, text.find_first_of("\"\n", at) - at - 10);
+      const std::string label = "label " + name + "\n";
+      EXPECT_NE(text.find(label), std::string::npos) << name;
+      EXPECT_EQ(text.find(label), text.rfind(label)) << name;
+      ++jumps;
+    }
+    EXPECT_GT(jumps, 8U);
   }
-  EXPECT_GT(jumps, 8U);
+}
+
+TEST(LammpsFiles, StagesOfScriptsSayTheirStrainsAndStresses) {
+  const std::string text = script_of(staged_spec());
+  for (const char* words :
+       {"boundary     p p p", "points 1 to 30: consolidation (consolidation)",
+        "(1-v_n/v_total)*v_begin1x+v_n/v_total*300", "(1-v_n/v_total)*v_begin2y+v_n/v_total*v_begin2y",
+        "(1-0.05*v_n/v_total)/(1-0.05*(v_n-1)/v_total)", "exp(0.01/v_total)", "exp(-0.01/v_total)", "least_stress 5"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << " not in\n" << text;
+  EXPECT_EQ(text.find("softgrain/wall"), std::string::npos);
+  EXPECT_EQ(text.find("f_walls"), std::string::npos);
 }
 
 class Tables : public ::testing::Test {
@@ -210,7 +245,7 @@ TEST_F(Tables, GapsAndOtherWordsAreRefused) {
   refused("\n1 ", "\nnan ");
   refused("\n1 ", "\none ");
   refused("\n1 0.1 ", "\n1 ");
-  refused("# softgrain points 1", "# softgrain points 9");
+  refused("# softgrain points 2", "# softgrain points 9");
 }
 
 /// Test of four points, with tables and restart files as a run leaves them.
@@ -352,6 +387,31 @@ TEST_F(Curves, ARefusedLawEndsTheTest) {
   lammps::add_points({point_row(0, 0.0), last}, spec_, curve_);
   EXPECT_FALSE(curve_.usable);
   EXPECT_NE(curve_.note.find("which the law does not allow"), std::string::npos) << curve_.note;
+}
+
+/// Without walls the stress is that of the contacts; strains come from the box, and a stage whose stress was not
+/// reached is said.
+TEST_F(Curves, RowsOfStagesSayWhatTheBoxDid) {
+  MacroSpec spec = staged_spec();
+  spec.stages.resize(1);
+  spec.stages[0].steps = 1;
+  curve_.boundary = Boundary::periodic;
+  const PointRow first = point_row(0, 0.0);
+  curve_.start.size_x = first[Point::lx];
+  curve_.start.size_y = first[Point::ly];
+  curve_.start.size_z = first[Point::lz];
+  PointRow second = with(with(point_row(1, 0.1), Point::lz, 0.9 * first[Point::lz]), Point::over, 1.0);
+  second = with(with(second, Point::end, 2.0), Point::asked_z, 300.0);
+  EXPECT_TRUE(lammps::ended_early(second));
+  lammps::add_points({first, second}, spec, curve_);
+  EXPECT_NEAR(curve_.strain_z[1], 0.1, 1e-12);
+  EXPECT_EQ(curve_.strain, curve_.strain_z);
+  EXPECT_EQ(curve_.strain_x[1], 0.0);
+  const double volume = second[Point::lx] * second[Point::ly] * second[Point::lz];
+  EXPECT_DOUBLE_EQ(curve_.stress_x[1], second[Point::branch_xx] / volume);
+  EXPECT_FALSE(curve_.usable);
+  EXPECT_NE(curve_.note.find("stage 'consolidation' ended at axial strain 0.1"), std::string::npos) << curve_.note;
+  EXPECT_NE(curve_.note.find("z 300 Pa asked"), std::string::npos) << curve_.note;
 }
 
 TEST_F(Curves, AnotherTestIsRefused) {

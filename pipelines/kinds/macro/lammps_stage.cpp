@@ -73,7 +73,7 @@ class Sample {
         key_(key_of(runs, number)) {}
 
   void run(const LammpsEngine& engine, const std::function<void(double)>& progress) {
-    lammps::ResumePoint from = lammps::find_resume_point(where_, key_, recorded_points(spec()));
+    lammps::ResumePoint from = lammps::find_resume_point(where_, key_, recorded_points(spec()), spec().stages);
     if (from.done) return;
     const std::string log = where_ + "/" + lammps::kLogFile;
     const std::uintmax_t before = fs::exists(log) ? fs::file_size(log) : 0;
@@ -102,7 +102,13 @@ class Sample {
                                     lammps::kPointsFile, rows.size(), recorded_points(spec())));
     if (!fs::exists(where_ + "/" + lammps::kEndFile))
       throw FileTrouble(where_ + ": the last state is not there, although LAMMPS ended without a complaint");
-    read_states(rows, macro, out);
+    try {
+      read_states(rows, macro, out);
+    } catch (const BadInput& e) {  // a cell that has become too small for its bodies
+      out.curve.usable = false;
+      out.curve.note +=
+          (out.curve.note.empty() ? "" : "; ") + fmt::format("its last state cannot be read: {}", e.what());
+    }
     return out;
   }
 
@@ -111,8 +117,8 @@ class Sample {
 
   /// Trouble of the scene is not usable, as with our own engine; any other is trouble while running.
   [[noreturn]] void fail(const ChildEnd& end, const lammps::LogTail& log) const {
-    const auto points = static_cast<std::int64_t>(lammps::read_points(where_, key_).size());
-    const double strain = strain_at(spec(), std::max<std::int64_t>(points - 1, 0));
+    const auto rows = lammps::read_points(where_, key_);
+    const double strain = rows.empty() ? strain_at(spec(), 0) : rows.back()[lammps::Point::strain];
     const std::string run = fmt::format("macro run '{}'", runs_.law.name);
     if (log.says(lammps::kNotJammed)) throw NotUsable(not_jammed_text(spec()));
     if (log.says("Lost atoms"))
@@ -136,7 +142,10 @@ class Sample {
   /// A relaxation of which nothing was left to record.
   [[nodiscard]] bool note_diverged(const std::vector<lammps::PointRow>& rows, MacroCurve& curve) const {
     if (!fs::exists(where_ + "/" + lammps::kDivergedFile)) return false;
-    const double strain = strain_at(spec(), static_cast<std::int64_t>(rows.size()));
+    const bool staged = spec().test == MacroTest::stages;
+    const double strain = !staged        ? strain_at(spec(), static_cast<std::int64_t>(rows.size()))
+                          : rows.empty() ? 0.0
+                                         : rows.back()[lammps::Point::strain];
     note_relaxation(curve, {RelaxationEnd::diverged, 0, HUGE_VAL}, strain, spec().tolerance);
     if (rows.empty()) throw NotUsable(fmt::format("macro run '{}': {}", curve.engine, curve.note));
     return true;

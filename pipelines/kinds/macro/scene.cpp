@@ -62,6 +62,10 @@ void read_preparation(const SceneTable& t, MacroSpec& spec) {
                    {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
                     "preparation_tolerance", "preparation_passes"},
                    "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
+  if (spec.preparation == Preparation::lammps && spec.boundary == Boundary::periodic)
+    t.mistake(
+        "preparation",
+        "\"lammps\" compacts a box of walls: with boundary = \"periodic\" known are frictionless, fast, slow, dense");
   if (!(p.inertial_number > 0.0))
     mistake_beside(t, {"compaction_restitution"},
                    "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");

@@ -74,9 +74,6 @@ void read_finer_preparation(const SceneTable& t, MacroSpec& spec) {
   read_preparation(t, spec);
   if (!t.has("preparation_tolerance") && (t.has("preparation") || t.has("mu")))
     spec.protocol.tolerance = kPreparationTolerance;
-  if (spec.preparation == Preparation::lammps)
-    t.mistake("preparation",
-              "\"lammps\" goes with scenes of kind \"macro\": known here are frictionless, fast, slow, dense");
 }
 
 /// Keys of all tables of the scene, in one.
