@@ -110,6 +110,7 @@ std::vector<SmallForm> small_forms() {
            {{R"(scene=[{test="oedometric",strain=0.2,steps=2},{test="shear",preload=0.06,preload_steps=1,strain=0.1,steps=1}])",
              "law.range=clamp"}}),
        0},
+      {"material.toml", "run", {{"samples=2", "grains.count=80", "grains.ratio=2", "test.steps=3"}}, 0},
       {"packing_study.toml", "microsim", with(kSmallPacking, {{"measure.soft_solid.deltas=[0.1,0.2]"}}), 0},
       {"powder_method1.toml", "microsim", with(kSmallPowder, {{"samples=2", "analysis.mesh=10"}}), 0},
       {"powder_method2.toml", "microsim", method2, 0},
