@@ -136,6 +136,75 @@ std::string share_table(const std::vector<Variant>& variants) {
              "share of the largest radius. Mean over samples ± standard error.");
 }
 
+std::string interval(const StateEstimate& e, int digits = 4) {
+  if (!std::isfinite(e.low) || !std::isfinite(e.high)) return format_number(e.value, digits);
+  return fmt::format("{} ({} to {})", format_number(e.value, digits), format_number(e.low, digits),
+                     format_number(e.high, digits));
+}
+
+/// p/E over x, every sample with the onset of its variant, and the curve that all share.
+std::string collapse_figure(const std::vector<Variant>& variants, const EquationSummary& s) {
+  if (s.form != StateForm::porosity) return "";
+  Plot plot({.id = "material-collapse",
+             .title = "Equation of state",
+             .x = {.label = "x = (φ − φ_J)/(1 − φ_J)", .scale = Scale::logarithmic},
+             .y = {.label = "p/E", .scale = Scale::logarithmic}});
+  std::vector<Variant> fitted;
+  double largest = 0.0;
+  for (const Variant& v : variants)
+    for (const OnsetSummary& o : s.onsets)
+      if (o.name == v.name) {
+        fitted.push_back({v.name, {}});
+        for (const MacroCurve& c : v.curves) {
+          const StateCurve part = state_curve(c, v.name, o.span);
+          MacroCurve reduced;
+          reduced.sample = c.sample;
+          for (std::size_t k = 0; k < part.phi.size(); ++k) {
+            reduced.strain.push_back((part.phi[k] - o.onset.value) / (1.0 - o.onset.value));
+            reduced.stress_axial.push_back(part.pressure[k]);
+            largest = std::max(largest, reduced.strain.back());
+          }
+          fitted.back().curves.push_back(std::move(reduced));
+        }
+      }
+  add_lines(
+      plot, fitted, [](const MacroCurve& c) { return c.strain; }, [](const MacroCurve& c) { return c.stress_axial; });
+  if (plot.empty() || !(largest > 0.0)) return "";
+  Series fit{.label = "K xⁿ", .hover = "", .x = {}, .y = {}};
+  for (const double share : spread(-0.9, 0.0, 40)) {
+    fit.x.push_back(largest * std::pow(10.0, share));
+    fit.y.push_back(s.modulus.value * std::pow(fit.x.back(), s.exponent.value));
+  }
+  fit.style = {.color = palette::black, .width = 1.2, .dash = "6 3"};
+  plot.add(std::move(fit));
+  return figure(plot.svg(), "All samples over their relative loss of pores, and what is fitted to all.");
+}
+
+std::string equation_part(const std::vector<Variant>& variants, const RunData& run) {
+  const auto summary = run.summary_as<MaterialSummary>();
+  if (!summary.equation) return "";
+  const EquationSummary& s = *summary.equation;
+  if (!s.usable) return paragraph("Equation of state: not usable: " + s.message + ".");
+  std::string out = figure_row({collapse_figure(variants, s)});
+  out += paragraph(fmt::format(
+      "Equation of state, {} form: K = {}, n = {}; pressures follow it to {} % (95 % intervals in brackets).",
+      to_string(s.form), interval(s.modulus), interval(s.exponent), format_number(100.0 * s.pressure_deviation, 2)));
+  HtmlTable onsets({"variant", "span", "samples", "φ_J", "K by itself"});
+  for (const OnsetSummary& o : s.onsets)
+    onsets.row({o.name, format_number(o.span, 3), std::to_string(o.samples), interval(o.onset),
+                format_number(o.own_modulus, 3)});
+  out += onsets.html();
+  if (s.onsets.size() > 1)
+    out += paragraph(fmt::format(
+        "K of the variants scatters by {} %; as much or more comes with a probability of {} if there is one K.",
+        format_number(100.0 * s.modulus_scatter, 2), format_number(s.collapse_probability, 2)));
+  HtmlTable beyond({"materials", "span", "fitted up to", "φ_J extrapolated", "φ_J measured"});
+  for (const ExtrapolationSummary& e : s.extrapolations)
+    beyond.row({e.family, format_number(e.span, 5), format_number(e.largest_fitted, 3),
+                e.onset ? interval(*e.onset) : e.message, e.measured ? interval(*e.measured) : "–"});
+  return out + (beyond.empty() ? "" : beyond.html());
+}
+
 }  // namespace
 
 std::string material_section(const RunData& run) {
@@ -143,6 +212,7 @@ std::string material_section(const RunData& run) {
   if (variants.empty()) return "";
   std::string body = figure_row({state_figure(variants), stress_figure(variants)});
   body += figure_row({ratio_figure(variants), rattler_figure(variants)});
+  body += equation_part(variants, run);
   for (const Variant& v : variants) {
     if (v.curves.empty()) continue;
     if (variants.size() > 1) body += "<h3>" + escape(v.name) + "</h3>\n";
