@@ -6,8 +6,13 @@ hand-written notes (RESULTS_DIR/notes.md) after a heading with command, version 
 """
 import json
 import os
+import re
 import shutil
 import sys
+
+
+# What the script of a report reads off a drawing; alone it needs none of it.
+VALUES = re.compile(r' data-[xy]="[^"]*"')
 
 
 def row(cells):
@@ -99,7 +104,10 @@ def main():
         if os.path.exists(os.path.join(run, "law_table.h5")):
             shutil.copy(os.path.join(run, "law_table.h5"), out)
     for name in figures:
-        shutil.copy(os.path.join(run, "figures", name + ".svg"), out)
+        with open(os.path.join(run, "figures", name + ".svg"), encoding="utf-8") as file:
+            drawing = file.read()
+        with open(os.path.join(out, name + ".svg"), "w", encoding="utf-8") as file:
+            file.write(VALUES.sub("", drawing))
     p = summary.get("provenance", {})
     text = f"# {summary.get('title', '')}\n\nMade by `{os.path.basename(__file__)}` from `{plain(p.get('command', ''))}` "
     text += f"(version {p.get('version')}, commit {p.get('commit')}, seed {p.get('seed')}, status {summary['status']}"
