@@ -81,17 +81,14 @@ void record(CompressionState& state, const MacroSpec& spec, const MacroStage& st
   note_relaxation(c, rest, strain, stage.tolerance);
 }
 
-/// Strain of one increment by stress that nothing but a flowing packing gives.
-constexpr double kFarthest = 0.3;
-
 BoxControl control_of(const MacroSpec& spec, const MacroStage& stage, const Vec3& stress) {
   BoxControl control;
   for (std::size_t k = 0; k < 3; ++k) control.by_stress[k] = stage.axis[k].by_stress;
   control.stress = stress;
   control.alike = stage.alike;
   control.tolerance = stage.tolerance / 3.0;
-  control.least_stress = spec.start_pressure * spec.youngs_modulus;
-  control.farthest = kFarthest;
+  control.least_stress = least_stress(spec);
+  control.farthest = kFarthestStrain;
   return control;
 }
 

@@ -50,8 +50,8 @@ class PressedBox : public RelaxingFrame<3> {
  private:
   void make_alike(Vec3& a) const;
   static double largest_of(const Vec3& a) { return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}); }
-  /// W_k of the last pass [N m].
-  [[nodiscard]] Vec3 resisted(System3& system);
+  /// W_k of the last pass [N m]; worked out once for each.
+  [[nodiscard]] const Vec3& resisted(System3& system);
 
   Box box_;
   BoxControl control_;
@@ -61,8 +61,10 @@ class PressedBox : public RelaxingFrame<3> {
   Vec3 velocity_{};  ///< of the strains
   Vec3 strained_{};  ///< since the beginning
   ContactVirial<3> virial_;
-  std::vector<Vec3> carried_;  ///< velocities of the bodies with it
-  std::vector<Vec3> placed_;   ///< where they were carried to, of a periodic cell
+  Vec3 resisted_{};
+  std::int64_t resisted_at_ = -1;  ///< loop passes when it was worked out
+  std::vector<Vec3> carried_;      ///< velocities of the bodies with it
+  std::vector<Vec3> placed_;       ///< where they were carried to, of a periodic cell
 };
 
 }  // namespace softgrain

@@ -41,6 +41,12 @@ Vec3 stress_at(const MacroStage& stage, std::int64_t n, const std::vector<Vec3>&
 /// Stress at which every stage up to that of `point` began, from what was recorded before.
 std::vector<Vec3> stage_starts(const std::vector<MacroStage>& stages, const MacroCurve& curve, std::int64_t point);
 
+/// Strain of one increment by stress that nothing but a flowing packing gives: the stress is out of reach.
+inline constexpr double kFarthestStrain = 0.3;
+
+/// Stresses asked for count for this at least where a tolerance is relative to them [Pa].
+inline double least_stress(const MacroSpec& spec) { return spec.start_pressure * spec.youngs_modulus; }
+
 /// The mean contact force never counts for less in a test [N]; `largest_radius` of the bodies [m].
 double test_force_floor(const MacroSpec& spec, double largest_radius);
 

@@ -128,7 +128,10 @@ std::string laws(const ScriptScene& s) {
     text += "\n";
   }
   text += watching();
-  text += "fix          relax all softgrain/relax tolerance ${tolerance} floor ${floor} max_passes ${max_passes}\n";
+  text += "fix          relax all softgrain/relax tolerance ${tolerance} floor ${floor} max_passes ${max_passes}";
+  if (s.spec.test == MacroTest::stages)
+    text += fmt::format(" &\n  least_stress {} farthest {}", least_stress(s.spec), kFarthestStrain);
+  text += "\n";
   return text +
          "# a look at the start: from here on the box may change, after a restart file too\n"
          "run 0 post no\n"

@@ -72,6 +72,16 @@ std::string kept_states() {
          variable("kept", "floor(v_point*v_share) > floor((v_point-1)*v_share)");
 }
 
+std::string counting() {
+  return "variable end equal $(f_relax[3])\n"
+         "variable residual equal $(f_relax[2]:%.17g)\n"
+         "variable mean_force equal $(f_relax[4]:%.17g)\n"
+         "variable passes equal $(v_passes+f_relax[1]+1:%.17g)\n"
+         "variable looked_at equal $(v_looked_at+f_relax[6]-v_looked_before:%.17g)\n"
+         "variable looked_before equal $(f_relax[6]:%.17g)\n"
+         "variable seconds equal $(v_seconds+f_clock:%.17g)\n";
+}
+
 std::string heads(const ScriptScene& s) {
   return section("Heads of the tables of points") + fmt::format(
                                                         "variable file index {} {}\n"
@@ -143,14 +153,8 @@ std::string one_increment() {
   return "if \"${point} > 0\" then &\n"
          "  \"change_box all x scale $(v_fx:%.17g) y scale $(v_fy:%.17g) &\n"
          "   z scale $(v_fz:%.17g) remap units box\"\n"
-         "run ${max_passes} post no\n"
-         "variable end equal $(f_relax[3])\n"
-         "variable residual equal $(f_relax[2]:%.17g)\n"
-         "variable mean_force equal $(f_relax[4]:%.17g)\n"
-         "variable passes equal $(v_passes+f_relax[1]+1:%.17g)\n"
-         "variable looked_at equal $(v_looked_at+f_relax[6]-v_looked_before:%.17g)\n"
-         "variable looked_before equal $(f_relax[6]:%.17g)\n"
-         "variable seconds equal $(v_seconds+f_clock:%.17g)\n";
+         "run ${max_passes} post no\n" +
+         counting();
 }
 
 }  // namespace

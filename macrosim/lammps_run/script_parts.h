@@ -40,6 +40,9 @@ std::vector<std::string> begin_settings(const std::vector<MacroStage>& stages, c
 /// Which points keep their state, as is_snapshot() has it.
 std::string kept_states();
 
+/// After a run: how the relaxation ended, and what it adds to the cost of the point.
+std::string counting();
+
 /// Names of the tables of points, at the beginning of a test.
 std::string heads(const ScriptScene& scene);
 

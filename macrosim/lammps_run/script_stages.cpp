@@ -63,16 +63,6 @@ std::string block(const MacroStage& stage, std::int64_t number, std::int64_t fir
                             stage.alike ? "yes" : "no", stage.tolerance);
 }
 
-/// From the rest to the row: what a run took.
-constexpr const char* kCount =
-    "variable end equal $(f_relax[3])\n"
-    "variable residual equal $(f_relax[2]:%.17g)\n"
-    "variable mean_force equal $(f_relax[4]:%.17g)\n"
-    "variable passes equal $(v_passes+f_relax[1]+1:%.17g)\n"
-    "variable looked_at equal $(v_looked_at+f_relax[6]-v_looked_before:%.17g)\n"
-    "variable looked_before equal $(f_relax[6]:%.17g)\n"
-    "variable seconds equal $(v_seconds+f_clock:%.17g)\n";
-
 std::string targets() {
   std::string text;
   for (int k = 0; k < 3; ++k)
@@ -146,15 +136,14 @@ std::string stage_loop(const ScriptScene& s) {
       "fix_modify relax stress $(v_mean:%.17g) $(v_mean:%.17g) $(v_mean:%.17g) alike yes &\n"
       "  tolerance $(10*v_rest:%.17g) stress_tolerance $(10*v_rest/3:%.17g)\n"
       "run ${max_passes} post no\n";
-  text += kCount;
-  text += fmt::format(
+  text += counting();
+  text +=
       "label pressed\n"
       "# then all come to rest, with the axes that go by stress\n"
-      "fix_modify relax stress ${{pressx}} ${{pressy}} ${{pressz}} alike ${{alike}} &\n"
-      "  tolerance $(v_rest:%.17g) stress_tolerance $(v_rest/3:%.17g) least_stress {}\n"
-      "run ${{max_passes}} post no\n",
-      s.spec.start_pressure * s.spec.youngs_modulus);
-  text += kCount;
+      "fix_modify relax stress ${pressx} ${pressy} ${pressz} alike ${alike} &\n"
+      "  tolerance $(v_rest:%.17g) stress_tolerance $(v_rest/3:%.17g)\n"
+      "run ${max_passes} post no\n";
+  text += counting();
   text +=
       fmt::format("if \"${{end}} == 3\" then &\n  'print \"${{point}} $(v_strain:%.17g)\" file {}' &\n  \"quit 0\"\n",
                   kDivergedFile);
