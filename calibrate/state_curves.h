@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
+
 namespace softgrain {
 
 /// One compression of one sample.
@@ -14,10 +16,6 @@ struct StateCurve {
   std::vector<double> pressure;  ///< p/E at it
   std::vector<double> weight;    ///< of the squared residual; empty: all 1
 };
-
-/// porosity: p/E = K x^n, x = (phi - phi_J)/(1 - phi_J). pores: p/E = K (1 - Vp/Vp_J)^n, Vp/Vp_J = e/e_J of the void
-/// ratios e = (1 - phi)/phi (the form that adds over volumes; K, n and onsets of its own).
-enum class StateForm { porosity, pores };
 
 /// phi at which a packing with onset phi_J bears p/E = pressure.
 double state_phi(StateForm form, double modulus, double exponent, double onset, double pressure);

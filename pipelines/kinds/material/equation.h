@@ -15,10 +15,6 @@
 
 namespace softgrain {
 
-template <>
-inline constexpr auto words<StateForm> = word_list<StateForm>({{StateForm::porosity, "porosity"},
-                                                               {StateForm::pores, "pores"}});
-
 /// [equation].
 struct EquationSettings {
   StateForm form = StateForm::porosity;
