@@ -44,4 +44,11 @@ struct CellCard {
   std::int64_t samples = 0;     ///< of each measurement
 };
 
+/// Writes the card as TOML, for people and for read_cell_card(), which gives the same bits. Atomic. Throws FileTrouble.
+void write_cell_card(const CellCard& card, const std::string& path, const Provenance& provenance = build_provenance());
+
+/// Throws BadInput with file and line for keys that are missing or unknown, numbers that are none of a law and
+/// intervals whose ends are the wrong way round; FileTrouble.
+CellCard read_cell_card(const std::string& path);
+
 }  // namespace softgrain

@@ -1,0 +1,132 @@
+// Cards of the cell law: exact round trips, and nothing wrong is taken.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "common/core/error.h"
+#include "common/data/cell_card.h"
+#include "common/io/text_file.h"
+#include "tests/support/temporary_directory.h"
+
+namespace softgrain {
+namespace {
+
+using test::TemporaryDirectory;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+CellCard sample_card() {
+  CellCard c;
+  c.form = StateForm::pores;
+  c.modulus = {0.1 / 3.0, 1e-3 / 7.0, 0.03, 0.04};
+  c.exponent = {2.03, 0.1 / 3.0, 1.9, 2.2};
+  c.void_ratio = {0.567, kInf, -kInf, kInf};
+  c.excess_alone = {0.6155, 0.01, 0.59, 0.64};
+  c.excess_many = {0.3075, 0.02, 0.27, 0.35};
+  c.excess_decay = {0.355, 0.1, 0.2, 0.6};
+  c.friction = {0.6, 0.05, 0.5, 0.7};
+  c.stiffness = {1.0, 0.2, 0.6, 1.7};
+  c.lateral_ratio = {0.477, 0.003, 0.46, 0.49};
+  c.pressure_low = 1e-4 / 3.0;
+  c.pressure_high = 8e-3;
+  c.mixture_high = 4.0;
+  c.poisson_ratio = 0.3;
+  c.grain_friction = 0.3;
+  c.preparation = "fast";
+  c.start_pressure = 1e-4;
+  c.split = 1.0 / 3.0;
+  c.fines_ratio = 2.0;
+  c.fines_sizes = "power law with \"quotes\"\nand lines";
+  c.samples = 3;
+  return c;
+}
+
+void expect_same_estimate(const Estimate& a, const Estimate& b) {
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_EQ(a.standard_error, b.standard_error);
+  EXPECT_EQ(a.low, b.low);
+  EXPECT_EQ(a.high, b.high);
+}
+
+TEST(CellCardFile, RoundTripIsExact) {
+  const TemporaryDirectory directory;
+  const CellCard a = sample_card();
+  write_cell_card(a, directory.file("card.toml"));
+  const CellCard b = read_cell_card(directory.file("card.toml"));
+  EXPECT_EQ(a.form, b.form);
+  for (const auto estimate :
+       {&CellCard::modulus, &CellCard::exponent, &CellCard::void_ratio, &CellCard::excess_alone, &CellCard::excess_many,
+        &CellCard::excess_decay, &CellCard::friction, &CellCard::stiffness, &CellCard::lateral_ratio})
+    expect_same_estimate(a.*estimate, b.*estimate);
+  for (const auto number :
+       {&CellCard::pressure_low, &CellCard::pressure_high, &CellCard::mixture_high, &CellCard::poisson_ratio,
+        &CellCard::grain_friction, &CellCard::start_pressure, &CellCard::split, &CellCard::fines_ratio})
+    EXPECT_EQ(a.*number, b.*number);
+  EXPECT_EQ(a.preparation, b.preparation);
+  EXPECT_EQ(a.fines_sizes, b.fines_sizes);
+  EXPECT_EQ(a.samples, b.samples);
+  write_cell_card(b, directory.file("again.toml"));
+  EXPECT_EQ(read_text(directory.file("card.toml")), read_text(directory.file("again.toml")));
+}
+
+/// The card of sample_card() with the line that begins so replaced; empty: taken out.
+std::string complaint_of(const std::string& begin, const std::string& line) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("card.toml");
+  write_cell_card(sample_card(), path);
+  std::string text = read_text(path);
+  const auto at = text.find("\n" + begin);
+  EXPECT_NE(at, std::string::npos) << begin;
+  const auto end = text.find('\n', at + 1);
+  text.replace(at + 1, end - at - (line.empty() ? 0 : 1), line);
+  write_text_atomic(path, text);
+  try {
+    (void)read_cell_card(path);
+  } catch (const BadInput& e) {
+    return std::string(e.what()).substr(directory.file("").size());
+  }
+  return "";
+}
+
+TEST(CellCardFile, NothingWrongIsTaken) {
+  const auto estimate = [](double v) {
+    return fmt::format("{{ value = {}, standard_error = 0.1, low = 0.0, high = 9.0 }}", v);
+  };
+  const std::vector<std::pair<std::string, double>> wrong{{"K", 0.0},     {"K", -1.0},   {"n", 1.0},      {"n", 51.0},
+                                                          {"e_J", 0.0},   {"e_c", -0.1}, {"w_inf", -0.1}, {"xi", 0.0},
+                                                          {"mu_f", -0.1}, {"chi", 0.0},  {"K0", 0.0},     {"K0", 1.1}};
+  for (const auto& [key, value] : wrong) {
+    const std::string text = complaint_of(key + " = {", key + " = " + estimate(value));
+    EXPECT_NE(text.find(":"), std::string::npos) << key << " " << value;
+    EXPECT_NE(text.find("value = "), std::string::npos) << text;
+  }
+  EXPECT_NE(complaint_of("K = ", "K = { value = 1.0, standard_error = 0.1, low = 2.0, high = 1.0 }").find("high end"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint_of("K = ", R"(K = { value = 1.0, standard_error = 0.1, low = "nan", high = 1.0 })").find("high end"),
+      std::string::npos);
+  EXPECT_NE(complaint_of("K = ", "K = { value = 1.0, standard_error = -0.1, low = 0.0, high = 1.0 }").find("error"),
+            std::string::npos);
+  EXPECT_NE(complaint_of("K = ", R"(K = { value = "inf", standard_error = 0.1, low = 0.0, high = 1.0 })"), "");
+  EXPECT_NE(complaint_of("K = ", "").find("missing table [cell.K]"), std::string::npos) << complaint_of("K = ", "");
+  EXPECT_NE(complaint_of("K = ", "KK = 3"), "");
+  EXPECT_NE(complaint_of("form", "form = \"poors\"").find("nearest is \"pores\""), std::string::npos);
+  for (const char* line : {"pressure = [2e-3, 1e-3]", "pressure = [0.0, 1e-3]", "pressure = [1e-3]"})
+    EXPECT_NE(complaint_of("pressure", line).find("pressure"), std::string::npos) << line;
+  const std::vector<std::pair<std::string, std::string>> others{
+      {"mixture_max", "0"},    {"nu", "0.6"},    {"mu", "-1"},           {"preparation", "\"\""},
+      {"start_pressure", "0"}, {"split", "1.0"}, {"fines_ratio", "0.9"}, {"fines_sizes", "3"},
+      {"samples", "0"},        {"schema", "2"}};
+  for (const auto& [key, value] : others)
+    EXPECT_NE(complaint_of(key, key + " = " + value).find(key), std::string::npos) << key;
+  EXPECT_NE(complaint_of("samples", "samples = 3\nsplitt = 1").find("unknown key 'splitt'"), std::string::npos);
+}
+
+TEST(CellCardFile, TheLineIsNamedAndAMissingFileIsTrouble) {
+  EXPECT_NE(complaint_of("split = ", "split = 2").find("card.toml:"), std::string::npos);
+  EXPECT_THROW((void)read_cell_card("/nowhere/card.toml"), FileTrouble);
+}
+
+}  // namespace
+}  // namespace softgrain
