@@ -62,7 +62,7 @@ class ExcessProblem {
 
   /// Parameters w_inf, ln xi.
   [[nodiscard]] LeastSquaresFit solve(const Pores& pores, const std::vector<double>& error,
-                                      const std::vector<std::vector<double>>& starts) const {
+                                      const std::vector<std::vector<double>>& starts, bool thorough) const {
     LeastSquaresProblem problem;
     problem.residuals = places_.size();
     problem.bounds = {{0.0, kInfinity}, {std::log(low_ / kBeyond), std::log(high_ * kBeyond)}};
@@ -79,7 +79,9 @@ class ExcessProblem {
       }
       return true;
     };
-    return fit_least_squares(problem, starts);
+    LeastSquaresOptions options;
+    options.thorough = thorough;
+    return fit_least_squares(problem, starts, options);
   }
 
   [[nodiscard]] std::vector<std::vector<double>> starts(const Pores& pores) const {
@@ -157,7 +159,7 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
           fmt::format("{}: fines leave no excess pores beside coarse grains (W/V_c = {:.3g})", m.name, m.pores.value);
       return out;
     }
-  const LeastSquaresFit fit = problem.solve(pores, error, problem.starts(pores));
+  const LeastSquaresFit fit = problem.solve(pores, error, problem.starts(pores), true);
   if (!fit.usable() || fit.at_bound[1]) {
     out.message = "the mixtures do not determine xi" + (fit.usable() ? std::string() : ": " + fit.message);
     return out;
@@ -169,7 +171,7 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
   const auto freedom = static_cast<double>(fit.degrees_of_freedom);
   if (states.degrees >= 1) out.widening = std::sqrt(std::max(1.0, fit.residual_sum_of_squares / freedom));
   for (const Pores& one : all) {
-    const LeastSquaresFit refit = problem.solve(one, error, {fit.parameters});
+    const LeastSquaresFit refit = problem.solve(one, error, {fit.parameters}, false);
     if (!refit.usable() || refit.at_bound[1]) continue;
     drawn.many.push_back(refit.parameters[0]);
     drawn.log_decay.push_back(refit.parameters[1]);
