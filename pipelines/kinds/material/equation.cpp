@@ -84,19 +84,20 @@ StateCurve state_curve(const MacroCurve& c, const std::string& group, double spa
   return out;
 }
 
-std::optional<EquationSummary> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
-                                           std::uint64_t seed) {
+std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
+                                          std::uint64_t seed) {
   const std::vector<StateCurve> curves = curves_of_all(variants);
   if (curves.empty()) return std::nullopt;
-  EquationSummary s;
+  EquationResult out;
+  EquationSummary& s = out.summary;
+  StateFit& fit = out.fit;
   s.form = settings.form;
-  StateFit fit;
   try {
     fit = fit_equation_of_state(
         curves, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
   } catch (const BadInput& e) {
     s.message = e.what();
-    return s;
+    return out;
   }
   s.usable = fit.usable;
   s.message = fit.message;
@@ -106,7 +107,7 @@ std::optional<EquationSummary> equation_of(const std::vector<EquationInput>& var
   s.modulus_scatter = fit.modulus_scatter;
   s.collapse_probability = fit.collapse_probability;
   for (const StateGroup& g : fit.groups) s.onsets.push_back({g.name, g.span, g.samples, g.onset, g.own_modulus});
-  if (!fit.usable) return s;
+  if (!fit.usable) return out;
   std::set<std::string> families;
   for (const EquationInput& v : variants) families.insert(v.family);
   for (const std::string& family : families) {
@@ -115,7 +116,7 @@ std::optional<EquationSummary> equation_of(const std::vector<EquationInput>& var
     for (const double span : settings.spans)
       s.extrapolations.push_back(extrapolate(fit, groups, family, span, settings));
   }
-  return s;
+  return out;
 }
 
 }  // namespace softgrain

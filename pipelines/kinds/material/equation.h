@@ -105,11 +105,16 @@ void fields(auto&& visit, Of<EquationSummary> auto& s) {
   visit("extrapolations", s.extrapolations, kLeftOut);
 }
 
+struct EquationResult {
+  EquationSummary summary;
+  StateFit fit;
+};
+
 /// Of what every sample does from its start as long as it is compressed: up to where its volume grows, or a stage
 /// begins that shears it or is held by stress at its sides. Nothing where that is less than four points of every
 /// sample.
-std::optional<EquationSummary> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
-                                           std::uint64_t seed);
+std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
+                                          std::uint64_t seed);
 
 /// The points of one sample that take part.
 StateCurve state_curve(const MacroCurve& curve, const std::string& group, double span);

@@ -1,3 +1,5 @@
+#include "pipelines/kinds/material/run.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +9,6 @@
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material/results.h"
-#include "pipelines/kinds/material/scene.h"
-#include "pipelines/kinds/material/summary.h"
-#include "pipelines/run/run.h"
-#include "pipelines/run/text_table.h"
 
 namespace softgrain {
 
@@ -24,18 +22,13 @@ NamedLaws no_laws() {
   return laws;
 }
 
-struct VariantResult {
-  const MaterialVariant* variant = nullptr;
-  std::string file;
-  std::vector<MacroCurve> curves;
-};
-
 std::string file_of(const MaterialScene& scene, const MaterialVariant& v, const std::string& kind) {
   return scene.variants.size() == 1 && v.name == "material" ? kind + ".h5" : kind + "_" + v.name + ".h5";
 }
 
-VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Run& run) {
-  const auto packings = make_macro_packings(v.setup, run, file_of(scene, v, "material_initial"));
+VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Run& run,
+                          std::vector<MacroPacking>& packings) {
+  if (!v.same_packings) packings = make_macro_packings(v.setup, run, file_of(scene, v, "material_initial"));
   VariantResult r{&v, file_of(scene, v, "material"), {}};
   r.curves =
       run_engines({v.setup, packings, {}, run.seed, v.name}, {no_laws()}, run, file_of(scene, v, "states_material"));
@@ -73,7 +66,17 @@ MaterialVariantSummary summary_of(const VariantResult& r) {
   return s;
 }
 
-/// One row per recorded point of every sample of every variant.
+}  // namespace
+
+std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run) {
+  std::vector<VariantResult> results;
+  std::vector<MacroPacking> packings;
+  run.context.guard([&] {
+    for (const MaterialVariant& v : scene.variants) results.push_back(run_variant(scene, v, run, packings));
+  });
+  return results;
+}
+
 TextTable points_of(const std::vector<VariantResult>& results) {
   TextTable table{{"variant", "sample", "stage", "strain_x", "strain_y", "strain_z", "stress_x [Pa]", "stress_y [Pa]",
                    "stress_z [Pa]", "p/E", "q/p", "coordination", "residual"},
@@ -97,16 +100,19 @@ TextTable points_of(const std::vector<VariantResult>& results) {
   return table;
 }
 
+namespace {
+
 /// Variants of one preparation, friction and form of sizes differ in their span alone.
 std::string family_of(const MacroSpec& spec) {
   return fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction,
                      spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent));
 }
 
-std::optional<EquationSummary> equation(const MaterialScene& scene, const std::vector<VariantResult>& results,
-                                        std::uint64_t seed) {
+std::optional<EquationResult> equation(const MaterialScene& scene, const std::vector<VariantResult>& results,
+                                       std::uint64_t seed) {
   std::vector<EquationInput> inputs;
   for (const VariantResult& r : results) {
+    if (r.variant->same_packings) continue;
     const MacroSpec& spec = r.variant->setup.spec;
     inputs.push_back({r.variant->name, spec.solid_polydispersity, family_of(spec), r.curves});
   }
@@ -137,6 +143,8 @@ std::string equation_text(const EquationSummary& s) {
   return text;
 }
 
+}  // namespace
+
 std::string people_text(const MaterialSummary& s) {
   std::string text;
   for (const MaterialVariantSummary& v : s.variants) {
@@ -156,8 +164,9 @@ std::string people_text(const MaterialSummary& s) {
   return text + (s.equation ? equation_text(*s.equation) : "");
 }
 
-MaterialSummary summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run) {
-  MaterialSummary s;
+MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run) {
+  MaterialOutcome out;
+  MaterialSummary& s = out.summary;
   s.head.title = scene.title;
   s.youngs_modulus = scene.variants.front().setup.spec.youngs_modulus;
   for (const VariantResult& r : results) {
@@ -171,24 +180,30 @@ MaterialSummary summarise(const MaterialScene& scene, const std::vector<VariantR
          summaries_of(drawn_sizes(r.variant->setup, run.seed, scene.variants.size() > 1 ? r.variant->name + ": " : "")))
       s.head.sizes.push_back(sizes);
   }
-  s.equation = equation(scene, results, run.seed);
+  if (std::optional<EquationResult> found = equation(scene, results, run.seed)) {
+    s.equation = std::move(found->summary);
+    out.states = std::move(found->fit);
+  }
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   s.head.files["points"] = run.path("material.csv");
   s.head.files["report"] = run.path("report.html");
-  return s;
+  return out;
 }
+
+std::string sizes_text(const MaterialScene& scene) {
+  std::string text;
+  for (const MaterialVariant& v : scene.variants) text += sizes_text(v.setup.spec);
+  return text;
+}
+
+namespace {
 
 ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   const MaterialScene material = read_material_scene(scene);
-  std::string sizes;
-  for (const MaterialVariant& v : material.variants) sizes += sizes_text(v.setup.spec);
-  const Run run(scene, options, "run", material.seed, {.text = sizes});
-  std::vector<VariantResult> results;
-  run.context.guard([&] {
-    for (const MaterialVariant& v : material.variants) results.push_back(run_variant(material, v, run));
-  });
-  const MaterialSummary summary = summarise(material, results, run);
+  const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
+  const std::vector<VariantResult> results = run_variants(material, run);
+  const MaterialSummary summary = summarise(material, results, run).summary;
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
   return run.finish(json_of(summary), people_text(summary));
 }
@@ -199,7 +214,8 @@ SceneKind material_kind() {
   return {.name = "material",
           .command = "run",
           .run = run_material,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_material(scene, out); },
+          .check = [](const Scene& scene, const std::string&,
+                      Findings& out) { check_variants(read_material_scene(scene), out); },
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
           .results = material_results()};
 }

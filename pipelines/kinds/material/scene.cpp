@@ -22,7 +22,9 @@ namespace {
 /// A third: what counts as coarse in most pages about mixtures; a half beside it.
 const std::vector<double> kSplits{1.0 / 3.0, 0.5};
 
-MacroSetup defaults() {
+}  // namespace
+
+MacroSetup material_defaults() {
   MacroSetup setup;
   setup.twins.clear();
   MacroSpec& spec = setup.spec;
@@ -34,6 +36,8 @@ MacroSetup defaults() {
   spec.start_pressure = 1e-4;
   return setup;
 }
+
+namespace {
 
 void read_matter(const SceneTable& t, MacroSpec& spec) {
   spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
@@ -62,11 +66,6 @@ void read_splits(const SceneTable& t, MacroSpec& spec) {
   if (spec.splits.empty()) t.mistake("splits", "at least one value is needed");
 }
 
-void require_memory(const SceneTable& t, const MacroSetup& setup) {
-  const std::string problem = macro_memory_problem(setup, 0.0, available_memory());
-  if (!problem.empty()) t.reject("count", problem);
-}
-
 /// Preparations of materials end at a finer tolerance: at 0.03 the curve after one starts too soft.
 constexpr double kPreparationTolerance = 3e-3;
 
@@ -75,6 +74,25 @@ void read_finer_preparation(const SceneTable& t, MacroSpec& spec) {
   if (!t.has("preparation_tolerance") && (t.has("preparation") || t.has("mu")))
     spec.protocol.tolerance = kPreparationTolerance;
 }
+
+}  // namespace
+
+void read_material_tables(const SceneTable& root, MacroSetup& setup) {
+  MacroSpec& spec = setup.spec;
+  read_matter(root.table_or_empty("material"), spec);
+  read_grains(root.table("grains"), spec);
+  spec.protocol = protocol_of(spec.preparation, spec.friction);
+  spec.protocol.tolerance = kPreparationTolerance;
+  read_finer_preparation(root.table_or_empty("packing"), spec);
+  read_test(root.table_or_empty("test"), spec);
+}
+
+void require_material_memory(const SceneTable& grains, const MacroSetup& setup) {
+  const std::string problem = macro_memory_problem(setup, 0.0, available_memory());
+  if (!problem.empty()) grains.reject("count", problem);
+}
+
+namespace {
 
 /// Keys of all tables of the scene, in one.
 MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool sound) {
@@ -87,7 +105,7 @@ MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool s
   read_test(t, spec);
   read_stages(t, t, spec);
   v.setup.samples = t.count("samples", 1, 10000, v.setup.samples);
-  if (sound && t.sound()) require_memory(t, v.setup);
+  if (sound && t.sound()) require_material_memory(t, v.setup);
   return v;
 }
 
@@ -99,18 +117,11 @@ MaterialScene read_material_scene(const Scene& scene) {
     (void)root.choice("kind", {"material"});
     out.title = root.text("title", "");
     out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-    MacroSetup base = defaults();
+    MacroSetup base = material_defaults();
+    read_material_tables(root, base);
     const SceneTable grains = root.table("grains");
-    const SceneTable packing = root.table_or_empty("packing");
-    const SceneTable test = root.table_or_empty("test");
-    read_matter(root.table_or_empty("material"), base.spec);
-    read_grains(grains, base.spec);
     read_splits(grains, base.spec);
-    base.spec.protocol = protocol_of(base.spec.preparation, base.spec.friction);
-    base.spec.protocol.tolerance = kPreparationTolerance;
-    read_finer_preparation(packing, base.spec);
-    read_test(test, base.spec);
-    read_stages(root, test, base.spec);
+    read_stages(root, root.table_or_empty("test"), base.spec);
     base.samples = root.count("samples", 1, 10000, base.samples);
     base.kept_states = read_kept_states(root);
     out.equation = read_equation(root.table_or_empty("equation"));
@@ -121,14 +132,13 @@ MaterialScene read_material_scene(const Scene& scene) {
       if (!names.insert(out.variants.back().name).second) t.mistake("name", "is used twice");
     }
     if (!out.variants.empty()) return out;
-    if (root.sound()) require_memory(grains, base);
+    if (root.sound()) require_material_memory(grains, base);
     out.variants.push_back({"material", base});
     return out;
   });
 }
 
-void check_material(const Scene& scene, Findings& out) {
-  const MaterialScene material = read_material_scene(scene);
+void check_variants(const MaterialScene& material, Findings& out) {
   nlohmann::json variants = nlohmann::json::array();
   for (const MaterialVariant& v : material.variants) {
     const nlohmann::json common = std::exchange(out.facts, nlohmann::json{{"name", v.name}});

@@ -12,8 +12,9 @@ namespace softgrain {
 
 /// One material, its preparation and its test.
 struct MaterialVariant {
-  std::string name;  ///< in files and tables
-  MacroSetup setup;  ///< without soft particles, periodic
+  std::string name;            ///< in files and tables
+  MacroSetup setup;            ///< without soft particles, periodic
+  bool same_packings = false;  ///< as the variant before it, whose samples it tests in another way
 };
 
 struct MaterialScene {
@@ -23,11 +24,21 @@ struct MaterialScene {
   std::vector<MaterialVariant> variants;  ///< one per [[variant]]; without any, the scene itself
 };
 
+/// What the tables of a material mean where they say nothing.
+MacroSetup material_defaults();
+
+/// [material], [grains] (which must be there), [packing] and [test], stages apart, over what `setup` has. Throws
+/// BadInput.
+void read_material_tables(const SceneTable& root, MacroSetup& setup);
+
+/// Refuses samples that do not fit into memory, at `count` of this table. Throws BadInput.
+void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
+
 /// Reads the whole scene. Throws BadInput, FileTrouble.
 MaterialScene read_material_scene(const Scene& scene);
 
 /// Number, sizes, memory and time of every variant, and what to mind. Throws BadInput, FileTrouble.
-void check_material(const Scene& scene, Findings& out);
+void check_variants(const MaterialScene& material, Findings& out);
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5, the kept states,
 /// material.csv, summary.json and the report. Status not_usable when a curve is not usable or carries no stress.

@@ -1,0 +1,40 @@
+// Variants of materials, prepared and tested: what kinds that measure materials share.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipelines/kinds/material/scene.h"
+#include "pipelines/kinds/material/summary.h"
+#include "pipelines/run/run.h"
+#include "pipelines/run/text_table.h"
+
+namespace softgrain {
+
+struct VariantResult {
+  const MaterialVariant* variant = nullptr;
+  std::string file;  ///< of its curves
+  std::vector<MacroCurve> curves;
+};
+
+/// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.
+std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run);
+
+/// One row per recorded point of every sample of every variant.
+TextTable points_of(const std::vector<VariantResult>& results);
+
+struct MaterialOutcome {
+  MaterialSummary summary;
+  std::optional<StateFit> states;  ///< the fit behind the equation of state
+};
+
+/// Variants and equation of state; curves that are not usable are said in the head.
+MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run);
+
+std::string people_text(const MaterialSummary& summary);
+
+/// Text of all distributions that the variants ask for: kept tasks of a run hold to it.
+std::string sizes_text(const MaterialScene& scene);
+
+}  // namespace softgrain
