@@ -7,6 +7,7 @@
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
 #include "common/packing/void_filling.h"
+#include "macrosim/cell_specimen.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {
@@ -79,6 +80,7 @@ MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed,
 
 MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                           const PreparationWatch& watch) {
+  if (spec.cells) return make_cell_packing(spec, seed, sample, watch);
   return spec.construction == Construction::voids ? make_constructed_packing(spec, seed, sample, watch)
                                                   : make_macro_packing(spec, seed, sample, watch);
 }

@@ -18,7 +18,7 @@ namespace softgrain {
 MacroPacking make_constructed_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                       const PreparationWatch& watch = {});
 
-/// The packing that the spec asks for: spec.construction.
+/// The packing that the spec asks for: with cells their places, else by spec.construction.
 MacroPacking make_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                           const PreparationWatch& watch = {});
 

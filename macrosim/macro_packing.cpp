@@ -87,7 +87,11 @@ std::int64_t MacroPacking::soft_count() const {
 
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                 const PreparationWatch& watch) {
-  std::vector<MacroBody> bodies = drawn_bodies(spec, seed, sample);
+  return pack_bodies(spec, drawn_bodies(spec, seed, sample), seed, sample, watch);
+}
+
+MacroPacking pack_bodies(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
+                         const PreparationWatch& watch) {
   const double fraction = spec.protocol.start_fraction;
   if (spec.protocol.coarse_share < 1.0) return pack_densely(spec, std::move(bodies), seed, sample, watch);
   MacroPacking packing = place_loosely(std::move(bodies), seed, sample, fraction, spec.boundary);

@@ -61,6 +61,10 @@ using PreparationWatch = std::function<void(double share)>;
 MacroPacking make_macro_packing(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample,
                                 const PreparationWatch& watch = {});
 
+/// The same of bodies without places, largest first.
+MacroPacking pack_bodies(const MacroSpec& spec, std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
+                         const PreparationWatch& watch = {});
+
 void write_macro_packing(const h5::Group& group, const MacroPacking& packing);
 MacroPacking read_macro_packing(const h5::Group& group);
 

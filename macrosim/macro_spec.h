@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
 
@@ -77,6 +78,15 @@ struct MacroStage {
   [[nodiscard]] bool by_stress() const { return axis[0].by_stress || axis[1].by_stress || axis[2].by_stress; }
 };
 
+/// Fines that are not bodies: they fill the radical cells of the bodies and resist by the law of a card, in place of
+/// all contacts. Soft particles then are cells of fines alone.
+struct CellMatter {
+  CellCard card;
+  double share = 0.0;           ///< of the solid volume of bodies and fines together
+  double solid_fraction = 0.0;  ///< of the box at the start; 0: where the mixture of the card bears the start pressure
+  bool at_density = false;      ///< pressure at the start follows from the density; else excess pores from the pressure
+};
+
 /// Solid grains and soft particles of any sizes in a box of six planes or a periodic cell, compressed [SP 1.9]. SI
 /// units.
 struct MacroSpec {
@@ -93,8 +103,9 @@ struct MacroSpec {
   double soft_polydispersity = 1.5;    ///< of the shells; voids: smaller holes stay empty
   std::optional<Grading> solid_sizes;  ///< radii of another law, whose ends stand in the two numbers above
   std::optional<Grading> soft_sizes;
-  std::string packing_text;  ///< of a file that says where all bodies are; empty: they are drawn and prepared
-  double solid_fill = 0.0;   ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
+  std::optional<CellMatter> cells;  ///< between the bodies, in place of contacts
+  std::string packing_text;         ///< of a file that says where all bodies are; empty: they are drawn and prepared
+  double solid_fill = 0.0;  ///< voids: share of the box that solid grains fill before soft ones come; 0: by soft_share
   double youngs_modulus = 5.0e5;  ///< E of solid grains, walls and of what is inside the soft particles [Pa]
   double poisson_ratio = 0.3;
   double friction = 0.3;  ///< mu of solid contacts; stands in for mu_soft

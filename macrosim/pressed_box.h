@@ -8,22 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "common/dynamics/box_control.h"
 #include "common/dynamics/contact_virial.h"
 #include "common/dynamics/damped_relaxation.h"
 #include "macrosim/box.h"
 
 namespace softgrain {
-
-/// What each axis of a box is held by.
-struct BoxControl {
-  std::array<bool, 3> by_stress{};  ///< else its length stays
-  Vec3 stress{};                    ///< on those axes, compression positive [Pa]
-  bool alike = false;               ///< all axes strain alike, by the mean of their stresses
-  double tolerance = 1e-3;          ///< of the stress, of the largest one asked for
-  double least_stress = 0.0;        ///< which counts for this at least [Pa]
-  double largest_strain = 2e-3;     ///< per pass
-  double farthest = HUGE_VAL;       ///< logarithmic strain in all at which the stress is given up as out of reach
-};
 
 /// Coordinates: logarithmic strains e_k of the axes, x_k -> c_k + (x_k - c_k)(1 - de_k) for walls and bodies (grains in
 /// shells move with their shell); a periodic cell likewise about the origin. Generalised force P_k V - W_k, W_k =

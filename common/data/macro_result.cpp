@@ -123,14 +123,17 @@ constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radi
 constexpr Number<MacroStart> kStartSizes[] = {
     {"size_x", &MacroStart::size_x}, {"size_y", &MacroStart::size_y}, {"size_z", &MacroStart::size_z}};
 
+/// The law of cells, which is no form of a crowd law.
+const std::string kCellForm = "cell";
+
 void write_origin(const h5::Group& group, const MacroCurve& curve) {
   if (!curve.start.bodies.empty()) {
     group.attribute("start", curve.start.bodies);
     for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
     for (const auto& n : kStartSizes) group.attribute(n.name, curve.start.*n.value);
   }
-  if (!curve.law.form) return;
-  group.attribute("law_form", to_string(*curve.law.form));
+  if (curve.law.hash.empty()) return;
+  group.attribute("law_form", curve.law.form ? to_string(*curve.law.form) : kCellForm);
   group.attribute("law_hash", curve.law.hash);
   for (const auto& n : kLawNumbers) group.attribute(n.name, curve.law.*n.value);
   for (const KnownNumber& n : kLawKnown)
@@ -146,7 +149,7 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
       for (const auto& n : kStartSizes) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
   }
   if (!group.has_attribute("law_form")) return;
-  curve.law.form = read_word<Crowd>(group, "law_form");
+  if (group.text("law_form") != kCellForm) curve.law.form = read_word<Crowd>(group, "law_form");
   curve.law.hash = group.text("law_hash");
   for (const auto& n : kLawNumbers) curve.law.*n.value = read_attribute(group, n.name, kNotNegative);
   for (const KnownNumber& n : kLawKnown)
@@ -166,10 +169,10 @@ constexpr Count kCounts[] = {{"sample", &MacroCurve::sample},
 }  // namespace
 
 std::string identity_text(const LawIdentity& law) {
-  if (!law.form) return "not recorded";
+  if (!law.form && law.hash.empty()) return "not recorded";
   const auto told = [](const std::optional<double>& x) { return x ? fmt::format("{:g}", *x) : "(not known)"; };
   return fmt::format("{} law{}, measured with nu = {}, mu = {}, taken with E = {:g} Pa; numbers {}",
-                     to_string(*law.form),
+                     law.form ? to_string(*law.form) : kCellForm,
                      law.solid_fraction > 0.0 ? fmt::format(" at solid fraction {:.4f}", law.solid_fraction) : "",
                      told(law.poisson_ratio), told(law.friction), law.youngs_modulus, law.hash);
 }

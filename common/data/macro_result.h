@@ -16,7 +16,7 @@ namespace softgrain {
 
 /// The law that a curve was made with: two runs with the same hash had the same forces.
 struct LawIdentity {
-  std::optional<Crowd> form{};            ///< empty: a twin, or not recorded
+  std::optional<Crowd> form{};            ///< empty: with a hash the law of cells, else a twin, or not recorded
   double solid_fraction = 0.0;            ///< at which a table was taken; 0: a law card
   double youngs_modulus = 0.0;            ///< that scales its forces [Pa]
   std::optional<double> poisson_ratio{};  ///< of the grains that it was measured with; empty: not known (experiments)

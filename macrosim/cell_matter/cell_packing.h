@@ -1,12 +1,15 @@
-// A periodic packing of cells: its sites come to rest at every strain, quasi-statically.
+// A packing of cells, periodic or between planes: its sites come to rest at every strain, quasi-statically, the room
+// with them where it is held by stress.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "common/dynamics/box_control.h"
 #include "common/dynamics/relaxation_result.h"
 #include "macrosim/cell_matter/cell_forces.h"
+#include "macrosim/cell_matter/cell_room.h"
 
 namespace softgrain {
 
@@ -20,49 +23,75 @@ struct CellRelaxation {
 struct CellPoint {
   RelaxationResult relaxation;
   std::int64_t tessellations = 0;  ///< of this step
-  double volume = 0.0;             ///< of the cell [m^3]
-  Matrix<3> stress;                ///< compression positive [Pa]
+  std::int64_t faces = 0;          ///< whose forces were worked out in it
+  double volume = 0.0;             ///< of the room [m^3]
+  Matrix<3> stress;                ///< compression positive; between planes their loads over their areas [Pa]
   double energy = 0.0;             ///< of cells and springs [J]
   int guarded = 0;                 ///< cells held by the guard alone
   double sliding = 0.0;            ///< share of the faces at the Coulomb limit
 };
 
-/// Sites, contents and springs of one periodic cell. Strains are diagonal: every axis is stretched by a factor, sites
-/// go along (affine guess) and then relax by Fire, with masses as the stiffness of their faces, at fixed strain. Trial
+/// What is conserved between two strain steps, for checkpoints.
+struct CellState {
+  std::vector<Sphere<3>> sites;
+  std::vector<CellContent> content;
+  std::vector<std::array<std::int32_t, 3>> periods;
+  std::vector<FaceSpring> springs;
+  Vec3 low{};
+  Vec3 high{};
+};
+
+/// Sites, contents and springs in one room. Strains are diagonal: every axis is stretched by a factor, sites go along
+/// (affine guess) and then relax by Fire, with masses as the stiffness of their faces, at fixed strain; or the lengths
+/// of axes that are held by stress relax with them, their logarithmic strains as coordinates (as in PressedBox). Trial
 /// states leave the springs alone; they are kept where the relaxation ends. A move that would leave a cell without
-/// pores is taken back, and smaller ones follow. No randomness; the same bits for any number of threads.
+/// pores, or a site outside planes, is taken back, and smaller ones follow; a strain whose affine guess would is taken
+/// in smaller parts. No randomness; the same bits for any number of threads.
 class CellPacking {
  public:
-  /// Centres anywhere (they are brought into the cell). Springs begin without force at these places. Throws BadInput
-  /// for contents that do not fit and cells that are smaller than their solid.
-  CellPacking(CellLaw law, const std::vector<Sphere<3>>& sites, std::vector<CellContent> content, const Cell<3>& cell);
+  /// Centres anywhere (they are brought into a periodic cell). Springs begin without force at these places. Throws
+  /// BadInput for contents that do not fit, cells that are smaller than their solid, sites that are not between planes.
+  CellPacking(CellLaw law, const std::vector<Sphere<3>>& sites, std::vector<CellContent> content, const CellRoom& room);
+
+  /// Goes on from a state() of a rectangular room.
+  CellPacking(CellLaw law, const CellState& state, bool periodic);
 
   /// Lengths along the axes times `stretch` (below 1 compresses), then to rest; springs are kept. A step whose
   /// relaxation was capped or diverged is kept too, and says so. Throws BadInput for factors that are not above 0, and
-  /// NotUsable where the affine guess already leaves a cell without pores (take smaller steps).
+  /// NotUsable where even a small part of the strain leaves a cell without pores.
   CellPoint strain(const Vec3& stretch, const CellRelaxation& options = {});
 
+  /// The same, then to rest together with the lengths of the axes that `control` holds by stress.
+  CellPoint press(const Vec3& stretch, const BoxControl& control, const CellRelaxation& options = {});
+
   [[nodiscard]] CellPoint now() const;
+  [[nodiscard]] CellState state() const;
   [[nodiscard]] const CellForces& forces() const { return forces_; }
   [[nodiscard]] const RadicalCells& cells() const { return cells_; }
   [[nodiscard]] const std::vector<Sphere<3>>& sites() const { return sites_; }
-  [[nodiscard]] const Cell<3>& cell() const { return cell_; }
+  [[nodiscard]] const std::vector<CellContent>& content() const { return content_; }
+  [[nodiscard]] const CellRoom& room() const { return room_; }
 
  private:
-  RelaxationResult relax(const CellRelaxation& options);
-  bool move(const std::vector<Vec3>& velocity, double step, double longest);
+  class Axes;
+
+  CellPoint step(const Vec3& stretch, const BoxControl* control, const CellRelaxation& options);
+  void stretch(const Vec3& factor);
+  RelaxationResult relax(const CellRelaxation& options, Axes* axes);
+  bool move(const std::vector<Vec3>& velocity, double step, double longest, Axes* axes);
   bool evaluate();
-  void bring_home();
+  [[nodiscard]] Matrix<3> stress() const;
 
   CellLaw law_;
   std::vector<Sphere<3>> sites_;
   std::vector<CellContent> content_;
-  Cell<3> cell_;
+  CellRoom room_;
   std::vector<std::array<std::int32_t, 3>> periods_;  ///< by which sites were moved back
   FaceSprings springs_;
   RadicalCells cells_;
   CellForces forces_;
   std::int64_t tessellations_ = 0;
+  std::int64_t faces_ = 0;
 };
 
 }  // namespace softgrain

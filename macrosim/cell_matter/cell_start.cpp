@@ -67,14 +67,25 @@ struct Mixture {
   [[nodiscard]] double fines_of(std::size_t i, double s, double state) const {
     return fines_in_cell(law.equation, volume[i], bodies.grain(i), excess_of(i, s), law.void_ratio, state);
   }
-  /// Not a number counts as none.
+  [[nodiscard]] bool all_hold_fines(double s, double state) const {
+    for (std::size_t i = 0; i < volume.size(); ++i)
+      if (!(fines_of(i, s, state) >= 0.0)) return false;
+    return true;
+  }
+  /// Cells too small for any hold none.
   [[nodiscard]] double fines_of_all(double s, double state) const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < volume.size(); ++i) {
-      const double v = fines_of(i, s, state);
-      if (!std::isnan(v)) sum += v;
-    }
+    for (std::size_t i = 0; i < volume.size(); ++i)
+      if (const double v = fines_of(i, s, state); v > 0.0) sum += v;
     return sum;
+  }
+  /// Pores at the onset of a cell that holds its grain alone and has this state.
+  [[nodiscard]] double pores_without_fines(std::size_t i, double state) const {
+    const double pores = volume[i] - bodies.grain(i);
+    if (std::holds_alternative<PoreForm>(law.equation)) return pores / (1.0 - state);
+    const double onset = (bodies.grain(i) / volume[i] - state) / (1.0 - state);
+    if (!(onset > 0.0)) throw BadInput(fmt::format("start of cells: cell {} is too wide for a grain without fines", i));
+    return bodies.grain(i) * (1.0 - onset) / onset;
   }
 
   [[nodiscard]] CellStart at(double s, double state) const {
@@ -84,15 +95,22 @@ struct Mixture {
     out.pressure = modulus(law.equation) * std::pow(state, exponent(law.equation));
     for (std::size_t i = 0; i < volume.size(); ++i) {
       const double v = fines_of(i, s, state);
-      if (!(v >= 0.0))
-        throw BadInput(
-            fmt::format("start of cells: cell {} (volume {:.4g} m^3, grain {:.4g} m^3) would hold {:.3g} m^3 of fines: "
-                        "it is too small for its grain and the excess pores beside it; take a lower pressure, more "
-                        "fines, fewer coarse bodies, or places where they are less close",
-                        i, volume[i], bodies.grain(i), v));
-      out.fines.push_back(v);
-      out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s)});
+      if (v >= 0.0) {
+        out.fines.push_back(v);
+        out.content.push_back({bodies.grain(i) + v, law.void_ratio * v + excess_of(i, s)});
+        continue;
+      }
+      ++out.without_fines;
+      out.fines.push_back(0.0);
+      out.content.push_back({bodies.grain(i), pores_without_fines(i, state)});
     }
+    constexpr double kMostWithout = 0.25;
+    if (out.without_fines > kMostWithout * static_cast<double>(volume.size()))
+      throw BadInput(fmt::format(
+          "start of cells: {} of {} cells are too small for their grain and the excess pores beside it, and "
+          "would hold no fines; take a lower pressure, more fines, fewer coarse bodies, or places where "
+          "they are less close",
+          out.without_fines, volume.size()));
     return out;
   }
 };
@@ -139,13 +157,24 @@ CellStart start_at_pressure(const FinesLaw& law, const CoarseBodies& bodies, con
         pressure, fines, mixture.fines_of_all(0.0, state)));
   if (std::holds_alternative<PoreForm>(law.equation)) {
     const double left = 1.0 - state;
-    return mixture.at((mixture.room - mixture.coarse - fines * (1.0 + left * law.void_ratio)) / (left * mixture.excess),
-                      state);
+    const double s = (mixture.room - mixture.coarse - fines * (1.0 + left * law.void_ratio)) / (left * mixture.excess);
+    if (mixture.all_hold_fines(s, state)) return mixture.at(s, state);
   }
   const auto too_many = [&](double s) { return mixture.fines_of_all(s, state) - fines; };
   double high = 1.0;
   while (too_many(high) > 0.0 && high < 1e6) high *= 2.0;
   return mixture.at(bisect(0.0, high, too_many), state);
+}
+
+double room_at_pressure(const FinesLaw& law, double fines, double coarse, double pressure) {
+  const double state = state_at(law.equation, pressure);
+  const double solid = coarse + fines;
+  if (!(pressure > 0.0) || !(state < 1.0) || !(solid > 0.0))
+    throw BadInput(fmt::format("start of cells: no room for {} m^3 of solid at {} Pa", solid, pressure));
+  const double pores = law.void_ratio * fines + (coarse > 0.0 ? law.excess.volume(fines, coarse) : 0.0);
+  if (std::holds_alternative<PoreForm>(law.equation)) return solid + (1.0 - state) * pores;
+  const double onset = solid / (solid + pores);
+  return solid / (onset + state * (1.0 - onset));
 }
 
 CellStart start_at_density(const FinesLaw& law, const CoarseBodies& bodies, const std::vector<double>& volume,
@@ -158,7 +187,8 @@ CellStart start_at_density(const FinesLaw& law, const CoarseBodies& bodies, cons
     throw BadInput(fmt::format(
         "start of cells: the mixture does not jam at this density: its pores are {:.4g} of those at which it would",
         pores / jammed));
-  if (std::holds_alternative<PoreForm>(law.equation)) return mixture.at(1.0, 1.0 - pores / jammed);
+  if (std::holds_alternative<PoreForm>(law.equation) && mixture.all_hold_fines(1.0, 1.0 - pores / jammed))
+    return mixture.at(1.0, 1.0 - pores / jammed);
   return mixture.at(1.0, bisect(0.0, 1.0, too_few));
 }
 

@@ -40,6 +40,7 @@ struct CoarseBodies {
 struct CellStart {
   std::vector<CellContent> content;
   std::vector<double> fines;  ///< v_i: solid volume of fines in each cell [m^3]
+  int without_fines = 0;      ///< cells too small for any
   double excess_share = 0.0;  ///< s: excess pores over those of ExcessPores
   double state = 0.0;         ///< y0 or x0, the same in all cells
   double pressure = 0.0;      ///< [Pa]
@@ -48,11 +49,17 @@ struct CellStart {
 /// All cells at the pressure p0: w_i = s W S_i/sum S, and s such that the fines are as many as given. In the pore form
 /// closed: s = [V - sum Vs - V_f (1 + (1-y0) e_J)]/[(1-y0) W]; in the porosity form by bisection. Excess pores stay
 /// as they are from there on.
-/// Throws BadInput, with the cell and what would help, for s < 0 (the fines fit only denser than this pressure), for
-/// cells with v_i < 0, without coarse grains (s then means nothing), for a pressure that is not above 0 or beyond the
-/// state 1, volumes that do not fit together.
+/// A cell that is too small for its grain and the excess pores beside it (v_i < 0: coarse grains that touch) holds no
+/// fines, and what pores it has; the others share them.
+/// Throws BadInput, with the cell and what would help, for s < 0 (the fines fit only denser than this pressure), where
+/// more than a quarter of the cells would hold no fines, without coarse grains (s then means nothing), for a pressure
+/// that is not above 0 or beyond the state 1, volumes that do not fit together.
 CellStart start_at_pressure(const FinesLaw& law, const CoarseBodies& bodies, const std::vector<double>& volume,
                             double fines, double pressure);
+
+/// Volume of the room in which a mixture bears the pressure, excess pores as ExcessPores says. Throws BadInput for
+/// pressures beyond the state 1 or not above 0, and a mixture that is empty.
+double room_at_pressure(const FinesLaw& law, double fines, double coarse, double pressure);
 
 /// Excess pores as ExcessPores says (s = 1), and the pressure that follows from the density: in the pore form
 /// 1 - y0 = (V - sum Vs - V_f)/(W + V_f e_J). Throws BadInput where the mixture does not jam (y0 <= 0), and as above.

@@ -260,11 +260,14 @@ LawFileKind law_file_kind(const std::string& path) {
   const Scene file = Scene::load(path);
   if (file.root().has("pair")) return LawFileKind::card;
   if (file.root().has("entry")) return LawFileKind::table;
-  throw BadInput(path + ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]])");
+  if (file.root().has("cell")) return LawFileKind::cells;
+  throw BadInput(path +
+                 ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]]) nor a card of "
+                 "the cell law (it has no [cell])");
 }
 
 void read_law_choices(const SceneTable& root, LawSources& out) {
-  out.forms = {from_word<Crowd>(root.choice("form", {"pair", "bag", "directional", "best"}, "best"))};
+  out.forms = {from_word<Crowd>(root.choice("form", {"pair", "bag", "directional", "cell", "best"}, "best"))};
   read_table_choices(root, out);
 }
 
@@ -273,7 +276,18 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   read_law_choices(root, out);
   out.files = {path};
   out.text = read_text(path);
-  if (law_file_kind(path) == LawFileKind::table) {
+  const LawFileKind kind = law_file_kind(path);
+  const bool asks_cells = root.has("form") && root.text("form") == "cell";
+  if (asks_cells && kind != LawFileKind::cells)
+    root.mistake("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
+  if (kind == LawFileKind::cells) {
+    if (!asks_cells && root.has("form")) root.mistake("form", path + " is a card of the cell law: \"cell\"");
+    for (const char* key : {"solid_fraction", "range", "mu", "unloading", "beyond"})
+      if (root.has(key)) root.mistake(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
+    out.cells = read_cell_card(path);
+    return out;
+  }
+  if (kind == LawFileKind::table) {
     out.table = load_law_table(path);
     require_fraction(root, out);
     return out;

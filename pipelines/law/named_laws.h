@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 #include "common/data/macro_result.h"
@@ -33,6 +34,7 @@ NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::str
 struct LawSources {
   std::optional<LawCard> card;    ///< pair law, as published
   std::optional<LawTable> table;  ///< bag and directional law, and the pair law when there is no card
+  std::optional<CellCard> cells;  ///< of macro scenes: fines without shells; then there is no other law
   std::vector<WantedForm> forms{Crowd::pair, Crowd::bag, Crowd::directional};  ///< one for a macro scene
   std::optional<double> solid_fraction{};   ///< at which the table is taken; empty: see law_fraction()
   RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
@@ -58,14 +60,15 @@ const SoftParticleSpec& measured_spec(const LawSources& sources);
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
 
 /// What a file with laws holds.
-enum class LawFileKind { card, table };
+enum class LawFileKind { card, table, cells };
 
-/// Tells them apart by content: a card has [[pair]], a table [[entry]]. Throws BadInput for anything else, FileTrouble.
+/// Tells them apart by content: a card has [[pair]], a table [[entry]], a card of the cell law [cell]. Throws BadInput
+/// for anything else, FileTrouble.
 LawFileKind law_file_kind(const std::string& path);
 
 /// The one law of a macro scene: key `beyond`, and keys `form` (default the best of the table; a card has the pair law
-/// only), `solid_fraction`, `range`, `mu` and `unloading` of `root`, which go with tables, and the card or table at
-/// `path`. Throws BadInput, FileTrouble.
+/// only, a card of the cell law "cell"), `solid_fraction`, `range`, `mu` and `unloading` of `root`, which go with
+/// tables, and the card or table at `path`. Throws BadInput, FileTrouble.
 LawSources read_scene_law(const SceneTable& root, const std::string& path);
 
 /// The keys of read_scene_law() alone, for scenes that are read without their law. Throws BadInput.

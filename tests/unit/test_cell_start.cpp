@@ -159,13 +159,31 @@ void expect_start_refused(F&& make, const std::string& words) {
   }
 }
 
+TEST_P(CellStarts, LeaveCellsThatAreTooSmallWithoutFinesAtTheSamePressure) {
+  const CellSample s = cell_sample(40, 0.42, GetParam(), 2);
+  const double fines = 0.5 * s.fines;
+  const CellStart start = start_at_pressure(s.law, s.bodies, s.volume, fines, 1e-4);
+  EXPECT_GT(start.without_fines, 0);
+  double sum = 0.0;
+  int without = 0;
+  for (std::size_t i = 0; i < 40; ++i) {
+    const double pressure = respond(s.law.equation, {0.0}, start.content[i], s.volume[i]).pressure;
+    EXPECT_NEAR(pressure, 1e-4, 1e-12) << i;
+    EXPECT_NEAR(start.content[i].solid, s.bodies.grain(i) + start.fines[i], 1e-14);
+    without += start.fines[i] == 0.0 ? 1 : 0;
+    sum += start.fines[i];
+  }
+  EXPECT_EQ(without, start.without_fines);
+  EXPECT_NEAR(sum / fines, 1.0, 1e-8);
+}
+
 TEST_P(CellStarts, RefuseStatesThatCannotBeAndSayWhy) {
   const CellSample s = cell_sample(40, 0.42, GetParam(), 2);
   const auto at_pressure = [&](double p, double fines) { start_at_pressure(s.law, s.bodies, s.volume, fines, p); };
   expect_start_refused([&] { at_pressure(1e-4, 1.3 * s.fines); }, "no room");
   expect_start_refused([&] { at_pressure(0.0, s.fines); }, "above 0");
   expect_start_refused([&] { at_pressure(1.0, s.fines); }, "below");
-  expect_start_refused([&] { at_pressure(1e-4, 0.5 * s.fines); }, "would hold");
+  expect_start_refused([&] { at_pressure(1e-4, 0.05 * s.fines); }, "would hold no fines");
   expect_start_refused([&] { start_at_density(s.law, s.bodies, s.volume, 0.8 * s.fines); }, "does not jam");
   expect_start_refused([&] { at_pressure(1e-4, 3.0 * s.fines); }, "leaves no pores");
   expect_start_refused([&] { at_pressure(1e-4, NAN); }, "fines");

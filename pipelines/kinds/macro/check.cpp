@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/data/law_remarks.h"
+#include "macrosim/cell_specimen.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/lammps_run/lammps_program.h"
 #include "macrosim/test_protocol.h"
@@ -164,7 +165,35 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   check_volume(table, laws, named.form, entry.solid_fraction, spec, out);
 }
 
+std::string estimate_text(const Estimate& e) {
+  return fmt::format("{:.4g} ({:.4g} to {:.4g})", e.value, e.low, e.high);
+}
+
+/// What the card says of the specimen before anything is placed.
+void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out) {
+  const CellCard& card = matter.card;
+  require_same_grains(card, spec);
+  const double mixture = matter.share / (1.0 - matter.share);
+  const double pressure = spec.start_pressure * spec.youngs_modulus;
+  const double natural =
+      (1.0 + mixture) / room_at_pressure(fines_law_of(card, spec.youngs_modulus), mixture, 1.0, pressure);
+  out.add("cell_law", {{"form", to_string(card.form)}, {"K", card.modulus.value}, {"n", card.exponent.value}},
+          fmt::format("law: cells of fines, {} form, K = {}, n = {}; {}", to_string(card.form),
+                      estimate_text(card.modulus), estimate_text(card.exponent), kMatterWithoutShells));
+  out.add("natural_solid_fraction", natural,
+          fmt::format("at p/E = {:.3g} the card gives this mixture a solid fraction of {:.4f}", spec.start_pressure,
+                      natural));
+  if (mixture > card.mixture_high)
+    out.warn(fmt::format("fines are {:.3g} times the volume of coarse grains; the card was measured up to {:.3g}",
+                         mixture, card.mixture_high));
+  if (!card.preparation.empty() && card.preparation != to_string(spec.preparation))
+    out.warn(fmt::format("the fines of the card were prepared '{}', this specimen is prepared '{}'", card.preparation,
+                         to_string(spec.preparation)));
+}
+
 void check_laws_of(const LawSources& laws, const MacroSpec& spec, double contents_fraction, Findings& out) {
+  if (spec.cells) return check_cells(*spec.cells, spec, out);
+  if (spec.soft_share > 0.0) out.add("picture", "shells", kMatterInShells);
   for (const WantedForm form : laws.forms) {
     if (laws.card && (form == Crowd::pair || !laws.table))
       check_card_law(*laws.card, laws, spec, out);

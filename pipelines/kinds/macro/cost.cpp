@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "macrosim/cell_test.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
 #include "pipelines/kinds/macro/stages.h"
@@ -41,6 +42,7 @@ NamedLaws like_published(const MacroSpec& spec) {
 }
 
 std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, double solid_fraction) {
+  if (spec.cells) return {};
   if (laws == nullptr) return {like_published(spec)};
   LawSources any = *laws;
   any.range = RangePolicy::clamp;
@@ -52,26 +54,37 @@ std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, do
   return out;
 }
 
-/// Core seconds of a whole test by law, from as much of it as is done in a moment; 0 where nothing is.
-double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLaws& law, double solid_fraction) {
+/// Core seconds of a whole test, from as much of it as is done in a moment; 0 where nothing is. `test`: compress() or
+/// its like.
+template <class State>
+double try_test(const MacroSpec& spec, State& state, void (*test)(State&, const MacroSpec&, const RunControl<State>&)) {
   constexpr double kBudget = 0.4;
-  CompressionState state;
-  state.macro = make_law_system(spec, packing, law.laws, solid_fraction > 0.0 ? solid_fraction : 1.0);
-  state.curve = begin_curve(spec, packing, state.macro, law.name, 0);
   double share = 0.0;
-  RunControl<CompressionState> control{.seconds = kBudget};
-  control.progress = [&](const CompressionState& s, double done) {
+  RunControl<State> control{.seconds = kBudget};
+  control.progress = [&](const State& s, double done) {
     share = done;
     if (s.curve.cost.seconds > kBudget) throw TrialOver{};
   };
   const double seconds = core_seconds_of([&] {
     try {
-      compress(state, spec, control);
+      test(state, spec, control);
     } catch (const TrialOver&) {
     } catch (const NotUsable&) {  // the run will say so
     }
   });
   return share > 0.0 ? seconds / share : 0.0;
+}
+
+double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLaws& law, double solid_fraction) {
+  CompressionState state;
+  state.macro = make_law_system(spec, packing, law.laws, solid_fraction > 0.0 ? solid_fraction : 1.0);
+  state.curve = begin_curve(spec, packing, state.macro, law.name, 0);
+  return try_test(spec, state, compress);
+}
+
+double try_cells(const MacroSpec& spec, const MacroPacking& packing) {
+  CellTestState state = begin_cell_test(spec, packing, "law", 0);
+  return try_test(spec, state, test_cells);
 }
 
 /// Loop passes of a twin over a whole test: 620 and 670 per increment of strain 0.005 (quickstart, published), 820 to
@@ -95,6 +108,7 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
     const double preparation = core_seconds_of([&] { packing = make_packing(spec, 1, 0); });
     // Passes of a preparation grow like N^0.33: 1,500, 2,600, 4,500, 6,000 of 60, 250, 1,000, 4,000 bodies.
     if (!setup.given) out.spend("preparation", samples * std::pow(larger, 1.33) * preparation);
+    if (spec.cells) out.spend("law runs", samples * larger * try_cells(spec, packing));
     for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction))
       out.spend("law runs", samples * larger * try_law(spec, packing, law, content.solid_fraction));
   } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may

@@ -178,6 +178,13 @@ std::string packing_key(const MacroSpec& s, std::uint64_t seed, std::uint64_t sa
         s.solid_fill, s.youngs_modulus, s.poisson_ratio, s.density, s.start_pressure, p.start_fraction,
         p.inertial_number, p.friction, p.restitution, p.coarse_share, p.first_pressure, p.tolerance})
     text += fmt::format(" {:.17g}", x);
+  if (s.cells) {
+    const CellCard& c = s.cells->card;
+    text += fmt::format("\ncells {}", to_string(c.form));
+    for (const double x : {s.cells->share, s.cells->solid_fraction, c.modulus.value, c.exponent.value,
+                           c.void_ratio.value, c.excess_alone.value, c.excess_many.value, c.excess_decay.value})
+      text += fmt::format(" {:.17g}", x);
+  }
   return text + fmt::format(" {}\n{}\nseed {} sample {}\n", p.max_passes, sizes_text(s), seed, sample);
 }
 

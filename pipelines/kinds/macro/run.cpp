@@ -39,8 +39,8 @@ std::string stage_line(const std::string& engine, const StageMeans& s) {
   return line;
 }
 
-std::string people_text(const NamedLaws& law, const std::vector<MacroCurve>& curves) {
-  std::string text = "law: " + identity_text(law.identity) + "\n";
+std::string people_text(const LawIdentity& law, const std::vector<MacroCurve>& curves) {
+  std::string text = "law: " + identity_text(law) + "\n";
   for (const MacroCurve& c : curves)
     text += fmt::format("{} sample {}: axial stress {:.5g} Pa at strain {:.3f}, lateral ratio {}, {:.1f} s{}\n",
                         c.engine, c.sample, c.stress_axial.back(), c.strain.back(), lateral_ratio(c), c.cost.seconds,
@@ -93,12 +93,12 @@ void compare_with_twin(const std::vector<MacroCurve>& curves, MacroRunSummary& s
   }
 }
 
-MacroRunSummary summarise(const MacroScene& scene, const NamedLaws& law, const std::vector<MacroCurve>& curves,
+MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const std::vector<MacroCurve>& curves,
                           bool usable) {
   MacroRunSummary summary;
   const bool resolved = has_twin(scene.setup, Twin::shelled);
   summary.head = {usable ? RunStatus::good : RunStatus::not_usable, scene.title, macro_remarks(curves), {}};
-  summary.law = {law.identity, scene.law_file};
+  summary.law = {law, scene.law_file};
   summary.runs.macro = summary_of(curves, "law");
   if (resolved) summary.runs.resolved = summary_of(curves, "shelled");
   if (has_twin(scene.setup, Twin::free)) summary.runs.free = summary_of(curves, "free");
@@ -150,7 +150,7 @@ ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::
 
 std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::optional<LammpsEngine>& lammps,
                                       const NamedLaws& law, const std::vector<ShellPacking>& contents, const Run& run) {
-  if (!lammps) return run_macro_stage(scene.setup, law, contents, run);
+  if (!lammps) return run_macro_stage(scene.setup, {law}, contents, run);
   auto packings = prepare_packings(scene.setup, run, kInitialFile);
   save_if_prepared(scene, packings, run);
   const LammpsRuns runs = lammps_runs(scene, law, contents, run.provenance);
@@ -171,18 +171,23 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const std::optional<LammpsEngine> lammps = read_engine(options);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
+  if (macro.law.cells && lammps) throw BadInput("--engine lammps: LAMMPS knows no cells; leave it out");
   const Run run(scene, options, "macrosim", macro.seed,
                 {macro.law.files, macro.law.text + sizes_text(macro.setup.spec)});
   const auto contents =
       macro.setup.twins.empty() ? std::vector<ShellPacking>{} : make_contents(macro.spec, macro.contents, run.seed);
-  const NamedLaws law = law_of(macro, contents);
-  if (lammps && lammps->write_only) return write_only(macro, law, contents, run);
+  std::optional<NamedLaws> law;  // none with cells
+  if (!macro.law.cells) law = law_of(macro, contents);
+  if (lammps && lammps->write_only) return write_only(macro, *law, contents, run);
   std::vector<MacroCurve> curves;
-  run.context.guard([&] { curves = curves_of_run(macro, lammps, law, contents, run); });
+  run.context.guard([&] {
+    curves = law ? curves_of_run(macro, lammps, *law, contents, run) : run_macro_stage(macro.setup, {}, {}, run);
+  });
+  const LawIdentity identity = law ? law->identity : curves.front().law;
 
   const bool usable = all_carry_stress(curves) &&
                       std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
-  MacroRunSummary summary = summarise(macro, law, curves, usable);
+  MacroRunSummary summary = summarise(macro, identity, curves, usable);
   summary.head.files = {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
   summary.head.sizes = summaries_of(drawn_sizes(macro.setup, run.seed));
@@ -190,7 +195,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
     summary.engine = {MacroEngine::lammps, lammps->ranks, lammps->program, lammps_release(run.context)};
     add_directories(macro.setup.samples, run.context, summary);
   }
-  return run.finish(json_of(summary), people_text(law, curves));
+  return run.finish(json_of(summary), people_text(identity, curves));
 }
 
 }  // namespace

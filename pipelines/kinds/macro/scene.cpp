@@ -16,6 +16,13 @@
 
 namespace softgrain {
 
+/// What sets the state of cells at the start.
+enum class CellStartFrom { pressure, density };
+
+template <>
+inline constexpr auto words<CellStartFrom> = word_list<CellStartFrom>({{CellStartFrom::pressure, "pressure"},
+                                                                       {CellStartFrom::density, "density"}});
+
 namespace {
 
 /// Keys of a power law take the place of a distribution that a common [macro] gave.
@@ -256,6 +263,40 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
 
 namespace {
 
+/// What a card of the cell law knows of grains.
+SoftParticleSpec grains_of(const CellCard& card) {
+  SoftParticleSpec spec;
+  spec.poisson_ratio = card.poisson_ratio;
+  spec.friction = card.grain_friction;
+  return spec;
+}
+
+/// [fines], and what goes with cells in [macro].
+void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard& card, MacroSetup& setup) {
+  MacroSpec& spec = setup.spec;
+  if (!macro.has("soft_share") && !setup.given) spec.soft_share = 0.0;
+  if (macro.has("resolved") && !setup.twins.empty())
+    macro.mistake("resolved",
+                  "what a cell law is compared with is the material with all its grains: see kind "
+                  "\"material-models\"");
+  setup.twins.clear();
+  if (spec.preparation == Preparation::lammps)
+    macro.mistake("preparation", "\"lammps\" knows no cells: frictionless, fast, slow or dense");
+  if (spec.construction == Construction::voids)
+    macro.mistake("construction", "\"voids\" goes with soft particles in shells; cells fill all voids");
+  if (spec.soft_share >= 1.0) macro.mistake("soft_share", "cells need solid grains: must be below 1");
+  mistake_beside(macro, {"wall_mu"}, "walls of cells are smooth");
+  const SceneTable fines = root.table("fines");
+  CellMatter matter;
+  matter.card = card;
+  matter.share = fines.number("share", Unit::none, Range{0.0, 1.0, true, true});
+  matter.solid_fraction = fines.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, true}, 0.0);
+  matter.at_density = fines.choice<CellStartFrom>("start", CellStartFrom::pressure) == CellStartFrom::density;
+  if (setup.given && matter.solid_fraction > 0.0)
+    fines.mistake("solid_fraction", "goes without packing, whose box says it");
+  spec.cells = matter;
+}
+
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   (void)root.choice("kind", {"macro"});
   MacroScene out;
@@ -266,12 +307,18 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     read_law_choices(root, out.law);
   } else {
     out.law = read_scene_law(root, law_file);
-    out.spec = measured_spec(out.law);
+    out.spec = out.law.cells ? grains_of(*out.law.cells) : measured_spec(out.law);
   }
   const SceneTable macro = root.table("macro");
   out.setup = read_macro_setup(macro, out.spec);
   read_stages(root, macro, out.setup.spec);
-  require_known_contents(macro, out.setup, out.spec, law_file);
+  if (out.law.cells) {
+    read_cells(root, macro, *out.law.cells, out.setup);
+  } else {
+    if (!law_file.empty() && root.has("fines"))
+      root.mistake("fines", "goes with a card of the cell law (see the guide)");
+    require_known_contents(macro, out.setup, out.spec, law_file);
+  }
   if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
   out.setup.kept_states = read_kept_states(root);
   out.contents = root.count("contents", 1, 100000, out.contents);

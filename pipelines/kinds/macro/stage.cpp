@@ -9,6 +9,7 @@
 
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
+#include "macrosim/cell_test.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/macro_snapshot.h"
@@ -57,9 +58,20 @@ struct Stage {
 
 struct Engine {
   std::string name;
-  const NamedLaws* laws = nullptr;  ///< null: a twin
+  const NamedLaws* laws = nullptr;  ///< null: a twin, or cells
   Twin twin = Twin::shelled;
+  bool cells = false;
 };
+
+Snapshot name_state(Snapshot s, const MacroCurve& c, const std::string& runs) {
+  const bool twin = c.twin().has_value();
+  s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
+  s.strain = c.strain.back();
+  s.series = fmt::format("{}{}-{}", runs == "macro" ? "" : runs + "/", c.engine, c.sample);
+  s.label = fmt::format("{}{} {}, sample {}, strain {:.4g}", runs == "macro" ? "" : runs + ": ", c.engine,
+                        twin ? "twin" : "run", c.sample, s.strain);
+  return s;
+}
 
 MacroSystem make_system(const Stage& stage, std::int64_t sample, const Engine& engine) {
   const MacroSpec& spec = stage.runs.setup.spec;
@@ -69,32 +81,67 @@ MacroSystem make_system(const Stage& stage, std::int64_t sample, const Engine& e
   return make(spec, packing, stage.runs.contents, stage.runs.seed, static_cast<std::uint64_t>(sample));
 }
 
-RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
-  const NamedLaws* const laws = engine.laws;
-  const MacroSpec& spec = stage.runs.setup.spec;
-  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
-  CompressionState state;
-  state.macro = make_system(stage, sample, engine);
-  state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
-  const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
-  const std::string task = stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
-  KeptStates states(stage.store, task, recorded_points(spec), sample == 0 ? stage.runs.setup.kept_states : 0);
-  stage.store.load(task, [&](const h5::Group& g) { read_progress(g, state); });
-  if (laws != nullptr) state.curve.law = laws->identity;
+/// Of systems with contacts.
+struct ContactRun {
+  const MacroSpec& spec;
+  using State = CompressionState;
+
+  static void write(const h5::Group& g, const State& s) { write_progress(g, s); }
+  static void read(const h5::Group& g, State& s) { read_progress(g, s); }
+  static Snapshot picture(const State& s, const MacroPacking& packing, const std::string& runs) {
+    return named_state(s.macro, packing, s.curve, runs);
+  }
+  void go(State& s, const RunControl<State>& control) const { compress(s, spec, control); }
+};
+
+/// Of cells of fines.
+struct CellRun {
+  const MacroSpec& spec;
+  using State = CellTestState;
+
+  static void write(const h5::Group& group, const State& s) {
+    group.attribute("increments", s.increments);
+    group.attribute("over", static_cast<std::int64_t>(s.over));
+    write_macro_curve(group.create("curve"), s.curve);
+    write_cell_state(group.create("cells"), s.packing.state());
+  }
+  void read(const h5::Group& group, State& s) const {
+    s.increments = group.integer("increments");
+    s.over = group.integer("over") != 0;
+    s.curve = read_macro_curve(group.open("curve"));
+    s.packing = CellPacking(cell_law_of(spec.cells->card, spec.youngs_modulus), read_cell_state(group.open("cells")),
+                            spec.boundary == Boundary::periodic);
+  }
+  static Snapshot picture(const State& s, const MacroPacking& packing, const std::string& runs) {
+    return name_state(cell_snapshot(s.packing, packing), s.curve, runs);
+  }
+  void go(State& s, const RunControl<State>& control) const { test_cells(s, spec, control); }
+};
+
+/// From its checkpoint on, to its end or to where it breaks off.
+template <class Kind>
+RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& state, const std::string& task,
+                    Progress& progress) {
+  using State = typename Kind::State;
+  const auto points = recorded_points(kind.spec);
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(state.curve.sample)];
+  KeptStates states(stage.store, task, points, state.curve.sample == 0 ? stage.runs.setup.kept_states : 0);
+  const LawIdentity law = state.curve.law;
+  stage.store.load(task, [&](const h5::Group& g) { kind.read(g, state); });
+  state.curve.law = law;
   TaskProgress mine(progress);
-  mine.reach(static_cast<double>(state.curve.strain.size()) / static_cast<double>(recorded_points(spec)));
+  mine.reach(static_cast<double>(state.curve.strain.size()) / static_cast<double>(points));
   MacroCurve recorded = state.curve;
-  RunControl<CompressionState> control{.seconds = stage.store.seconds()};
-  control.save = [&](const CompressionState& s) {
+  RunControl<State> control{.seconds = stage.store.seconds()};
+  control.save = [&](const State& s) {
     const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
-    if (s.increments == 0 && states.wants(point))
-      states.add(named_state(s.macro, packing, s.curve, stage.runs.name), point);
-    stage.store.save(task, [&](const h5::Group& g) { write_progress(g, s); });
+    if (s.increments == 0 && states.wants(point)) states.add(kind.picture(s, packing, stage.runs.name), point);
+    stage.store.save(task, [&](const h5::Group& g) { kind.write(g, s); });
     recorded = s.curve;
   };
-  control.progress = [&](const CompressionState&, double share) { mine.reach(share); };
+  control.progress = [&](const State&, double share) { mine.reach(share); };
   try {
-    compress(state, spec, control);
+    kind.go(state, control);
   } catch (const NotUsable& e) {  // this run alone ends here; without a point there is nothing to go on with
     if (recorded.strain.empty()) throw;
     state.curve = std::move(recorded);
@@ -103,11 +150,29 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
                         fmt::format("broke off beyond strain {:.4g}: {}", state.curve.strain.back(), e.what());
     mine.reach(1.0);
   }
-  if (laws != nullptr && laws->note && state.curve.usable) {
-    const std::string note = laws->note(state.macro.system);
-    state.curve.note += (state.curve.note.empty() || note.empty() ? "" : "; ") + note;
-  }
   return {state.curve, states.take()};
+}
+
+RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
+  const NamedLaws* const laws = engine.laws;
+  const MacroSpec& spec = stage.runs.setup.spec;
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
+  const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
+  const std::string task = stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
+  if (engine.cells) {
+    CellTestState state = begin_cell_test(spec, packing, engine.name, sample);
+    return run_task(stage, CellRun{spec}, state, task, progress);
+  }
+  CompressionState state;
+  state.macro = make_system(stage, sample, engine);
+  state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
+  if (laws != nullptr) state.curve.law = laws->identity;
+  RunOutcome out = run_task(stage, ContactRun{spec}, state, task, progress);
+  if (laws != nullptr && laws->note && out.curve.usable) {
+    const std::string note = laws->note(state.macro.system);
+    out.curve.note += (out.curve.note.empty() || note.empty() ? "" : "; ") + note;
+  }
+  return out;
 }
 
 /// Given, made by an earlier part of this run, kept by another run, or made now.
@@ -151,14 +216,7 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
 
 Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& c,
                      const std::string& runs) {
-  Snapshot s = macro_snapshot(macro, packing);
-  const bool twin = c.twin().has_value();
-  s.kind = twin ? SnapshotKind::twin : SnapshotKind::macro;
-  s.strain = c.strain.back();
-  s.series = fmt::format("{}{}-{}", runs == "macro" ? "" : runs + "/", c.engine, c.sample);
-  s.label = fmt::format("{}{} {}, sample {}, strain {:.4g}", runs == "macro" ? "" : runs + ": ", c.engine,
-                        twin ? "twin" : "run", c.sample, s.strain);
-  return s;
+  return name_state(macro_snapshot(macro, packing), c, runs);
 }
 
 std::vector<DrawnSizes> drawn_sizes(const MacroSetup& setup, std::uint64_t seed, const std::string& of) {
@@ -228,6 +286,7 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
   const Stage stage{runs, run.store, mean_solid_fraction(runs.contents)};
   std::vector<Engine> with_laws;
   std::vector<Engine> twins;
+  if (runs.setup.spec.cells) with_laws.push_back({"law", nullptr, {}, true});
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
   for (const Twin twin : runs.setup.twins) twins.push_back({to_string(twin), nullptr, twin});
   std::vector<RunOutcome> outcomes = std::move(before);
@@ -243,10 +302,10 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
   return curves;
 }
 
-std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const std::vector<NamedLaws>& laws,
                                         const std::vector<ShellPacking>& contents, const Run& run) {
   const auto packings = make_macro_packings(setup, run, "macro_initial.h5");
-  auto curves = run_engines({setup, packings, contents, run.seed, "macro"}, {law}, run, "states_macro.h5");
+  auto curves = run_engines({setup, packings, contents, run.seed, "macro"}, laws, run, "states_macro.h5");
   save_macro(curves, run.path("macro.h5"), run.provenance);
   return curves;
 }

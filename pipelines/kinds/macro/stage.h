@@ -53,14 +53,15 @@ struct RunOutcome {
 Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& curve,
                      const std::string& runs);
 
-/// Every law, then every twin, each on all samples; goes on from checkpoints of recorded points. States that are kept
-/// for pictures go to DIR/`states_file`. `before`: runs of another engine, whose curves and states come first.
+/// Every law, then every twin, each on all samples; where the setup says cells, these as engine "law"; goes on from
+/// checkpoints of recorded points. States that are kept for pictures go to DIR/`states_file`. `before`: runs of another
+/// engine, whose curves and states come first.
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const Run& run,
                                     const std::string& states_file, std::vector<RunOutcome> before = {});
 
-/// Runs all samples with `law` and the twins asked for, filled with `contents`; saves DIR/macro.h5,
-/// DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5.
-std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const NamedLaws& law,
+/// Runs all samples with the laws (none with cells) and the twins asked for, filled with `contents`; saves
+/// DIR/macro.h5, DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5.
+std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const std::vector<NamedLaws>& laws,
                                         const std::vector<ShellPacking>& contents, const Run& run);
 
 }  // namespace softgrain

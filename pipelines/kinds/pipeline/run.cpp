@@ -56,7 +56,7 @@ bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResul
   std::string why;
   try {
     const NamedLaws law = pair_law_of(result.card, setup.macro->spec, "law");
-    result.curves = run_macro_stage(*setup.macro, law, result.measured.packings, run);
+    result.curves = run_macro_stage(*setup.macro, {law}, result.measured.packings, run);
     return true;
   } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();

@@ -1,0 +1,36 @@
+// Tests of a specimen of cells, in the stages that tests of contacts have.
+#pragma once
+
+#include "common/data/macro_result.h"
+#include "common/data/snapshot.h"
+#include "common/state/run_control.h"
+#include "macrosim/cell_specimen.h"
+
+namespace softgrain {
+
+struct CellTestState {
+  CellPacking packing;
+  MacroCurve curve;
+  std::int64_t increments = 0;
+  bool over = false;
+};
+
+/// Before the first point.
+CellTestState begin_cell_test(const MacroSpec& spec, const MacroPacking& bodies, const std::string& engine,
+                              std::int64_t sample);
+
+/// As compress(): strains the room by the stages of the test, relaxes sites and axes that go by stress, records strain
+/// and stress. The coordination is that of cells (faces per cell); `more` has the solid fraction, the share of the
+/// faces that slide and the cells that only the guard keeps open; costs are tessellations (passes) and faces
+/// (evaluations). Cells beyond the pressure that the law was fitted to are counted as contacts beyond a law are, and
+/// said in the note. Throws NotUsable, Interrupted.
+void test_cells(CellTestState& state, const MacroSpec& spec, const RunControl<CellTestState>& control = {});
+
+/// Names of columns of MacroCurve::more.
+inline constexpr const char* kSlidingFaces = "sliding_faces";
+inline constexpr const char* kGuardedCells = "guarded_cells";
+
+/// Coarse grains and soft particles where they are now; no contacts.
+Snapshot cell_snapshot(const CellPacking& packing, const MacroPacking& bodies);
+
+}  // namespace softgrain
