@@ -121,8 +121,25 @@ Estimate exponential(const Estimate& log) {
 
 struct Replicates {
   std::vector<double> fines, coarse, many, log_decay;
+  std::vector<double> fitted_alone;  ///< e_c of those with many and log_decay
   std::vector<std::vector<double>> mixtures;
 };
+
+/// Form of the fit and of its refits, from no fines to a tenth more than the mixtures have.
+std::vector<ExcessPoresBand> band_of(const Replicates& drawn, double alone, double many, double decay, double largest,
+                                     int degrees, double widening) {
+  constexpr int kPoints = 30;
+  std::vector<ExcessPoresBand> out;
+  for (int k = 0; k <= kPoints; ++k) {
+    const double ratio = 1.1 * largest * k / kPoints;
+    std::vector<double> values;
+    for (std::size_t r = 0; r < drawn.many.size(); ++r)
+      values.push_back(ExcessProblem::form(ratio, drawn.fitted_alone[r], drawn.many[r], std::exp(drawn.log_decay[r])));
+    const Estimate e = student_estimate(ExcessProblem::form(ratio, alone, many, decay), values, degrees, widening);
+    out.push_back({ratio, e.value, e.low, e.high});
+  }
+  return out;
+}
 
 /// Errors of W/V_c; all 1 where none are known.
 std::vector<double> errors_of(const Replicates& replicates, int degrees) {
@@ -173,12 +190,17 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
   for (const Pores& one : all) {
     const LeastSquaresFit refit = problem.solve(one, error, {fit.parameters}, false);
     if (!refit.usable() || refit.at_bound[1]) continue;
+    drawn.fitted_alone.push_back(one.coarse);
     drawn.many.push_back(refit.parameters[0]);
     drawn.log_decay.push_back(refit.parameters[1]);
   }
   out.many = student_estimate(fit.parameters[0], drawn.many, states.degrees, out.widening);
   out.many.low = std::max(0.0, out.many.low);
   out.decay = exponential(student_estimate(fit.parameters[1], drawn.log_decay, states.degrees, out.widening));
+  double largest = 0.0;
+  for (const MixturePores& m : out.mixtures) largest = std::max(largest, m.ratio);
+  out.band = band_of(drawn, pores.coarse, fit.parameters[0], std::exp(fit.parameters[1]), largest, states.degrees,
+                     out.widening);
   out.usable = static_cast<double>(drawn.many.size()) >= kDeterminedShare * static_cast<double>(all.size());
   out.message = out.usable ? "fitted"
                            : fmt::format("the mixtures do not determine xi: only {} of {} replicates do",

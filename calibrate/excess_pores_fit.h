@@ -28,6 +28,14 @@ struct MixturePores {
   double fitted = 0.0;
 };
 
+/// The form at one ratio, with its 95 % interval.
+struct ExcessPoresBand {
+  double ratio = 0.0;
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
 struct ExcessPoresFit {
   bool usable = false;
   std::string message = "not run";
@@ -36,8 +44,9 @@ struct ExcessPoresFit {
   Estimate many;        ///< w_inf
   Estimate decay;       ///< xi
   std::vector<MixturePores> mixtures;
-  double deviation = 0.0;  ///< root mean square of W/V_c about the form
-  double widening = 1.0;   ///< of the intervals of w_inf and xi: sqrt(chi^2 over degrees of freedom) where above 1
+  std::vector<ExcessPoresBand> band;  ///< from 0 to beyond the largest ratio
+  double deviation = 0.0;             ///< root mean square of W/V_c about the form
+  double widening = 1.0;  ///< of the intervals of w_inf and xi: sqrt(chi^2 over degrees of freedom) where above 1
 };
 
 /// W/V_c = w_inf + (e_c - w_inf) exp(-(V_f/V_c)/xi), with W/V_c = [(1 - phi_J)/phi_J (V_f + V_c) - e_J V_f]/V_c of

@@ -20,8 +20,8 @@ using Pair = std::array<double, 2>;  ///< ln mu_f, ln chi
 
 /// Half width of the first 3 x 3, and of the last, in logarithms.
 constexpr double kFirstWidth = 0.69;
-constexpr double kLastWidth = 0.11;
-constexpr double kClosing = 0.4;  ///< of the width from one round to the next
+constexpr double kLastWidth = 0.15;
+constexpr double kClosing = 0.22;  ///< of the width from one round to the next
 constexpr int kMostRounds = 8;
 /// Samples may lie so many widths of the last surface away from its middle.
 constexpr double kReach = 5.0;

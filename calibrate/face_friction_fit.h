@@ -35,7 +35,7 @@ struct FaceFrictionFit {
 
 /// Least squares for ln mu_f and ln chi: the model is evaluated at 3 x 3 values around a guess, between which every
 /// point of a curve is a parabola in each parameter; the minimum of that surface is the next guess, and the 3 x 3 close
-/// in on it once it lies among them (to 11 % on either side, where the surface is as good as the model). Noise of
+/// in on it once it lies among them (to 15 % on either side, where the surface is as good as the model). Noise of
 /// relaxations so does no harm, as it would to derivatives. The samples are fitted on the last surface too: their
 /// scatter gives errors, and Student's intervals, in the logarithms; infinite for one sample.
 /// Throws BadInput for rows that do not fit together. Not usable, with the reason: the law gives no curve, curves that

@@ -41,6 +41,10 @@ PAGES = {
         ["pipelines/kinds/material/scene.cpp", "pipelines/kinds/material/equation.cpp", "pipelines/run/variant_name.cpp"],
         {"preparation", "start_pressure", "preparation_tolerance", "strain", "steps", "increments_per_step", "preload", "preload_steps",
                 "tolerance", "force_floor", "max_passes", "snapshots", "stage", "test", "output"}, {"solid_fraction", "rattlers"}),
+    "scene_material_law.md": (
+        ["pipelines/kinds/material_law/scene.cpp"],
+        {"preload", "preload_steps", "strain", "steps", "increments_per_step", "tolerance", "force_floor", "max_passes", "material", "grains",
+                "packing", "output", "snapshots", "count", "test"}, set()),
     "stages.md": (["pipelines/kinds/macro/stages.cpp"], {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"}, {"stage", "macro"}),
     "sizes.md": (["common/packing/grading_scene.cpp"], set(), {"solid_sizes", "soft_sizes", "disks", "material", "packing", "macro"}),
     "scene_grain_box.md": (["pipelines/kinds/grain_box/scene.cpp", "pipelines/run/variant_name.cpp"], set(), set()),

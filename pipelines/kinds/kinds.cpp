@@ -12,6 +12,7 @@
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/material/scene.h"
+#include "pipelines/kinds/material_law/scene.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/pipeline/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -41,7 +42,7 @@ std::span<const SceneKind> scene_kinds() {
   static const std::array kinds{pipeline_kind(),  macro_comparison_kind(), law_table_kind(),
                                 hierarchy_kind(), inverse_kind(),          soft_particle_kind(),
                                 particles_kind(), grain_box_kind(),        cohesive_powder_kind(),
-                                macro_kind(),     material_kind()};
+                                macro_kind(),     material_kind(),         material_law_kind()};
   return kinds;
 }
 

@@ -256,6 +256,26 @@ strain = 0.02
 snapshots = 2
 )";
 
+inline constexpr const char* kTinyMaterialLaw = R"(kind = "material-law"
+seed = 1
+samples = 2
+[grains]
+count = 120
+ratio = 1.6
+[law]
+split = 0.8
+mixtures = [0.2, 0.4, 0.7]
+cells = 40
+shear_strain = 0.04
+[packing]
+preparation = "fast"
+[test]
+steps = 3
+increments_per_step = 2
+strain = 0.05
+preload_steps = 1
+)";
+
 struct KindScene {
   std::string name;
   std::string command;
@@ -271,6 +291,7 @@ inline std::vector<KindScene> every_kind() {
                                {"soft-particle", "", kTinySoftParticle, 0},
                                {"macro", "", kTinyMacro, 0},
                                {"material", "", kTinyMaterial, 0},
+                               {"material-law", "", kTinyMaterialLaw, 3},
                                {"macro-comparison", "", kTinyComparison, 0},
                                {"law-table", "", std::string(kTinyLawTable) + kTinyLawFit, 0},
                                {"hierarchy", "", kTinyHierarchy, 3},
@@ -290,7 +311,9 @@ inline std::vector<KindScene> every_kind() {
   return kinds;
 }
 
-inline bool is_slow(const KindScene& k) { return k.name == "law-table" || k.name == "hierarchy"; }
+inline bool is_slow(const KindScene& k) {
+  return k.name == "law-table" || k.name == "hierarchy" || k.name == "material-law";
+}
 
 /// Those that take about a second.
 inline std::vector<KindScene> quick_kinds() {

@@ -26,7 +26,7 @@ TEST(Kinds, EveryOneIsWholeAndNamedOnce) {
     EXPECT_EQ(complaint(k.name, k.command), "") << k.name;
     EXPECT_STREQ(kind_of(Scene::parse("kind = \"" + std::string(k.name) + "\"\n", "s.toml")).name, k.name);
   }
-  EXPECT_EQ(names.size(), 11U);
+  EXPECT_EQ(names.size(), 12U);
 }
 
 TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
@@ -163,6 +163,22 @@ forms = ["pair", "bog"]
 s:5: name = "a b": letters, digits and '-' only: it becomes part of file names
 s:7: samples = 0: must be a whole number from 1 to 10000
 s:8: table: give a law table, a law card, or both)"},
+    {R"(kind = "material-law"
+samples = 0
+[grains]
+count = 2000
+ratoi = 6
+[law]
+split = 1.0
+form = "pore"
+[test]
+test = "shear"
+)",
+     R"(s:2: samples = 0: must be a whole number from 1 to 10000
+s:5: unknown key 'ratoi' in [grains]; nearest known key is 'ratio'
+s:7: split = 1: must be above 0 and below 1
+s:8: form = "pore": must be "porosity" or "pores"; nearest is "pores"
+s:10: test = "shear": the law is measured in oedometric compression (and the fines in shear))"},
     {R"(kind = "inverse"
 [packing]
 count = 1

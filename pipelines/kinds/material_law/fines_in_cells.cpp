@@ -1,11 +1,15 @@
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibrate/state_curves.h"
 #include "common/core/error.h"
+#include "common/io/interrupt.h"
+#include "macrosim/cell_matter/cell_packing.h"
 #include "macrosim/preparation.h"
 #include "pipelines/compare/stage_results.h"
+#include "pipelines/run/parallel_tasks.h"
 
 namespace softgrain {
 
@@ -13,6 +17,10 @@ namespace {
 
 /// Bodies of one size would order.
 constexpr double kSiteRatio = 1.5;
+/// Of a stage: steps of one percent give what those of a quarter do.
+constexpr std::size_t kComparedPoints = 8;
+/// Of a relaxation; at a tenth of it stress ratios differ by 1e-4.
+constexpr double kTolerance = 1e-2;
 
 std::size_t last_stage_begins(const MacroCurve& curve) {
   std::size_t first = curve.stage.size();
@@ -47,17 +55,28 @@ double measure_of(const Matrix<3>& stress, FinesMeasure measure) {
 }  // namespace
 
 FinesPath path_of(const MacroCurve& curve, FinesMeasure measure) {
-  FinesPath path{{}, last_stage_begins(curve), measure};
-  for (std::size_t k = 0; k < curve.strain_z.size(); ++k)
-    path.length.push_back({{1.0 - curve.strain_x[k], 1.0 - curve.strain_y[k], 1.0 - curve.strain_z[k]}});
+  FinesPath path;
+  path.measure = measure;
+  const std::size_t first = last_stage_begins(curve);
+  const std::size_t all = curve.strain_z.size();
+  const std::size_t every = std::max<std::size_t>(1, (all - first) / kComparedPoints);
+  for (std::size_t k = 0; k < all; ++k)
+    if (k < first || (all - 1 - k) % every == 0) {
+      path.points.push_back(k);
+      path.length.push_back({{1.0 - curve.strain_x[k], 1.0 - curve.strain_y[k], 1.0 - curve.strain_z[k]}});
+      path.compared += k < first ? 0 : 1;
+    }
   return path;
 }
 
-std::vector<double> measured_on(const MacroCurve& curve, FinesMeasure measure) {
+std::vector<double> measured_on(const MacroCurve& curve, const FinesPath& path) {
   std::vector<double> out;
   const std::vector<double> ratio = stress_ratios(curve);
-  for (std::size_t k = last_stage_begins(curve); k < curve.strain_z.size(); ++k)
-    out.push_back(measure == FinesMeasure::stress_ratio ? ratio[k] : curve.stress_lateral[k] / curve.stress_axial[k]);
+  for (std::size_t at = path.points.size() - path.compared; at < path.points.size(); ++at) {
+    const std::size_t k = path.points[at];
+    out.push_back(path.measure == FinesMeasure::stress_ratio ? ratio[k]
+                                                             : curve.stress_lateral[k] / curve.stress_axial[k]);
+  }
   return out;
 }
 
@@ -88,14 +107,35 @@ std::vector<double> strain_fines(const MacroPacking& sites, const FinesState& st
     for (std::size_t k = 1; k < path.length.size(); ++k) {
       Vec3 stretch;
       for (int a = 0; a < 3; ++a) stretch[a] = path.length[k][a] / path.length[k - 1][a];
-      const CellPoint point = packing.strain(stretch);
+      const CellPoint point = packing.strain(stretch, {.tolerance = kTolerance});
       if (point.relaxation.end != RelaxationEnd::converged) return {};
-      if (k >= path.first) out.push_back(measure_of(point.stress, path.measure));
+      if (k + path.compared >= path.length.size()) out.push_back(measure_of(point.stress, path.measure));
     }
   } catch (const NotUsable&) {
     return {};
   }
   return out;
+}
+
+std::vector<std::vector<double>> strain_fines(const MacroPacking& sites, const FinesState& state,
+                                              const std::vector<FaceFrictionTrial>& trials,
+                                              const std::vector<FinesPath>& paths) {
+  std::vector<std::vector<double>> parts(trials.size() * paths.size());
+  parallel_tasks(static_cast<std::int64_t>(parts.size()), [&](std::int64_t task) {
+    const auto k = static_cast<std::size_t>(task);
+    const FaceFrictionTrial& t = trials[k / paths.size()];
+    parts[k] = strain_fines(sites, state, FaceFriction{t.friction, t.stiffness}, paths[k % paths.size()]);
+  });
+  stop_if_interrupted("straining cells of fines");
+  std::vector<std::vector<double>> rows(trials.size());
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    rows[k / paths.size()].insert(rows[k / paths.size()].end(), parts[k].begin(), parts[k].end());
+  return rows;
+}
+
+double friction_seconds(std::int64_t cells) {
+  constexpr double kSecondsPerCell = 0.14;  // two rounds of 3 x 3 trials and the last one, two paths each
+  return kSecondsPerCell * static_cast<double>(cells);
 }
 
 }  // namespace softgrain

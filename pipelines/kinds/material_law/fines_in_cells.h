@@ -3,9 +3,10 @@
 
 #include <vector>
 
+#include "calibrate/face_friction_fit.h"
 #include "common/data/cell_card.h"
 #include "common/data/macro_result.h"
-#include "macrosim/cell_matter/cell_packing.h"
+#include "macrosim/cell_matter/face_springs.h"
 #include "macrosim/macro_packing.h"
 
 namespace softgrain {
@@ -19,31 +20,40 @@ struct FinesState {
   double start_pressure = 0.0;  ///< p/E
 };
 
-/// What is compared with measurements: of a stage, at its points.
+/// What of a test is compared.
 enum class FinesMeasure {
   lateral_ratio,  ///< lateral over axial stress
   stress_ratio    ///< q/p
 };
 
-/// Lengths of the axes over those at the start, at recorded points; the measure counts from point `first` on.
+/// Some recorded points of a curve, from its start; the last ones are compared.
 struct FinesPath {
-  std::vector<Vec3> length;
-  std::size_t first = 1;
   FinesMeasure measure = FinesMeasure::lateral_ratio;
+  std::vector<std::size_t> points;  ///< of the curve
+  std::vector<Vec3> length;         ///< of the axes there, over those at the start
+  std::size_t compared = 0;
 };
 
-/// The way of a measured curve; the measure is that of its last stage.
+/// All points before the last stage, and about eight of it, which are compared: larger strain steps change nothing.
 FinesPath path_of(const MacroCurve& curve, FinesMeasure measure);
 
-/// The measure of a curve at the points of its last stage.
-std::vector<double> measured_on(const MacroCurve& curve, FinesMeasure measure);
+/// The measure of a curve at the compared points of the path; not a number where next to nothing bears.
+std::vector<double> measured_on(const MacroCurve& curve, const FinesPath& path);
 
-/// Sites for cells: bodies of nearly one size, packed without friction in a periodic cell; no randomness but the seed.
+/// Sites for cells: bodies of nearly one size, packed without friction in a periodic cell. Throws NotUsable, BadInput.
 MacroPacking pack_sites(std::int64_t count, std::uint64_t seed);
 
-/// Stress ratios along the path, all cells at the start pressure at first; in the order of the points. Empty where the
-/// law gives none (a cell without pores, a relaxation that does not end).
+/// The measure at the compared points, all cells at the start pressure at first. Empty where the law gives none (a cell
+/// without pores, a relaxation that does not end).
 std::vector<double> strain_fines(const MacroPacking& sites, const FinesState& state, const FaceFriction& friction,
                                  const FinesPath& path);
+
+/// Rows of all paths one after another, for each trial; trials and paths side by side.
+std::vector<std::vector<double>> strain_fines(const MacroPacking& sites, const FinesState& state,
+                                              const std::vector<FaceFrictionTrial>& trials,
+                                              const std::vector<FinesPath>& paths);
+
+/// About how long a fit with so many cells takes [s of one core].
+double friction_seconds(std::int64_t cells);
 
 }  // namespace softgrain

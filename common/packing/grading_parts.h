@@ -1,0 +1,18 @@
+// Coarse and fine parts of a size distribution of spheres, and mixtures that have other shares of them.
+#pragma once
+
+#include <vector>
+
+#include "common/packing/grading.h"
+
+namespace softgrain {
+
+/// The grains from `low` to below `high`, with their shares of the volume of all; exact, whatever the form. Empty where
+/// there are none.
+std::vector<SizePiece> pieces_between(const Grading& grading, double low, double high);
+
+/// Both together; the fines have this share of the volume, and each part keeps its own distribution. One part may be
+/// empty when its share is 0. Throws BadInput as Grading does.
+Grading mixture_of(std::vector<SizePiece> coarse, std::vector<SizePiece> fines, double fines_share);
+
+}  // namespace softgrain

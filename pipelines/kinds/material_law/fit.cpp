@@ -1,0 +1,240 @@
+#include "pipelines/kinds/material_law/fit.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/excess_pores_fit.h"
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
+
+namespace softgrain {
+
+namespace {
+
+Estimate estimate_of(const StateEstimate& e) { return {e.value, e.error, e.low, e.high}; }
+
+/// Mean over samples with Student's interval.
+Estimate mean_of_samples(const std::vector<double>& values) {
+  const MeanError m = mean_error(values);
+  if (m.n < 2) return {m.mean, kInfinity, -kInfinity, kInfinity};
+  const double half = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(m.n) - 1.0) * m.error;
+  return {m.mean, m.error, m.mean - half, m.mean + half};
+}
+
+class MaterialLawFit {
+ public:
+  MaterialLawFit(const MaterialLawScene& scene, const std::vector<VariantResult>& results, const StateFit& states,
+                 std::uint64_t seed)
+      : scene_(scene), results_(results), states_(states), seed_(seed) {}
+
+  MaterialLaw run() {
+    out_.summary.form = out_.card.form = scene_.material.equation.form;
+    out_.summary.split = out_.card.split = scene_.split;
+    describe();
+    out_.card.modulus = estimate_of(states_.modulus);
+    out_.card.exponent = estimate_of(states_.exponent);
+    add("K", out_.card.modulus);
+    add("n", out_.card.exponent);
+    fit_excess();
+    lateral_ratio();
+    fit_friction();
+    out_.summary.usable = out_.problems.empty();
+    return std::move(out_);
+  }
+
+ private:
+  void add(const char* name, const Estimate& e) { out_.summary.numbers.push_back({name, e}); }
+
+  [[nodiscard]] const VariantResult& result(LawVariant v) const { return results_[place_of(v)]; }
+
+  /// What it was measured on.
+  void describe() {
+    const MacroSpec& spec = result(LawVariant::fines).variant->setup.spec;
+    CellCard& card = out_.card;
+    card.poisson_ratio = spec.poisson_ratio;
+    card.grain_friction = spec.friction;
+    card.preparation = to_string(spec.preparation);
+    card.start_pressure = spec.start_pressure;
+    card.fines_ratio = spec.solid_sizes->largest() / spec.solid_sizes->smallest();
+    const Grading& whole = scene_.sizes;
+    card.fines_sizes = whole.form() == GradingForm::power_law
+                           ? fmt::format("power law r^-{:g}", whole.pieces().front().exponent)
+                           : fmt::format("{}, cut at the split", to_string(whole.form()));
+    card.samples = result(LawVariant::fines).variant->setup.samples;
+    card.pressure_low = kInfinity;
+    for (const VariantResult& r : results_)
+      for (const MacroCurve& c : r.curves)
+        for (const double p : state_curve(c, r.variant->name, 1.0).pressure) {
+          if (p > 0.0) card.pressure_low = std::min(card.pressure_low, p);
+          card.pressure_high = std::max(card.pressure_high, p);
+        }
+  }
+
+  /// Of all samples of a mixture together.
+  [[nodiscard]] GrainShares grains_of(const MaterialVariant& v) const {
+    GrainShares all;
+    for (std::int64_t s = 0; s < v.setup.samples; ++s) {
+      const GrainShares one = shares_of(scene_, v, seed_, static_cast<std::uint64_t>(s));
+      all.coarse += one.coarse;
+      all.fines += one.fines;
+      all.coarse_volume += one.coarse_volume;
+      all.fines_volume += one.fines_volume;
+    }
+    return all;
+  }
+
+  void fit_excess() {
+    MixtureGroups groups{"fines", "coarse", {}};
+    std::vector<GrainShares> shares;
+    for (std::size_t k = kFirstMixture; k < results_.size(); ++k) {
+      shares.push_back(grains_of(*results_[k].variant));
+      const double ratio = shares.back().fines_volume / shares.back().coarse_volume;
+      groups.mixtures.push_back({results_[k].variant->name, ratio});
+      out_.card.mixture_high = std::max(out_.card.mixture_high, ratio);
+    }
+    const ExcessPoresFit fit = fit_excess_pores(states_, groups);
+    for (std::size_t k = 0; k < fit.mixtures.size(); ++k) {
+      const MixturePores& m = fit.mixtures[k];
+      out_.summary.mixtures.push_back({m.name, m.ratio, shares[k].coarse, shares[k].fines, m.pores, m.fitted});
+    }
+    out_.card.void_ratio = fit.void_ratio;
+    out_.card.excess_alone = fit.alone;
+    add("e_J", fit.void_ratio);
+    add("e_c", fit.alone);
+    if (!fit.usable) {
+      out_.problems.push_back("excess pores: " + fit.message);
+      return;
+    }
+    out_.card.excess_many = fit.many;
+    out_.card.excess_decay = fit.decay;
+    add("w_inf", fit.many);
+    add("xi", fit.decay);
+    BandSummary band;
+    for (const ExcessPoresBand& b : fit.band) {
+      band.ratio.push_back(b.ratio);
+      band.value.push_back(b.value);
+      band.low.push_back(b.low);
+      band.high.push_back(b.high);
+    }
+    out_.summary.band = std::move(band);
+    out_.summary.excess_deviation = fit.deviation;
+    out_.summary.excess_widening = fit.widening;
+  }
+
+  /// Of the fines, mean over the recorded points of the compression.
+  void lateral_ratio() {
+    std::vector<double> samples;
+    for (const MacroCurve& c : result(LawVariant::fines).curves) {
+      std::vector<double> ratios;
+      for (std::size_t k = 1; k < c.strain.size(); ++k)
+        if (c.stress_axial[k] > 0.0) ratios.push_back(c.stress_lateral[k] / c.stress_axial[k]);
+      if (!ratios.empty()) samples.push_back(mean_error(ratios).mean);
+    }
+    if (samples.empty()) return;
+    out_.card.lateral_ratio = mean_of_samples(samples);
+    add("K0", out_.card.lateral_ratio);
+  }
+
+  void fit_friction() {
+    const std::array<const VariantResult*, 2> tests{&result(LawVariant::fines), &result(LawVariant::sheared_fines)};
+    for (const VariantResult* test : tests)
+      for (const MacroCurve& c : test->curves)
+        if (!c.usable || c.strain.size() != test->curves.front().strain.size()) {
+          out_.problems.push_back("face friction: a test of the fines did not come to its end");
+          return;
+        }
+    const std::vector<FinesPath> paths{path_of(tests[0]->curves.front(), FinesMeasure::lateral_ratio),
+                                       path_of(tests[1]->curves.front(), FinesMeasure::stress_ratio)};
+    FaceFrictionData data;
+    for (const FinesPath& path : paths)
+      data.weight.insert(data.weight.end(), path.compared, 1.0 / static_cast<double>(path.compared));
+    for (std::size_t s = 0; s < tests[0]->curves.size(); ++s) {
+      data.samples.emplace_back();
+      for (std::size_t t = 0; t < paths.size(); ++t)
+        for (const double value : measured_on(tests[t]->curves[s], paths[t])) data.samples.back().push_back(value);
+    }
+    const FinesState state{out_.card.form, out_.card.modulus.value, out_.card.exponent.value,
+                           out_.card.void_ratio.value, out_.card.start_pressure};
+    const MacroPacking sites = pack_sites(scene_.cells, seed_);
+    const FaceFrictionFit fit = fit_face_friction(
+        [&](const std::vector<FaceFrictionTrial>& trials) { return strain_fines(sites, state, trials, paths); }, data);
+    add_curves(fit, data, paths);
+    if (!fit.usable) {
+      out_.problems.push_back("face friction: " + fit.message);
+      return;
+    }
+    out_.card.friction = fit.friction;
+    out_.card.stiffness = fit.stiffness;
+    out_.summary.friction_deviation = fit.deviation;
+    add("mu_f", fit.friction);
+    add("chi", fit.stiffness);
+  }
+
+  void add_curves(const FaceFrictionFit& fit, const FaceFrictionData& data, const std::vector<FinesPath>& paths) {
+    std::size_t at = 0;
+    for (std::size_t t = 0; t < paths.size(); ++t) {
+      const LawVariant of = t == 0 ? LawVariant::fines : LawVariant::sheared_fines;
+      const MacroCurve& c = result(of).curves.front();
+      FrictionCurve curve{result(of).variant->name, t == 0 ? "lateral/axial" : "q/p", {}, {}, {}, {}};
+      const std::size_t before = paths[t].points.size() - paths[t].compared;
+      for (std::size_t k = before; k < paths[t].points.size(); ++k, ++at) {
+        std::vector<double> values;
+        for (const auto& row : data.samples)
+          if (std::isfinite(row[at])) values.push_back(row[at]);
+        const MeanError mean = mean_error(values);
+        curve.strain.push_back(1.0 - (1.0 - c.strain_z[paths[t].points[k]]) /
+                                         (1.0 - c.strain_z[paths[t].points[before - 1]]));
+        curve.measured.push_back(mean.mean);
+        curve.error.push_back(mean.error);
+        curve.fitted.push_back(fit.model.empty() ? kNaN : fit.model[at]);
+      }
+      out_.summary.curves.push_back(std::move(curve));
+    }
+  }
+
+  const MaterialLawScene& scene_;
+  const std::vector<VariantResult>& results_;
+  const StateFit& states_;
+  std::uint64_t seed_;
+  MaterialLaw out_;
+};
+
+/// Whether the fit knows every variant that tells an onset.
+std::string missing_group(const std::vector<VariantResult>& results, const StateFit& states) {
+  for (const VariantResult& r : results)
+    if (!r.variant->same_packings && std::none_of(states.groups.begin(), states.groups.end(),
+                                                  [&](const StateGroup& g) { return g.name == r.variant->name; }))
+      return r.variant->name;
+  return "";
+}
+
+}  // namespace
+
+MaterialLaw fit_material_law(const MaterialLawScene& scene, const std::vector<VariantResult>& results,
+                             const std::optional<StateFit>& states, std::uint64_t seed) {
+  MaterialLaw none;
+  none.summary.form = scene.material.equation.form;
+  none.summary.split = scene.split;
+  if (!states || !states->usable) {
+    none.problems.push_back("the equation of state is not usable" +
+                            (states ? ": " + states->message : std::string(": too few points with pressure")));
+    return none;
+  }
+  if (const std::string name = missing_group(results, *states); !name.empty()) {
+    none.problems.push_back(name + " bears at too few points to tell its onset");
+    return none;
+  }
+  if (!(states->exponent.value > 1.0)) {
+    none.problems.push_back(fmt::format(
+        "n = {:.3g} of the equation of state: must be above 1, or the stiffness of cells jumps at the onset",
+        states->exponent.value));
+    return none;
+  }
+  return MaterialLawFit(scene, results, *states, seed).run();
+}
+
+}  // namespace softgrain

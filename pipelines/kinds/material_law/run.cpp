@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/io/text_file.h"
+#include "pipelines/kinds/material/run.h"
+#include "pipelines/kinds/material_law/fit.h"
+#include "pipelines/kinds/material_law/results.h"
+#include "pipelines/kinds/material_law/scene.h"
+
+namespace softgrain {
+
+namespace {
+
+std::string interval_text(const Estimate& e) {
+  return std::isfinite(e.low) && std::isfinite(e.high)
+             ? fmt::format("{:.4g} ({:.4g} to {:.4g})", e.value, e.low, e.high)
+             : fmt::format("{:.4g}", e.value);
+}
+
+std::string law_text(const CellLawSummary& s) {
+  std::string text = fmt::format("cell law, {} form:", to_string(s.form));
+  for (std::size_t k = 0; k < s.numbers.size(); ++k)
+    text += fmt::format("{} {} = {}", k == 0 ? "" : ",", s.numbers[k].name, interval_text(s.numbers[k].estimate));
+  text += "\n";
+  for (const MixtureSummary& m : s.mixtures)
+    text += fmt::format("  V_f/V_c = {:.3g}: W/V_c = {}{}\n", m.ratio, interval_text(m.pores),
+                        s.band ? fmt::format(", fitted {:.4g}", m.fitted) : "");
+  if (s.usable)
+    text += fmt::format("  W/V_c is {:.2g} about its form, stress ratios of the fines {:.2g} about the law\n",
+                        s.excess_deviation, s.friction_deviation);
+  return text;
+}
+
+ExitStatus run_material_law(const Scene& scene, const CommonOptions& options) {
+  const MaterialLawScene law = read_material_law_scene(scene);
+  const Run run(scene, options, "run", law.material.seed, {.text = sizes_text(law.material)});
+  const std::vector<VariantResult> results = run_variants(law.material, run);
+  MaterialOutcome measured = summarise(law.material, results, run);
+  write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
+  MaterialLaw fitted;
+  run.context.guard([&] { fitted = fit_material_law(law, results, measured.states, run.seed); });
+  MaterialLawSummary summary{std::move(measured.summary), std::move(fitted.summary)};
+  for (const std::string& problem : fitted.problems) summary.material.head.reject("no cell law: " + problem);
+  if (summary.law.usable) {
+    write_cell_card(fitted.card, run.path(kCellLawFile), run.provenance);
+    summary.material.head.files["cell_law"] = run.path(kCellLawFile);
+  }
+  std::string text = people_text(summary.material) + law_text(summary.law);
+  for (const std::string& problem : fitted.problems) text += "no cell law: " + problem + "\n";
+  return run.finish(json_of(summary), text);
+}
+
+}  // namespace
+
+SceneKind material_law_kind() {
+  return {.name = "material-law",
+          .command = "run",
+          .run = run_material_law,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_material_law(scene, out); },
+          .read = [](const Scene& scene) { (void)read_material_law_scene(scene); },
+          .results = material_law_results()};
+}
+
+}  // namespace softgrain

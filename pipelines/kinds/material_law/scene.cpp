@@ -1,0 +1,152 @@
+#include "pipelines/kinds/material_law/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/limits.h"
+#include "common/core/solid_sphere.h"
+#include "common/packing/grading_parts.h"
+#include "macrosim/preparation.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Fewer coarse or fine grains than this in a mixture: its onset scatters.
+constexpr std::int64_t kFewGrains = 30;
+constexpr std::size_t kLeastMixtures = 3;
+/// Fewer sites are their own neighbours.
+constexpr std::int64_t kLeastCells = 40;
+
+MacroSetup law_defaults() {
+  MacroSetup setup = material_defaults();
+  MacroSpec& spec = setup.spec;
+  spec.strain_end = 0.08;
+  spec.steps = 16;
+  spec.increments_per_step = 4;
+  spec.preload = 0.02;
+  return setup;
+}
+
+Grading whole_of(const MacroSpec& spec) {
+  if (spec.solid_sizes) return *spec.solid_sizes;
+  return Grading::power_law(spec.exponent, spec.solid_radius_max / spec.solid_polydispersity, spec.solid_radius_max);
+}
+
+MaterialVariant variant_of(const std::string& name, const MacroSetup& base, const Grading& sizes) {
+  MaterialVariant v{name, base};
+  v.setup.spec.solid_sizes = sizes;
+  v.setup.spec.solid_radius_max = sizes.largest();
+  v.setup.spec.solid_polydispersity = sizes.largest() / sizes.smallest();
+  return v;
+}
+
+std::string name_of(double share) { return fmt::format("mix-{:.6g}", 100.0 * share); }
+
+void read_law(const SceneTable& law, MaterialLawScene& out) {
+  out.split = law.number("split", Unit::none, Range{0.0, 1.0, true, true}, out.split);
+  out.material.equation.form = law.choice<StateForm>("form", StateForm::porosity);
+  out.mixtures = law.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
+  out.material.equation.replicates = law.count("replicates", 40, 100000, 400);
+  out.cells = law.count("cells", kLeastCells, 100000, out.cells);
+  if (out.mixtures.size() < kLeastMixtures)
+    law.mistake("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
+  for (std::size_t k = 1; k < out.mixtures.size(); ++k)
+    if (!(out.mixtures[k - 1] < out.mixtures[k])) {
+      law.mistake("mixtures", "shares must ascend");
+      return;
+    }
+}
+
+/// All packings that are measured, from the grains of the whole material.
+void make_variants(const SceneTable& law, const MacroSetup& base, double shear_strain, MaterialLawScene& out) {
+  const double cut = out.split * out.sizes.largest();
+  const std::vector<SizePiece> fines = pieces_between(out.sizes, 0.0, cut);
+  const std::vector<SizePiece> coarse = pieces_between(out.sizes, cut, kInfinity);
+  if (fines.empty())
+    law.reject("split", fmt::format("no grain is fine: the smallest radius is {:.3g} of the largest",
+                                    out.sizes.smallest() / out.sizes.largest()));
+  MacroSetup still = base;  // what other tests than shear do before is nothing
+  still.spec.preload = 0.0;
+  auto& variants = out.material.variants;
+  variants.push_back(variant_of("fines", still, Grading::classes(fines)));
+  variants.push_back(variant_of("fines-shear", base, Grading::classes(fines)));
+  variants.back().same_packings = true;
+  variants.back().setup.spec.test = MacroTest::shear;
+  variants.back().setup.spec.strain_end = shear_strain;
+  variants.push_back(variant_of("coarse", still, Grading::classes(coarse)));
+  for (const double share : out.mixtures)
+    variants.push_back(variant_of(name_of(share), still, mixture_of(coarse, fines, share)));
+}
+
+/// Mixtures need grains of both kinds, and all packings more than a few grains.
+void require_grains(const SceneTable& law, const MaterialLawScene& scene) {
+  for (const MaterialVariant& v : scene.material.variants) {
+    require_room_for_images(drawn_bodies(v.setup.spec, scene.material.seed, 0));
+    if (&v - scene.material.variants.data() < static_cast<std::ptrdiff_t>(kFirstMixture)) continue;
+    const GrainShares shares = shares_of(scene, v, scene.material.seed, 0);
+    if (shares.coarse == 0 || shares.fines == 0)
+      law.reject("mixtures", fmt::format("{}: none of {} grains is {}: more grains ([grains] count), or another share",
+                                         v.name, v.setup.spec.bodies, shares.coarse == 0 ? "coarse" : "fine"));
+  }
+}
+
+}  // namespace
+
+GrainShares shares_of(const MaterialLawScene& scene, const MaterialVariant& variant, std::uint64_t seed,
+                      std::uint64_t sample) {
+  GrainShares out;
+  const double cut = scene.split * scene.sizes.largest();
+  for (const MacroBody& b : drawn_bodies(variant.setup.spec, seed, sample)) {
+    const bool fine = b.r < cut;
+    ++(fine ? out.fines : out.coarse);
+    (fine ? out.fines_volume : out.coarse_volume) += kSphereVolume * b.r * b.r * b.r;
+  }
+  return out;
+}
+
+MaterialLawScene read_material_law_scene(const Scene& scene) {
+  return scene.read([](const SceneTable& root) {
+    (void)root.choice("kind", {"material-law"});
+    MaterialLawScene out{{}, Grading::power_law(3.5, 1.0, 2.0), 1.0 / 3.0, {}, 100};
+    out.material.title = root.text("title", "");
+    out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    MacroSetup base = law_defaults();
+    read_material_tables(root, base);
+    const SceneTable test = root.table_or_empty("test");
+    if (base.spec.test != MacroTest::oedometric)
+      test.mistake("test", "the law is measured in oedometric compression (and the fines in shear)");
+    base.samples = root.count("samples", 1, 10000, base.samples);
+    base.kept_states = read_kept_states(root);
+    const SceneTable law = root.table_or_empty("law");
+    read_law(law, out);
+    const double shear = law.number("shear_strain", Unit::none, Range{0.0, 0.5, true, false}, 0.06);
+    if (!root.sound()) return out;
+    out.sizes = whole_of(base.spec);
+    make_variants(law, base, shear, out);
+    require_material_memory(root.table("grains"), base);
+    require_grains(law, out);
+    return out;
+  });
+}
+
+void check_material_law(const Scene& scene, Findings& out) {
+  const MaterialLawScene law = read_material_law_scene(scene);
+  check_variants(law.material, out);
+  for (std::size_t k = kFirstMixture; k < law.material.variants.size(); ++k) {
+    const MaterialVariant& v = law.material.variants[k];
+    const GrainShares shares = shares_of(law, v, law.material.seed, 0);
+    out.lines += fmt::format("  {}: {} coarse and {} fine grains\n", v.name, shares.coarse, shares.fines);
+    if (std::min(shares.coarse, shares.fines) < kFewGrains)
+      out.warn(fmt::format("{}: only {} grains are {}: its onset will scatter, and w_inf and xi with it", v.name,
+                           std::min(shares.coarse, shares.fines), shares.coarse < shares.fines ? "coarse" : "fine"));
+  }
+  if (law.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
+  out.spend("friction of cells", friction_seconds(law.cells));
+}
+
+}  // namespace softgrain

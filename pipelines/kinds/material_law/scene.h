@@ -1,0 +1,47 @@
+// Scenes of kind "material-law": what the cell law needs to know of a material, measured on its fines, its coarse
+// grains and mixtures of both.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/packing/grading.h"
+#include "pipelines/kinds/material/scene.h"
+#include "pipelines/run/scene_kind.h"
+
+namespace softgrain {
+
+/// Packings that the scene makes by itself, in the order in which they run; the mixtures come after these.
+enum class LawVariant { fines, sheared_fines, coarse };
+inline constexpr std::size_t kFirstMixture = 3;
+inline constexpr std::size_t place_of(LawVariant v) { return static_cast<std::size_t>(v); }
+
+struct MaterialLawScene {
+  MaterialScene material;        ///< variants: LawVariant, then a mixture for each share
+  Grading sizes;                 ///< of the whole material
+  double split = 1.0 / 3.0;      ///< fines are below this share of the largest radius
+  std::vector<double> mixtures;  ///< shares of fines by solid volume, ascending
+  std::int64_t cells = 100;      ///< sites of the cells that friction is fitted with
+};
+
+/// Coarse and fine grains of a drawn sample, and their solid volumes [m^3].
+struct GrainShares {
+  std::int64_t coarse = 0;
+  std::int64_t fines = 0;
+  double coarse_volume = 0.0;
+  double fines_volume = 0.0;
+};
+GrainShares shares_of(const MaterialLawScene& scene, const MaterialVariant& variant, std::uint64_t seed,
+                      std::uint64_t sample);
+
+/// Reads the whole scene. Throws BadInput, FileTrouble.
+MaterialLawScene read_material_law_scene(const Scene& scene);
+
+/// Variants, time, and what to mind. Throws BadInput, FileTrouble.
+void check_material_law(const Scene& scene, Findings& out);
+
+/// Measures all variants, fits the cell law; writes cell_law.toml beside what a scene of kind "material" leaves. Status
+/// not_usable, and no card, where a part of the law could not be determined.
+SceneKind material_law_kind();
+
+}  // namespace softgrain

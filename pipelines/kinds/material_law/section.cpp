@@ -1,0 +1,122 @@
+// The cell law: its numbers, excess pores over the mixture, stress ratios of the fines against the law.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipelines/kinds/material_law/results.h"
+#include "pipelines/kinds/material_law/summary.h"
+#include "pipelines/report/html.h"
+#include "pipelines/report/number_format.h"
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/svg_plot.h"
+
+namespace softgrain::report {
+namespace {
+
+std::string meaning_of(const std::string& name) {
+  if (name == "K" || name == "n") return "equation of state";
+  if (name == "e_J") return "void ratio of the fines where they jam";
+  if (name == "e_c") return "void ratio of the coarse grains alone";
+  if (name == "w_inf") return "excess pores over coarse volume, many fines";
+  if (name == "xi") return "decay over V_f/V_c";
+  if (name == "mu_f") return "friction of faces";
+  if (name == "chi") return "stiffness of faces";
+  return "lateral over axial stress of the fines";
+}
+
+std::string interval_of(const Estimate& e) {
+  if (!std::isfinite(e.low) || !std::isfinite(e.high)) return "–";
+  return fmt::format("{} to {}", format_number(e.low, 3), format_number(e.high, 3));
+}
+
+std::string number_table(const CellLawSummary& law) {
+  HtmlTable table({"number", "meaning", "value", "95 % interval"}, 2);
+  for (const LawNumber& n : law.numbers)
+    table.row({n.name, meaning_of(n.name), format_number(n.estimate.value), interval_of(n.estimate)});
+  return table.html();
+}
+
+double half_of(const Estimate& e) { return std::isfinite(e.high) ? 0.5 * (e.high - e.low) : 0.0; }
+
+std::string pores_figure(const CellLawSummary& law) {
+  Plot plot({.id = "cell-law-pores", .title = "Excess pores", .x = {.label = "V_f/V_c"}, .y = {.label = "W/V_c"}});
+  if (law.band) {
+    Series fit{.label = "fitted form", .hover = "", .x = law.band->ratio, .y = law.band->value};
+    fit.style = {.color = palette::blue, .width = 1.6};
+    bool known = true;
+    for (const double x : law.band->high) known = known && std::isfinite(x);
+    if (known) {
+      fit.band_low = law.band->low;
+      fit.band_high = law.band->high;
+    }
+    plot.add(std::move(fit));
+  }
+  Series points{.label = "measured", .hover = "", .x = {}, .y = {}};
+  for (const LawNumber& n : law.numbers)
+    if (n.name == "e_c") {
+      points.x.push_back(0.0);
+      points.y.push_back(n.estimate.value);
+      points.y_error.push_back(half_of(n.estimate));
+    }
+  for (const MixtureSummary& m : law.mixtures) {
+    points.x.push_back(m.ratio);
+    points.y.push_back(m.pores.value);
+    points.y_error.push_back(half_of(m.pores));
+  }
+  points.style = {.color = palette::black, .width = 0.0, .marker = Marker::circle};
+  if (points.x.empty()) return "";
+  plot.add(std::move(points));
+  return figure(plot.svg(),
+                "Pores that fines leave beside coarse grains, over the solid volume of these; at the left the void "
+                "ratio of coarse grains alone. Bars and band: 95 %.");
+}
+
+std::string friction_figure(const FrictionCurve& c) {
+  const bool sheared = c.measure == "q/p";
+  Plot plot({.id = sheared ? "cell-law-shear" : "cell-law-lateral",
+             .title = sheared ? "Fines sheared at constant volume" : "Fines in oedometric compression",
+             .x = {.label = "axial strain of the stage [%]"},
+             .y = {.label = sheared ? "q/p" : "lateral over axial stress", .low = 0.0}});
+  std::vector<double> percent;
+  for (const double e : c.strain) percent.push_back(100.0 * e);
+  Series measured{.label = "grains", .hover = "", .x = percent, .y = c.measured};
+  measured.style = {.color = palette::black, .width = 0.0, .marker = Marker::circle};
+  bool known = c.error.size() == c.measured.size();
+  for (const double e : c.error) known = known && std::isfinite(e);
+  if (known) measured.y_error = c.error;
+  Series fitted{.label = "cell law", .hover = "", .x = percent, .y = c.fitted};
+  fitted.style = {.color = palette::vermillion, .width = 1.8};
+  plot.add(std::move(measured));
+  plot.add(std::move(fitted));
+  return figure(plot.svg(), "Mean over samples ± standard error; the law with the fitted friction, all cells fines.");
+}
+
+std::string mixture_table(const CellLawSummary& law) {
+  HtmlTable table(
+      {"mixture", "V_f/V_c", "coarse grains", "fine grains (all samples)", "W/V_c", "95 % interval", "fitted"});
+  for (const MixtureSummary& m : law.mixtures)
+    table.row({m.name, format_number(m.ratio, 3), format_count(m.coarse), format_count(m.fines),
+               format_number(m.pores.value, 3), interval_of(m.pores), law.band ? format_number(m.fitted, 3) : "–"});
+  return table.empty() ? "" : table.html();
+}
+
+}  // namespace
+
+std::string cell_law_section(const RunData& run) {
+  const CellLawSummary law = run.summary_as<MaterialLawSummary>().law;
+  if (law.numbers.empty()) return "";
+  std::string body = number_table(law);
+  if (!law.usable)
+    body += paragraph("Not usable: no card was written; what is missing could not be determined (see the remarks).");
+  std::vector<std::string> figures{pores_figure(law)};
+  for (const FrictionCurve& c : law.curves) figures.push_back(friction_figure(c));
+  body += figure_row(figures) + mixture_table(law);
+  if (law.usable)
+    body += paragraph(fmt::format(
+        "Form: {}. W/V_c is {} about what is fitted (root mean square), the stress ratios of the fines {} about the "
+        "law.",
+        to_string(law.form), format_number(law.excess_deviation, 2), format_number(law.friction_deviation, 2)));
+  return section("cell-law", "Cell law", body);
+}
+
+}  // namespace softgrain::report

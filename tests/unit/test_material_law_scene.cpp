@@ -1,0 +1,124 @@
+// Scenes of kind "material-law": the packings that they make of a material, and what is refused. Parts of gradings.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/packing/grading_parts.h"
+#include "pipelines/kinds/material_law/scene.h"
+
+namespace softgrain {
+namespace {
+
+constexpr double kWhole = 1e9;
+
+std::vector<Grading> all_forms() {
+  return {Grading::power_law(3.5, 1.0, 6.0),
+          Grading::fuller(0.4, 1.0, 6.0),
+          Grading::log_normal(2.5, 1.7, 1.0, 6.0),
+          Grading::classes({{1.0, 2.5, 3.0, 0.3}, {2.0, 6.0, 4.0, 0.5}, {3.0, 3.0, 4.0, 0.2}}),
+          Grading::sieve_curve({1.0, 2.0, 4.0, 6.0}, {0.0, 0.2, 0.7, 1.0}),
+          Grading::list({1.0, 1.5, 2.0, 3.0, 6.0})};
+}
+
+/// Both parts together are the whole again, and neither reaches across the cut.
+TEST(GradingParts, AreExactForEveryForm) {
+  for (const Grading& whole : all_forms()) {
+    const double cut = 2.0;
+    const auto fines = pieces_between(whole, 0.0, cut);
+    const auto coarse = pieces_between(whole, cut, kWhole);
+    const Grading again = mixture_of(coarse, fines, whole.passing(cut));
+    for (const double r : {1.1, 1.5, 1.99, 2.01, 2.6, 3.01, 5.9})
+      EXPECT_NEAR(again.passing(r), whole.passing(r), 1e-12) << to_string(whole.form()) << " " << r;
+    EXPECT_LE(Grading::classes(fines).largest(), cut) << to_string(whole.form());
+    EXPECT_GE(Grading::classes(coarse).smallest(), cut) << to_string(whole.form());
+    const Grading other = mixture_of(coarse, fines, 0.3);
+    EXPECT_NEAR(other.passing(cut), 0.3, 1e-12);
+    EXPECT_NEAR(other.passing(1.5), 0.3 * whole.passing(1.5) / whole.passing(cut), 1e-12);
+  }
+}
+
+TEST(GradingParts, AreEmptyBeyondTheEnds) {
+  for (const Grading& whole : all_forms()) {
+    EXPECT_TRUE(pieces_between(whole, 0.0, 1.0).empty()) << to_string(whole.form());
+    EXPECT_TRUE(pieces_between(whole, 6.01, kWhole).empty()) << to_string(whole.form());
+  }
+  // Grains of just the size of the cut are coarse.
+  EXPECT_EQ(pieces_between(Grading::list({1.0, 2.0}), 0.0, 2.0).size(), 1U);
+  EXPECT_EQ(pieces_between(Grading::list({1.0, 2.0}), 2.0, kWhole).size(), 1U);
+}
+
+MaterialLawScene read_law_scene(const std::string& more, const std::string& grains = "count = 600\nratio = 6") {
+  return read_material_law_scene(Scene::parse(
+      "kind = \"material-law\"\n[grains]\n" + grains + "\n[packing]\npreparation = \"fast\"\n" + more, "s"));
+}
+
+TEST(MaterialLawScene, MakesFinesCoarseGrainsAndMixtures) {
+  const MaterialLawScene scene = read_law_scene("[law]\nmixtures = [0.25, 0.5, 0.75]\nshear_strain = 0.05\n");
+  const auto& variants = scene.material.variants;
+  ASSERT_EQ(variants.size(), 6U);
+  const auto sizes = [&](std::size_t k) { return *variants[k].setup.spec.solid_sizes; };
+  EXPECT_NEAR(sizes(0).smallest(), 0.016 / 6.0, 1e-12);
+  EXPECT_NEAR(sizes(0).largest(), 0.016 / 3.0, 1e-12);
+  EXPECT_EQ(sizes(1), sizes(0));
+  EXPECT_TRUE(variants[1].same_packings);
+  EXPECT_EQ(variants[1].setup.spec.test, MacroTest::shear);
+  EXPECT_EQ(variants[1].setup.spec.strain_end, 0.05);
+  EXPECT_EQ(variants[1].setup.spec.preload, 0.02);
+  EXPECT_NEAR(sizes(2).smallest(), 0.016 / 3.0, 1e-12);
+  EXPECT_NEAR(sizes(2).largest(), 0.016, 1e-12);
+  for (std::size_t k = kFirstMixture; k < variants.size(); ++k) {
+    const MaterialVariant& v = variants[k];
+    EXPECT_EQ(v.setup.spec.test, MacroTest::oedometric);
+    EXPECT_FALSE(v.same_packings);
+    const GrainShares shares = shares_of(scene, v, 1, 0);
+    EXPECT_EQ(shares.coarse + shares.fines, 600);
+    const double share = shares.fines_volume / (shares.fines_volume + shares.coarse_volume);
+    EXPECT_NEAR(share, scene.mixtures[k - kFirstMixture], 0.05) << v.name;
+  }
+  EXPECT_EQ(variants[3].name, "mix-25");
+}
+
+std::string refusal(const std::string& law, const std::string& grains = "count = 600\nratio = 6") {
+  try {
+    (void)read_law_scene(law, grains);
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(MaterialLawScene, RefusesWhatGivesNoLaw) {
+  EXPECT_NE(refusal("[law]\nsplit = 0.1\n").find("no grain is fine: the smallest radius is 0.167 of the largest"),
+            std::string::npos)
+      << refusal("[law]\nsplit = 0.1\n");
+  for (const char* split : {"0.0", "1.0", "-0.3"})
+    EXPECT_NE(refusal(std::string("[law]\nsplit = ") + split).find("above 0 and below 1"), std::string::npos) << split;
+  const std::string none = refusal("[law]\nmixtures = [0.2, 0.5, 0.998]\n");
+  EXPECT_NE(none.find("mix-99.8: none of 600 grains is coarse: more grains"), std::string::npos) << none;
+  EXPECT_NE(refusal("[law]\nmixtures = [0.2, 0.5]\n").find("at least three shares"), std::string::npos);
+  EXPECT_NE(refusal("[law]\nmixtures = [0.2, 0.5, 0.5]\n").find("must ascend"), std::string::npos);
+  EXPECT_NE(refusal("[law]\ncells = 20\n").find("from 40"), std::string::npos);
+  EXPECT_NE(refusal("", "count = 30\nratio = 6").find("too few for a periodic cell"), std::string::npos)
+      << refusal("", "count = 30\nratio = 6");
+  EXPECT_NE(refusal("[[stage]]\nkind = \"hold\"\n").find("stage"), std::string::npos);
+  EXPECT_EQ(
+      refusal("", "count = 600\nsizes = { form = \"fuller\", exponent = 0.5, radius_min = 0.003, radius_max = 0.016 }"),
+      "");
+}
+
+TEST(MaterialLawScene, WarnsOfFewGrains) {
+  Findings findings;
+  check_material_law(Scene::parse("kind = \"material-law\"\n[grains]\ncount = 600\n[law]\nmixtures = [0.2, 0.5, 0.9]\n"
+                                  "[packing]\npreparation = \"fast\"\n",
+                                  "s"),
+                     findings);
+  std::string all;
+  for (const std::string& w : findings.warnings()) all += w + "\n";
+  EXPECT_NE(all.find("mix-90: only "), std::string::npos) << all;
+  EXPECT_NE(all.find("one sample"), std::string::npos) << all;
+  EXPECT_EQ(all.find("mix-20: only "), std::string::npos) << all;
+}
+
+}  // namespace
+}  // namespace softgrain
