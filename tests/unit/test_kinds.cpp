@@ -136,6 +136,36 @@ s:5: preparation = "lammps": "lammps" compacts a box of walls: with boundary = "
 s:7: strain = 0.1: goes without [[stage]], which says the whole test
 s:8: strain: missing; give strain or stress
 s:9: kind = "unload": there is no stage before it whose way it could go)"},
+    {R"(kind = "material"
+[grains]
+ratio = 2
+[[loading]]
+name = "pressed"
+strian = 0.1
+[[loading]]
+name = "pressed"
+test = "shear"
+[[loading.stage]]
+kind = "isotropic"
+strain = 0.01
+[[stage]]
+kind = "isotropic"
+strain = 0.01
+[[variant]]
+name = "a"
+test = "shear"
+loadings = ["presed", "pressed", "pressed"]
+[[variant]]
+name = "b"
+loadings = []
+)",
+     R"(s:6: unknown key 'strian' in [[loading]]; nearest known key is 'strain'
+s:8: name = "pressed": is used twice
+s:9: test = "shear": goes without [[stage]], which says the whole test
+s:13: stage: goes without [[loading]]: give [[loading.stage]], or a loading of its own
+s:18: test = "shear": goes without [[loading]], which says what is tested
+s:19: loadings = [ "presed", "pressed", "pressed" ]: no [[loading]] 'presed'; nearest is 'pressed'
+s:22: loadings = []: at least one is needed)"},
     {R"(kind = "macro"
 seed = -1
 [macro]

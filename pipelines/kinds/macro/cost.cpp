@@ -107,7 +107,7 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
   try {
     const double preparation = core_seconds_of([&] { packing = make_packing(spec, 1, 0); });
     // Passes of a preparation grow like N^0.33: 1,500, 2,600, 4,500, 6,000 of 60, 250, 1,000, 4,000 bodies.
-    if (!setup.given) out.spend("preparation", samples * std::pow(larger, 1.33) * preparation);
+    if (!setup.given && !content.prepared) out.spend("preparation", samples * std::pow(larger, 1.33) * preparation);
     if (spec.cells) out.spend("law runs", samples * larger * try_cells(spec, packing));
     for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction))
       out.spend("law runs", samples * larger * try_law(spec, packing, law, content.solid_fraction));

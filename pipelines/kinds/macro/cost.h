@@ -16,6 +16,7 @@ struct MacroContent {
   double grains_per_soft = 0.0;
   double grain_pass_seconds = 0.0;  ///< of one core, per loop pass and grain; 0: no twin is run
   double solid_fraction = 0.0;      ///< 0: not known
+  bool prepared = false;            ///< samples are those of another scene
 };
 
 /// Runs the scene, or one of the same kind with fewer bodies, by its laws for a moment (without laws by one like the

@@ -19,13 +19,10 @@ bool compresses(const StageRecord& stage) {
 }
 
 std::vector<StateCurve> curves_of_all(const std::vector<EquationInput>& variants) {
-  constexpr std::size_t kLeast = 4;
   std::vector<StateCurve> out;
   for (const EquationInput& v : variants)
-    for (const MacroCurve& c : v.curves) {
-      StateCurve one = state_curve(c, v.name, v.span);
-      if (c.usable && one.phi.size() >= kLeast) out.push_back(std::move(one));
-    }
+    for (const MacroCurve& c : v.curves)
+      if (takes_part(c)) out.push_back(state_curve(c, v.name, v.span));
   return out;
 }
 
@@ -82,6 +79,11 @@ StateCurve state_curve(const MacroCurve& c, const std::string& group, double spa
     out.pressure.push_back(p[k] / c.start.youngs_modulus);
   }
   return out;
+}
+
+bool takes_part(const MacroCurve& c) {
+  constexpr std::size_t kLeast = 4;
+  return c.usable && state_curve(c, "", 1.0).phi.size() >= kLeast;
 }
 
 std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,

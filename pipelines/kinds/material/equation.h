@@ -116,6 +116,9 @@ struct EquationResult {
 std::optional<EquationResult> equation_of(const std::vector<EquationInput>& variants, const EquationSettings& settings,
                                           std::uint64_t seed);
 
+/// Whether a sample is usable and compressed over at least four points.
+bool takes_part(const MacroCurve& curve);
+
 /// The points of one sample that take part.
 StateCurve state_curve(const MacroCurve& curve, const std::string& group, double span);
 

@@ -22,16 +22,18 @@ NamedLaws no_laws() {
   return laws;
 }
 
-std::string file_of(const MaterialScene& scene, const MaterialVariant& v, const std::string& kind) {
-  return scene.variants.size() == 1 && v.name == "material" ? kind + ".h5" : kind + "_" + v.name + ".h5";
+/// A scene without variants has one name, which says nothing.
+std::string file_of(const std::string& name, const std::string& kind) {
+  return name == kMaterialEngine ? kind + ".h5" : kind + "_" + name + ".h5";
 }
 
-VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Run& run,
-                          std::vector<MacroPacking>& packings) {
-  if (!v.same_packings) packings = make_macro_packings(v.setup, run, file_of(scene, v, "material_initial"));
-  VariantResult r{&v, file_of(scene, v, "material"), {}};
+const std::string& packings_name(const MaterialVariant& v) { return v.packings.empty() ? v.name : v.packings; }
+
+VariantResult run_variant(const MaterialVariant& v, const Run& run, std::vector<MacroPacking>& packings) {
+  if (!v.same_packings) packings = make_macro_packings(v.setup, run, file_of(packings_name(v), "material_initial"));
+  VariantResult r{&v, file_of(v.name, "material"), {}};
   r.curves =
-      run_engines({v.setup, packings, {}, run.seed, v.name}, {no_laws()}, run, file_of(scene, v, "states_material"));
+      run_engines({v.setup, packings, {}, run.seed, v.name}, {no_laws()}, run, file_of(v.name, "states_material"));
   for (MacroCurve& c : r.curves) c.law = {};
   save_macro(r.curves, run.path(r.file), run.provenance);
   return r;
@@ -72,7 +74,7 @@ std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& r
   std::vector<VariantResult> results;
   std::vector<MacroPacking> packings;
   run.context.guard([&] {
-    for (const MaterialVariant& v : scene.variants) results.push_back(run_variant(scene, v, run, packings));
+    for (const MaterialVariant& v : scene.variants) results.push_back(run_variant(v, run, packings));
   });
   return results;
 }
@@ -102,20 +104,34 @@ TextTable points_of(const std::vector<VariantResult>& results) {
 
 namespace {
 
-/// Variants of one preparation, friction and form of sizes differ in their span alone.
-std::string family_of(const MacroSpec& spec) {
-  return fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction,
-                     spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent));
+/// Variants of one preparation, friction, form of sizes and loading differ in their span alone.
+std::string family_of(const MaterialVariant& v) {
+  const MacroSpec& spec = v.setup.spec;
+  return fmt::format("{}, mu = {:g}, {}{}", to_string(spec.preparation), spec.friction,
+                     spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent),
+                     v.loading.empty() ? "" : ", " + v.loading);
+}
+
+/// Packings take part once, by the first of their tests that compresses them: what they do in another is no other
+/// sample.
+std::vector<const VariantResult*> first_compressed(const std::vector<VariantResult>& results) {
+  std::vector<const VariantResult*> out;
+  bool found = false;
+  for (const VariantResult& r : results) {
+    found = found && r.variant->same_packings;
+    if (found || std::none_of(r.curves.begin(), r.curves.end(), takes_part)) continue;
+    found = true;
+    out.push_back(&r);
+  }
+  return out;
 }
 
 std::optional<EquationResult> equation(const MaterialScene& scene, const std::vector<VariantResult>& results,
                                        std::uint64_t seed) {
   std::vector<EquationInput> inputs;
-  for (const VariantResult& r : results) {
-    if (r.variant->same_packings) continue;
-    const MacroSpec& spec = r.variant->setup.spec;
-    inputs.push_back({r.variant->name, spec.solid_polydispersity, family_of(spec), r.curves});
-  }
+  for (const VariantResult* r : first_compressed(results))
+    inputs.push_back(
+        {r->variant->name, r->variant->setup.spec.solid_polydispersity, family_of(*r->variant), r->curves});
   return equation_of(inputs, scene.equation, seed);
 }
 
@@ -176,8 +192,9 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
       if (!c.usable || !(c.stress_axial.back() > 0.0))
         s.head.reject(fmt::format("{}, sample {}: {}", r.variant->name, c.sample,
                                   c.note.empty() ? "bears no stress at its end" : c.note));
-    for (const SizesSummary& sizes :
-         summaries_of(drawn_sizes(r.variant->setup, run.seed, scene.variants.size() > 1 ? r.variant->name + ": " : "")))
+    if (r.variant->same_packings) continue;
+    for (const SizesSummary& sizes : summaries_of(drawn_sizes(
+             r.variant->setup, run.seed, scene.variants.size() > 1 ? packings_name(*r.variant) + ": " : "")))
       s.head.sizes.push_back(sizes);
   }
   if (std::optional<EquationResult> found = equation(scene, results, run.seed)) {

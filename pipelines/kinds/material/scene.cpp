@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "common/core/error.h"
@@ -12,6 +13,7 @@
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/stages.h"
+#include "pipelines/kinds/material/results.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/variant_name.h"
 
@@ -94,6 +96,77 @@ void require_material_memory(const SceneTable& grains, const MacroSetup& setup) 
 
 namespace {
 
+/// The tables [[loading]]: tests of every variant. Their keys are read over those of each, once all are found sound.
+class Loadings {
+ public:
+  Loadings(const SceneTable& root, const MacroSpec& base) : tables_(root.tables("loading")) {
+    if (tables_.empty()) return;
+    if (!root.tables("stage").empty())
+      root.mistake("stage", "goes without [[loading]]: give [[loading.stage]], or a loading of its own");
+    for (const SceneTable& t : tables_) {
+      MacroSpec spec = base;
+      t.part([&] { read(t, spec); });
+      names_.push_back(t.text("name", ""));
+      if (std::count(names_.begin(), names_.end(), names_.back()) > 1) t.mistake("name", "is used twice");
+    }
+  }
+
+  [[nodiscard]] bool empty() const { return tables_.empty(); }
+
+  /// Their numbers.
+  [[nodiscard]] std::vector<std::size_t> all() const {
+    std::vector<std::size_t> numbers(tables_.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+  }
+
+  /// Those that a variant is tested under.
+  [[nodiscard]] std::vector<std::size_t> of_variant(const SceneTable& t) const {
+    if (!empty()) {
+      for (const char* key : {"test", "strain", "preload", "preload_steps", "stage"})
+        if (t.has(key)) t.mistake(key, "goes without [[loading]], which says what is tested");
+    }
+    if (!t.has("loadings")) return all();
+    std::vector<std::size_t> some;
+    for (const std::string& name : t.texts("loadings")) {
+      const auto found = std::find(names_.begin(), names_.end(), name);
+      const auto number = static_cast<std::size_t>(found - names_.begin());
+      const std::string near = nearest_word(name, names_);
+      if (found == names_.end())
+        t.mistake("loadings",
+                  fmt::format("no [[loading]] '{}'{}", name, near.empty() ? "" : "; nearest is '" + near + "'"));
+      else if (std::count(some.begin(), some.end(), number) > 0)
+        t.mistake("loadings", fmt::format("'{}' is there twice", name));
+      else
+        some.push_back(number);
+    }
+    if (some.empty()) t.mistake("loadings", "at least one is needed");
+    return some;
+  }
+
+  /// One variant for each, all with the same packings. `plain`: the scene has no variants, names are those of loadings.
+  [[nodiscard]] std::vector<MaterialVariant> apply(const MaterialVariant& v, const std::vector<std::size_t>& numbers,
+                                                   bool plain) const {
+    std::vector<MaterialVariant> out;
+    for (const std::size_t k : numbers) {
+      MaterialVariant one{plain ? names_[k] : v.name + "-" + names_[k], v.setup, !out.empty(), v.name, names_[k]};
+      read(tables_[k], one.setup.spec);
+      out.push_back(std::move(one));
+    }
+    return out;
+  }
+
+ private:
+  static void read(const SceneTable& t, MacroSpec& spec) {
+    (void)read_variant_name(t);
+    read_test(t, spec);
+    read_stages(t, t, spec);
+  }
+
+  std::vector<SceneTable> tables_;
+  std::vector<std::string> names_;
+};
+
 /// Keys of all tables of the scene, in one.
 MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool sound) {
   MaterialVariant v{read_variant_name(t), base};
@@ -107,6 +180,18 @@ MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool s
   v.setup.samples = t.count("samples", 1, 10000, v.setup.samples);
   if (sound && t.sound()) require_material_memory(t, v.setup);
   return v;
+}
+
+/// "a-b" under "c" and "a" under "b-c" would be one file; material_initial.h5 is that of the packings.
+void require_names_apart(const SceneTable& root, const std::vector<MaterialVariant>& variants) {
+  std::set<std::string> names;
+  for (const MaterialVariant& v : variants) {
+    const char* const what = v.loading.empty() ? "variant" : "loading";
+    if (!v.loading.empty() && !names.insert(v.name).second)
+      root.mistake(what, fmt::format("'{}' would be the name of two results", v.name));
+    if (v.name == "initial" || v.name.starts_with("initial_"))
+      root.mistake(what, fmt::format("'{}': files of packings begin with \"initial\": give another name", v.name));
+  }
 }
 
 }  // namespace
@@ -125,15 +210,25 @@ MaterialScene read_material_scene(const Scene& scene) {
     base.samples = root.count("samples", 1, 10000, base.samples);
     base.kept_states = read_kept_states(root);
     out.equation = read_equation(root.table_or_empty("equation"));
+    const Loadings loadings(root, base.spec);
     std::set<std::string> names;
     const bool sound = root.sound();
-    for (const SceneTable& t : root.tables("variant")) {
-      out.variants.push_back(read_variant(t, base, sound));
-      if (!names.insert(out.variants.back().name).second) t.mistake("name", "is used twice");
+    const auto add = [&](const MaterialVariant& v, const std::vector<std::size_t>& under, bool plain) {
+      if (loadings.empty()) return out.variants.push_back(v);
+      if (!root.sound()) return;  // nothing comes of it
+      for (MaterialVariant& one : loadings.apply(v, under, plain)) out.variants.push_back(std::move(one));
+    };
+    const std::vector<SceneTable> variants = root.tables("variant");
+    for (const SceneTable& t : variants) {
+      const MaterialVariant v = read_variant(t, base, sound);
+      if (!names.insert(v.name).second) t.mistake("name", "is used twice");
+      add(v, loadings.of_variant(t), false);
     }
-    if (!out.variants.empty()) return out;
-    if (root.sound()) require_material_memory(grains, base);
-    out.variants.push_back({"material", base});
+    if (variants.empty()) {
+      if (root.sound()) require_material_memory(grains, base);
+      add({kMaterialEngine, base}, loadings.all(), true);
+    }
+    require_names_apart(root, out.variants);
     return out;
   });
 }
@@ -143,18 +238,18 @@ void check_variants(const MaterialScene& material, Findings& out) {
   for (const MaterialVariant& v : material.variants) {
     const nlohmann::json common = std::exchange(out.facts, nlohmann::json{{"name", v.name}});
     if (material.variants.size() > 1) out.lines += "  variant " + v.name + ":\n";
-    require_room_for_images(drawn_bodies(v.setup.spec, material.seed, 0));
-    add_sizes(out, drawn_sizes(v.setup, material.seed));
-    check_macro(v.setup, {}, nullptr, out);
+    if (!v.same_packings) require_room_for_images(drawn_bodies(v.setup.spec, material.seed, 0));
+    if (!v.same_packings) add_sizes(out, drawn_sizes(v.setup, material.seed));
+    check_macro(v.setup, {.prepared = v.same_packings}, nullptr, out);
     constexpr double kCoarse = 100.0;  // above a third of the largest radius
     double coarse = 0.0;
     for (const MacroBody& b : drawn_bodies(v.setup.spec, material.seed, 0))
       coarse += b.r > v.setup.spec.solid_radius_max / 3.0 ? 1.0 : 0.0;
-    if (coarse < kCoarse)
+    if (coarse < kCoarse && !v.same_packings)
       out.warn(
           fmt::format("{}: {:.0f} grains above a third of the largest radius are few: stresses of samples will "
                       "scatter by more than 5 %",
-                      v.name, coarse));
+                      v.packings.empty() ? v.name : v.packings, coarse));
     variants.push_back(std::exchange(out.facts, common));
   }
   out.facts["variants"] = variants;

@@ -15,13 +15,15 @@ struct MaterialVariant {
   std::string name;            ///< in files and tables
   MacroSetup setup;            ///< without soft particles, periodic
   bool same_packings = false;  ///< as the variant before it, whose samples it tests in another way
+  std::string packings{};      ///< what they are called; empty: as the variant
+  std::string loading{};       ///< the name of its [[loading]], if any
 };
 
 struct MaterialScene {
   std::string title;
   std::uint64_t seed = 1;
   EquationSettings equation;
-  std::vector<MaterialVariant> variants;  ///< one per [[variant]]; without any, the scene itself
+  std::vector<MaterialVariant> variants;  ///< one per [[variant]] (without any, the scene itself) and [[loading]]
 };
 
 /// What the tables of a material mean where they say nothing.

@@ -1,0 +1,100 @@
+// Scenes of kind "material": which variant is tested under which loading.
+#include <gtest/gtest.h>
+
+#include "common/core/error.h"
+#include "pipelines/kinds/material/scene.h"
+
+namespace softgrain {
+namespace {
+
+const std::string kLoadedMaterial = R"(kind = "material"
+[grains]
+count = 50
+[test]
+strain = 0.08
+steps = 5
+tolerance = 0.02
+[[loading]]
+name = "pressed"
+[[loading]]
+name = "sheared"
+test = "shear"
+strain = 0.06
+[[loading]]
+name = "staged"
+tolerance = 0.01
+[[loading.stage]]
+kind = "isotropic"
+strain = 0.01
+)";
+
+MaterialScene loaded_material(const std::string& more) {
+  return read_material_scene(Scene::parse(kLoadedMaterial + more, "s"));
+}
+
+std::string complaint_of_loadings(const std::string& more) {
+  try {
+    (void)loaded_material(more);
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(MaterialScene, EveryVariantIsTestedUnderEveryLoadingOfItsPackings) {
+  const MaterialScene scene = loaded_material(R"([[variant]]
+name = "a"
+[[variant]]
+name = "b"
+mu = 0.5
+steps = 7
+loadings = ["staged", "pressed"]
+)");
+  struct Expected {
+    const char* name;
+    const char* packings;
+    bool same;
+    MacroTest test;
+    std::int64_t steps;
+    double friction;
+  };
+  const Expected expected[] = {{"a-pressed", "a", false, MacroTest::oedometric, 5, 0.3},
+                               {"a-sheared", "a", true, MacroTest::shear, 5, 0.3},
+                               {"a-staged", "a", true, MacroTest::stages, 5, 0.3},
+                               {"b-staged", "b", false, MacroTest::stages, 7, 0.5},
+                               {"b-pressed", "b", true, MacroTest::oedometric, 7, 0.5}};
+  ASSERT_EQ(scene.variants.size(), std::size(expected));
+  for (std::size_t k = 0; k < std::size(expected); ++k) {
+    const MaterialVariant& v = scene.variants[k];
+    EXPECT_EQ(v.name, expected[k].name);
+    EXPECT_EQ(v.packings, expected[k].packings) << v.name;
+    EXPECT_EQ(v.same_packings, expected[k].same) << v.name;
+    EXPECT_EQ(v.setup.spec.test, expected[k].test) << v.name;
+    EXPECT_EQ(v.setup.spec.steps, expected[k].steps) << v.name;
+    EXPECT_EQ(v.setup.spec.friction, expected[k].friction) << v.name;
+  }
+  EXPECT_EQ(scene.variants[1].setup.spec.strain_end, 0.06);
+  EXPECT_EQ(scene.variants[0].setup.spec.strain_end, 0.08);
+  EXPECT_EQ(scene.variants[2].setup.spec.stages.front().tolerance, 0.01);
+  EXPECT_EQ(scene.variants[3].setup.spec.stages.front().steps, 7);
+  EXPECT_EQ(scene.variants[4].setup.spec.tolerance, 0.02);
+}
+
+TEST(MaterialScene, WithoutVariantsResultsAreCalledAsTheirLoadings) {
+  const MaterialScene scene = loaded_material("");
+  ASSERT_EQ(scene.variants.size(), 3U);
+  EXPECT_EQ(scene.variants[0].name, "pressed");
+  EXPECT_EQ(scene.variants[2].name, "staged");
+  EXPECT_EQ(scene.variants[2].packings, "material");
+}
+
+TEST(MaterialScene, NoTwoResultsShareAFile) {
+  EXPECT_NE(complaint_of_loadings(
+                "[[loading]]\nname = \"x-pressed\"\n[[variant]]\nname = \"a\"\n[[variant]]\nname = \"a-x\"\n")
+                .find("'a-x-pressed' would be the name of two results"),
+            std::string::npos);
+  EXPECT_NE(complaint_of_loadings("[[loading]]\nname = \"initial\"\n").find("give another name"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrain
