@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes a committed results folder of a run: collect_run.py RUN_DIR RESULTS_DIR FIGURE... Standard library only.
 
-Copies law_table.toml (with its .h5, from which intervals follow) and table.csv where the run has them and the named figures of its report, and writes README.md: the
+Copies law_table.toml (with its .h5, from which intervals follow), cell_law.toml and table.csv where the run has them and the named figures of its report, and writes README.md: the
 hand-written notes (RESULTS_DIR/notes.md) after a heading with command, version and seed, then the tables of the run.
 """
 import json
@@ -95,14 +95,16 @@ def main():
         summary = json.load(file)
     if os.path.exists(os.path.join(run, "table.csv")):
         shutil.copy(os.path.join(run, "table.csv"), out)
-    if os.path.exists(os.path.join(run, "law_table.toml")):
-        with open(os.path.join(run, "law_table.toml"), encoding="utf-8") as file:
+    for name in ("law_table.toml", "cell_law.toml"):
+        if not os.path.exists(os.path.join(run, name)):
+            continue
+        with open(os.path.join(run, name), encoding="utf-8") as file:
             card = file.read()
         raw = summary.get("provenance", {}).get("command", "")
-        with open(os.path.join(out, "law_table.toml"), "w", encoding="utf-8") as file:
+        with open(os.path.join(out, name), "w", encoding="utf-8") as file:
             file.write(card.replace(raw, plain(raw)) if raw else card)
-        if os.path.exists(os.path.join(run, "law_table.h5")):
-            shutil.copy(os.path.join(run, "law_table.h5"), out)
+    if os.path.exists(os.path.join(run, "law_table.h5")):
+        shutil.copy(os.path.join(run, "law_table.h5"), out)
     for name in figures:
         with open(os.path.join(run, "figures", name + ".svg"), encoding="utf-8") as file:
             drawing = file.read()

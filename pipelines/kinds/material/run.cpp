@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/error.h"
 #include "common/io/text_file.h"
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/stage.h"
@@ -74,7 +75,13 @@ std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& r
   std::vector<VariantResult> results;
   std::vector<MacroPacking> packings;
   run.context.guard([&] {
-    for (const MaterialVariant& v : scene.variants) results.push_back(run_variant(v, run, packings));
+    for (const MaterialVariant& v : scene.variants) {
+      try {
+        results.push_back(run_variant(v, run, packings));
+      } catch (const NotUsable& e) {
+        throw NotUsable(scene.variants.size() > 1 ? v.name + ": " + e.what() : e.what());
+      }
+    }
   });
   return results;
 }

@@ -144,10 +144,13 @@ std::string interval(const StateEstimate& e, int digits = 4) {
 
 /// p/E over x, every sample with the onset of its variant, and the curve that all share.
 std::string collapse_figure(const std::vector<Variant>& variants, const EquationSummary& s) {
-  if (s.form != StateForm::porosity) return "";
+  const bool porosity = s.form == StateForm::porosity;
+  const auto loss = [&](double phi, double onset) {
+    return porosity ? (phi - onset) / (1.0 - onset) : 1.0 - (1.0 - phi) / phi * onset / (1.0 - onset);
+  };
   Plot plot({.id = "material-collapse",
              .title = "Equation of state",
-             .x = {.label = "x = (φ − φ_J)/(1 − φ_J)", .scale = Scale::logarithmic},
+             .x = {.label = porosity ? "x = (φ − φ_J)/(1 − φ_J)" : "x = 1 − Vp/Vp_J", .scale = Scale::logarithmic},
              .y = {.label = "p/E", .scale = Scale::logarithmic}});
   std::vector<Variant> fitted;
   double largest = 0.0;
@@ -160,7 +163,7 @@ std::string collapse_figure(const std::vector<Variant>& variants, const Equation
           MacroCurve reduced;
           reduced.sample = c.sample;
           for (std::size_t k = 0; k < part.phi.size(); ++k) {
-            reduced.strain.push_back((part.phi[k] - o.onset.value) / (1.0 - o.onset.value));
+            reduced.strain.push_back(loss(part.phi[k], o.onset.value));
             reduced.stress_axial.push_back(part.pressure[k]);
             largest = std::max(largest, reduced.strain.back());
           }
