@@ -18,6 +18,8 @@ namespace {
 
 /// Fewer coarse or fine grains than this in a mixture: its onset scatters.
 constexpr std::int64_t kFewGrains = 30;
+/// So many have room, and some of both kinds: they are not drawn before the run.
+constexpr std::int64_t kManyGrains = 1000000;
 constexpr std::size_t kLeastMixtures = 3;
 /// Fewer sites are their own neighbours.
 constexpr std::int64_t kLeastCells = 40;
@@ -86,6 +88,7 @@ void make_variants(const SceneTable& law, const MacroSetup& base, double shear_s
 /// Mixtures need grains of both kinds, and all packings more than a few grains.
 void require_grains(const SceneTable& law, const MaterialLawScene& scene) {
   for (const MaterialVariant& v : scene.material.variants) {
+    if (v.setup.spec.bodies > kManyGrains) continue;
     require_room_for_images(drawn_bodies(v.setup.spec, scene.material.seed, 0));
     if (&v - scene.material.variants.data() < static_cast<std::ptrdiff_t>(kFirstMixture)) continue;
     const GrainShares shares = shares_of(scene, v, scene.material.seed, 0);
