@@ -74,7 +74,7 @@ std::string share_name(Bearers bearers, double split) { return fmt::format("{} {
 void record_grains(const MacroSystem& macro, const MacroSpec& spec, MacroCurve& curve) {
   const Contacts contacts = contact_records(macro.system);
   curve.more[kSolidFraction].push_back(solid_fraction(macro));
-  curve.more[kRattlers].push_back(rattling_share(macro, contacts, spec.friction > 0.0 ? 2 : 4));
+  curve.more[kRattlers].push_back(rattling_share(macro, contacts, contacts_that_hold(spec)));
   for (const double split : spec.splits) {
     const auto share = shares(macro, contacts, split * macro.largest_radius);
     for (const Bearers b : {Bearers::coarse_coarse, Bearers::coarse_fine, Bearers::fine_fine})

@@ -19,10 +19,13 @@ inline constexpr const char* kSolidFraction = "solid_fraction";
 inline constexpr const char* kRattlers = "rattlers";
 std::string share_name(Bearers bearers, double split);
 
+/// Contacts that a grain needs, to grains that do not rattle, so that it does not: four, with friction two.
+inline int contacts_that_hold(const MacroSpec& spec) { return spec.friction > 0.0 ? 2 : 4; }
+
 /// Appends a point to curve.more: the solid fraction (full volume of every grain, overlaps twice, over that of the
 /// cell), the share of the grains that rattle, and of the mean stress the shares that contacts between coarse and fine
-/// grains carry (their virials over that of all; walls count with neither). A grain rattles with fewer than four
-/// contacts to grains that do not, with friction fewer than two.
+/// grains carry (their virials over that of all; walls count with neither). A grain rattles with fewer than
+/// contacts_that_hold().
 void record_grains(const MacroSystem& macro, const MacroSpec& spec, MacroCurve& curve);
 
 }  // namespace softgrain

@@ -93,6 +93,7 @@ RULES = [
     (r"\./softgrain setup --with-lammps|\./softgrain macrosim scene\.toml --law law\.toml --engine lammps .*"
      r"|mpirun -np 512 softgrain-lammps -in scene\.in( -var from 12)?|cmake --build build/release --target softgrain-lammps",
      Elsewhere("default suite: the tests MacroLammps, with softgrain-lammps WithLammps")),
+    (r"\./softgrain run pipelines/material\.toml --engine lammps .*", Elsewhere("default suite: the tests MaterialLammps")),
     (r"\./softgrain microsim pipelines/glass_beads_small\.toml",
      Run()),
 ]

@@ -8,11 +8,13 @@
 #include <type_traits>
 
 #include "atom.h"
+#include "comm.h"
 #include "common/core/limits.h"
 #include "error.h"
 #include "force.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
 #include "macrosim/lammps/pair_softgrain.h"
+#include "macrosim/lammps/words.h"
 #include "update.h"
 
 namespace LAMMPS_NS {
@@ -54,12 +56,17 @@ bool is_mine(const bridge::Bodies& b, int i, int j) {
 
 ComputeSoftgrainContacts::ComputeSoftgrainContacts(LAMMPS* engine, int count, char** words)
     : Compute(engine, count, words) {
-  if (count != 3) error->all(FLERR, std::string("compute softgrain/contacts takes no arguments"));
+  if (count == 4 || (count > 4 && std::string(words[3]) != "grains"))
+    error->all(FLERR, std::string("compute softgrain/contacts: all it takes is grains LEAST RADIUS ..."));
+  if (count > 4) least_ = static_cast<int>(bridge::number(words[4], "least contacts", error));
+  for (int k = 5; k < count; ++k) coarse_.push_back(bridge::number(words[k], "radius", error));
+  grain_values_.assign(least_ > 0 ? 1 + 3 * coarse_.size() : 0, 0.0);
+  comm_forward = 1;
   vector_flag = local_flag = 1;
-  size_vector = kValues;
+  size_vector = kValues + static_cast<int>(grain_values_.size());
   size_local_cols = kColumns;
   extvector = 0;
-  vector = new double[kValues]();
+  vector = new double[static_cast<std::size_t>(size_vector)]();
 }
 
 ComputeSoftgrainContacts::~ComputeSoftgrainContacts() { delete[] vector; }
@@ -112,14 +119,18 @@ void ComputeSoftgrainContacts::look_at(const bridge::ContactStore& store, const 
           const auto [i, j] = pair;
           const bool mine = kPlanes || is_mine(b, i, j);
           note_use(law, source.template state<Law::traits>(pair, c, g), i, kPlanes ? atom->nlocal : j, mine);
+          const bool grains = least_ > 0;
+          if (!mine && !grains) return;
+          const ContactResponse<3> r = response_of(source, law, c, pair, g);
+          const bool bears = r.elastic_force != 0.0 || r.normal_force != 0.0;
+          const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
+          const Vec<3> branch = kPlanes ? g.normal * dot(g.branch, g.normal) : g.branch;
+          if (grains && bears) note_grains(i, kPlanes ? -1 : j, dot(push, branch), mine);
           if (!mine) return;
           const double smaller = kPlanes ? b.r(i) : std::min(b.r(i), surface.radius_j(j));
           values_[kOverlap] = softgrain::larger_or_nan(values_[kOverlap], g.overlap / smaller);
           if (kPlanes && g.overlap > b.r(i)) values_[kBehind] += 1.0;
-          const ContactResponse<3> r = response_of(source, law, c, pair, g);
-          if (r.elastic_force == 0.0 && r.normal_force == 0.0) return;
-          const Vec<3> push = g.normal * r.normal_force + r.tangential_force;
-          const Vec<3> branch = kPlanes ? g.normal * dot(g.branch, g.normal) : g.branch;
+          if (!bears) return;
           values_[kContacts] += 1.0;
           values_[kForces] += std::abs(r.normal_force);
           if (kPlanes) {
@@ -139,6 +150,49 @@ void ComputeSoftgrainContacts::look_at(const bridge::ContactStore& store, const 
   });
 }
 
+void ComputeSoftgrainContacts::note_grains(int i, int j, double virial, bool mine) {
+  holds_.push_back({i, j});
+  if (j < 0 || !mine) return;
+  for (std::size_t k = 0; k < coarse_.size(); ++k) {
+    const std::size_t fine = (atom->radius[i] < coarse_[k] ? 1U : 0U) + (atom->radius[j] < coarse_[k] ? 1U : 0U);
+    grain_values_[1 + 3 * k + fine] += virial;
+  }
+}
+
+/// Bodies that too few hold go, until all that are left hold each other. In any order the same are left.
+void ComputeSoftgrainContacts::count_rattlers() {
+  const int own = atom->nlocal;
+  loose_.assign(static_cast<std::size_t>(own + atom->nghost), 0.0);
+  grain_values_[0] = 0.0;
+  std::vector<int> held;
+  const auto is_loose = [&](int i) { return i >= 0 && loose_[static_cast<std::size_t>(i)] > 0.0; };
+  for (int more = 1; more > 0;) {
+    held.assign(static_cast<std::size_t>(own), 0);
+    for (const Hold& h : holds_) {
+      if (!is_loose(h.j)) ++held[static_cast<std::size_t>(h.i)];
+      if (h.j >= 0 && h.j < own && !is_loose(h.i)) ++held[static_cast<std::size_t>(h.j)];
+    }
+    int found = 0;
+    for (int i = 0; i < own; ++i)
+      if (!is_loose(i) && held[static_cast<std::size_t>(i)] < least_) {
+        loose_[static_cast<std::size_t>(i)] = 1.0;
+        ++found;
+      }
+    grain_values_[0] += found;
+    MPI_Allreduce(&found, &more, 1, MPI_INT, MPI_MAX, world);
+    if (more > 0) comm->forward_comm_compute(this);
+  }
+}
+
+int ComputeSoftgrainContacts::pack_forward_comm(int n, int* list, double* buf, int, int*) {
+  for (int k = 0; k < n; ++k) buf[k] = loose_[static_cast<std::size_t>(list[k])];
+  return n;
+}
+
+void ComputeSoftgrainContacts::unpack_forward_comm(int n, int first, double* buf) {
+  for (int k = 0; k < n; ++k) loose_[static_cast<std::size_t>(first + k)] = buf[k];
+}
+
 void ComputeSoftgrainContacts::look() {
   if (looked_ == update->ntimestep) return;
   looked_ = update->ntimestep;
@@ -146,6 +200,8 @@ void ComputeSoftgrainContacts::look() {
   pairs_ = 0.0;
   use_ = {};
   rows_.clear();
+  holds_.clear();
+  std::fill(grain_values_.begin(), grain_values_.end(), 0.0);
   form_.assign(static_cast<std::size_t>(atom->nlocal), nullptr);
   const bridge::Bodies b = pair_->bodies();
   look_at(pair_->store, pair_->laws, bridge::AtomSurface{b}, 0);
@@ -175,6 +231,10 @@ void ComputeSoftgrainContacts::compute_vector() {
   double pairs = 0.0;
   MPI_Allreduce(&pairs_, &pairs, 1, MPI_DOUBLE, MPI_SUM, world);
   vector[kFabric] = pairs > 0.0 ? vector[kFabric] / pairs : 0.0;
+  if (least_ == 0) return;
+  count_rattlers();
+  MPI_Allreduce(grain_values_.data(), vector + kValues, static_cast<int>(grain_values_.size()), MPI_DOUBLE, MPI_SUM,
+                world);
 }
 
 void ComputeSoftgrainContacts::compute_local() {

@@ -2,8 +2,11 @@
 #include "macrosim/lammps/fix_softgrain_history.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "macrosim/lammps/contact_loop.h"
 #include "macrosim/lammps/fix_softgrain_wall.h"
@@ -59,6 +62,40 @@ int FixSoftgrainHistory::setmask() { return FixConst::PRE_EXCHANGE | FixConst::P
 
 void FixSoftgrainHistory::init() {
   if (pair == nullptr) error->all(FLERR, std::string("fix softgrain/history is made by pair style softgrain alone"));
+}
+
+void FixSoftgrainHistory::remember(int tag, int partner, const softgrain::Vec<3>& spring) {
+  const int i = atom->map(tag);
+  if (i >= 0 && i < atom->nlocal) memory_[static_cast<std::size_t>(i)].push_back({partner, spring, 0.0});
+}
+
+/// The first rank reads, in blocks; every rank keeps what its atoms need.
+void FixSoftgrainHistory::read_springs(const std::string& file) {
+  constexpr int kBlock = 20000;
+  constexpr int kRow = 5;
+  std::ifstream in;
+  double count = -1.0;
+  if (comm->me == 0) {
+    in.open(file);
+    std::string word;
+    if (!(in >> count >> word) || word != "springs" || count != std::floor(count)) count = -1.0;
+  }
+  MPI_Bcast(&count, 1, MPI_DOUBLE, 0, world);
+  if (count < 0.0) error->all(FLERR, "springs of contacts: '" + file + "' cannot be read");
+  std::vector<double> rows;
+  for (double done = 0.0; done < count; done += kBlock) {
+    const int now = static_cast<int>(std::min<double>(kBlock, count - done));
+    rows.assign(static_cast<std::size_t>(kRow * now), 0.0);
+    if (comm->me == 0)
+      for (double& x : rows)
+        if (!(in >> x)) error->one(FLERR, "springs of contacts: '" + file + "' ends too soon");
+    MPI_Bcast(rows.data(), kRow * now, MPI_DOUBLE, 0, world);
+    for (const double* r = rows.data(); r != rows.data() + rows.size(); r += kRow) {
+      const softgrain::Vec<3> spring{{r[2], r[3], r[4]}};
+      remember(static_cast<int>(r[0]), static_cast<int>(r[1]), spring);
+      remember(static_cast<int>(r[1]), static_cast<int>(r[0]), -spring);
+    }
+  }
 }
 
 /// From the list to the atoms.

@@ -2,6 +2,7 @@
 // files. The pair style makes it; scripts do not. Each atom holds its own copy, of springs seen from its side.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <string>
 #include <vector>
 
 #include "fix.h"
@@ -37,9 +38,13 @@ class FixSoftgrainHistory : public Fix {
   int maxsize_restart() override;
   double memory_usage() override;
 
+  /// Springs that contacts begin with: "N springs", then a row per contact: both tags, the spring as the first sees it.
+  void read_springs(const std::string& file);
+
   PairSoftgrain* pair = nullptr;
 
  private:
+  void remember(int tag, int partner, const softgrain::Vec<3>& spring);
   void store();
   void store_once();
   [[nodiscard]] int largest() const;

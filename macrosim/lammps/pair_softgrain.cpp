@@ -105,6 +105,10 @@ void PairSoftgrain::settings(int count, char** words) {
     error->all(FLERR,
                std::string("pair_style softgrain: name the soft types: pair_style softgrain soft TYPES ...|none"));
   soft_.assign(static_cast<std::size_t>(atom->ntypes) + 1, 0);
+  if (count > 3 && std::string(words[count - 2]) == "springs") {
+    springs_file_ = words[count - 1];
+    count -= 2;
+  }
   if (count == 2 && std::string(words[1]) == "none") return;
   for (int k = 1; k < count; ++k) {
     const auto [low, high] = bridge::type_range(words[k], atom->ntypes, error);
@@ -162,6 +166,7 @@ void PairSoftgrain::init_style() {
         dynamic_cast<FixSoftgrainHistory*>(modify->add_fix(std::string(kHistoryFix) + " all softgrain/history", 0));
     if (history_ == nullptr) error->all(FLERR, std::string("pair style softgrain: its history could not be made"));
     history_->pair = this;
+    if (!springs_file_.empty()) history_->read_springs(springs_file_);
   }
   walls.clear();
   for (int k = 0; k < modify->nfix; ++k)

@@ -1,6 +1,6 @@
 // Pair style softgrain: every contact law of the program between spheres, soft or solid.
 //
-//   pair_style softgrain soft TYPES ...|none
+//   pair_style softgrain soft TYPES ...|none [springs FILE]
 //   pair_coeff I J FILE NAME
 //   pair_coeff I J card FILE KIND modulus E friction MU [kt initial|secant] [damping Z] [beyond POLICY]
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
@@ -85,6 +85,7 @@ class PairSoftgrain : public Pair {
   }
 
   FixSoftgrainHistory* history_ = nullptr;
+  std::string springs_file_;               ///< contacts begin with these; of a restart file: empty
   std::vector<char> soft_;                 ///< per type
   std::vector<int> law_index_;             ///< per pair of types, in both orders
   std::vector<double> radius_max_;         ///< per type, over all ranks [m]

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/io/provenance.h"
+#include "macrosim/lammps_run/data_file.h"
 #include "macrosim/lammps_run/script_parts.h"
 #include "macrosim/preparation.h"
 #include "macrosim/test_protocol.h"
@@ -116,7 +117,13 @@ std::string laws(const ScriptScene& s) {
   std::string text = section(fmt::format("Laws: {} holds their numbers", kLawsFile));
   text += comment(fmt::format("types {} are solid, {} soft; classes halve the radius", solid.empty() ? "none" : solid,
                               soft.empty() ? "none" : soft));
-  text += fmt::format("pair_style   softgrain soft {}\n", soft.empty() ? "none" : soft);
+  const std::string style = fmt::format("pair_style   softgrain soft {}", soft.empty() ? "none" : soft);
+  text += has_springs(s.spec, s.packing)
+              ? fmt::format(
+                    "# contacts begin with what they bore when the preparation ended\n"
+                    "if \"${{from}} < 0\" then &\n  \"{0} springs {1}\" &\nelse &\n  \"{0}\"\n",
+                    style, kSpringsFile)
+              : style + "\n";
   if (!solid.empty()) text += fmt::format("pair_coeff   {} {} {} solid-solid\n", solid, solid, kLawsFile);
   if (!solid.empty() && !soft.empty())
     text += fmt::format("pair_coeff   {} {} {} soft-solid\n", soft, solid, kLawsFile);
@@ -127,7 +134,7 @@ std::string laws(const ScriptScene& s) {
     if (!soft.empty()) text += fmt::format(" law {} {} soft-wall", soft, kLawsFile);
     text += "\n";
   }
-  text += watching();
+  text += watching(s);
   text += "fix          relax all softgrain/relax tolerance ${tolerance} floor ${floor} max_passes ${max_passes}";
   if (s.spec.test == MacroTest::stages)
     text += fmt::format(" &\n  least_stress {} farthest {}", least_stress(s.spec), kFarthestStrain);

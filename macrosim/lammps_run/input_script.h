@@ -12,6 +12,7 @@ namespace softgrain::lammps {
 inline constexpr const char* kScriptFile = "scene.in";
 inline constexpr const char* kDataFile = "bodies.data";
 inline constexpr const char* kLawsFile = "laws.toml";
+inline constexpr const char* kSpringsFile = "springs.txt";  ///< of a preparation with friction
 inline constexpr const char* kPointsFile = "points.txt";
 inline constexpr const char* kPointsCopy = "points.copy";
 inline constexpr const char* kCompactionFile = "compaction.txt";

@@ -34,7 +34,7 @@ std::vector<std::string> lines_of(const std::string& path) {
   return std::filesystem::exists(path) ? whole_lines(read_text(path)) : std::vector<std::string>{};
 }
 
-PointRow parse(const std::string& line, const std::string& where) {
+PointRow parse(const std::string& line, const std::string& where, std::size_t more) {
   PointRow row;
   std::istringstream words(line);
   std::string word;
@@ -44,11 +44,14 @@ PointRow parse(const std::string& line, const std::string& where) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
     if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(x))
       throw FileTrouble(where + ": '" + word + "' is no finite number");
-    if (k < row.values.size()) row.values[k] = x;
+    if (k < row.values.size())
+      row.values[k] = x;
+    else
+      row.more.push_back(x);
     ++k;
   }
-  if (k != row.values.size())
-    throw FileTrouble(fmt::format("{}: {} numbers, {} expected", where, k, row.values.size()));
+  if (k != row.values.size() + more)
+    throw FileTrouble(fmt::format("{}: {} numbers, {} expected", where, k, row.values.size() + more));
   return row;
 }
 
@@ -63,7 +66,8 @@ void take(const PointRow& row, const std::string& where, std::vector<PointRow>& 
 
 }  // namespace
 
-std::vector<PointRow> read_points(const std::string& directory, const std::string& key) {
+std::vector<PointRow> read_points(const std::string& directory, const std::string& key,
+                                  const std::vector<std::string>& more) {
   const std::string path = directory + "/" + kPointsFile;
   const auto lines = lines_of(path);
   const auto copy = lines_of(directory + "/" + kPointsCopy);
@@ -79,18 +83,21 @@ std::vector<PointRow> read_points(const std::string& directory, const std::strin
     const std::string where = fmt::format("{}, line {}", path, k + 1);
     if (lines[k] != copy[k])
       throw FileTrouble(fmt::format("{}: differs from its copy {}: one of them is damaged", where, kPointsCopy));
-    if (!lines[k].starts_with('#')) take(parse(lines[k], where), where, rows);
+    if (!lines[k].starts_with('#')) take(parse(lines[k], where, more.size()), where, rows);
   }
   return rows;
 }
 
-void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows) {
+void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows,
+                  const std::vector<std::string>& more) {
   std::string text = head_line(key) + "\n#";
   for (const PointColumn& c : kPointColumns) text += std::string(" ") + c.name;
+  for (const std::string& name : more) text += " " + name;
   text += "\n";
   for (const PointRow& row : rows) {
     text += fmt::format("{}", row.values[0]);
     for (std::size_t k = 1; k < row.values.size(); ++k) text += fmt::format(" {}", row.values[k]);
+    for (const double x : row.more) text += fmt::format(" {}", x);
     text += "\n";
   }
   write_text_atomic(directory + "/" + kPointsCopy, text);

@@ -12,6 +12,7 @@ namespace softgrain::lammps {
 /// One recorded point.
 struct PointRow {
   std::array<double, static_cast<std::size_t>(Point::count)> values{};
+  std::vector<double> more{};  ///< of columns that the scene asks for beside
 
   [[nodiscard]] double operator[](Point p) const { return values[static_cast<std::size_t>(p)]; }
 };
@@ -20,10 +21,13 @@ struct PointRow {
 /// of them alone or cut short was being written when the run ended, and is left out. A row that comes again replaces
 /// the earlier one and those after it: a run that went on from there. Nothing without tables. Throws FileTrouble when
 /// the tables differ or hold what the script does not write, BadInput when they belong to another scene (`key`).
-std::vector<PointRow> read_points(const std::string& directory, const std::string& key);
+/// `more`: names of the columns after those that every test has.
+std::vector<PointRow> read_points(const std::string& directory, const std::string& key,
+                                  const std::vector<std::string>& more = {});
 
 /// Both tables with these rows and no others, for a run that goes on after the last of them.
-void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows);
+void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows,
+                  const std::vector<std::string>& more = {});
 
 /// Rows so far, for progress: lines that begin with a number, nothing tested.
 std::int64_t count_points(const std::string& directory);

@@ -36,8 +36,8 @@ std::vector<std::string> last_round(const std::string& directory) {
 }  // namespace
 
 ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
-                              const std::vector<MacroStage>& stages) {
-  auto rows = read_points(directory, key);
+                              const std::vector<MacroStage>& stages, const std::vector<std::string>& more) {
+  auto rows = read_points(directory, key, more);
   const auto there = [&](const std::string& file) { return fs::exists(directory + "/" + file); };
   const bool early = !rows.empty() && ended_early(rows.back());
   if (early || static_cast<std::int64_t>(rows.size()) >= points) {
@@ -47,7 +47,7 @@ ResumePoint find_resume_point(const std::string& directory, const std::string& k
   while (!rows.empty() && !there(fmt::format("restart.{}", rows.size() - 1))) rows.pop_back();
   fs::remove(directory + "/" + kEndFile);
   if (rows.empty()) return {false, last_round(directory)};
-  write_points(directory, key, rows);
+  write_points(directory, key, rows, more);
   ResumePoint out{false, {"-var", "from", std::to_string(rows.size() - 1)}};
   if (stages.empty()) return out;
   const auto begins = begin_settings(stages, rows);

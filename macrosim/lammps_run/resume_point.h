@@ -14,9 +14,9 @@ struct ResumePoint {
 };
 
 /// From the tables and restart files in the directory of a sample. Brings points.txt to the point that the run goes on
-/// after. `stages` of a test that has them: the script is told at which stresses they began. Throws what read_points()
-/// throws.
+/// after. `stages` of a test that has them: the script is told at which stresses they began; `more` as read_points()
+/// has it, which throws.
 ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
-                              const std::vector<MacroStage>& stages = {});
+                              const std::vector<MacroStage>& stages = {}, const std::vector<std::string>& more = {});
 
 }  // namespace softgrain::lammps

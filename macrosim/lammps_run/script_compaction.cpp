@@ -8,12 +8,19 @@ namespace softgrain::lammps {
 namespace {
 
 /// Every law is that of hard grains without friction.
-std::string hard_laws() {
-  return fmt::format(
+std::string hard_laws(bool periodic) {
+  const std::string pairs = fmt::format(
       "pair_style   softgrain soft none\n"
-      "pair_coeff   * * {0} hard\n"
-      "fix          walls all softgrain/wall box law * {0} hard\n",
+      "pair_coeff   * * {} hard\n",
       kLawsFile);
+  return periodic ? pairs : pairs + fmt::format("fix          walls all softgrain/wall box law * {} hard\n", kLawsFile);
+}
+
+/// The mean stress on the box: of its walls, or of the contacts in a periodic cell.
+std::string box_pressure(bool periodic) {
+  if (periodic) return "variable walls equal \"(c_contacts[5]+c_contacts[6]+c_contacts[7])/(3*lx*ly*lz)\"\n";
+  return "variable walls equal \"((f_walls[1]+f_walls[2])*lx + (f_walls[3]+f_walls[4])*ly &\n"
+         "  + (f_walls[5]+f_walls[6])*lz)/(6*lx*ly*lz)\"\n";
 }
 
 /// A row says which round it was, what step comes next, and how far the box and its walls are. Its restart file is
@@ -63,7 +70,7 @@ std::string one_round(const CompactionProtocol& p) {
 }
 
 /// Bodies touch: they are written down, and what served the compaction goes.
-std::string touching() {
+std::string touching(bool periodic) {
   return fmt::format(
       "label touching\n"
       "dump bodies all custom 1 {} id type radius x y z\n"
@@ -74,9 +81,9 @@ std::string touching() {
       "shell mv restart.new restart.prepared\n"
       "unfix clock\n"
       "uncompute contacts\n"
-      "unfix walls\n"
+      "{}"
       "label prepared\n",
-      kPreparedFile);
+      kPreparedFile, periodic ? "" : "unfix walls\n");
 }
 
 }  // namespace
@@ -85,14 +92,12 @@ std::string compaction(const ScriptScene& s) {
   const CompactionProtocol p = compaction_protocol(s.spec, s.packing.size(), s.packing.bodies.size());
   std::string text = section("Preparation: bodies placed loosely are brought into touch");
   text +=
-      "# hard and without friction; the box shrinks until its walls bear the pressure, a step\n"
+      "# hard and without friction; the box shrinks until it bears the pressure, a step\n"
       "# that overshoots is taken back and halved\n"
       "if \"${from} >= 0 || ${prepared} > 0\" then \"jump SELF prepared\"\n";
-  text += hard_laws() + watching() + "run 0 post no\n";
-  text +=
-      "variable step equal ${first_step}\n"
-      "variable walls equal \"((f_walls[1]+f_walls[2])*lx + (f_walls[3]+f_walls[4])*ly &\n"
-      "  + (f_walls[5]+f_walls[6])*lz)/(6*lx*ly*lz)\"\n";
+  const bool periodic = s.spec.boundary == Boundary::periodic;
+  text += hard_laws(periodic) + watching(s) + "run 0 post no\n";
+  text += "variable step equal ${first_step}\n" + box_pressure(periodic);
   text += fmt::format(
       "if \"${{round_done}} == 0\" then &\n"
       "  'print \"# round next_step lx pressure passes end\" file {} screen no'\n"
@@ -102,7 +107,7 @@ std::string compaction(const ScriptScene& s) {
   text += fmt::format("if \"${{step}} < {}\" then \"jump SELF loose\"\n", p.smallest_step);
   text += "next round\njump SELF round\nlabel loose\n";
   text += fmt::format("print \"ERROR: {}\"\nquit 1\n", kNotJammed);
-  return text + touching();
+  return text + touching(periodic);
 }
 
 }  // namespace softgrain::lammps

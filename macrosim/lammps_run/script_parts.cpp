@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "macrosim/lammps_run/grain_columns.h"
 #include "macrosim/lammps_run/points_columns.h"
 #include "macrosim/test_protocol.h"
 
@@ -12,11 +13,11 @@ namespace {
 constexpr std::size_t kRowWidth = 90;
 
 /// All columns of a row as one print command, over several lines.
-std::string row_command(bool periodic) {
+std::string row_command(const MacroSpec& spec) {
+  const bool periodic = spec.boundary == Boundary::periodic;
   std::string text = "print \"${point}";
   std::size_t width = text.size();
-  for (std::size_t k = 1; k < kPointColumns.size(); ++k) {
-    const std::string expression = kPointColumns[k].expression;
+  const auto add = [&](const std::string& expression) {
     const bool none = periodic && expression.starts_with("f_walls");
     const std::string cell = none ? " 0" : fmt::format(" $({}:%.17g)", expression);
     if (width + cell.size() > kRowWidth) {
@@ -25,7 +26,9 @@ std::string row_command(bool periodic) {
     }
     text += cell;
     width += cell.size();
-  }
+  };
+  for (std::size_t k = 1; k < kPointColumns.size(); ++k) add(kPointColumns[k].expression);
+  for (const GrainColumn& c : grain_columns(spec)) add(c.expression);
   return text + " &\n  \" append ${file} screen no\n";
 }
 
@@ -52,16 +55,18 @@ std::string dumps(const std::string& point, const std::string& before, const std
 }
 
 /// Names of the columns as a comment of points.txt, over several lines of the script.
-std::string column_names() {
+std::string column_names(const MacroSpec& spec) {
   std::string text;
   std::string line = "#";
-  for (const PointColumn& c : kPointColumns) {
-    if (line.size() + std::string(c.name).size() > kRowWidth) {
+  const auto add = [&](const std::string& name) {
+    if (line.size() + name.size() > kRowWidth) {
       text += line + " &\n";
       line = " ";
     }
-    line += std::string(" ") + c.name;
-  }
+    line += " " + name;
+  };
+  for (const PointColumn& c : kPointColumns) add(c.name);
+  for (const std::string& name : grain_names(spec)) add(name);
   return text + line;
 }
 
@@ -90,7 +95,8 @@ std::string heads(const ScriptScene& s) {
                                                         "  'print \"{}, scene {}\" file ${{file}} screen no' &\n"
                                                         "  'print \"{}\" append ${{file}} screen no'\n"
                                                         "next file\njump SELF head\n",
-                                                        kPointsFile, kPointsCopy, kPointsHead, s.key, column_names());
+                                                        kPointsFile, kPointsCopy, kPointsHead, s.key,
+                                                        column_names(s.spec));
 }
 
 std::string section(const std::string& title) {
@@ -103,8 +109,9 @@ std::string setting(const std::string& name, const std::string& value, const std
   return fmt::format("variable {:<13} index {:<22} # {}\n", name, value, meaning);
 }
 
-std::string watching() {
-  return "compute      contacts all softgrain/contacts\n"
+std::string watching(const ScriptScene& s) {
+  return "compute      contacts all softgrain/contacts" + grain_words(s.spec, s.packing) +
+         "\n"
          "thermo_style custom step atoms c_contacts[1] c_contacts[3] c_contacts[11]\n"
          "thermo_modify lost error\n"
          "thermo       1000\n"
@@ -198,7 +205,7 @@ std::string recording(const ScriptScene& s) {
          "if \"${kept} > 0\" then \"undump bodies\" \"undump contacts\"\n"
          "# twice: a table that is cut short or damaged differs from its copy\n"
          "variable file index " +
-         kPointsFile + " " + kPointsCopy + "\nlabel row\n" + row_command(s.spec.boundary == Boundary::periodic) +
+         kPointsFile + " " + kPointsCopy + "\nlabel row\n" + row_command(s.spec) +
          "next file\njump SELF row\n"
          "# a law that is asked beyond its range and does not allow it, or a body behind a wall,\n"
          "# ends the test\n"

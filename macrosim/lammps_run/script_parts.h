@@ -16,7 +16,7 @@ std::string section(const std::string& title);
 std::string setting(const std::string& name, const std::string& value, const std::string& meaning);
 
 /// Sums over contacts, kept up to date by thermo output, and the clock.
-std::string watching();
+std::string watching(const ScriptScene& scene);
 
 /// Bodies that were placed loosely are brought into touch (macrosim/preparation.h); settings of it.
 std::string compaction_settings(const ScriptScene& scene);

@@ -136,8 +136,10 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--modulus", o.modulus, "CSV: Young's modulus E of its grains, e.g. \"0.5 MPa\"")
         ->option_text("PRESSURE");
   }
-  if (command.function == command_macrosim) {
-    app.add_option("--engine", o.engine, "What runs the scene with the law: softgrain (default) or lammps")
+  if (command.function == command_run || command.function == command_macrosim) {
+    app.add_option("--engine", o.engine,
+                   command.function == command_run ? "What runs a material: softgrain (default) or lammps"
+                                                   : "What runs the scene with the law: softgrain (default) or lammps")
         ->option_text("NAME");
     app.add_option("--ranks", o.ranks, "With --engine lammps: MPI ranks; default 1")
         ->option_text("N")

@@ -1,4 +1,6 @@
 // softgrain run, microsim, macrosim: one scene; its `kind` says which.
+#include <fmt/format.h>
+
 #include "common/core/error.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
@@ -7,11 +9,26 @@ namespace softgrain {
 
 namespace {
 
+/// "material" (softgrain run) and ...
+std::string kinds_with_engine() {
+  std::string text;
+  for (const SceneKind& kind : scene_kinds())
+    if (kind.takes_engine)
+      text += fmt::format("{}\"{}\" (softgrain {})", text.empty() ? "" : " and ", kind.name, kind.command);
+  return text;
+}
+
 ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
   if (options.inputs.size() != 1)
     throw BadInput(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
   const Scene scene = Scene::load(options.inputs.front(), options.overrides);
-  return kind_of(scene, command).run(scene, options);
+  const SceneKind& kind = kind_of(scene, command);
+  if (!kind.takes_engine && (!options.engine.empty() || options.ranks > 0 || options.write_only))
+    throw BadInput(
+        fmt::format("{}: scenes of kind \"{}\" run in our own engine alone: --engine, --ranks and --write-only "
+                    "go with {}",
+                    command, kind.name, kinds_with_engine()));
+  return kind.run(scene, options);
 }
 
 }  // namespace

@@ -54,12 +54,21 @@ bool is_input(const fs::path& file, const std::vector<std::string>& inputs) {
   });
 }
 
+/// Whether the curves of a directory of LAMMPS, lammps-K or lammps-NAME-K, are there.
+bool was_read(const fs::path& lammps) {
+  const std::string name = lammps.filename();
+  const std::size_t begin = name.find('-') + 1;
+  const std::size_t end = name.rfind('-');
+  const std::string scene = end < begin ? "" : "_" + name.substr(begin, end - begin);
+  const auto there = [&](const std::string& file) { return fs::exists(lammps.parent_path() / file); };
+  return there("material" + scene + ".h5") || (scene.empty() && there("macro.h5"));
+}
+
 /// Points that were recorded elsewhere, say, may have cost much: they are not thrown away unless their results are
 /// there.
-void refuse_to_lose_points(const std::string& directory, const std::vector<fs::path>& found) {
-  if (fs::exists(fs::path(directory) / "macro.h5")) return;
+void refuse_to_lose_points(const std::vector<fs::path>& found) {
   for (const fs::path& old : found)
-    if (old.filename().string().starts_with("lammps-"))
+    if (old.filename().string().starts_with("lammps-") && !was_read(old))
       if (const auto points = lammps::count_points(old); points > 0)
         throw BadInput(
             fmt::format("{} holds {} recorded points that were not read: --resume goes on with them; to begin "
@@ -100,7 +109,7 @@ void remove_earlier_run(const std::string& directory, const std::string& command
   if (!lost.empty() && (reads_from_here || command == "compare"))
     throw BadInput(directory + ": holds results of an earlier run that do not belong to this one (" + listed(lost) +
                    ")" + elsewhere);
-  refuse_to_lose_points(directory, found);
+  refuse_to_lose_points(found);
   for (const fs::path& file : found) {
     fs::remove_all(file, error);
     if (error) throw FileTrouble(file.string() + ": of an earlier run, cannot be removed: " + error.message());

@@ -21,7 +21,8 @@ struct SceneKind {
   /// Throws BadInput.
   void (*read)(const Scene& scene) = nullptr;
   KindResults results{};
-  bool takes_law = false;  ///< whether --law goes with it
+  bool takes_law = false;     ///< whether --law goes with it
+  bool takes_engine = false;  ///< whether --engine and what belongs to it do
 };
 
 }  // namespace softgrain

@@ -87,7 +87,10 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
   expect(macro("run", "--engine lammps --write-only --set macro.preparation=lammps --set macro.construction=voids"), 2,
          {"preparation", "mixed"});
   expect(macro("run", "--set macro.preparation=lamps"), 2, {"lammps"});
-  expect(run_the_program("run '" + file("scene.toml") + "' --engine lammps"), 2, {"--engine"});
+  expect(run_the_program("run '" + file("scene.toml") + "' --engine lammps"), 2, {"softgrain macrosim, not with run"});
+  write_text_atomic(file("pipeline.toml"), kTinyPipeline);
+  expect(run_the_program("run '" + file("pipeline.toml") + "' --engine lammps --out '" + file("run") + "'"), 2,
+         {"\"pipeline\" run in our own engine alone", "\"material\" (softgrain run)"});
   ::setenv("SOFTGRAIN_LAMMPS", "/nowhere/softgrain-lammps", 1);
   expect(macro("run", "--engine lammps"), 2, {"SOFTGRAIN_LAMMPS", "no program there"});
   EXPECT_FALSE(fs::exists(file("run") + "/log.txt"));
@@ -96,7 +99,7 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
 TEST_F(MacroLammps, ACommandThatRunsNoLammpsRefusesItsPreparation) {
   write_text_atomic(file("pipeline.toml"), std::string(kTinyPipeline) + "preparation = \"lammps\"\n");
   expect(run_the_program("run '" + file("pipeline.toml") + "' --out '" + file("run") + "'"), 2,
-         {"preparation", "macrosim --engine lammps"});
+         {"preparation", "softgrain macrosim", "--engine lammps"});
 }
 
 TEST_F(MacroLammps, WriteOnlyNeedsNoLammpsAndWritesTheSameTwice) {
@@ -338,9 +341,13 @@ TEST_F(Staged, AStressThatCannotBeReachedEndsTheTest) {
   }
 }
 
-TEST_F(Staged, LammpsCompactsNoPeriodicCell) {
-  scene("periodic", kStages, "preparation = \"lammps\"\n");
-  expect(macro("run", "--engine lammps"), 2, {"compacts a box of walls"});
+TEST_F(Staged, LammpsCompactsPeriodicCells) {
+  scene("periodic", "");
+  expect(macro("own", ""), 0, {});
+  expect(macro("prep", "--engine lammps --set macro.preparation=lammps"), 0, {});
+  EXPECT_NEAR(curve("prep").solid_fraction, curve("own").solid_fraction, 0.03);
+  EXPECT_GT(curve("prep").stress_axial.back() / curve("own").stress_axial.back(), 0.8);
+  EXPECT_LT(curve("prep").stress_axial.back() / curve("own").stress_axial.back(), 1.5 * 1.2);
 }
 
 /// What stands in a run that was stopped is what a run without stop has.

@@ -132,7 +132,6 @@ strain = 0.1
 kind = "unload"
 )",
      R"(s:3: count = 3: must be a whole number from 8 to 100000000
-s:5: preparation = "lammps": "lammps" compacts a box of walls: with boundary = "periodic" known are frictionless, fast, slow, dense
 s:7: strain = 0.1: goes without [[stage]], which says the whole test
 s:8: strain: missing; give strain or stress
 s:9: kind = "unload": there is no stage before it whose way it could go)"},

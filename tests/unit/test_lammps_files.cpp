@@ -166,6 +166,38 @@ TEST(LammpsFiles, StagesOfScriptsSayTheirStrainsAndStresses) {
   EXPECT_EQ(text.find("f_walls"), std::string::npos);
 }
 
+/// What the scene of a material asks for beside: springs of the preparation, columns of grains.
+TEST(LammpsFiles, ScriptsOfMaterialsBeginWithSpringsAndRecordGrains) {
+  MacroSpec spec = staged_spec();
+  spec.splits = {0.5, 0.25};
+  MacroPacking packing = small_packing();
+  packing.springs = {{0, 1, {{1e-6, 1.0 / 3.0, -2e-7}}}, {1, 3, {{1.0, 1.0, 1.0}}}};
+  const auto script = [&] { return lammps::script_text({spec, packing, lammps::body_types(packing), "", "key", 0}); };
+  for (const char* words : {"contacts all softgrain/contacts grains 2 0.008 0.004\n",
+                            "if \"${from} < 0\" then &\n  \"pair_style   softgrain soft 3 springs springs.txt\"",
+                            "$(c_contacts[18]:%.17g)", "$(c_contacts[24]:%.17g)", "rattlers", "fine-fine_0.25"})
+    EXPECT_NE(script().find(words), std::string::npos) << words << " not in\n" << script();
+  EXPECT_EQ(script().find("c_contacts[25]"), std::string::npos);
+  const test::TemporaryDirectory directory;
+  lammps::write_springs_file(directory.file("springs.txt"), packing);
+  EXPECT_EQ(read_text(directory.file("springs.txt")), "1 springs\n1 2 1e-06 0.3333333333333333 -2e-07\n")
+      << "those of soft bodies are forgotten";
+  spec.friction = 0.0;
+  EXPECT_EQ(script().find("springs.txt"), std::string::npos);
+  EXPECT_NE(script().find("softgrain/contacts grains 4 "), std::string::npos);
+  spec.splits.clear();
+  EXPECT_NE(script().find("softgrain/contacts\n"), std::string::npos);
+}
+
+TEST(LammpsFiles, PeriodicCellsAreCompactedUntilTheirContactsBear) {
+  MacroSpec spec = spec_of(MacroTest::oedometric, 0.0, Preparation::lammps);
+  spec.boundary = Boundary::periodic;
+  const std::string text = script_of(spec);
+  EXPECT_NE(text.find("(c_contacts[5]+c_contacts[6]+c_contacts[7])/(3*lx*ly*lz)"), std::string::npos);
+  EXPECT_EQ(text.find("walls all"), std::string::npos);
+  EXPECT_EQ(text.find("f_walls"), std::string::npos);
+}
+
 class Tables : public ::testing::Test {
  protected:
   [[nodiscard]] std::string points() const { return directory_.file(lammps::kPointsFile); }
@@ -188,6 +220,18 @@ TEST_F(Tables, ReadBackWhatWasWritten) {
   EXPECT_EQ(rows[2].values, point_row(2.0, 0.2).values);
   EXPECT_EQ(lammps::count_points(directory_.path()), 3);
   EXPECT_THROW((void)lammps::read_points(directory_.path(), "another"), BadInput);
+}
+
+TEST_F(Tables, ColumnsOfTheSceneComeAfterThoseOfEveryTest) {
+  const std::vector<std::string> names{"rattlers", "coarse-coarse_0.5"};
+  PointRow row = point_row(0.0, 0.0);
+  row.more = {3.0, 1.0 / 3.0};
+  lammps::write_points(directory_.path(), "key", {row}, names);
+  const auto rows = lammps::read_points(directory_.path(), "key", names);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].more, row.more);
+  EXPECT_EQ(rows[0].values, row.values);
+  EXPECT_THROW((void)read(), FileTrouble);
 }
 
 /// Cut at any place, a table gives the rows before or is refused; it never gives others.

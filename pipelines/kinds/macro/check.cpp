@@ -209,9 +209,8 @@ void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& ou
   constexpr double kRankBytes = 800.0;
   if (setup.spec.preparation != Preparation::lammps) return;
   const double files = count.all * kFileBytes * static_cast<double>(setup.samples);
-  out.add(
-      "engine", "lammps",
-      "runs with `softgrain macrosim --engine lammps` alone: bodies are placed here, LAMMPS compacts and strains them");
+  out.add("engine", "lammps",
+          "runs with --engine lammps alone: bodies are placed here, LAMMPS compacts and strains them");
   out.add("lammps_file_bytes", files, fmt::format("bodies for LAMMPS: about {:.3g} MB of text", files / 1e6));
   out.add("lammps_bytes", count.all * kRankBytes,
           fmt::format("memory in LAMMPS: about {:.3g} MB over all ranks when bodies are loose, more when they touch",

@@ -14,6 +14,7 @@
 #include "macrosim/compression.h"
 #include "macrosim/curve_notes.h"
 #include "macrosim/lammps_run/data_file.h"
+#include "macrosim/lammps_run/grain_columns.h"
 #include "macrosim/lammps_run/input_script.h"
 #include "macrosim/lammps_run/lammps_curve.h"
 #include "macrosim/lammps_run/lammps_log.h"
@@ -29,12 +30,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Materials of make_law_system().
-std::vector<LawFileEntry> laws_of(const MacroSpec& spec, const SoftLaws& soft) {
+std::vector<LawFileEntry> laws_of(const MacroSpec& spec, const SoftLaws& soft, bool any_soft) {
   const MacroSystem empty = make_law_system(spec, {}, soft, 1.0);
   const LawSet& laws = empty.system.laws;
   const auto law = [&](std::int32_t a, std::int32_t b) { return laws.law(laws.index(a, b)); };
-  return {{"solid-solid", law(0, 0)}, {"solid-wall", law(0, 2)}, {"soft-solid", law(1, 0)},
-          {"soft-soft", law(1, 1)},   {"soft-wall", law(1, 2)},  {"hard", hard_law(spec)}};
+  std::vector<LawFileEntry> out{{"solid-solid", law(0, 0)}, {"solid-wall", law(0, 2)}, {"hard", hard_law(spec)}};
+  if (!any_soft) return out;
+  out.insert(out.end() - 1, {{"soft-solid", law(1, 0)}, {"soft-soft", law(1, 1)}, {"soft-wall", law(1, 2)}});
+  return out;
 }
 
 std::string key_of(const LammpsRuns& runs, std::int64_t sample) {
@@ -51,11 +54,14 @@ void write_sample(const LammpsRuns& runs, const MacroPacking& packing, std::int6
   const MacroSpec& spec = runs.setup.spec;
   if (missing(lammps::kLawsFile))
     write_text_atomic(where + "/" + lammps::kLawsFile,
-                      "# " + identity_text(runs.law.identity) + "\n" + laws_text(laws_of(spec, runs.law.laws)));
+                      (runs.law.identity.form ? "# " + identity_text(runs.law.identity) + "\n" : "") +
+                          laws_text(laws_of(spec, runs.law.laws, packing.soft_count() > 0)));
   if (missing(lammps::kDataFile))
     lammps::write_data_file(where + "/" + lammps::kDataFile,
                             fmt::format("softgrain: {} bodies, sample {}", packing.bodies.size(), sample), packing,
                             types, spec.density, runs.inner_solid_fraction);
+  if (missing(lammps::kSpringsFile) && lammps::has_springs(spec, packing))
+    lammps::write_springs_file(where + "/" + lammps::kSpringsFile, packing);
   if (missing(lammps::kScriptFile))
     write_text_atomic(
         where + "/" + lammps::kScriptFile,
@@ -69,11 +75,12 @@ class Sample {
       : runs_(runs),
         packing_(packing),
         number_(number),
-        where_(lammps_directory(context, number)),
+        where_(lammps_directory(context, number, runs.folder)),
         key_(key_of(runs, number)) {}
 
   void run(const LammpsEngine& engine, const std::function<void(double)>& progress) {
-    lammps::ResumePoint from = lammps::find_resume_point(where_, key_, recorded_points(spec()), spec().stages);
+    lammps::ResumePoint from =
+        lammps::find_resume_point(where_, key_, recorded_points(spec()), spec().stages, lammps::grain_names(spec()));
     if (from.done) return;
     const std::string log = where_ + "/" + lammps::kLogFile;
     const std::uintmax_t before = fs::exists(log) ? fs::file_size(log) : 0;
@@ -90,11 +97,12 @@ class Sample {
 
   [[nodiscard]] RunOutcome outcome() {
     if (spec().preparation == Preparation::lammps) take_over_preparation();
-    const auto rows = lammps::read_points(where_, key_);
+    const auto rows = read_rows();
     MacroSystem macro = make_law_system(spec(), packing_, runs_.law.laws, runs_.inner_solid_fraction);
     RunOutcome out{begin_curve(spec(), packing_, macro, runs_.law.name, number_), {}};
     out.curve.law = runs_.law.identity;
     lammps::add_points(rows, spec(), out.curve);
+    for (const lammps::PointRow& row : rows) lammps::add_grains(row, spec(), packing_, out.curve);
     if (note_diverged(rows, out.curve)) return out;
     if (rows.empty() ||
         (!lammps::ended_early(rows.back()) && static_cast<std::int64_t>(rows.size()) < recorded_points(spec())))
@@ -115,9 +123,13 @@ class Sample {
  private:
   [[nodiscard]] const MacroSpec& spec() const { return runs_.setup.spec; }
 
+  [[nodiscard]] std::vector<lammps::PointRow> read_rows() const {
+    return lammps::read_points(where_, key_, lammps::grain_names(spec()));
+  }
+
   /// Trouble of the scene is not usable, as with our own engine; any other is trouble while running.
   [[noreturn]] void fail(const ChildEnd& end, const lammps::LogTail& log) const {
-    const auto rows = lammps::read_points(where_, key_);
+    const auto rows = read_rows();
     const double strain = rows.empty() ? strain_at(spec(), 0) : rows.back()[lammps::Point::strain];
     const std::string run = fmt::format("macro run '{}'", runs_.law.name);
     if (log.says(lammps::kNotJammed)) throw NotUsable(not_jammed_text(spec()));
@@ -162,7 +174,7 @@ class Sample {
     up_to_here.sample = number_;
     const auto point = static_cast<std::size_t>(row[lammps::Point::number]);
     up_to_here.strain = {curve.strain[point]};
-    Snapshot s = named_state(macro, packing_, up_to_here, "macro");
+    Snapshot s = named_state(macro, packing_, up_to_here, runs_.name);
     s.frame = static_cast<std::int64_t>(point);
     s.contacts = lammps::snapshot_contacts_of(contacts, macro);
     return s;
@@ -206,14 +218,47 @@ class Sample {
 
 }  // namespace
 
-std::string lammps_directory(const RunContext& context, std::int64_t sample) {
-  return context.path(fmt::format("lammps-{}", sample));
+std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
+  const auto engine = options.engine.empty() ? MacroEngine::softgrain : from_word<MacroEngine>(options.engine);
+  if (!engine) {
+    const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
+    throw BadInput("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
+                   "known are softgrain and lammps");
+  }
+  if (engine == MacroEngine::softgrain) {
+    if (options.ranks > 0) throw BadInput("--ranks goes with --engine lammps");
+    if (options.write_only) throw BadInput("--write-only goes with --engine lammps");
+    return std::nullopt;
+  }
+  if (options.write_only && options.ranks > 0)
+    throw BadInput("--ranks goes with a run: with --write-only LAMMPS is not started");
+  LammpsEngine lammps{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
+  if (lammps.write_only) return lammps;
+  lammps.program = lammps::find_program();
+  if (lammps.program.empty()) throw BadInput(lammps::missing_text());
+  (void)lammps::command_words(lammps.program, lammps.ranks, {});  // mpirun must be there
+  return lammps;
+}
+
+std::string lammps_directory(const RunContext& context, std::int64_t sample, const std::string& folder) {
+  return context.path(fmt::format("{}-{}", folder, sample));
+}
+
+std::string lammps_identity(const Provenance& provenance, const std::string& more) {
+  return fmt::format("{}\n# seed {}\n{}", provenance.scene, provenance.seed, more);
+}
+
+std::string written_text(const std::string& directories) {
+  return fmt::format(
+      "written: {}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup --with-lammps "
+      "builds); then the same command here with --resume and without --write-only",
+      directories, lammps::kProgramName);
 }
 
 void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>& packings, const RunContext& context) {
   for (std::size_t k = 0; k < packings.size(); ++k) {
     const auto sample = static_cast<std::int64_t>(k);
-    const std::string where = lammps_directory(context, sample);
+    const std::string where = lammps_directory(context, sample, runs.folder);
     std::error_code error;
     fs::create_directories(where, error);
     if (error) throw FileTrouble(where + ": cannot be created: " + error.message());
@@ -224,7 +269,7 @@ void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>&
 std::vector<RunOutcome> run_with_lammps(const LammpsRuns& runs, const LammpsEngine& engine,
                                         std::vector<MacroPacking>& packings, const RunContext& context) {
   std::vector<RunOutcome> outcomes;
-  Progress progress("macro with LAMMPS", static_cast<double>(packings.size()), context.quiet());
+  Progress progress(runs.name + " with LAMMPS", static_cast<double>(packings.size()), context.quiet());
   for (std::size_t k = 0; k < packings.size(); ++k) {
     Sample sample(runs, packings[k], static_cast<std::int64_t>(k), context);
     sample.run(engine, [&](double share) { progress.set(static_cast<double>(k) + share); });
@@ -233,12 +278,15 @@ std::vector<RunOutcome> run_with_lammps(const LammpsRuns& runs, const LammpsEngi
   return outcomes;
 }
 
-std::string lammps_release(const RunContext& context) {
-  std::ifstream log(lammps_directory(context, 0) + "/" + lammps::kLogFile);
-  std::string line;
-  while (std::getline(log, line))
-    if (line.starts_with("LAMMPS (")) return line.substr(8, line.rfind(')') - 8);
-  return "";
+EngineUse engine_use(const LammpsEngine& engine, const std::string& directory) {
+  EngineUse use{MacroEngine::lammps, engine.ranks, engine.program, ""};
+  std::ifstream log(directory + "/" + lammps::kLogFile);
+  for (std::string line; std::getline(log, line);)
+    if (line.starts_with("LAMMPS (")) {
+      use.release = line.substr(8, line.rfind(')') - 8);
+      break;
+    }
+  return use;
 }
 
 }  // namespace softgrain

@@ -1,10 +1,12 @@
-// Law runs of a macro scene by LAMMPS: what it needs is written to the run directory, run there, and read back.
+// Law runs of a macro scene, and runs of resolved grains, by LAMMPS: what it needs is written to the run directory, run
+// there, and read back.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/results/summary.h"
 
 namespace softgrain {
 
@@ -15,17 +17,28 @@ struct LammpsEngine {
   std::string program;  ///< softgrain-lammps; empty when only files are written
 };
 
+/// --engine, --ranks and --write-only; nothing for our own engine. Throws BadInput.
+std::optional<LammpsEngine> read_engine(const CommonOptions& options);
+
 /// What all samples share.
 struct LammpsRuns {
   const MacroSetup& setup;
   const NamedLaws& law;
   double inner_solid_fraction = 1.0;
-  std::string title;     ///< for people
-  std::string identity;  ///< scene, seed and law: tables of another one are refused
+  std::string title;              ///< for people
+  std::string identity;           ///< scene, seed and law: tables of another one are refused
+  std::string name = "macro";     ///< as MacroRuns::name
+  std::string folder = "lammps";  ///< of samples: its number follows
 };
 
-/// DIR/lammps-K of sample K.
-std::string lammps_directory(const RunContext& context, std::int64_t sample);
+/// DIR/FOLDER-K of sample K.
+std::string lammps_directory(const RunContext& context, std::int64_t sample, const std::string& folder = "lammps");
+
+/// The scene of a run, its seed, and what else determines it: LammpsRuns::identity.
+std::string lammps_identity(const Provenance& provenance, const std::string& more);
+
+/// What remains to be done with what was written.
+std::string written_text(const std::string& directories);
 
 /// The bodies, laws and script of every sample, to lammps_directory(). What an earlier part of the same run left there
 /// is kept. Throws FileTrouble.
@@ -37,7 +50,7 @@ void write_lammps_files(const LammpsRuns& runs, const std::vector<MacroPacking>&
 std::vector<RunOutcome> run_with_lammps(const LammpsRuns& runs, const LammpsEngine& engine,
                                         std::vector<MacroPacking>& packings, const RunContext& context);
 
-/// The release of LAMMPS, as the log of the first sample names it; empty when it does not.
-std::string lammps_release(const RunContext& context);
+/// Who ran it, for the summary; with the release of LAMMPS that the log of the first sample in `directory` names.
+EngineUse engine_use(const LammpsEngine& engine, const std::string& directory);
 
 }  // namespace softgrain

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "macrosim/lammps_run/lammps_program.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/results.h"
@@ -53,29 +52,6 @@ std::string people_text(const LawIdentity& law, const std::vector<MacroCurve>& c
   return text;
 }
 
-/// Nothing for our own engine. Throws BadInput.
-std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
-  const auto engine = options.engine.empty() ? MacroEngine::softgrain : from_word<MacroEngine>(options.engine);
-  if (!engine) {
-    const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
-    throw BadInput("--engine " + options.engine + ": " + (near.empty() ? "" : "nearest is '" + near + "'; ") +
-                   "known are softgrain and lammps");
-  }
-  if (engine == MacroEngine::softgrain) {
-    if (options.ranks > 0) throw BadInput("--ranks goes with --engine lammps");
-    if (options.write_only) throw BadInput("--write-only goes with --engine lammps");
-    return std::nullopt;
-  }
-  if (options.write_only && options.ranks > 0)
-    throw BadInput("--ranks goes with a run: with --write-only LAMMPS is not started");
-  LammpsEngine lammps{std::max<std::int64_t>(options.ranks, 1), options.write_only, ""};
-  if (lammps.write_only) return lammps;
-  lammps.program = lammps::find_program();
-  if (lammps.program.empty()) throw BadInput("macrosim: " + lammps::missing_text());
-  (void)lammps::command_words(lammps.program, lammps.ranks, {});  // mpirun must be there
-  return lammps;
-}
-
 NamedLaws law_of(const MacroScene& scene, const std::vector<ShellPacking>& contents) {
   return scene_law(scene.law, scene.setup.spec, contents.empty() ? 0.0 : mean_solid_fraction(contents), "law");
 }
@@ -109,8 +85,7 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
 
 LammpsRuns lammps_runs(const MacroScene& scene, const NamedLaws& law, const std::vector<ShellPacking>& contents,
                        const Provenance& provenance) {
-  return {scene.setup, law, mean_solid_fraction(contents), scene.title,
-          fmt::format("{}\n# seed {}\n{}", provenance.scene, provenance.seed, scene.law.text)};
+  return {scene.setup, law, mean_solid_fraction(contents), scene.title, lammps_identity(provenance, scene.law.text)};
 }
 
 constexpr const char* kInitialFile = "macro_initial.h5";
@@ -140,11 +115,8 @@ ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::
   add_directories(scene.setup.samples, run.context, summary);
   run.context.finish(
       json_of(summary), run.provenance,
-      fmt::format("written: {}{}; in there: mpirun -np 4 {} -in scene.in (which ./softgrain setup "
-                  "--with-lammps builds); then the same command here with --resume and without --write-only",
-                  lammps_directory(run.context, 0),
-                  scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "",
-                  lammps::kProgramName));
+      written_text(lammps_directory(run.context, 0) +
+                   (scene.setup.samples > 1 ? fmt::format(" to lammps-{}", scene.setup.samples - 1) : "")));
   return ExitStatus::good;
 }
 
@@ -192,7 +164,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
   summary.head.sizes = summaries_of(drawn_sizes(macro.setup, run.seed));
   if (lammps) {
-    summary.engine = {MacroEngine::lammps, lammps->ranks, lammps->program, lammps_release(run.context)};
+    summary.engine = engine_use(*lammps, lammps_directory(run.context, 0));
     add_directories(macro.setup.samples, run.context, summary);
   }
   return run.finish(json_of(summary), people_text(identity, curves));
@@ -207,7 +179,8 @@ SceneKind macro_kind() {
           .check = check_macro_scene,
           .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
           .results = macro_results(),
-          .takes_law = true};
+          .takes_law = true,
+          .takes_engine = true};
 }
 
 }  // namespace softgrain

@@ -69,10 +69,6 @@ void read_preparation(const SceneTable& t, MacroSpec& spec) {
                    {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
                     "preparation_tolerance", "preparation_passes"},
                    "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
-  if (spec.preparation == Preparation::lammps && spec.boundary == Boundary::periodic)
-    t.mistake(
-        "preparation",
-        "\"lammps\" compacts a box of walls: with boundary = \"periodic\" known are frictionless, fast, slow, dense");
   if (!(p.inertial_number > 0.0))
     mistake_beside(t, {"compaction_restitution"},
                    "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");
@@ -209,8 +205,10 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
   if (setup.spec.preparation == Preparation::lammps)
-    macro.mistake("preparation",
-                  "\"lammps\" goes with scenes of kind \"macro\" and softgrain macrosim --engine lammps");
+    macro.mistake(
+        "preparation",
+        "\"lammps\" goes with scenes of kind \"macro\" (softgrain macrosim) and \"material\" (softgrain run), and "
+        "--engine lammps");
 }
 
 MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& defaults) {

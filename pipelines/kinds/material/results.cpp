@@ -42,7 +42,9 @@ std::vector<double> mean_stresses(const MacroCurve& c) {
 }
 
 KindResults material_results() {
-  return {.files = {{.names = "material\\.csv"}, {.names = "(material|states_material)(_.+)?\\.h5", .says_so = true}},
+  return {.files = {{.names = "material\\.csv"},
+                    {.names = "(material|states_material)(_.+)?\\.h5", .says_so = true},
+                    {.names = "lammps-(.+-)?[0-9]+"}},
           .sections = {{Place::material, material_section}},
           .lines = lines_of};
 }

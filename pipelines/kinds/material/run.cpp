@@ -30,11 +30,45 @@ std::string file_of(const std::string& name, const std::string& kind) {
 
 const std::string& packings_name(const MaterialVariant& v) { return v.packings.empty() ? v.name : v.packings; }
 
-VariantResult run_variant(const MaterialVariant& v, const Run& run, std::vector<MacroPacking>& packings) {
-  if (!v.same_packings) packings = make_macro_packings(v.setup, run, file_of(packings_name(v), "material_initial"));
+/// LAMMPS, if it runs the tests.
+struct Engines {
+  const NamedLaws laws = no_laws();
+  std::optional<LammpsEngine> lammps;
+};
+
+std::string folder_of(const MaterialVariant& v) { return v.name == kMaterialEngine ? "lammps" : "lammps-" + v.name; }
+
+LammpsRuns lammps_runs(const MaterialScene& scene, const MaterialVariant& v, const NamedLaws& laws, const Run& run) {
+  return {v.setup, laws, 1.0, scene.title, lammps_identity(run.provenance, v.name), v.name, folder_of(v)};
+}
+
+/// As they are handed to a test: in touch, or with preparation "lammps" only placed.
+void prepare(const MaterialVariant& v, const Run& run, std::vector<MacroPacking>& packings) {
+  if (v.same_packings) return;
+  const std::string file = file_of(packings_name(v), "material_initial");
+  packings = prepare_packings(v.setup, run, file);
+  if (v.setup.spec.preparation != Preparation::lammps) save_packings(packings, run, file);
+}
+
+/// What LAMMPS prepared is that of this test alone: others begin where bodies were placed.
+std::vector<RunOutcome> outcomes_of_lammps(const MaterialScene& scene, const MaterialVariant& v, const Engines& engines,
+                                           const Run& run, std::vector<MacroPacking> packings) {
+  const LammpsRuns runs = lammps_runs(scene, v, engines.laws, run);
+  write_lammps_files(runs, packings, run.context);
+  auto outcomes = run_with_lammps(runs, *engines.lammps, packings, run.context);
+  if (v.setup.spec.preparation == Preparation::lammps && !v.same_packings)
+    save_packings(packings, run, file_of(packings_name(v), "material_initial"));
+  return outcomes;
+}
+
+VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Engines& engines, const Run& run,
+                          std::vector<MacroPacking>& packings) {
+  prepare(v, run, packings);
   VariantResult r{&v, file_of(v.name, "material"), {}};
-  r.curves =
-      run_engines({v.setup, packings, {}, run.seed, v.name}, {no_laws()}, run, file_of(v.name, "states_material"));
+  const MacroRuns runs{v.setup, packings, {}, run.seed, v.name};
+  const std::string states = file_of(v.name, "states_material");
+  r.curves = engines.lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, engines, run, packings))
+                            : run_engines(runs, {engines.laws}, run, states);
   for (MacroCurve& c : r.curves) c.law = {};
   save_macro(r.curves, run.path(r.file), run.provenance);
   return r;
@@ -69,15 +103,24 @@ MaterialVariantSummary summary_of(const VariantResult& r) {
   return s;
 }
 
+void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine>& lammps) {
+  for (const MaterialVariant& v : scene.variants)
+    if (v.setup.spec.preparation == Preparation::lammps && !lammps)
+      throw BadInput("key packing.preparation = \"lammps\" needs --engine lammps");
+}
+
 }  // namespace
 
-std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run) {
+std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run,
+                                        const std::optional<LammpsEngine>& lammps) {
+  require_engine(scene, lammps);
+  const Engines engines{.lammps = lammps};
   std::vector<VariantResult> results;
   std::vector<MacroPacking> packings;
   run.context.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
       try {
-        results.push_back(run_variant(v, run, packings));
+        results.push_back(run_variant(scene, v, engines, run, packings));
       } catch (const NotUsable& e) {
         throw NotUsable(scene.variants.size() > 1 ? v.name + ": " + e.what() : e.what());
       }
@@ -223,11 +266,44 @@ std::string sizes_text(const MaterialScene& scene) {
 
 namespace {
 
+void add_directories(const MaterialScene& scene, const Run& run, MaterialSummary& summary) {
+  for (const MaterialVariant& v : scene.variants)
+    for (std::int64_t k = 0; k < v.setup.samples; ++k)
+      summary.head.files[fmt::format("lammps_{}_{}", v.name, k)] = lammps_directory(run.context, k, folder_of(v));
+}
+
+/// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
+ExitStatus write_only(const MaterialScene& scene, const Run& run) {
+  const NamedLaws laws = no_laws();
+  std::vector<MacroPacking> packings;
+  run.context.guard([&] {
+    for (const MaterialVariant& v : scene.variants) {
+      prepare(v, run, packings);
+      write_lammps_files(lammps_runs(scene, v, laws, run), packings, run.context);
+    }
+  });
+  MaterialSummary summary;
+  summary.head = {RunStatus::written, scene.title, {"nothing was run"}, {}};
+  summary.youngs_modulus = scene.variants.front().setup.spec.youngs_modulus;
+  add_directories(scene, run, summary);
+  std::string directories;
+  for (const auto& [name, directory] : summary.head.files) directories += (directories.empty() ? "" : ", ") + directory;
+  run.context.finish(json_of(summary), run.provenance, written_text(directories));
+  return ExitStatus::good;
+}
+
 ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   const MaterialScene material = read_material_scene(scene);
+  const std::optional<LammpsEngine> lammps = read_engine(options);
+  require_engine(material, lammps);
   const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
-  const std::vector<VariantResult> results = run_variants(material, run);
-  const MaterialSummary summary = summarise(material, results, run).summary;
+  if (lammps && lammps->write_only) return write_only(material, run);
+  const std::vector<VariantResult> results = run_variants(material, run, lammps);
+  MaterialSummary summary = summarise(material, results, run).summary;
+  if (lammps) {
+    summary.engine = engine_use(*lammps, lammps_directory(run.context, 0, folder_of(material.variants.front())));
+    add_directories(material, run, summary);
+  }
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
   return run.finish(json_of(summary), people_text(summary));
 }
@@ -241,7 +317,8 @@ SceneKind material_kind() {
           .check = [](const Scene& scene, const std::string&,
                       Findings& out) { check_variants(read_material_scene(scene), out); },
           .read = [](const Scene& scene) { (void)read_material_scene(scene); },
-          .results = material_results()};
+          .results = material_results(),
+          .takes_engine = true};
 }
 
 }  // namespace softgrain

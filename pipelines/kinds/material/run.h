@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/material/scene.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/run/run.h"
@@ -19,7 +20,8 @@ struct VariantResult {
 };
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.
-std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run);
+std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run,
+                                        const std::optional<LammpsEngine>& lammps = std::nullopt);
 
 /// One row per recorded point of every sample of every variant.
 TextTable points_of(const std::vector<VariantResult>& results);

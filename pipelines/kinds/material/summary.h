@@ -38,6 +38,7 @@ struct MaterialSummary {
   double youngs_modulus = 0.0;  ///< E of the grains [Pa]
   std::vector<MaterialVariantSummary> variants;
   std::optional<EquationSummary> equation;
+  std::optional<EngineUse> engine;
 };
 
 void fields(auto&& visit, Of<MaterialSummary> auto& s) {
@@ -45,6 +46,7 @@ void fields(auto&& visit, Of<MaterialSummary> auto& s) {
   visit("E", s.youngs_modulus);
   visit("variants", s.variants);
   visit("equation_of_state", s.equation, kLeftOut);
+  visit("engine", s.engine, kLeftOut);
 }
 
 }  // namespace softgrain
