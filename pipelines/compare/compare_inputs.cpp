@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
@@ -12,10 +13,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// material.h5, or material_NAME.h5 of several materials, whose curves are then called by their names.
+std::vector<MacroCurve> load_materials(const std::string& path) {
+  const std::string kind = "material";
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    const std::string file = entry.path().stem().string();
+    if (entry.path().extension() != ".h5" || !file.starts_with(kind) || file.starts_with(kind + "_initial")) continue;
+    if (file == kind || file[kind.size()] == '_') files[file] = entry.path().string();
+  }
+  std::vector<MacroCurve> curves;
+  for (const auto& [file, place] : files)
+    for (MacroCurve& c : load_macro(place)) {
+      if (file != kind) c.engine = file.substr(kind.size() + 1);
+      curves.push_back(std::move(c));
+    }
+  return curves;
+}
+
 CompareSide load_directory(const std::string& path) {
   CompareSide side;
   const auto exists = [&](const char* file) { return fs::exists(path + "/" + file); };
-  if (exists("macro.h5")) side.macro = load_macro(path + "/macro.h5");
+  side.macro = exists("macro.h5") ? load_macro(path + "/macro.h5") : load_materials(path);
   if (exists("measurements.h5")) side.measurements = load_measurements(path + "/measurements.h5");
   if (exists("law.toml")) side.card = load_card(path + "/law.toml");
   return side;
@@ -27,12 +46,12 @@ CompareSide load_one_file(const std::string& path) {
   const auto form = file_form(path);
   if (form == FileForm::toml) {
     side.card = load_card(path);
-  } else if (form == FileForm::hdf5 && file.find("macro") != std::string::npos) {
+  } else if (form == FileForm::hdf5 && (file.find("macro") != std::string::npos || file.starts_with("material"))) {
     side.macro = load_macro(path);
   } else if (form == FileForm::hdf5) {
     side.measurements = load_measurements(path);
   } else {
-    throw BadInput(path + ": expected a run directory, macro.h5, measurements.h5 or law.toml");
+    throw BadInput(path + ": expected a run directory, macro.h5, material.h5, measurements.h5 or law.toml");
   }
   return side;
 }
@@ -187,7 +206,7 @@ CompareSide load_side(const std::string& path) {
   CompareSide side = fs::is_directory(path) ? load_directory(path) : load_one_file(path);
   side.name = path;
   if (side.macro.empty() && !side.measurements && !side.card) {
-    throw BadInput(path + ": holds nothing to compare (macro.h5, measurements.h5 or law.toml)");
+    throw BadInput(path + ": holds nothing to compare (macro.h5, material.h5, measurements.h5 or law.toml)");
   }
   return side;
 }

@@ -23,7 +23,7 @@ struct CompareSide {
   std::optional<LawCard> card;
 };
 
-/// `path` is a run directory, or a file named like macro*.h5, law*.toml or another .h5 with measurements.
+/// `path` is a run directory, or a file named like macro*.h5, material*.h5, law*.toml or another .h5 with measurements.
 /// Throws FileTrouble when it does not exist or is damaged, BadInput when it is none of these or holds nothing to
 /// compare.
 CompareSide load_side(const std::string& path);

@@ -138,6 +138,17 @@ TEST_F(MaterialLammps, PreparesPackingsItself) {
   EXPECT_LT(pressure / prepared.start.youngs_modulus, 1.6e-3);
 }
 
+/// Materials of one run are told apart by their names.
+TEST_F(MaterialLammps, CurvesOfTwoRunsAreCompared) {
+  ASSERT_EQ(run("one", "").status, 0);
+  ASSERT_EQ(run("two", "--set test.tolerance=2e-3").status, 0);
+  const ProgramOutcome both = run_the_program("compare '" + file("one") + "' '" + file("two") + "'");
+  EXPECT_EQ(both.status, 0) << both.output;
+  for (const char* words : {"macro: pressed against pressed", "macro: sheared against sheared", "axial stress"})
+    EXPECT_NE(both.output.find(words), std::string::npos) << words << " not in " << both.output;
+  EXPECT_EQ(run_the_program("compare '" + file("one/material_pressed.h5") + "' '" + file("two") + "'").status, 0);
+}
+
 TEST_F(MaterialLammps, WriteOnlyPlacesManyGrainsAtOnce) {
   const ProgramOutcome written =
       run("many",
