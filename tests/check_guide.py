@@ -22,7 +22,7 @@ PAGES = {
          "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
          "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
          "pipelines/kinds/soft_particle/kept_states.cpp"],
-        {"beyond"}, {"entry", "pair", "macrosim"}),
+        {"beyond"}, {"cell", "entry", "pair", "macrosim"}),
     "scene_law_table.md": (
         ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/crowd_scene.cpp", "pipelines/kinds/law_table/crowd_law_fit.cpp",
          "pipelines/kinds/hierarchy/scene.cpp"],

@@ -63,8 +63,12 @@ TEST(MaterialLaw, ASmallMaterialGivesACardThatReadsBack) {
   EXPECT_EQ(card.stiffness.high, number_named(law, "chi")["interval"][1].get<double>());
   for (const auto& onset : summary["equation_of_state"]["onsets"]) {
     const double phi = onset["onset"]["value"].get<double>();
-    if (onset["name"] == "fines") EXPECT_NEAR(card.void_ratio.value, (1.0 - phi) / phi, 1e-12);
-    if (onset["name"] == "coarse") EXPECT_NEAR(card.excess_alone.value, (1.0 - phi) / phi, 1e-12);
+    if (onset["name"] == "fines") {
+      EXPECT_NEAR(card.void_ratio.value, (1.0 - phi) / phi, 1e-12);
+    }
+    if (onset["name"] == "coarse") {
+      EXPECT_NEAR(card.excess_alone.value, (1.0 - phi) / phi, 1e-12);
+    }
     EXPECT_NE(onset["name"], "fines-shear") << "the same packings, tested again";
   }
   // Where numbers of such materials are.
@@ -79,8 +83,9 @@ TEST(MaterialLaw, ASmallMaterialGivesACardThatReadsBack) {
   EXPECT_LT(card.excess_decay.low, card.excess_decay.value);
   // Fines that are sheared begin where those that are compressed do.
   for (const auto& v : summary["variants"])
-    if (v["name"] == "fines-shear")
+    if (v["name"] == "fines-shear") {
       EXPECT_EQ(v["solid_fraction_start"], summary["variants"][0]["solid_fraction_start"]);
+    }
   const std::string page = read_text(out + "/report.html");
   for (const char* part : {"cell-law-pores", "cell-law-lateral", "cell-law-shear", "material-collapse"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
