@@ -11,18 +11,6 @@ namespace softgrain {
 
 namespace {
 
-/// How the volumes of both cells of a face change with the places of both sites.
-struct FaceSlopes {
-  Vec3 upper;  ///< dV_i/dx_j = -dV_j/dx_j of this face [m^2]
-  Vec3 lower;  ///< dV_j/dx_i = -dV_i/dx_i of this face
-
-  FaceSlopes(const CellFace& face, const Vec3& x_i) {
-    const double share = face.area / face.distance;
-    upper = (x_i + face.separation - face.centroid) * share;
-    lower = (x_i - face.centroid) * share;
-  }
-};
-
 /// Half the row sums of the stiffness matrix, entries by their size: sum_c (-p'_c) |dV_c/dx_j| sum_k |dV_c/dx_k|, plus
 /// springs and the turning of faces under different pressures. A bound of the frequencies (Gershgorin) as Fire wants
 /// it.

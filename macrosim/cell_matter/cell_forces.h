@@ -16,6 +16,18 @@ struct CellLaw {
   FaceFriction friction;
 };
 
+/// How the volumes of both cells of a face change with the places of both sites.
+struct FaceSlopes {
+  Vec3 upper;  ///< dV_i/dx_j = -dV_j/dx_j of this face [m^2]
+  Vec3 lower;  ///< dV_j/dx_i = -dV_i/dx_i of this face
+
+  FaceSlopes(const CellFace& face, const Vec3& x_i) {
+    const double share = face.area / face.distance;
+    upper = (x_i + face.separation - face.centroid) * share;
+    lower = (x_i - face.centroid) * share;
+  }
+};
+
 /// One state of all cells. With U = sum U_i(V_i), dU_i/dV_i = -p_i, and for the face between i and j (area A, distance
 /// d, centroid c) dV_i/dx_j = (A/d)(x_j - c), which is the motion of its plane when j moves [Reynolds' transport
 /// theorem: the plane stays perpendicular to x_j - x_i]:

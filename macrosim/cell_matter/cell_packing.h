@@ -17,6 +17,7 @@ struct CellRelaxation {
   double tolerance = 1e-3;         ///< largest net force over the mean load of a face
   double largest_move = 0.05;      ///< of a site in one pass, over the spacing (V/N)^(1/3)
   std::int64_t max_passes = 2000;  ///< each is a tessellation
+  bool by_tangent = true;          ///< false: by Fire alone, the slow reference
 };
 
 /// After one strain step.
@@ -42,11 +43,13 @@ struct CellState {
 };
 
 /// Sites, contents and springs in one room. Strains are diagonal: every axis is stretched by a factor, sites go along
-/// (affine guess) and then relax by Fire, with masses as the stiffness of their faces, at fixed strain; or the lengths
-/// of axes that are held by stress relax with them, their logarithmic strains as coordinates (as in PressedBox). Trial
-/// states leave the springs alone; they are kept where the relaxation ends. A move that would leave a cell without
-/// pores, or a site outside planes, is taken back, and smaller ones follow; a strain whose affine guess would is taken
-/// in smaller parts. No randomness; the same bits for any number of threads.
+/// (affine guess) and then come to rest at fixed strain; or the lengths of axes that are held by stress do with them,
+/// their logarithmic strains as coordinates (as in PressedBox). To rest by steps of the tangent (CellTangent) that are
+/// mixed (StepMixer), two to five tessellations in all; where these do not get on, by Fire, with masses as the
+/// stiffness of the faces of each site. Trial states leave the springs alone; they are kept where the relaxation ends,
+/// so what is kept depends on the end alone. A move that would leave a cell without pores, or a site outside planes, is
+/// taken back, and smaller ones follow; a strain whose affine guess would is taken in smaller parts. No randomness; the
+/// same bits for any number of threads.
 class CellPacking {
  public:
   /// Centres anywhere (they are brought into a periodic cell). Springs begin without force at these places. Throws
@@ -74,11 +77,15 @@ class CellPacking {
 
  private:
   class Axes;
+  static constexpr Vec3 kAsItIs{{1.0, 1.0, 1.0}};
 
   CellPoint step(const Vec3& stretch, const BoxControl* control, const CellRelaxation& options);
   void stretch(const Vec3& factor);
-  RelaxationResult relax(const CellRelaxation& options, Axes* axes);
-  bool move(const std::vector<Vec3>& velocity, double step, double longest, Axes* axes);
+  RelaxationResult rest(const CellRelaxation& options, Axes* axes);
+  RelaxationResult settle(const CellRelaxation& options, Axes* axes);
+  RelaxationResult glide(const CellRelaxation& options, Axes* axes);
+  [[nodiscard]] double unrest(const CellRelaxation& options, const Axes* axes) const;
+  bool move(const std::vector<Vec3>& steps, const Vec3& factors);
   bool evaluate();
   [[nodiscard]] Matrix<3> stress() const;
 

@@ -30,7 +30,10 @@ std::vector<FaceSpring> FaceSprings::trial(const FaceFriction& friction, const R
     spring.force = pull - normal * dot(pull, normal);
     const double size = norm(spring.force);
     spring.slides = size > limit;
-    if (spring.slides) spring.force *= limit / size;
+    spring.tangent = on_the_way;
+    if (!spring.slides) continue;
+    spring.kept = limit / size;
+    spring.force *= spring.kept;
   }
   return out;
 }

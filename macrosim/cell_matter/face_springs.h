@@ -31,6 +31,8 @@ struct FaceSpring {
   double stiffness = 0.0;  ///< k [N/m]
   Vec3 separation;         ///< x_j - x_i when it was kept [m]
   bool slides = false;     ///< at the Coulomb limit
+  double tangent = 0.0;    ///< of a trial spring: how the force answers a motion in the face, before the limit [N/m]
+  double kept = 1.0;       ///< of a trial spring: share of its force that the limit leaves
 
   [[nodiscard]] double energy() const { return stiffness > 0.0 ? norm2(force) / (2.0 * stiffness) : 0.0; }
 };
