@@ -30,6 +30,15 @@ struct LawIdentity {
 /// 0123456789abcdef".
 std::string identity_text(const LawIdentity& law);
 
+/// Which matter a law is for, as check, summaries and reports say it: empty for a twin.
+inline constexpr const char* kMatterInShells =
+    "laws of soft particles are for matter in shells: fines that spread into the voids bear far less";
+inline constexpr const char* kMatterWithoutShells = "for matter without shells: fines fill all voids";
+inline std::string picture_of(const LawIdentity& law) {
+  if (law.form) return kMatterInShells;
+  return law.hash.empty() ? "" : kMatterWithoutShells;
+}
+
 /// Resolved twins of a law, which are engines of curves too.
 enum class Twin {
   shelled,  ///< contents in moving shells

@@ -197,7 +197,9 @@ json head_json(const LawOptions& o, const LawFile& file) {
   return {{"command", "law " + to_string(*o.action)},
           {"status", "good"},
           {"file", file.path},
-          {"kind", file.card ? "law card" : "law table"},
+          {"kind", file.cells  ? "cell law"
+                   : file.card ? "law card"
+                               : "law table"},
           {"provenance",
            {{"version", file.origin.version},
             {"commit", file.origin.commit},
@@ -206,6 +208,7 @@ json head_json(const LawOptions& o, const LawFile& file) {
 }
 
 json parameters_json(const LawFile& file) {
+  if (file.cells) return cell_law_json(*file.cells);
   return file.card ? json_of(summary_of(*file.card)) : law_table_json(*file.table);
 }
 
@@ -232,8 +235,19 @@ json units_json(const ValueUnits& units) {
           {"R", units.radius}};
 }
 
+/// Forces over overlaps, which the cell law has none of.
+LawFile load_contact_law(const LawOptions& o, const std::string& path) {
+  LawFile file = law::load_law_file(path);
+  if (file.cells)
+    throw BadInput(
+        fmt::format("law {}: {} is a card of the cell law, a pressure over a volume: softgrain law show "
+                    "has its numbers",
+                    to_string(*o.action), path));
+  return file;
+}
+
 ExitStatus eval(const LawOptions& o) {
-  const LawFile file = law::load_law_file(o.files.front());
+  const LawFile file = load_contact_law(o, o.files.front());
   require_fitting_options(o, file);
   const ValueUnits units = units_of(o, file);
   const std::vector<ValueTable> tables = value_tables(o, file, o.steps);
@@ -302,7 +316,7 @@ json full_json(const LawOptions& o, const LawFile& file, const std::vector<Value
 
 ExitStatus export_law(const LawOptions& o) {
   if (!o.format) throw BadInput("law export: give --to lammps-table, csv or json");
-  const LawFile file = law::load_law_file(o.files.front());
+  const LawFile file = load_contact_law(o, o.files.front());
   require_fitting_options(o, file);
   const ValueUnits units = units_of(o, file);
   constexpr std::int64_t kSteps = 101;
@@ -365,8 +379,8 @@ ExitStatus compare(const LawOptions& o, const LawFile& a, const LawFile& b) {
 }
 
 ExitStatus show(const LawOptions& o) {
+  if (o.files.size() == 2) return compare(o, load_contact_law(o, o.files.front()), load_contact_law(o, o.files.back()));
   const LawFile file = law::load_law_file(o.files.front());
-  if (o.files.size() == 2) return compare(o, file, law::load_law_file(o.files.back()));
   if (!o.json) {
     print(law::law_text(file, law::terminal_is_utf8()));
     return ExitStatus::good;

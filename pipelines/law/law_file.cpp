@@ -5,6 +5,7 @@
 #include "common/core/error.h"
 #include "common/data/crowd_replicates.h"
 #include "common/io/scene.h"
+#include "pipelines/law/named_laws.h"
 
 namespace softgrain::law {
 
@@ -13,9 +14,9 @@ namespace {
 std::string file_in(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(path, ignored)) return path;
-  for (const char* name : {"law_table.toml", "law.toml"})
+  for (const char* name : {"law_table.toml", "law.toml", "cell_law.toml"})
     if (std::filesystem::exists(path + "/" + name, ignored)) return path + "/" + name;
-  throw BadInput(path + ": a directory without law_table.toml or law.toml");
+  throw BadInput(path + ": a directory without law_table.toml, law.toml or cell_law.toml");
 }
 
 LawOrigin read_origin(const SceneTable& root) {
@@ -32,13 +33,14 @@ LawFile load_law_file(const std::string& given) {
     throw BadInput(out.path + ": give the card or table itself, the .toml beside it");
   const Scene text = Scene::load(out.path);
   const SceneTable root = text.root();
-  if (root.has("pair")) {
+  const LawFileKind kind = law_file_kind(out.path);
+  if (kind == LawFileKind::card) {
     out.card = load_card(out.path);
-  } else if (root.has("entry")) {
+  } else if (kind == LawFileKind::cells) {
+    out.cells = read_cell_card(out.path);
+  } else {
     out.table = load_law_table(out.path);
     read_replicates(*out.table, out.path);
-  } else {
-    throw BadInput(out.path + ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]])");
   }
   out.origin = read_origin(root);
   return out;

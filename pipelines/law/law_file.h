@@ -1,10 +1,12 @@
-// A file with laws as the law commands see it: a card or a table, with what is known of its making.
+// A file with laws as the law commands see it: a card, a table or a card of the cell law, with what is known of its
+// making.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/data/cell_card.h"
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 
@@ -22,10 +24,12 @@ struct LawFile {
   std::string path;
   std::optional<LawCard> card;    ///< with bands and measured curve when the .h5 is beside it
   std::optional<LawTable> table;  ///< with replicates when the .h5 is beside it
+  std::optional<CellCard> cells;
   LawOrigin origin;
 };
 
-/// Reads a card, a table, or those of a run directory (law_table.toml before law.toml). Throws BadInput with file and
+/// Reads a card, a table, a card of the cell law, or those of a run directory (law_table.toml before law.toml and
+/// cell_law.toml). Throws BadInput with file and
 /// line for wrong content, FileTrouble for files.
 LawFile load_law_file(const std::string& path);
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/core/limits.h"
+#include "common/data/cell_card.h"
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
 #include "common/io/json_record.h"
@@ -100,6 +101,9 @@ std::map<std::string, PairLawSummary> summary_of(const LawCard& card);
 /// "laws": [ { "form", "status", "a", ..., "partners", "error_fitted", ... } ] } ] }, dimensionless; estimates as in
 /// estimate_fields().
 nlohmann::json law_table_json(const LawTable& table);
+
+/// Numbers with { "value", "standard_error", "interval" }, ranges, and what they were measured on; dimensionless.
+nlohmann::json cell_law_json(const CellCard& card);
 
 /// What every list of laws says of one: form, status, errors.
 nlohmann::json verdict_json(const CrowdLaw& law);

@@ -148,6 +148,7 @@ std::string card_text_for_people(const LawFile& file, bool utf8) {
 }
 
 std::string law_text(const LawFile& file, bool utf8) {
+  if (file.cells) return cells_text_for_people(file, utf8);
   return file.card ? card_text_for_people(file, utf8) : table_text_for_people(file, utf8);
 }
 

@@ -1,4 +1,4 @@
-// Cards and tables of laws as text for a terminal, never wider than 80 columns (but for single words that are).
+// Laws as text for a terminal, never wider than 80 columns (but for single words that are).
 #pragma once
 
 #include <string>
@@ -13,7 +13,10 @@ std::string card_text_for_people(const LawFile& file, bool utf8);
 /// The same for a table: every entry with its laws, neighbours, friction, and how far off the laws are.
 std::string table_text_for_people(const LawFile& file, bool utf8);
 
-/// One of the two.
+/// The same for a card of the cell law, with the equation of state drawn small.
+std::string cells_text_for_people(const LawFile& file, bool utf8);
+
+/// One of the three.
 std::string law_text(const LawFile& file, bool utf8);
 
 /// With so many digits that count.

@@ -49,8 +49,13 @@ std::string law_paragraph(const std::vector<MacroCurve>& curves) {
   std::set<std::string> lines;
   for (const MacroCurve& c : curves)
     if (!c.twin()) lines.insert(engine_name(c.engine) + ": " + identity_text(c.law));
+  std::set<std::string> pictures;
+  for (const MacroCurve& c : curves)
+    if (c.soft > 0 || !c.law.form) pictures.insert(picture_of(c.law));
   std::string text;
   for (const std::string& line : lines) text += (text.empty() ? "Laws: " : "; ") + line;
+  for (const std::string& picture : pictures)
+    if (!picture.empty()) text += ". Which matter: " + picture;
   return text.empty() ? "" : paragraph(text + ".");
 }
 

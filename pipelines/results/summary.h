@@ -217,6 +217,8 @@ void fields(auto&& visit, Of<LawIdentity> auto& law) {
   visit("nu", law.poisson_ratio);
   visit("mu", law.friction);
   visit("hash", law.hash);
+  std::string picture = picture_of(law);
+  visit("picture", picture, kLeftOut);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>)
     law.solid_fraction = fraction > 0.0 ? fraction : 0.0;
 }

@@ -118,13 +118,30 @@ void check_table(const std::string& path, Findings& out) {
   for (const std::string& note : table.notes) out.warn(note);
 }
 
+void check_cell_card(const std::string& path, Findings& out) {
+  const CellCard card = read_cell_card(path);
+  out.add("kind", "cell law",
+          fmt::format("card of the cell law, {} form, for matter without shells: K = {:.4g} ({:.4g} to {:.4g}), n = "
+                      "{:.4g}, p/E from {:.3g} to {:.3g}, up to {:.3g} times as much fines as coarse grains",
+                      to_string(card.form), card.modulus.value, card.modulus.low, card.modulus.high,
+                      card.exponent.value, card.pressure_low, card.pressure_high, card.mixture_high));
+  constexpr double kWide = 0.25;
+  if (card.modulus.high - card.modulus.low > kWide * card.modulus.value)
+    out.warn(fmt::format("the interval of K is {:.0f} % wide: more samples would narrow it",
+                         100.0 * (card.modulus.high - card.modulus.low) / card.modulus.value));
+}
+
 }  // namespace
 
 void check_laws(const std::string& path, Findings& out) {
-  if (law_file_kind(path) == LawFileKind::table)
-    check_table(path, out);
-  else
-    check_card(path, out);
+  switch (law_file_kind(path)) {
+    case LawFileKind::card:
+      return check_card(path, out);
+    case LawFileKind::table:
+      return check_table(path, out);
+    case LawFileKind::cells:
+      return check_cell_card(path, out);
+  }
 }
 
 }  // namespace softgrain

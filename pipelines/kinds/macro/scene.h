@@ -13,11 +13,6 @@
 
 namespace softgrain {
 
-/// Which matter a law is for, as check and reports say it.
-inline constexpr const char* kMatterInShells =
-    "laws of soft particles are for matter in shells: fines that spread into the voids bear far less";
-inline constexpr const char* kMatterWithoutShells = "for matter without shells: fines fill all voids";
-
 struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;

@@ -1,7 +1,9 @@
 #include "pipelines/kinds/material_law/results.h"
+#include "pipelines/kinds/law_table/law_check.h"
 
 #include <fmt/format.h>
 
+#include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/kinds/material_law/summary.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
@@ -22,7 +24,7 @@ std::vector<HeadLine> lines_of_law(const report::RunData& run) {
 }  // namespace
 
 KindResults material_law_results() {
-  return {.files = {{.names = "cell_law\\.toml"}},
+  return {.files = {{.names = "cell_law\\.toml", .check = check_laws}},
           .sections = {{Place::laws, report::cell_law_section}},
           .lines = lines_of_law};
 }

@@ -1,0 +1,99 @@
+// A card of the cell law for a terminal, and as JSON.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/data/cell_card.h"
+#include "pipelines/law/law_json.h"
+#include "pipelines/law/law_show.h"
+#include "pipelines/law/terminal_plot.h"
+
+namespace softgrain {
+namespace law {
+
+namespace {
+
+struct CellNumber {
+  const char* key;
+  Estimate CellCard::*estimate;
+  const char* meaning;
+};
+constexpr CellNumber kCellNumbers[] = {
+    {"K", &CellCard::modulus, "p/E = K x^n"},
+    {"n", &CellCard::exponent, "its exponent"},
+    {"e_J", &CellCard::void_ratio, "void ratio of the fines alone where they jam"},
+    {"e_c", &CellCard::excess_alone, "the same of the coarse grains alone"},
+    {"w_inf", &CellCard::excess_many, "excess pores beside coarse grains among many fines"},
+    {"xi", &CellCard::excess_decay, "ratio of fines over which they fall to that"},
+    {"mu_f", &CellCard::friction, "friction of faces"},
+    {"chi", &CellCard::stiffness, "stiffness of their springs"},
+    {"K0", &CellCard::lateral_ratio, "lateral over axial stress of the fines alone"},
+};
+
+std::string state_text(const CellCard& card) {
+  return card.form == StateForm::porosity ? "x = (phi - phi_J)/(1 - phi_J)" : "x = 1 - Vp/Vp_J";
+}
+
+/// The equation of state over the range of its fit.
+std::string plot_of(const CellCard& card, bool utf8) {
+  TerminalPlot plot{"x", "p/E of fines", 76, 10, utf8, {}};
+  TerminalCurve line;
+  constexpr std::size_t kPoints = 240;
+  const double end = std::pow(card.pressure_high / card.modulus.value, 1.0 / card.exponent.value);
+  for (const double x : even(0.0, end, kPoints)) {
+    line.x.push_back(x);
+    line.y.push_back(card.modulus.value * std::pow(x, card.exponent.value));
+  }
+  plot.curves = {line};
+  return draw(plot);
+}
+
+}  // namespace
+
+std::string cells_text_for_people(const LawFile& file, bool utf8) {
+  const CellCard& card = *file.cells;
+  std::string text = wrapped("cell law " + file.path + ": coarse grains in cells of fines, matter without shells", 2);
+  if (const std::string origin = origin_text(file.origin); !origin.empty()) text += wrapped(origin, 2);
+  text += wrapped(
+      fmt::format("measured on {} samples each, fines {}, largest over smallest {}, split at {} of the largest grain; "
+                  "nu = {}, mu = {}, prepared '{}' to p/E = {}",
+                  card.samples, card.fines_sizes, number(card.fines_ratio), number(card.split),
+                  number(card.poisson_ratio), number(card.grain_friction), card.preparation,
+                  number(card.start_pressure)),
+      2);
+  text += fmt::format("\n{} form, {}\n", to_string(card.form), state_text(card));
+  std::vector<std::vector<std::string>> rows{{"", "", "value", "error", "95 % interval"}};
+  for (const CellNumber& n : kCellNumbers) {
+    const Estimate& e = card.*n.estimate;
+    rows.push_back(
+        {n.key, number(e.value), number(e.standard_error, 2), number(e.low) + " .. " + number(e.high), n.meaning});
+  }
+  text += aligned(rows, 2, 2);
+  text += wrapped(fmt::format("  holds for p/E = {} to {}, up to {} times as much fines as coarse grains by volume",
+                              number(card.pressure_low), number(card.pressure_high), number(card.mixture_high)),
+                  4);
+  return text + "\n" + plot_of(card, utf8);
+}
+
+}  // namespace law
+
+nlohmann::json cell_law_json(const CellCard& card) {
+  nlohmann::json out{{"form", to_string(card.form)},
+                     {"pressure_range", {card.pressure_low, card.pressure_high}},
+                     {"mixture_max", card.mixture_high},
+                     {"nu", card.poisson_ratio},
+                     {"mu", card.grain_friction},
+                     {"preparation", card.preparation},
+                     {"start_pressure", card.start_pressure},
+                     {"split", card.split},
+                     {"fines_ratio", card.fines_ratio},
+                     {"fines_sizes", card.fines_sizes},
+                     {"samples", card.samples}};
+  for (const law::CellNumber& n : law::kCellNumbers) {
+    const Estimate& e = card.*n.estimate;
+    out[n.key] = {{"value", e.value}, {"standard_error", e.standard_error}, {"interval", {e.low, e.high}}};
+  }
+  return out;
+}
+
+}  // namespace softgrain

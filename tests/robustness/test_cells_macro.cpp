@@ -1,0 +1,185 @@
+// Macro scenes of coarse grains in cells of fines: periodic and between planes, stopped and gone on, bad input.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/data/cell_card.h"
+#include "common/data/macro_result.h"
+#include "common/io/text_file.h"
+#include "tests/support/disturbed_run.h"
+#include "tests/support/program.h"
+#include "tests/support/run_comparison.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+CellCard sample_card() {
+  CellCard card;
+  const auto exact = [](double x) { return Estimate{x, 0.01 * x, 0.98 * x, 1.02 * x}; };
+  card.modulus = exact(0.0447);
+  card.exponent = exact(1.75);
+  card.void_ratio = exact(0.567);
+  card.excess_alone = exact(0.6155);
+  card.excess_many = exact(0.3075);
+  card.excess_decay = exact(0.355);
+  card.friction = exact(0.6);
+  card.stiffness = exact(1.0);
+  card.lateral_ratio = exact(0.48);
+  card.pressure_low = 1e-4;
+  card.pressure_high = 1e-2;
+  card.mixture_high = 4.0;
+  card.poisson_ratio = card.grain_friction = 0.3;
+  card.preparation = "fast";
+  card.start_pressure = 1e-4;
+  card.split = 1.0 / 3.0;
+  card.fines_ratio = 4.0;
+  card.fines_sizes = "power law r^-3.5";
+  card.samples = 3;
+  return card;
+}
+
+class CellsMacro : public testing::Test {
+ protected:
+  CellsMacro() {
+    write_cell_card(sample_card(), file("cells.toml"));
+    scene("");
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
+  void scene(const std::string& macro, const std::string& fines = "share = 0.4\n",
+             const std::string& head = "law = \"cells.toml\"\n") const {
+    write_text_atomic(file("scene.toml"), "kind = \"macro\"\n" + head +
+                                              "[macro]\nbodies = 40\nboundary = \"periodic\"\npreparation = \"fast\"\n"
+                                              "start_pressure = 1e-4\nsolid_radius_max = 0.016\n"
+                                              "solid_polydispersity = 3\nsteps = 3\nstrain = 0.06\n" +
+                                              macro + "[fines]\n" + fines);
+  }
+  [[nodiscard]] ProgramOutcome run(const std::string& name, const std::string& more = "", int threads = 1) const {
+    return run_the_program(
+        fmt::format("macrosim '{}' --quiet --threads {} --out '{}' {}", file("scene.toml"), threads, file(name), more));
+  }
+  [[nodiscard]] MacroCurve curve(const std::string& name) const { return load_macro(file(name) + "/macro.h5").at(0); }
+  static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words) {
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in " << outcome.output;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+/// All cells alike at the start; the pressure of the whole is then close to that of one cell with the mean density.
+TEST_F(CellsMacro, FollowTheEquationOfStateOfTheirMeanDensity) {
+  expect(run("out"), 0, {});
+  const MacroCurve c = curve("out");
+  const auto mean = [&](std::size_t n) { return (c.stress_axial[n] + 2.0 * c.stress_lateral[n]) / 3.0; };
+  const CellCard card = sample_card();
+  const double e = 5e5;
+  ASSERT_EQ(c.strain.size(), 4U);
+  EXPECT_NEAR(c.stress_axial[0], 1e-4 * e, 1e-3 * 1e-4 * e);
+  const double phi = c.more.at("solid_fraction")[0];
+  const double x = std::pow(1e-4 / card.modulus.value, 1.0 / card.exponent.value);
+  const double onset = (phi - x) / (1.0 - x);
+  for (std::size_t n = 1; n < c.strain.size(); ++n) {
+    const double dense = (phi / (1.0 - c.strain[n]) - onset) / (1.0 - onset);
+    EXPECT_NEAR(mean(n) / (e * card.modulus.value * std::pow(dense, card.exponent.value)), 1.0, 0.06) << n;
+    EXPECT_GT(c.stress_axial[n], c.stress_lateral[n]);
+  }
+  const nlohmann::json summary = nlohmann::json::parse(read_text(file("out") + "/summary.json"));
+  EXPECT_NE(read_text(file("out") + "/report.html").find("matter without shells"), std::string::npos);
+  EXPECT_NE(summary["law"]["picture"].get<std::string>().find("matter without shells"), std::string::npos);
+  EXPECT_EQ(summary["status"], "good");
+}
+
+TEST_F(CellsMacro, AreTheSameBitsOnAnyThreadsAndWhereTheyWereStopped) {
+  scene("samples = 2\n");
+  const auto start = [&](const std::string& name, const std::string& threads, bool resume) {
+    std::vector<std::string> words{"macrosim", file("scene.toml"),   "--out", file(name), "--quiet", "--threads",
+                                   threads,    "--checkpoint-every", "0"};
+    if (resume) words.emplace_back("--resume");
+    return start_program(words);
+  };
+  const double whole = seconds_of([&] { EXPECT_TRUE(ended_with(wait_for(start("one", "1", false)), 0)); });
+  EXPECT_TRUE(ended_with(wait_for(start("two", "3", false)), 0));
+  expect_same_runs(file("one"), file("two"));
+  int stops = 0;
+  for (std::uint64_t round = 0; round < 8 && stops < 3; ++round) {
+    const std::string name = "stopped" + std::to_string(round);
+    stops += run_disturbed({SIGTERM, 3, 0.6 * whole, 300 + round}, file(name), 0,
+                           [&](int part) { return start(name, part % 2 == 0 ? "1" : "2", part > 0); });
+    expect_same_runs(file("one"), file(name));
+  }
+  EXPECT_GE(stops, 1);
+}
+
+TEST_F(CellsMacro, BetweenPlanesAndThroughStagesToo) {
+  write_text_atomic(file("scene.toml"), read_text(file("scene.toml")) +
+                                            "[[stage]]\nkind = \"consolidation\"\nstress = \"500 Pa\"\nsteps = 2\n"
+                                            "[[stage]]\nkind = \"triaxial\"\nstrain = 0.04\nsteps = 2\n"
+                                            "[[stage]]\nkind = \"unload\"\nstrain = 0.01\nsteps = 2\n");
+  std::string text = read_text(file("scene.toml"));
+  for (const char* key : {"steps = 3\n", "strain = 0.06\n"}) text.erase(text.find(key), std::string(key).size());
+  for (const char* boundary : {"periodic", "walls"}) {
+    write_text_atomic(file("scene.toml"), text);
+    expect(run(boundary, std::string("--set macro.boundary=") + boundary), 0, {});
+    const MacroCurve c = curve(boundary);
+    ASSERT_EQ(c.stress_axial.size(), 7U);
+    EXPECT_NEAR(c.stress_axial[2] / 500.0, 1.0, 0.01) << boundary;
+    for (const std::size_t n : {2U, 3U, 4U}) EXPECT_NEAR(c.stress_lateral[n] / 500.0, 1.0, 0.01) << boundary << n;
+    EXPECT_GT(c.stress_axial[4], c.stress_axial[3]);
+    EXPECT_LT(c.stress_axial[6], c.stress_axial[4]);
+  }
+}
+
+TEST_F(CellsMacro, BeginAtTheDensityThatIsGiven) {
+  scene("", "share = 0.4\nsolid_fraction = 0.72\nstart = \"density\"\n");
+  expect(run("given"), 0, {});
+  EXPECT_NEAR(curve("given").more.at("solid_fraction")[0], 0.72, 1e-9);
+  scene("", "share = 0.4\nsolid_fraction = 0.45\nstart = \"density\"\n");
+  expect(run("loose"), 2, {"does not jam at this density"});
+}
+
+TEST_F(CellsMacro, SayWhatDoesNotFit) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"share = 1.2\n", "below 1"},
+      {"share = 0.4\nshares = 1\n", "nearest"},
+      {"share = 0.4\nstart = \"volume\"\n", "\"pressure\" or \"density\""},
+      {"", "missing key 'share'"},
+  };
+  for (const auto& [fines, word] : cases) {
+    scene("", fines);
+    expect(run("bad"), 2, {word});
+  }
+  scene("wall_mu = 0.2\n");
+  expect(run("bad", "--set macro.boundary=walls"), 2, {"walls of cells are smooth"});
+  scene("resolved = true\n");
+  expect(run("bad"), 2, {"material-models"});
+  scene("construction = \"voids\"\n");
+  expect(run("bad"), 2, {"cells fill all voids"});
+  scene("", "share = 0.4\n", "law = \"cells.toml\"\nform = \"bag\"\n");
+  expect(run("bad"), 2, {"is a card of the cell law"});
+  scene("preparation_mu = 0.1\nmu = 0.5\n");
+  EXPECT_EQ(run("bad").status, 2);
+}
+
+TEST_F(CellsMacro, TheirCardIsShownAndChecked) {
+  const std::string card = "'" + file("cells.toml") + "'";
+  expect(run_the_program("law show " + card), 0, {"matter without shells", "mu_f", "0.588 .. 0.612"});
+  const ProgramOutcome shown = run_the_program("law show --json " + card);
+  const nlohmann::json j = nlohmann::json::parse(shown.output);
+  EXPECT_EQ(j["kind"], "cell law");
+  EXPECT_EQ(j["parameters"]["K"]["value"], 0.0447);
+  expect(run_the_program("law eval " + card), 2, {"is a card of the cell law"});
+  expect(run_the_program("check " + card), 0, {"card of the cell law, porosity form"});
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 0, {"for matter without shells", "solid fraction of"});
+  std::string text = read_text(file("cells.toml"));
+  text.replace(text.find("K = "), 4, "K = 3 #");
+  write_text_atomic(file("broken.toml"), text);
+  EXPECT_EQ(run_the_program("law show '" + file("broken.toml") + "'").status, 2);
+}
+
+}  // namespace
