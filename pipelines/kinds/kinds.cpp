@@ -13,6 +13,7 @@
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/material/scene.h"
 #include "pipelines/kinds/material_law/scene.h"
+#include "pipelines/kinds/material_models/scene.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/pipeline/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -39,10 +40,10 @@ std::vector<const char*> names_of(const std::string& command) {
 }  // namespace
 
 std::span<const SceneKind> scene_kinds() {
-  static const std::array kinds{pipeline_kind(),  macro_comparison_kind(), law_table_kind(),
-                                hierarchy_kind(), inverse_kind(),          soft_particle_kind(),
-                                particles_kind(), grain_box_kind(),        cohesive_powder_kind(),
-                                macro_kind(),     material_kind(),         material_law_kind()};
+  static const std::array kinds{
+      pipeline_kind(),      macro_comparison_kind(), law_table_kind(),      hierarchy_kind(),       inverse_kind(),
+      soft_particle_kind(), particles_kind(),        grain_box_kind(),      cohesive_powder_kind(), macro_kind(),
+      material_kind(),      material_law_kind(),     material_models_kind()};
   return kinds;
 }
 

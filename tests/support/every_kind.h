@@ -276,6 +276,28 @@ strain = 0.05
 preload_steps = 1
 )";
 
+inline constexpr const char* kTinyMaterialModels = R"(kind = "material-models"
+seed = 1
+samples = 2
+[grains]
+count = 120
+ratio = 2
+[packing]
+preparation = "fast"
+[test]
+steps = 3
+strain = 0.05
+[[model]]
+name = "stand-in"
+kind = "stand-in"
+split = 0.8
+smallest = 0.6
+[[model]]
+name = "coarse"
+kind = "coarse"
+split = 0.8
+)";
+
 struct KindScene {
   std::string name;
   std::string command;
@@ -292,6 +314,7 @@ inline std::vector<KindScene> every_kind() {
                                {"macro", "", kTinyMacro, 0},
                                {"material", "", kTinyMaterial, 0},
                                {"material-law", "", kTinyMaterialLaw, 3},
+                               {"material-models", "", kTinyMaterialModels, 0},
                                {"macro-comparison", "", kTinyComparison, 0},
                                {"law-table", "", std::string(kTinyLawTable) + kTinyLawFit, 0},
                                {"hierarchy", "", kTinyHierarchy, 3},

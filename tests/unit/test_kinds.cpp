@@ -208,6 +208,27 @@ s:5: unknown key 'ratoi' in [grains]; nearest known key is 'ratio'
 s:7: split = 1: must be above 0 and below 1
 s:8: form = "pore": must be "porosity" or "pores"; nearest is "pores"
 s:10: test = "shear": the law is measured in oedometric compression (and the fines in shear))"},
+    {R"(kind = "material-models"
+blind = ["gap"]
+[grains]
+count = 200
+[[model]]
+name = "a"
+kind = "coarse"
+places = "own"
+[[model]]
+name = "a"
+kind = "stand-in"
+smallest = 0.4
+[[model]]
+name = "b"
+kind = "cell"
+)",
+     R"(s:2: blind = [ 'gap' ]: 'gap' is no variant
+s:8: places = "own": does not go with kind = "coarse"
+s:10: name = "a": is used twice
+s:12: smallest = 0.4: must be above 0 and below 0.333333333333
+s:15: kind = "cell": must be "cells", "stand-in", "mean-field", "coarse" or "shells"; nearest is "cells")"},
     {R"(kind = "inverse"
 [packing]
 count = 1

@@ -64,7 +64,7 @@ std::vector<RunOutcome> outcomes_of_lammps(const MaterialScene& scene, const Mat
 VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Engines& engines, const Run& run,
                           std::vector<MacroPacking>& packings) {
   prepare(v, run, packings);
-  VariantResult r{&v, file_of(v.name, "material"), {}};
+  VariantResult r{&v, file_of(v.name, "material"), {}, packings};
   const MacroRuns runs{v.setup, packings, {}, run.seed, v.name};
   const std::string states = file_of(v.name, "states_material");
   r.curves = engines.lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, engines, run, packings))

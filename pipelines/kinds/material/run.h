@@ -17,6 +17,7 @@ struct VariantResult {
   const MaterialVariant* variant = nullptr;
   std::string file;  ///< of its curves
   std::vector<MacroCurve> curves;
+  std::vector<MacroPacking> packings;  ///< that they begin with
 };
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.

@@ -196,40 +196,44 @@ void require_names_apart(const SceneTable& root, const std::vector<MaterialVaria
 
 }  // namespace
 
+MaterialScene read_material(const SceneTable& root) {
+  MaterialScene out;
+  out.title = root.text("title", "");
+  out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+  MacroSetup base = material_defaults();
+  read_material_tables(root, base);
+  const SceneTable grains = root.table("grains");
+  read_splits(grains, base.spec);
+  read_stages(root, root.table_or_empty("test"), base.spec);
+  base.samples = root.count("samples", 1, 10000, base.samples);
+  base.kept_states = read_kept_states(root);
+  out.equation = read_equation(root.table_or_empty("equation"));
+  const Loadings loadings(root, base.spec);
+  std::set<std::string> names;
+  const bool sound = root.sound();
+  const auto add = [&](const MaterialVariant& v, const std::vector<std::size_t>& under, bool plain) {
+    if (loadings.empty()) return out.variants.push_back(v);
+    if (!root.sound()) return;  // nothing comes of it
+    for (MaterialVariant& one : loadings.apply(v, under, plain)) out.variants.push_back(std::move(one));
+  };
+  const std::vector<SceneTable> variants = root.tables("variant");
+  for (const SceneTable& t : variants) {
+    const MaterialVariant v = read_variant(t, base, sound);
+    if (!names.insert(v.name).second) t.mistake("name", "is used twice");
+    add(v, loadings.of_variant(t), false);
+  }
+  if (variants.empty()) {
+    if (root.sound()) require_material_memory(grains, base);
+    add({kMaterialEngine, base}, loadings.all(), true);
+  }
+  require_names_apart(root, out.variants);
+  return out;
+}
+
 MaterialScene read_material_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
-    MaterialScene out;
     (void)root.choice("kind", {"material"});
-    out.title = root.text("title", "");
-    out.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-    MacroSetup base = material_defaults();
-    read_material_tables(root, base);
-    const SceneTable grains = root.table("grains");
-    read_splits(grains, base.spec);
-    read_stages(root, root.table_or_empty("test"), base.spec);
-    base.samples = root.count("samples", 1, 10000, base.samples);
-    base.kept_states = read_kept_states(root);
-    out.equation = read_equation(root.table_or_empty("equation"));
-    const Loadings loadings(root, base.spec);
-    std::set<std::string> names;
-    const bool sound = root.sound();
-    const auto add = [&](const MaterialVariant& v, const std::vector<std::size_t>& under, bool plain) {
-      if (loadings.empty()) return out.variants.push_back(v);
-      if (!root.sound()) return;  // nothing comes of it
-      for (MaterialVariant& one : loadings.apply(v, under, plain)) out.variants.push_back(std::move(one));
-    };
-    const std::vector<SceneTable> variants = root.tables("variant");
-    for (const SceneTable& t : variants) {
-      const MaterialVariant v = read_variant(t, base, sound);
-      if (!names.insert(v.name).second) t.mistake("name", "is used twice");
-      add(v, loadings.of_variant(t), false);
-    }
-    if (variants.empty()) {
-      if (root.sound()) require_material_memory(grains, base);
-      add({kMaterialEngine, base}, loadings.all(), true);
-    }
-    require_names_apart(root, out.variants);
-    return out;
+    return read_material(root);
   });
 }
 

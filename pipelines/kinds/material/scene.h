@@ -36,6 +36,9 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup);
 /// Refuses samples that do not fit into memory, at `count` of this table. Throws BadInput.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
+/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws BadInput, FileTrouble.
+MaterialScene read_material(const SceneTable& root);
+
 /// Reads the whole scene. Throws BadInput, FileTrouble.
 MaterialScene read_material_scene(const Scene& scene);
 

@@ -1,0 +1,231 @@
+#include "pipelines/kinds/material_models/models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/limits.h"
+#include "common/core/random.h"
+#include "common/core/solid_sphere.h"
+#include "common/packing/grading_parts.h"
+#include "pipelines/kinds/macro/stage.h"
+
+namespace softgrain {
+
+namespace {
+
+const MacroSpec& spec_of(const VariantResult& truth) { return truth.variant->setup.spec; }
+double cut_of(const MaterialModel& m, const VariantResult& truth) { return m.split * spec_of(truth).solid_radius_max; }
+
+/// What is common to the runs of one model: its name in files and progress, one sample at a time.
+struct OneSample {
+  const MaterialModel& model;
+  const VariantResult& truth;
+  const Run& run;
+
+  /// Every sample may have a setup of its own: its share of fines, its start.
+  MacroCurve test(MacroSetup setup, const MacroPacking& packing, std::size_t sample, const NamedLaws* law) const {
+    setup.samples = 1;
+    setup.kept_states = 0;
+    setup.twins.clear();
+    const std::string name = fmt::format("{}-{}-{}", model.name, truth.variant->name, sample);
+    const std::vector<MacroPacking> packings{packing};
+    std::vector<NamedLaws> laws;
+    if (law != nullptr) laws.push_back(*law);
+    MacroCurve c = std::move(run_engines({setup, packings, {}, run.seed, name}, laws, run, "").front());
+    c.sample = static_cast<std::int64_t>(sample);
+    c.engine = model.name;
+    return c;
+  }
+};
+
+MacroPacking in_box_of(const MacroPacking& packing, std::vector<MacroBody> bodies) {
+  MacroPacking out;
+  out.low = packing.low;
+  out.high = packing.high;
+  out.bodies = std::move(bodies);
+  return out;
+}
+
+constexpr RandomPurpose kShellRadii{71};
+
+CoarseAndFine parted_or_refused(const MacroPacking& packing, double cut) {
+  CoarseAndFine parts = parted(packing, cut);
+  if (parts.coarse.empty() || !(parts.fines_volume > 0.0))
+    throw NotUsable("the material has no grains on one side of the split");
+  return parts;
+}
+
+/// Steps as they are recorded: cells need no smaller ones.
+MacroSetup coarse_steps(MacroSetup setup) {
+  setup.spec.increments_per_step = 1;
+  for (MacroStage& stage : setup.spec.stages) stage.increments_per_step = 1;
+  return setup;
+}
+
+Grading sizes_of(const MacroSpec& spec) {
+  if (spec.solid_sizes) return *spec.solid_sizes;
+  return Grading::power_law(spec.exponent, spec.solid_radius_max / spec.solid_polydispersity, spec.solid_radius_max);
+}
+
+void take_sizes(MacroSpec& spec, const Grading& sizes) {
+  spec.solid_sizes = sizes;
+  spec.solid_radius_max = sizes.largest();
+  spec.solid_polydispersity = sizes.largest() / sizes.smallest();
+}
+
+MacroCurve cells_of(const OneSample& one, std::size_t sample) {
+  const MaterialModel& m = one.model;
+  const MacroPacking& whole = one.truth.packings[sample];
+  const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
+  MacroSetup setup = coarse_steps(one.truth.variant->setup);
+  const bool by_density = m.start == ModelStart::density;
+  setup.spec.cells = CellMatter{*m.card, parts.share(), 0.0, by_density};
+  setup.spec.bodies = static_cast<std::int64_t>(parts.coarse.size());
+  if (m.places == ModelPlaces::truth) return one.test(setup, in_box_of(whole, parts.coarse), sample, nullptr);
+  if (by_density) setup.spec.cells->solid_fraction = whole.solid_fraction();
+  take_sizes(setup.spec,
+             Grading::classes(pieces_between(sizes_of(spec_of(one.truth)), cut_of(m, one.truth), kInfinity)));
+  const MacroPacking own = make_cell_packing(setup.spec, one.run.seed, sample);
+  return one.test(setup, own, sample, nullptr);
+}
+
+NamedLaws no_soft_laws() {
+  NamedLaws laws;
+  laws.name = "coarse";
+  laws.laws = pair_soft_laws({}, {}, 0.0);
+  return laws;
+}
+
+MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
+  const MacroPacking& whole = one.truth.packings[sample];
+  const CoarseAndFine parts = parted_or_refused(whole, cut_of(one.model, one.truth));
+  MacroSetup setup = one.truth.variant->setup;
+  setup.spec.bodies = static_cast<std::int64_t>(parts.coarse.size());
+  const NamedLaws laws = no_soft_laws();
+  return one.test(setup, in_box_of(whole, parts.coarse), sample, &laws);
+}
+
+/// Of a mixture, so many bodies that about as many as in the truth are coarse.
+std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uint64_t seed) {
+  constexpr std::int64_t kTrial = 4000;
+  spec.bodies = kTrial;
+  double found = 0.0;
+  for (const MacroBody& b : drawn_bodies(spec, seed, 0)) found += b.r >= cut ? 1.0 : 0.0;
+  if (!(found > 0.0)) throw NotUsable("a stand-in of this material has hardly any coarse grains");
+  return std::max<std::int64_t>(30, std::llround(static_cast<double>(kTrial) * static_cast<double>(coarse) / found));
+}
+
+MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
+  const MaterialModel& m = one.model;
+  const MacroSpec& truth = spec_of(one.truth);
+  const double cut = cut_of(m, one.truth);
+  const double smallest = m.smallest * truth.solid_radius_max;
+  const CoarseAndFine parts = parted_or_refused(one.truth.packings[sample], cut);
+  MacroSetup setup = one.truth.variant->setup;
+  const auto fines = pieces_between(Grading::power_law(truth.exponent, smallest, cut), 0.0, kInfinity);
+  take_sizes(setup.spec, mixture_of(pieces_between(sizes_of(truth), cut, kInfinity), fines, parts.share()));
+  setup.spec.bodies = bodies_for(setup.spec, cut, parts.coarse.size(), one.run.seed);
+  const MacroPacking packing = make_macro_packing(setup.spec, one.run.seed, sample);
+  const NamedLaws laws = no_soft_laws();
+  MacroCurve c = one.test(setup, packing, sample, &laws);
+  if (m.mapped) map_by_state(*m.card, one.truth.curves[sample], truth.start_pressure, c);
+  return c;
+}
+
+/// The fines' volume in shells of the solid fraction that the law was measured with; packed with the coarse grains as
+/// hard spheres, brought into the box of the truth, shells then scaled.
+MacroCurve shells_of(const OneSample& one, std::size_t sample) {
+  const MaterialModel& m = one.model;
+  const MacroSpec& truth = spec_of(one.truth);
+  const MacroPacking& whole = one.truth.packings[sample];
+  const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
+  const double inside = law_fraction(*m.law, 0.0) > 0.0 ? law_fraction(*m.law, 0.0) : 1.0;
+  MacroSetup setup = one.truth.variant->setup;
+  const double shells = parts.fines_volume / inside;
+  std::vector<MacroBody> bodies = parts.coarse;
+  const Grading sizes =
+      Grading::power_law(truth.exponent, m.radii[0] * truth.solid_radius_max, m.radii[1] * truth.solid_radius_max);
+  RandomStream random(one.run.seed, kShellRadii, sample);
+  const double mean = kSphereVolume * sizes.mean_volume();
+  std::vector<double> radii = sizes.draw(static_cast<std::size_t>(std::max(1.0, std::round(shells / mean))), random);
+  double drawn = 0.0;
+  for (const double r : radii) drawn += kSphereVolume * cube(r);
+  for (const double r : radii) bodies.push_back({{}, r * std::cbrt(shells / drawn), true});
+  std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
+  setup.spec.bodies = static_cast<std::int64_t>(bodies.size());
+  MacroPacking packing = pack_bodies(setup.spec, std::move(bodies), one.run.seed, sample);
+  packing.springs.clear();
+  const double factor = std::cbrt((whole.size()[0] * whole.size()[1] * whole.size()[2]) /
+                                  (packing.size()[0] * packing.size()[1] * packing.size()[2]));
+  for (MacroBody& b : packing.bodies) {
+    b.x = packing.low + (b.x - packing.low) * factor;
+    if (b.soft) b.r *= m.scale;
+  }
+  packing.high = packing.low + packing.size() * factor;
+  const NamedLaws law = scene_law(*m.law, setup.spec, inside, m.name);
+  return one.test(setup, packing, sample, &law);
+}
+
+MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
+  const MacroCurve& truth = one.truth.curves[sample];
+  const double pressure = spec_of(one.truth).start_pressure;
+  const CellCard& card = *one.model.card;
+  if (truth.test == MacroTest::shear) throw NotUsable("the mean field knows no shear");
+  double onset = kNaN;
+  if (one.model.start == ModelStart::density) {
+    const CoarseAndFine parts =
+        parted_or_refused(one.truth.packings[sample], card.split * spec_of(one.truth).solid_radius_max);
+    onset = onset_by_card(card, parts.share());
+  }
+  MacroCurve c = mean_field(card, truth, pressure, onset);
+  c.engine = one.model.name;
+  return c;
+}
+
+MacroCurve curve_of(const OneSample& one, std::size_t sample) {
+  switch (one.model.kind) {
+    case ModelKind::cells:
+      return cells_of(one, sample);
+    case ModelKind::stand_in:
+      return stand_in_of(one, sample);
+    case ModelKind::mean_field:
+      return mean_field_of(one, sample);
+    case ModelKind::coarse:
+      return coarse_of(one, sample);
+    case ModelKind::shells:
+      return shells_of(one, sample);
+  }
+  return {};
+}
+
+}  // namespace
+
+CoarseAndFine parted(const MacroPacking& packing, double cut) {
+  CoarseAndFine out;
+  for (const MacroBody& b : packing.bodies) {
+    const double v = kSphereVolume * cube(b.r);
+    if (b.r >= cut) out.coarse.push_back(b);
+    (b.r >= cut ? out.coarse_volume : out.fines_volume) += v;
+  }
+  return out;
+}
+
+ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run) {
+  ModelRun out{&model, &truth, {}, ""};
+  const OneSample one{model, truth, run};
+  try {
+    for (std::size_t k = 0; k < truth.packings.size(); ++k) out.curves.push_back(curve_of(one, k));
+  } catch (const NotUsable& e) {
+    out.curves.clear();
+    out.refusal = e.what();
+  } catch (const BadInput& e) {
+    out.curves.clear();
+    out.refusal = e.what();
+  }
+  return out;
+}
+
+}  // namespace softgrain

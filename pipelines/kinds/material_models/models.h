@@ -1,0 +1,45 @@
+// Models of a resolved material: what runs in the place of its grains.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/kinds/material/run.h"
+#include "pipelines/kinds/material_models/scene.h"
+
+namespace softgrain {
+
+/// One model of one variant.
+struct ModelRun {
+  const MaterialModel* model = nullptr;
+  const VariantResult* truth = nullptr;
+  std::vector<MacroCurve> curves;  ///< one per sample
+  std::string refusal;             ///< why there are none
+};
+
+/// Throws what runs throw, but for a model that this material is none for (BadInput, NotUsable): then a refusal.
+ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run);
+
+/// Grains below `split` of the largest that the variant may have.
+struct CoarseAndFine {
+  std::vector<MacroBody> coarse;
+  double coarse_volume = 0.0;
+  double fines_volume = 0.0;
+
+  [[nodiscard]] double share() const { return fines_volume / (coarse_volume + fines_volume); }
+};
+CoarseAndFine parted(const MacroPacking& packing, double cut);
+
+/// The equation of state alone, along the strains of `truth`, from its start pressure p0 and solid fraction phi0:
+/// x0 = (p0/EK)^(1/n), phi_J = (phi0 - x0)/(1 - x0) of the porosity form, lateral/axial = K0 as long as the volume
+/// changes; by density phi_J is `onset` and p0 follows. Both forms of the card.
+MacroCurve mean_field(const CellCard& card, const MacroCurve& truth, double pressure, double onset);
+
+/// Stresses times [x_t/x_s]^n: the state x of the truth over that of the stand-in at equal strains, both from the same
+/// start pressure.
+void map_by_state(const CellCard& card, const MacroCurve& truth, double pressure, MacroCurve& stand_in);
+
+/// phi_J of the mixture by the card: 1/(1 + e), e the pores of fines and coarse grains over their solid volume.
+double onset_by_card(const CellCard& card, double share);
+
+}  // namespace softgrain

@@ -1,0 +1,65 @@
+#include <algorithm>
+
+#include "common/io/text_file.h"
+#include "pipelines/kinds/material/run.h"
+#include "pipelines/kinds/material_models/models.h"
+#include "pipelines/kinds/material_models/results.h"
+#include "pipelines/kinds/material_models/scores.h"
+
+namespace softgrain {
+
+namespace {
+
+bool is_blind(const MaterialModelsScene& scene, const MaterialVariant& v) {
+  return std::any_of(scene.blind.begin(), scene.blind.end(),
+                     [&](const std::string& name) { return name == v.name || name == v.packings; });
+}
+
+/// Every model of every variant; curves to models_VARIANT.h5.
+std::vector<ModelScore> run_models(const MaterialModelsScene& scene, const std::vector<VariantResult>& truths,
+                                   const Run& run) {
+  std::vector<ModelScore> scores;
+  for (const VariantResult& truth : truths) {
+    std::vector<MacroCurve> curves;
+    for (const MaterialModel& model : scene.models) {
+      const ModelRun one = run_model(model, truth, run);
+      scores.push_back(score(one, is_blind(scene, *truth.variant)));
+      curves.insert(curves.end(), one.curves.begin(), one.curves.end());
+    }
+    if (!curves.empty()) save_macro(curves, run.path("models_" + truth.variant->name + ".h5"), run.provenance);
+  }
+  return scores;
+}
+
+ExitStatus run_material_models(const Scene& file, const CommonOptions& options) {
+  const MaterialModelsScene scene = read_material_models_scene(file);
+  const Run run(file, options, "run", scene.material.seed,
+                {.files = scene.files, .text = scene.text + sizes_text(scene.material)});
+  const std::vector<VariantResult> truths = run_variants(scene.material, run);
+  MaterialOutcome measured = summarise(scene.material, truths, run);
+  write_text_atomic(run.path("material.csv"), as_csv(points_of(truths)));
+  MaterialModelsSummary summary{std::move(measured.summary), {}};
+  run.context.guard([&] { summary.scores = run_models(scene, truths, run); });
+  write_text_atomic(run.path("models.csv"), as_csv(table_of(summary.scores)));
+  summary.material.head.files["models"] = run.path("models.csv");
+  return run.finish(json_of(summary), people_text(summary.material) + people_text(summary.scores));
+}
+
+void check_models(const Scene& file, Findings& out) {
+  const MaterialModelsScene scene = read_material_models_scene(file);
+  check_variants(scene.material, out);
+  for (const MaterialModel& m : scene.models) out.lines += "  model " + m.name + ": " + to_string(m.kind) + "\n";
+}
+
+}  // namespace
+
+SceneKind material_models_kind() {
+  return {.name = "material-models",
+          .command = "run",
+          .run = run_material_models,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_models(scene, out); },
+          .read = [](const Scene& scene) { (void)read_material_models_scene(scene); },
+          .results = material_models_results()};
+}
+
+}  // namespace softgrain

@@ -1,0 +1,99 @@
+#include "pipelines/kinds/material_models/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "common/io/text_file.h"
+#include "pipelines/run/variant_name.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Keys of one kind of model mean nothing to others.
+void require_own_keys(const SceneTable& t, ModelKind kind) {
+  const auto only = [&](const char* key, std::initializer_list<ModelKind> kinds) {
+    if (t.has(key) && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      t.mistake(key, "does not go with kind = \"" + to_string(kind) + "\"");
+  };
+  only("split", {ModelKind::cells, ModelKind::stand_in, ModelKind::coarse, ModelKind::shells});
+  only("places", {ModelKind::cells});
+  only("start", {ModelKind::cells, ModelKind::mean_field});
+  only("smallest", {ModelKind::stand_in});
+  only("mapped", {ModelKind::stand_in});
+  for (const char* key : {"table", "form", "radii", "scale"}) only(key, {ModelKind::shells});
+  only("card", {ModelKind::cells, ModelKind::mean_field, ModelKind::stand_in});
+}
+
+CellCard read_card(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
+  const std::string path = scene.resolve(t.text("card"));
+  if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {
+    out.files.push_back(path);
+    out.text += read_text(path);
+  }
+  return read_cell_card(path);
+}
+
+LawSources read_shells(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
+  LawSources law;
+  const std::string path = scene.resolve(t.text("table"));
+  law.table = load_law_table(path);
+  law.files = {path};
+  if (std::find(out.files.begin(), out.files.end(), path) == out.files.end()) {
+    out.files.push_back(path);
+    out.text += read_text(path);
+  }
+  law.forms = {t.choice<Crowd>("form", Crowd::directional)};
+  law.range = RangePolicy::clamp;
+  return law;
+}
+
+MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModelsScene& out) {
+  MaterialModel m;
+  m.name = read_variant_name(t);
+  m.kind = t.choice<ModelKind>("kind");
+  require_own_keys(t, m.kind);
+  m.split = t.number("split", Unit::none, Range{0.0, 1.0, true, true}, m.split);
+  m.places = t.choice<ModelPlaces>("places", m.places);
+  m.start = t.choice<ModelStart>("start", m.start);
+  m.smallest = t.number("smallest", Unit::none, Range{0.0, m.split, true, true}, std::min(m.smallest, 0.6 * m.split));
+  m.mapped = t.flag("mapped", false);
+  m.scale = t.number("scale", Unit::none, Range{0.0, 2.0, true, false}, m.scale);
+  const std::vector<double> radii = t.numbers("radii", Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});
+  if (radii.size() != 2 || !(radii[0] < radii[1]))
+    t.mistake("radii", "the smallest and the largest shell, in this order");
+  else
+    m.radii = {radii[0], radii[1]};
+  if (m.kind == ModelKind::shells)
+    m.law = read_shells(scene, t, out);
+  else if (m.kind != ModelKind::coarse && (m.kind != ModelKind::stand_in || m.mapped))
+    m.card = read_card(scene, t, out);
+  return m;
+}
+
+}  // namespace
+
+MaterialModelsScene read_material_models_scene(const Scene& scene) {
+  return scene.read([&](const SceneTable& root) {
+    (void)root.choice("kind", {"material-models"});
+    MaterialModelsScene out;
+    out.material = read_material(root);
+    std::set<std::string> names;
+    for (const SceneTable& t : root.tables("model")) {
+      MaterialModel m = read_model(scene, t, out);
+      if (!names.insert(m.name).second) t.mistake("name", "is used twice");
+      out.models.push_back(std::move(m));
+    }
+    if (out.models.empty()) root.mistake("model", "give at least one [[model]]");
+    if (root.has("blind")) out.blind = root.texts("blind");
+    for (const std::string& name : out.blind)
+      if (std::none_of(out.material.variants.begin(), out.material.variants.end(),
+                       [&](const MaterialVariant& v) { return v.name == name || v.packings == name; }))
+        root.mistake("blind", "'" + name + "' is no variant");
+    return out;
+  });
+}
+
+}  // namespace softgrain

@@ -1,0 +1,184 @@
+#include "pipelines/kinds/material_models/scores.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/limits.h"
+#include "pipelines/compare/stage_results.h"
+#include "pipelines/kinds/macro/results.h"
+
+namespace softgrain {
+
+namespace {
+
+using Column = std::vector<double> (*)(const MacroCurve&);
+
+/// Mean over usable samples of the points that all have.
+std::vector<double> mean_of(const std::vector<MacroCurve>& curves, Column column) {
+  std::vector<double> sum;
+  double samples = 0.0;
+  for (const MacroCurve& c : curves) {
+    if (!c.usable) continue;
+    const std::vector<double> values = column(c);
+    if (samples == 0.0) sum = std::vector<double>(values.size(), 0.0);
+    sum.resize(std::min(sum.size(), values.size()));
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += values[k];
+    samples += 1.0;
+  }
+  for (double& v : sum) v /= samples;
+  return sum;
+}
+
+std::vector<double> axial_of(const MacroCurve& c) { return c.stress_axial; }
+std::vector<double> lateral_of(const MacroCurve& c) { return c.stress_lateral; }
+std::vector<double> strain_of(const MacroCurve& c) { return c.strain_z; }
+std::vector<double> ratio_of(const MacroCurve& c) { return stress_ratios(c); }
+
+double excess(const std::vector<double>& model, const std::vector<double>& truth, std::size_t k) {
+  return k < model.size() && k < truth.size() && truth[k] != 0.0 ? model[k] / truth[k] - 1.0 : kNaN;
+}
+
+/// The first point from this strain of the first stage on; past the end where there is none.
+std::size_t point_at(const std::vector<double>& strain, double wanted) {
+  for (std::size_t k = 0; k < strain.size(); ++k)
+    if (strain[k] >= wanted * (1.0 - 1e-9)) return k;
+  return strain.size();
+}
+
+/// Mean over the usable samples; NaN where there is no unloading.
+double unloading_of(const std::vector<MacroCurve>& curves) {
+  double sum = 0.0;
+  double samples = 0.0;
+  for (const MacroCurve& c : curves) {
+    if (!c.usable) continue;
+    for (const StageResult& s : stage_results(c))
+      if (s.record.kind == StageKind::unload) {
+        sum += s.modulus_begin;
+        samples += 1.0;
+        break;
+      }
+  }
+  return sum / samples;
+}
+
+double error_at(const std::vector<MacroCurve>& curves, std::size_t k) {
+  std::vector<double> values;
+  for (const MacroCurve& c : curves)
+    if (c.usable && k < c.stress_axial.size()) values.push_back(c.stress_axial[k]);
+  if (values.size() < 2) return kNaN;
+  const MeanError m = mean_error(values);
+  return m.error / m.mean;
+}
+
+/// Cost of the truth over that of the model.
+void add_costs(const ModelRun& run, ModelScore& s) {
+  Cost truth;
+  Cost model;
+  double truth_preparation = 0.0;
+  double model_preparation = 0.0;
+  const std::size_t n = std::min(run.curves.size(), run.truth->curves.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    const MacroCurve& t = run.truth->curves[k];
+    const MacroCurve& c = run.curves[k];
+    truth.contact_evaluations += t.cost.contact_evaluations;
+    truth.seconds += t.cost.seconds;
+    truth_preparation += t.preparation.seconds;
+    model.contact_evaluations += c.cost.contact_evaluations;
+    model.seconds += c.cost.seconds;
+    model_preparation += c.preparation.seconds;
+  }
+  s.evaluations = static_cast<double>(truth.contact_evaluations) / static_cast<double>(model.contact_evaluations);
+  s.seconds = truth.seconds / model.seconds;
+  s.seconds_all = (truth.seconds + truth_preparation) / (model.seconds + model_preparation);
+  if (model.contact_evaluations == 0) s.evaluations = s.seconds = s.seconds_all = kInfinity;
+}
+
+std::string percent(double x) { return std::isfinite(x) ? fmt::format("{:+.1f} %", 100.0 * x) : "-"; }
+std::string times(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "-"; }
+
+}  // namespace
+
+double relative_difference(const std::vector<double>& model, const std::vector<double>& truth, std::size_t first) {
+  double difference = 0.0;
+  double size = 0.0;
+  for (std::size_t k = first; k < std::min(model.size(), truth.size()); ++k) {
+    difference += (model[k] - truth[k]) * (model[k] - truth[k]);
+    size += truth[k] * truth[k];
+  }
+  return size > 0.0 ? std::sqrt(difference / size) : kNaN;
+}
+
+ModelScore score(const ModelRun& run, bool blind) {
+  ModelScore s{.variant = run.truth->variant->name,
+               .model = run.model->name,
+               .kind = run.model->kind,
+               .blind = blind,
+               .refusal = run.refusal};
+  for (double* value : {&s.axial, &s.lateral, &s.axial_at_2, &s.axial_at_end, &s.ratio_at_2, &s.ratio_at_6,
+                        &s.unloading, &s.truth_error, &s.evaluations, &s.seconds, &s.seconds_all})
+    *value = kNaN;
+  const bool usable = std::any_of(run.curves.begin(), run.curves.end(), [](const MacroCurve& c) { return c.usable; });
+  if (!usable && s.refusal.empty() && !run.curves.empty()) s.refusal = "no usable curve: " + run.curves.front().note;
+  if (!usable) return s;
+  const std::vector<MacroCurve>& truth = run.truth->curves;
+  s.bodies = run.curves.front().bodies;
+  const auto strain = mean_of(truth, strain_of);
+  const std::size_t first = point_at(strain, 0.01);
+  const std::size_t two = point_at(strain, 0.02);
+  const auto end = static_cast<std::size_t>(std::max_element(strain.begin(), strain.end()) - strain.begin());
+  const auto t = mean_of(truth, axial_of);
+  const auto m = mean_of(run.curves, axial_of);
+  s.axial = relative_difference(m, t, first);
+  s.lateral = relative_difference(mean_of(run.curves, lateral_of), mean_of(truth, lateral_of), first);
+  s.axial_at_2 = excess(m, t, two);
+  s.axial_at_end = excess(m, t, end);
+  s.truth_error = error_at(truth, end);
+  if (run.truth->variant->setup.spec.test == MacroTest::shear) {
+    const auto q_truth = mean_of(truth, ratio_of);
+    const auto q_model = mean_of(run.curves, ratio_of);
+    s.ratio_at_2 = excess(q_model, q_truth, two);
+    s.ratio_at_6 = excess(q_model, q_truth, point_at(strain, 0.06));
+  }
+  s.unloading = unloading_of(run.curves) / unloading_of(truth) - 1.0;
+  add_costs(run, s);
+  return s;
+}
+
+TextTable table_of(const std::vector<ModelScore>& scores) {
+  TextTable out{{"variant", "model", "kind", "blind", "bodies", "axial", "lateral", "axial at 2 %", "axial at the end",
+                 "q/p at 2 %", "q/p at 6 %", "unloading modulus", "standard error of the truth", "evaluations",
+                 "seconds", "seconds with preparation", "refusal"},
+                {}};
+  for (const ModelScore& s : scores) {
+    std::vector<std::string> row{s.variant, s.model, to_string(s.kind), s.blind ? "yes" : "no",
+                                 std::to_string(s.bodies)};
+    for (const double x : {s.axial, s.lateral, s.axial_at_2, s.axial_at_end, s.ratio_at_2, s.ratio_at_6, s.unloading,
+                           s.truth_error, s.evaluations, s.seconds, s.seconds_all})
+      row.push_back(std::isfinite(x) ? fmt::format("{:.4g}", x) : "");
+    row.push_back(s.refusal);
+    out.rows.push_back(std::move(row));
+  }
+  return out;
+}
+
+std::string people_text(const std::vector<ModelScore>& scores) {
+  std::string text;
+  for (const ModelScore& s : scores) {
+    text += fmt::format("{}{}, {}: ", s.variant, s.blind ? " (blind)" : "", s.model);
+    if (!s.refusal.empty()) {
+      text += s.refusal + "\n";
+      continue;
+    }
+    text += fmt::format("axial {}, lateral {}, at 2 % {}, at the end {}", percent(s.axial), percent(s.lateral),
+                        percent(s.axial_at_2), percent(s.axial_at_end));
+    if (std::isfinite(s.ratio_at_6))
+      text += fmt::format(", q/p at 2 and 6 % {} and {}", percent(s.ratio_at_2), percent(s.ratio_at_6));
+    if (std::isfinite(s.unloading)) text += ", unloading modulus " + percent(s.unloading);
+    text += fmt::format("; {} times fewer evaluations, {} times faster\n", times(s.evaluations), times(s.seconds));
+  }
+  return text;
+}
+
+}  // namespace softgrain

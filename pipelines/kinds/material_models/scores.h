@@ -1,0 +1,19 @@
+// Curves of models beside the truth.
+#pragma once
+
+#include "pipelines/kinds/material_models/models.h"
+#include "pipelines/kinds/material_models/summary.h"
+#include "pipelines/run/text_table.h"
+
+namespace softgrain {
+
+/// Mean curves of the usable samples are compared, point by point; strain and stress of z are axial.
+ModelScore score(const ModelRun& run, bool blind);
+
+/// Square root of sum (model - truth)^2 over sum truth^2 of the points from `first` on. NaN where there is none.
+double relative_difference(const std::vector<double>& model, const std::vector<double>& truth, std::size_t first);
+
+TextTable table_of(const std::vector<ModelScore>& scores);
+std::string people_text(const std::vector<ModelScore>& scores);
+
+}  // namespace softgrain

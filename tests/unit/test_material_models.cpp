@@ -1,0 +1,106 @@
+// Models of a material: what needs no run, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/limits.h"
+#include "common/core/solid_sphere.h"
+#include "macrosim/grain_record.h"
+#include "pipelines/kinds/material_models/models.h"
+#include "pipelines/kinds/material_models/scores.h"
+
+namespace softgrain {
+namespace {
+
+CellCard card_of(StateForm form) {
+  CellCard card;
+  card.form = form;
+  card.modulus.value = 0.05;
+  card.exponent.value = 2.0;
+  card.void_ratio.value = 0.6;
+  card.excess_alone.value = 0.62;
+  card.excess_many.value = 0.3;
+  card.excess_decay.value = 0.35;
+  card.lateral_ratio.value = 0.5;
+  return card;
+}
+
+/// A curve of a mixture that jams at `onset` and follows the law of the card exactly, oedometric.
+MacroCurve exact(const CellCard& card, double start, double onset) {
+  MacroCurve c;
+  c.start.youngs_modulus = 1e6;
+  for (const double e : {0.0, 0.02, 0.05}) {
+    const double phi = start / (1.0 - e);
+    const double x = card.form == StateForm::porosity ? (phi - onset) / (1.0 - onset)
+                                                      : 1.0 - (1.0 / phi - 1.0) / (1.0 / onset - 1.0);
+    const double p = 1e6 * card.modulus.value * x * x;
+    c.strain.push_back(e);
+    c.strain_z.push_back(e);
+    c.strain_x.push_back(0.0);
+    c.strain_y.push_back(0.0);
+    c.stress_axial.push_back(1.5 * p);
+    for (auto* column : {&c.stress_lateral, &c.stress_x, &c.stress_y}) column->push_back(0.75 * p);
+    c.more[kSolidFraction].push_back(phi);
+  }
+  return c;
+}
+
+class MeanFields : public testing::TestWithParam<StateForm> {};
+
+TEST_P(MeanFields, GiveBackWhatFollowsTheirLaw) {
+  const CellCard card = card_of(GetParam());
+  const MacroCurve truth = exact(card, 0.66, 0.64);
+  const double start = (truth.stress_axial[0] + 2.0 * truth.stress_x[0]) / 3e6;
+  const MacroCurve by_pressure = mean_field(card, truth, start, kNaN);
+  const MacroCurve by_density = mean_field(card, truth, kNaN, 0.64);
+  const MacroCurve off = mean_field(card, truth, kNaN, 0.645);
+  for (std::size_t k = 0; k < truth.strain.size(); ++k) {
+    EXPECT_NEAR(by_pressure.stress_axial[k] / truth.stress_axial[k], 1.0, 1e-9) << k;
+    EXPECT_NEAR(by_density.stress_lateral[k] / truth.stress_lateral[k], 1.0, 1e-9) << k;
+    EXPECT_LT(off.stress_axial[k], 0.95 * truth.stress_axial[k]) << k;
+  }
+}
+
+/// A stand-in of another onset, from the same start pressure: mapped, it is the truth.
+TEST_P(MeanFields, MapStandInsOntoTheTruth) {
+  const CellCard card = card_of(GetParam());
+  const MacroCurve truth = exact(card, 0.66, 0.64);
+  const double start = (truth.stress_axial[0] + 2.0 * truth.stress_x[0]) / 3e6;
+  const double x = std::sqrt(start / 0.05);
+  const double onset = 0.6;
+  const double phi =
+      GetParam() == StateForm::porosity ? onset + x * (1.0 - onset) : 1.0 / (1.0 + (1.0 / onset - 1.0) * (1.0 - x));
+  MacroCurve other = exact(card, phi, onset);
+  EXPECT_GT(std::abs(other.stress_axial[2] / truth.stress_axial[2] - 1.0), 0.05);
+  map_by_state(card, truth, start, other);
+  for (std::size_t k = 0; k < truth.strain.size(); ++k)
+    EXPECT_NEAR(other.stress_axial[k] / truth.stress_axial[k], 1.0, 1e-9) << k;
+}
+INSTANTIATE_TEST_SUITE_P(Forms, MeanFields, testing::Values(StateForm::porosity, StateForm::pores));
+
+TEST(MaterialModels, TheOnsetOfTheCardIsThatOfItsPores) {
+  const CellCard card = card_of(StateForm::porosity);
+  EXPECT_NEAR(onset_by_card(card, 1.0), 1.0 / 1.6, 1e-12);   // fines alone
+  EXPECT_NEAR(onset_by_card(card, 1e-9), 1.0 / 1.62, 1e-6);  // coarse grains alone
+  const double ratio = 0.4 / 0.6;
+  const double pores = 0.6 * 0.4 + 0.6 * (0.3 + 0.32 * std::exp(-ratio / 0.35));
+  EXPECT_NEAR(onset_by_card(card, 0.4), 1.0 / (1.0 + pores), 1e-12);
+}
+
+TEST(MaterialModels, GrainsArePartedByTheirRadius) {
+  MacroPacking packing;
+  for (const double r : {3.0, 2.0, 1.0, 0.5}) packing.bodies.push_back({{}, r, false});
+  const CoarseAndFine parts = parted(packing, 2.0);
+  EXPECT_EQ(parts.coarse.size(), 2U);
+  EXPECT_NEAR(parts.coarse_volume, kSphereVolume * 35.0, 1e-9);
+  EXPECT_NEAR(parts.share(), 1.125 / 36.125, 1e-12);
+}
+
+TEST(MaterialModels, TheirErrorIsRelativeToTheTruth) {
+  EXPECT_NEAR(relative_difference({9.0, 1.1, 2.2}, {1.0, 1.0, 2.0}, 1), 0.1, 1e-12);
+  EXPECT_NEAR(relative_difference({1.0, 3.0}, {1.0, 4.0, 7.0}, 0), std::sqrt(1.0 / 17.0), 1e-12);
+  EXPECT_TRUE(std::isnan(relative_difference({1.0}, {1.0}, 1)));
+}
+
+}  // namespace
+}  // namespace softgrain
