@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_spline.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "calibrate/bootstrap.h"
+#include "calibrate/rod_packing.h"
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
@@ -20,12 +24,84 @@ struct Onsets {
   std::vector<double> error;
 };
 
-double model(OnsetForm form, std::span<const double> p, double r) {
-  if (form == OnsetForm::void_power) return 1.0 - std::exp(p[0] - p[1] * std::log(r));
-  return p[0] - p[1] * std::pow(r, -p[2]);
-}
+/// phi_J of one span by rods, over their gap.
+class RodCurve {
+ public:
+  RodCurve(double exponent, double span) {
+    constexpr std::size_t kRods = 5000;
+    constexpr int kKnots = 28;
+    constexpr double kSmallest = 0.25;
+    constexpr double kStep = 1.1;  // of the gap: up to 3.3
+    const auto sizes = Grading::classes({{1.0 / span, 1.0, exponent, 1.0}});
+    const std::vector<double> chords = chords_of(sizes, kRods);
+    std::vector<double> log_gap;
+    std::vector<double> log_void_ratio;
+    for (int k = 0; k < kKnots; ++k) {
+      const double gap = kSmallest * std::pow(kStep, k);
+      log_gap.push_back(std::log(gap));
+      log_void_ratio.push_back(std::log(1.0 / rod_packing(chords, gap) - 1.0));
+    }
+    spline_.reset(gsl_spline_alloc(gsl_interp_cspline, log_gap.size()));
+    gsl_spline_init(spline_.get(), log_gap.data(), log_void_ratio.data(), log_gap.size());
+  }
 
-std::size_t parameters_of(OnsetForm form) { return form == OnsetForm::void_power ? 2 : 3; }
+  [[nodiscard]] double at(double gap) const {
+    const double log_gap = std::clamp(std::log(gap), spline_->interp->xmin, spline_->interp->xmax);
+    return 1.0 / (1.0 + std::exp(gsl_spline_eval(spline_.get(), log_gap, nullptr)));
+  }
+
+ private:
+  struct Free {
+    void operator()(gsl_spline* s) const { gsl_spline_free(s); }
+  };
+  std::unique_ptr<gsl_spline, Free> spline_;
+};
+
+/// A form and what it needs to be evaluated at the spans that occur.
+class OnsetModel {
+ public:
+  OnsetModel(OnsetForm form, const std::vector<double>& spans, double exponent) : form_(form) {
+    if (form != OnsetForm::rods) return;
+    for (const double r : spans)
+      if (!rods_.contains(r)) rods_.try_emplace(r, exponent, r);
+  }
+
+  [[nodiscard]] OnsetForm form() const { return form_; }
+
+  [[nodiscard]] double operator()(std::span<const double> p, double r) const {
+    switch (form_) {
+      case OnsetForm::void_power:
+        return 1.0 - std::exp(p[0] - p[1] * std::log(r));
+      case OnsetForm::saturating:
+        return p[0] - p[1] * std::pow(r, -p[2]);
+      case OnsetForm::void_ratio:
+        return 1.0 / (1.0 + std::exp(p[0] - p[1] * (std::hypot(std::log(r), p[2]) - p[2])));
+      case OnsetForm::rods:
+        break;
+    }
+    return rods_.at(r).at(p[0]);
+  }
+
+  [[nodiscard]] std::size_t parameters() const { return bounds().size(); }
+
+  [[nodiscard]] std::vector<ParameterBounds> bounds() const {
+    switch (form_) {
+      case OnsetForm::void_power:
+        return {{-20.0, 20.0}, {0.0, 5.0}};
+      case OnsetForm::saturating:
+        return {{0.0, 1.0}, {0.0, 10.0}, {0.02, 5.0}};
+      case OnsetForm::void_ratio:
+        return {{-20.0, 20.0}, {0.0, 5.0}, {0.0, 3.0}};
+      case OnsetForm::rods:
+        break;
+    }
+    return {{0.25, 3.27}};
+  }
+
+ private:
+  OnsetForm form_;
+  std::map<double, RodCurve> rods_;
+};
 
 /// Start values through the first and the last onset.
 std::vector<std::vector<double>> starts(OnsetForm form, const Onsets& at, const std::vector<double>& onset) {
@@ -33,31 +109,42 @@ std::vector<std::vector<double>> starts(OnsetForm form, const Onsets& at, const 
   const double high = at.span.back();
   const double first = onset.front();
   const double last = onset.back();
-  if (form == OnsetForm::void_power) {
-    const double b = std::clamp(std::log((1.0 - first) / (1.0 - last)) / std::log(high / low), 0.0, 5.0);
-    return {{std::log(1.0 - first) + b * std::log(low), b}};
-  }
   std::vector<std::vector<double>> out;
-  for (const double b : {0.05, 0.2, 0.5, 1.0, 2.0}) {
-    const double fall = std::pow(low, -b) - std::pow(high, -b);
-    const double a = std::max(0.0, (last - first) / fall);
-    out.push_back({std::clamp(last + a * std::pow(high, -b), 0.0, 1.0), std::min(a, 10.0), b});
+  switch (form) {
+    case OnsetForm::void_power: {
+      const double b = std::clamp(std::log((1.0 - first) / (1.0 - last)) / std::log(high / low), 0.0, 5.0);
+      return {{std::log(1.0 - first) + b * std::log(low), b}};
+    }
+    case OnsetForm::saturating:
+      for (const double b : {0.05, 0.2, 0.5, 1.0, 2.0}) {
+        const double fall = std::pow(low, -b) - std::pow(high, -b);
+        const double a = std::max(0.0, (last - first) / fall);
+        out.push_back({std::clamp(last + a * std::pow(high, -b), 0.0, 1.0), std::min(a, 10.0), b});
+      }
+      return out;
+    case OnsetForm::void_ratio:
+      for (const double w : {1.0, 0.3, 2.0}) {
+        const auto rise = [&](double r) { return std::hypot(std::log(r), w) - w; };
+        const double fall = std::log((1.0 / first - 1.0) / (1.0 / last - 1.0));
+        const double b = std::clamp(fall / (rise(high) - rise(low)), 0.0, 5.0);
+        out.push_back({std::log(1.0 / first - 1.0) + b * rise(low), b, w});
+      }
+      return out;
+    case OnsetForm::rods:
+      break;
   }
-  return out;
+  return {{1.0}};
 }
 
-LeastSquaresFit solve(OnsetForm form, const Onsets& at, const std::vector<double>& onset,
+LeastSquaresFit solve(const OnsetModel& model, const Onsets& at, const std::vector<double>& onset,
                       const std::vector<std::vector<double>>& from) {
   LeastSquaresProblem problem;
   problem.residuals = onset.size();
   problem.evaluate = [&](std::span<const double> p, std::span<double> r) {
-    for (std::size_t k = 0; k < onset.size(); ++k) r[k] = (model(form, p, at.span[k]) - onset[k]) / at.error[k];
+    for (std::size_t k = 0; k < onset.size(); ++k) r[k] = (model(p, at.span[k]) - onset[k]) / at.error[k];
     return true;
   };
-  if (form == OnsetForm::void_power)
-    problem.bounds = {{-20.0, 20.0}, {0.0, 5.0}};
-  else
-    problem.bounds = {{0.0, 1.0}, {0.0, 10.0}, {0.02, 5.0}};
+  problem.bounds = model.bounds();
   LeastSquaresOptions options;
   options.thorough = false;  // starts are many; a sum that is as small elsewhere gives the same value at small spans
   options.scale_covariance = false;
@@ -75,35 +162,33 @@ bool found(const LeastSquaresFit& fit) {
   return std::isfinite(fit.residual_sum_of_squares) && fit.end != FitEnd::failed && fit.end != FitEnd::not_run;
 }
 
-OnsetFormFit fit_form(OnsetForm form, const Onsets& at, const std::vector<double>& onset,
+/// `values`: at the span asked for, of every replicate; NaN where there is no fit.
+OnsetFormFit fit_form(const OnsetModel& model, const Onsets& at, const std::vector<double>& onset,
                       const std::vector<std::vector<double>>& replicates, int degrees, double span,
-                      const OnsetOptions& options) {
+                      const OnsetOptions& options, std::vector<double>& values) {
   OnsetFormFit out;
-  out.form = form;
-  if (onset.size() < parameters_of(form)) {
-    out.message = fmt::format("needs groups of {} spans", parameters_of(form));
-    return out;
-  }
-  const LeastSquaresFit best = solve(form, at, onset, starts(form, at, onset));
+  out.form = model.form();
+  const LeastSquaresFit best = solve(model, at, onset, starts(model.form(), at, onset));
   if (!found(best)) {
     out.message = "no fit: " + best.message;
     return out;
   }
   out.parameters = best.parameters;
   out.chi2 = best.residual_sum_of_squares;
-  const auto freedom = static_cast<double>(onset.size() - parameters_of(form));
+  const auto freedom = static_cast<double>(onset.size()) - static_cast<double>(model.parameters());
   if (freedom > 0.0) out.probability = gsl_cdf_fdist_Q(out.chi2 / freedom, freedom, degrees);
-  std::vector<double> values(replicates.size(), std::numeric_limits<double>::quiet_NaN());
+  values.assign(replicates.size(), std::numeric_limits<double>::quiet_NaN());
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t r = 0; r < replicates.size(); ++r) {
     const LeastSquaresFit one =
-        solve(form, at, replicates[r], {best.parameters, starts(form, at, replicates[r]).front()});
-    if (found(one)) values[r] = model(form, one.parameters, span);
+        solve(model, at, replicates[r], {best.parameters, starts(model.form(), at, replicates[r]).front()});
+    if (found(one)) values[r] = model(one.parameters, span);
   }
-  std::erase_if(values, [](double v) { return std::isnan(v); });
-  const auto [low, high] = interval95(values);
-  out.onset = {model(form, best.parameters, span), mean_error(values).deviation, low, high};
-  out.usable = out.probability >= options.refused_below && values.size() > 1;
+  std::vector<double> numbers = values;
+  std::erase_if(numbers, [](double v) { return std::isnan(v); });
+  const auto [low, high] = interval95(numbers);
+  out.onset = {model(best.parameters, span), mean_error(numbers).deviation, low, high};
+  out.usable = out.probability >= options.refused_below && numbers.size() > 1;
   out.message = out.usable ? "fitted"
                            : fmt::format("refused by the data: chi^2 {:.3g} has a probability of {:.2g}", out.chi2,
                                          out.probability);
@@ -128,7 +213,19 @@ void require_input(const StateFit& fit, double span, const OnsetOptions& options
 
 }  // namespace
 
-std::string to_string(OnsetForm form) { return form == OnsetForm::void_power ? "void power" : "saturating"; }
+std::string to_string(OnsetForm form) {
+  switch (form) {
+    case OnsetForm::void_power:
+      return "void power";
+    case OnsetForm::saturating:
+      return "saturating";
+    case OnsetForm::void_ratio:
+      return "void ratio";
+    case OnsetForm::rods:
+      break;
+  }
+  return "rods";
+}
 
 OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const OnsetOptions& options) {
   require_input(fit, span, options);
@@ -155,12 +252,21 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
   OnsetExtrapolation out;
   out.span = span;
   out.largest_span = at.span.back();
-  for (const OnsetForm form : {OnsetForm::void_power, OnsetForm::saturating}) {
-    if (form == OnsetForm::saturating && spans < 3) {
-      out.forms.push_back({form, false, "needs groups of 3 spans", {}, 0.0, 1.0, {}});
+  std::vector<double> needed = at.span;
+  needed.push_back(span);
+  std::vector<std::vector<double>> values;
+  for (const OnsetForm form : {OnsetForm::void_power, OnsetForm::saturating, OnsetForm::void_ratio, OnsetForm::rods}) {
+    values.emplace_back();
+    if (form == OnsetForm::rods && !(options.exponent > 0.0)) {
+      out.forms.push_back({form, false, "sizes are no power law", {}, 0.0, 1.0, {}});
       continue;
     }
-    out.forms.push_back(fit_form(form, at, onset, replicates, fit.degrees, span, options));
+    const OnsetModel model(form, needed, options.exponent);
+    if (spans < static_cast<std::ptrdiff_t>(model.parameters())) {
+      out.forms.push_back({form, false, fmt::format("needs groups of {} spans", model.parameters()), {}, 0.0, 1.0, {}});
+      continue;
+    }
+    out.forms.push_back(fit_form(model, at, onset, replicates, fit.degrees, span, options, values.back()));
   }
   // The saturating form contains the void power, so it is as possible as that, with its further parameter or without.
   OnsetFormFit& wide = out.forms[1];
@@ -170,8 +276,10 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
   }
   double count = 0.0;
   out.onset = {0.0, 0.0, kInfinity, -kInfinity};
-  for (const OnsetFormFit& form : out.forms) {
+  for (std::size_t f = 0; f < out.forms.size(); ++f) {
+    const OnsetFormFit& form = out.forms[f];
     if (!form.usable) continue;
+    out.replicates.push_back(values[f]);
     count += 1.0;
     out.onset.value += form.onset.value;
     out.onset.error = std::max(out.onset.error, form.onset.error);
@@ -180,9 +288,12 @@ OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const Ons
   }
   out.usable = count > 0.0;
   if (out.usable) out.onset.value /= count;
-  out.message = !out.usable   ? "both forms are refused by the data"
-                : count < 2.0 ? "one form alone: its difference from the other is not in the interval"
-                              : "both forms";
+  std::string names;
+  for (const OnsetFormFit& form : out.forms)
+    if (form.usable) names += (names.empty() ? "" : ", ") + to_string(form.form);
+  out.message = !out.usable   ? "all forms are refused by the data"
+                : count < 2.0 ? "one form alone, " + names + ": its difference from others is not in the interval"
+                              : names;
   return out;
 }
 

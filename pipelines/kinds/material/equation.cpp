@@ -1,11 +1,17 @@
 #include "pipelines/kinds/material/equation.h"
 
 #include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
 
+#include "calibrate/response_prediction.h"
 #include "common/core/error.h"
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/material/results.h"
 
@@ -26,34 +32,52 @@ std::vector<StateCurve> curves_of_all(const std::vector<EquationInput>& variants
   return out;
 }
 
-/// Variants of one family that were fitted.
-std::vector<std::string> members(const std::vector<EquationInput>& variants, const std::string& family,
-                                 const StateFit& fit) {
-  std::vector<std::string> names;
-  for (const EquationInput& v : variants)
-    if (v.family == family &&
-        std::any_of(fit.groups.begin(), fit.groups.end(), [&](const StateGroup& g) { return g.name == v.name; }))
-      names.push_back(v.name);
-  return names;
+/// phi_J of all samples of a span, with K and n of `fit`.
+std::optional<StateEstimate> measured_onset(const StateFit& fit, StateForm form, const std::vector<StateCurve>& curves,
+                                            double span) {
+  std::vector<double> onsets;
+  for (const StateCurve& c : curves)
+    if (std::abs(c.span / span - 1.0) < 1e-6)
+      onsets.push_back(fitted_onset(form, fit.modulus.value, fit.exponent.value, c));
+  if (onsets.empty()) return std::nullopt;
+  const MeanError mean = mean_error(onsets);
+  if (mean.n < 2) return StateEstimate{mean.mean, kInfinity, -kInfinity, kInfinity};
+  const double half = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(mean.n - 1)) * mean.error;
+  return StateEstimate{mean.mean, mean.error, mean.mean - half, mean.mean + half};
 }
 
-ExtrapolationSummary extrapolate(const StateFit& fit, const std::vector<std::string>& groups, const std::string& family,
-                                 double span, const EquationSettings& settings) {
-  ExtrapolationSummary s{family, span, settings.largest_span, false, "", {}, {}};
-  for (const StateGroup& g : fit.groups)
-    if (std::abs(g.span / span - 1.0) < 1e-6 && std::find(groups.begin(), groups.end(), g.name) != groups.end())
-      s.measured = g.onset;
-  try {
-    const OnsetExtrapolation e =
-        extrapolate_onset(fit, span, {.largest_span = settings.largest_span, .groups = groups});
-    s.usable = e.usable;
-    s.message = e.message;
-    s.largest_fitted = e.largest_span;
-    if (e.usable) s.onset = e.onset;
-  } catch (const BadInput& e) {
-    s.message = e.what();
+/// Larger spans take no part, in K and n neither.
+StateFit fit_family(const std::vector<StateCurve>& curves, const EquationSettings& settings, std::uint64_t seed) {
+  std::vector<StateCurve> some;
+  for (const StateCurve& c : curves)
+    if (settings.largest_span <= 0.0 || c.span <= settings.largest_span) some.push_back(c);
+  return fit_equation_of_state(
+      some, {.form = settings.form, .replicates = static_cast<int>(settings.replicates), .seed = seed});
+}
+
+/// Of variants that differ in the span alone, whose curves these are.
+std::vector<ExtrapolationSummary> extrapolate(const std::string& family, const std::vector<StateCurve>& curves,
+                                              double exponent, const EquationSettings& settings, std::uint64_t seed) {
+  std::vector<ExtrapolationSummary> out;
+  StateFit fit;
+  for (const double span : settings.spans) {
+    ExtrapolationSummary s{family, span, settings.largest_span, false, "", {}, {}, {}};
+    try {
+      if (fit.groups.empty()) fit = fit_family(curves, settings, seed);
+      if (fit.usable) s.measured = measured_onset(fit, settings.form, curves, span);
+      const OnsetExtrapolation e = extrapolate_onset(fit, span, {.groups = {}, .exponent = exponent});
+      s.usable = e.usable;
+      s.message = e.message;
+      s.largest_fitted = e.largest_span;
+      if (e.usable) s.onset = e.onset;
+      for (const OnsetFormFit& f : e.forms)
+        if (!f.parameters.empty()) s.forms.push_back({to_string(f.form), f.usable, f.message, f.parameters, f.onset});
+    } catch (const BadInput& e) {
+      s.message = e.what();
+    }
+    out.push_back(std::move(s));
   }
-  return s;
+  return out;
 }
 
 }  // namespace
@@ -110,13 +134,15 @@ std::optional<EquationResult> equation_of(const std::vector<EquationInput>& vari
   s.collapse_probability = fit.collapse_probability;
   for (const StateGroup& g : fit.groups) s.onsets.push_back({g.name, g.span, g.samples, g.onset, g.own_modulus});
   if (!fit.usable) return out;
-  std::set<std::string> families;
-  for (const EquationInput& v : variants) families.insert(v.family);
-  for (const std::string& family : families) {
-    const std::vector<std::string> groups = members(variants, family, fit);
-    if (groups.size() < 2) continue;
-    for (const double span : settings.spans)
-      s.extrapolations.push_back(extrapolate(fit, groups, family, span, settings));
+  std::map<std::string, std::vector<EquationInput>> families;
+  for (const EquationInput& v : variants) families[v.family].push_back(v);
+  for (const auto& [family, members] : families) {
+    const std::vector<StateCurve> own = curves_of_all(members);
+    std::set<double> spans;
+    for (const StateCurve& c : own) spans.insert(c.span);
+    if (spans.size() < 2) continue;
+    for (ExtrapolationSummary& e : extrapolate(family, own, members.front().exponent, settings, seed))
+      s.extrapolations.push_back(std::move(e));
   }
   return out;
 }

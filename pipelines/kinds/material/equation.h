@@ -32,6 +32,7 @@ struct EquationInput {
   double span = 1.0;   ///< largest over smallest radius
   std::string family;  ///< variants that differ in the span alone
   std::vector<MacroCurve> curves;
+  double exponent = 0.0;  ///< of the power law of their sizes; 0: another form
 };
 
 void fields(auto&& visit, Of<StateEstimate> auto& e) {
@@ -57,6 +58,23 @@ void fields(auto&& visit, Of<OnsetSummary> auto& s) {
   visit("own_K", s.own_modulus);
 }
 
+/// What one form of extrapolation says.
+struct OnsetFormSummary {
+  std::string form;
+  bool usable = false;
+  std::string message;
+  std::vector<double> parameters;
+  StateEstimate onset;
+};
+
+void fields(auto&& visit, Of<OnsetFormSummary> auto& s) {
+  visit("form", s.form);
+  visit("usable", s.usable);
+  visit("message", s.message);
+  visit("parameters", s.parameters);
+  visit("onset", s.onset);
+}
+
 /// phi_J at a span, from those of smaller ones.
 struct ExtrapolationSummary {
   std::string family;
@@ -66,6 +84,7 @@ struct ExtrapolationSummary {
   std::string message;
   std::optional<StateEstimate> onset;
   std::optional<StateEstimate> measured;  ///< where a variant has that span
+  std::vector<OnsetFormSummary> forms;
 };
 
 void fields(auto&& visit, Of<ExtrapolationSummary> auto& s) {
@@ -76,6 +95,7 @@ void fields(auto&& visit, Of<ExtrapolationSummary> auto& s) {
   visit("message", s.message);
   visit("onset", s.onset, kLeftOut);
   visit("measured", s.measured, kLeftOut);
+  visit("forms", s.forms, kLeftOut);
 }
 
 /// p/E = K x^n (porosity), x = (phi - phi_J)/(1 - phi_J), or K (1 - Vp/Vp_J)^n (pores).

@@ -154,12 +154,16 @@ TextTable points_of(const std::vector<VariantResult>& results) {
 
 namespace {
 
-/// Variants of one preparation, friction, form of sizes and loading differ in their span alone.
-std::string family_of(const MaterialVariant& v) {
+/// Variants of one preparation, friction and form of sizes differ in their span alone.
+std::string material_family(const MaterialVariant& v) {
   const MacroSpec& spec = v.setup.spec;
-  return fmt::format("{}, mu = {:g}, {}{}", to_string(spec.preparation), spec.friction,
-                     spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent),
-                     v.loading.empty() ? "" : ", " + v.loading);
+  return fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction,
+                     spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent));
+}
+
+/// And of one loading.
+std::string family_of(const MaterialVariant& v) {
+  return material_family(v) + (v.loading.empty() ? "" : ", " + v.loading);
 }
 
 /// Packings take part once, by the first of their tests that compresses them: what they do in another is no other
@@ -179,10 +183,23 @@ std::vector<const VariantResult*> first_compressed(const std::vector<VariantResu
 std::optional<EquationResult> equation(const MaterialScene& scene, const std::vector<VariantResult>& results,
                                        std::uint64_t seed) {
   std::vector<EquationInput> inputs;
-  for (const VariantResult* r : first_compressed(results))
-    inputs.push_back(
-        {r->variant->name, r->variant->setup.spec.solid_polydispersity, family_of(*r->variant), r->curves});
+  for (const VariantResult* r : first_compressed(results)) {
+    const MacroSpec& spec = r->variant->setup.spec;
+    inputs.push_back({r->variant->name, spec.solid_polydispersity, family_of(*r->variant), r->curves,
+                      spec.solid_sizes ? 0.0 : spec.exponent});
+  }
   return equation_of(inputs, scene.equation, seed);
+}
+
+std::vector<PredictionSummary> predictions(const MaterialScene& scene, const std::vector<VariantResult>& results,
+                                           std::uint64_t seed) {
+  std::vector<PredictionInput> inputs;
+  for (const VariantResult& r : results) {
+    const MacroSpec& spec = r.variant->setup.spec;
+    inputs.push_back({packings_name(*r.variant), spec.solid_polydispersity, material_family(*r.variant),
+                      r.variant->loading, spec.solid_sizes ? 0.0 : spec.exponent, spec.start_pressure, r.curves});
+  }
+  return predict_spans(inputs, scene.equation, seed);
 }
 
 std::string interval_text(const StateEstimate& e) {
@@ -227,7 +244,7 @@ std::string people_text(const MaterialSummary& s) {
                             m.axial_end->mean / s.youngs_modulus, m.lateral_end->mean / s.youngs_modulus,
                             m.ratio_end->mean);
   }
-  return text + (s.equation ? equation_text(*s.equation) : "");
+  return text + (s.equation ? equation_text(*s.equation) : "") + prediction_text(s.predictions);
 }
 
 MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantResult>& results, const Run& run) {
@@ -251,6 +268,7 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
     s.equation = std::move(found->summary);
     out.states = std::move(found->fit);
   }
+  s.predictions = predictions(scene, results, run.seed);
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   s.head.files["points"] = run.path("material.csv");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/results.h"
@@ -208,6 +209,78 @@ std::string equation_part(const std::vector<Variant>& variants, const RunData& r
   return out + (beyond.empty() ? "" : beyond.html());
 }
 
+PredictedValue value_of(const PredictedPoint& p, StageKind kind) {
+  return kind == StageKind::shear ? p.deviator : kind == StageKind::isotropic ? p.pressure : p.axial;
+}
+
+std::string quantity(StageKind kind) {
+  return kind == StageKind::shear ? "q/p" : kind == StageKind::isotropic ? "p/E" : "axial stress over E";
+}
+
+/// Bands of all spans under one loading, and dots where there is a variant of that span.
+std::string prediction_figure(const std::vector<const PredictionSummary*>& spans, std::size_t number) {
+  const PredictionSummary& first = *spans.front();
+  const bool shear = first.kind == StageKind::shear;
+  Plot plot({.id = fmt::format("material-predicted-{}", number),
+             .title = "Predicted from smaller spans" + (first.loading.empty() ? "" : ", " + first.loading),
+             .x = {.label = "axial strain [%]"},
+             .y = {.label = quantity(first.kind), .scale = shear ? Scale::linear : Scale::logarithmic}});
+  for (std::size_t k = 0; k < spans.size(); ++k) {
+    Series band{.label = fmt::format("span {:g}", spans[k]->span), .hover = "", .x = {}, .y = {}};
+    Series dots{.label = "", .hover = fmt::format("span {:g}, measured", spans[k]->span), .x = {}, .y = {}};
+    for (const PredictedPoint& p : spans[k]->points) {
+      const PredictedValue v = value_of(p, first.kind);
+      band.x.push_back(100.0 * p.strain);
+      band.y.push_back(v.predicted.value);
+      band.band_low.push_back(v.predicted.low);
+      band.band_high.push_back(v.predicted.high);
+      if (!v.measured) continue;
+      dots.x.push_back(100.0 * p.strain);
+      dots.y.push_back(v.measured->mean);
+      dots.y_error.push_back(v.measured->error_or_zero());
+    }
+    band.style = {.color = palette::cycle(k), .width = 1.4};
+    dots.style = {.color = palette::cycle(k), .width = 0.0, .marker = Marker::circle, .marker_size = 2.6};
+    dots.group = band.label;
+    plot.add(std::move(band));
+    if (!dots.x.empty()) plot.add(std::move(dots));
+  }
+  return figure(plot.svg(), escape(first.family) + ": 95 % intervals; dots: what variants of that span measured.");
+}
+
+std::string interval_cell(const PredictedValue& v) {
+  return fmt::format("{} ({:.0f} % wide)", interval(v.predicted, 3), 100.0 * v.width());
+}
+
+std::string prediction_part(const RunData& run) {
+  const auto summary = run.summary_as<MaterialSummary>();
+  if (summary.predictions.empty()) return "";
+  std::map<std::pair<std::string, std::string>, std::vector<const PredictionSummary*>> groups;
+  HtmlTable table({"materials", "loading", "span", "strain [%]", "quantity", "predicted", "measured", "inside"});
+  std::string refused;
+  for (const PredictionSummary& s : summary.predictions) {
+    if (!s.usable || s.points.empty()) {
+      refused += paragraph(
+          escape(fmt::format("{} {}, span {:g}: not predicted: {}.", s.family, s.loading, s.span, s.message)));
+      continue;
+    }
+    groups[{s.family, s.loading}].push_back(&s);
+    const PredictedPoint& p = point_near(s, 0.05);
+    const PredictedValue v = value_of(p, s.kind);
+    table.row({s.family, s.loading, format_number(s.span, 5), format_number(100.0 * p.strain, 3), quantity(s.kind),
+               interval_cell(v) + (p.beyond ? ", beyond the pressures that were fitted" : ""),
+               v.measured ? format_with_error(v.measured->mean, v.measured->error_or_zero()) : "–",
+               !v.measured  ? "–"
+               : v.inside() ? "yes"
+                            : "no"});
+  }
+  std::vector<std::string> figures;
+  for (const auto& [key, spans] : groups) figures.push_back(prediction_figure(spans, figures.size()));
+  std::string out = "<h3>Larger spans, predicted</h3>\n";
+  for (const std::string& f : figures) out += figure_row({f});
+  return out + (table.empty() ? "" : table.html()) + refused;
+}
+
 }  // namespace
 
 std::string material_section(const RunData& run) {
@@ -216,6 +289,7 @@ std::string material_section(const RunData& run) {
   std::string body = figure_row({state_figure(variants), stress_figure(variants)});
   body += figure_row({ratio_figure(variants), rattler_figure(variants)});
   body += equation_part(variants, run);
+  body += prediction_part(run);
   for (const Variant& v : variants) {
     if (v.curves.empty()) continue;
     if (variants.size() > 1) body += "<h3>" + escape(v.name) + "</h3>\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipelines/kinds/material/equation.h"
+#include "pipelines/kinds/material/prediction.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {
@@ -38,6 +39,7 @@ struct MaterialSummary {
   double youngs_modulus = 0.0;  ///< E of the grains [Pa]
   std::vector<MaterialVariantSummary> variants;
   std::optional<EquationSummary> equation;
+  std::vector<PredictionSummary> predictions;
   std::optional<EngineUse> engine;
 };
 
@@ -46,6 +48,7 @@ void fields(auto&& visit, Of<MaterialSummary> auto& s) {
   visit("E", s.youngs_modulus);
   visit("variants", s.variants);
   visit("equation_of_state", s.equation, kLeftOut);
+  visit("predictions", s.predictions, kLeftOut);
   visit("engine", s.engine, kLeftOut);
 }
 

@@ -1,0 +1,75 @@
+#include "calibrate/rod_packing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "common/core/error.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Share of the chords of all spheres that are shorter than `length`.
+double shorter(const std::vector<SizePiece>& pieces, const std::vector<double>& hits, double length) {
+  const double r = 0.5 * length;
+  double share = 0.0;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const double longer = r * r * (1.0 - pieces[k].passing(r, 0)) / pieces[k].mean_power(2);
+    share += hits[k] * (pieces[k].passing(r, 2) + longer);
+  }
+  return share;
+}
+
+}  // namespace
+
+std::vector<double> chords_of(const Grading& sizes, std::size_t count) {
+  if (count < 2) throw BadInput("rods: two or more are needed");
+  const std::vector<SizePiece>& pieces = sizes.pieces();
+  std::vector<double> hits;  // by lines, of the spheres of each piece
+  double all = 0.0;
+  for (const SizePiece& piece : pieces) {
+    hits.push_back(piece.volume * piece.mean_power(2) / piece.mean_power(3));
+    all += hits.back();
+  }
+  for (double& h : hits) h /= all;
+  // Shares at lengths of even steps of their logarithm; below the shortest they go as the square of the length.
+  constexpr std::size_t kSteps = 4000;
+  const double longest = 2.0 * sizes.largest();
+  const double fall = std::log(0.02 * sizes.smallest() / sizes.largest());
+  std::vector<double> length(kSteps + 1);
+  std::vector<double> share(kSteps + 1);
+  for (std::size_t i = 0; i <= kSteps; ++i) {
+    length[i] = std::exp(fall * (1.0 - static_cast<double>(i) / kSteps));
+    share[i] = i == kSteps ? 1.0 : shorter(pieces, hits, length[i] * longest);
+  }
+  std::vector<double> chords(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double u = 1.0 - (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    const auto i = static_cast<std::size_t>(std::lower_bound(share.begin(), share.end(), u) - share.begin());
+    chords[k] = i == 0 ? length[0] * std::sqrt(u / share[0])
+                       : length[i - 1] + (length[i] - length[i - 1]) * (u - share[i - 1]) / (share[i] - share[i - 1]);
+  }
+  return chords;
+}
+
+double rod_packing(const std::vector<double>& chords, double gap) {
+  if (chords.empty() || !(gap > 0.0)) throw BadInput("rods: none, or a gap that is not above 0");
+  std::priority_queue<double> gaps;
+  gaps.push(gap * chords.front());
+  double space = gaps.top();
+  double rods = chords.front();
+  for (std::size_t k = 1; k < chords.size(); ++k) {
+    const double widest = gaps.top();
+    gaps.pop();
+    const double least = gap * chords[k];
+    const double rest = std::max(least, widest - least - chords[k]);
+    gaps.push(least);
+    gaps.push(rest);
+    space += least + rest - widest;
+    rods += chords[k];
+  }
+  return rods / (rods + space);
+}
+
+}  // namespace softgrain
