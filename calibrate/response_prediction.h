@@ -33,13 +33,13 @@ struct ResponsePrediction {
 };
 
 /// Onset phi_J from extrapolate_onset; at the start x0 = (p0/KE)^(1/n) beyond it; from there phi = phi0 V0/V and p by
-/// the equation of state, times what pressures of small spans are of it at that point (a packing at rest is stiffer
-/// than one that has been strained, in a way that belongs to the test); axial = 3 p/(1 + 2 k), lateral = k axial. ln of
-/// that factor, k and q/p are means over samples of a group, and go on in two ways: they stay what they are at the
-/// largest span, or go on along the straight line through the groups over phi_J. Intervals: every replicate of `fit`
-/// with samples of the groups drawn anew, both ways, every form of onset that the data allow; from the lowest to the
-/// highest of their 95 %. The value is the mean of their medians. Throws BadInput as extrapolate_onset does, and for
-/// curves of other points or unknown groups. Not usable: no onset.
+/// the equation of state, times what pressures of small spans are of it at that point (a packing
+/// at rest yields more to new strain than one on its way, differently in each test); axial = 3 p/(1 + 2 k), lateral = k
+/// axial. ln of that factor, k and q/p are means over samples of a group, and go on in two ways: they stay what they
+/// are at the largest span, or go on along the straight line through the groups over phi_J. Intervals: every replicate
+/// of `fit` with samples of the groups drawn anew, both ways, every form of onset that the data allow; from the lowest
+/// to the highest of their 95 %. The value is the mean of their medians. Throws BadInput as extrapolate_onset does, and
+/// for curves of other points or unknown groups. Not usable: no onset.
 ResponsePrediction predict_response(const StateFit& fit, const std::vector<ResponseCurve>& curves, double span,
                                     const ResponseOptions& options);
 
