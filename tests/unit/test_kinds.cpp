@@ -26,7 +26,7 @@ TEST(Kinds, EveryOneIsWholeAndNamedOnce) {
     EXPECT_EQ(complaint(k.name, k.command), "") << k.name;
     EXPECT_STREQ(kind_of(Scene::parse("kind = \"" + std::string(k.name) + "\"\n", "s.toml")).name, k.name);
   }
-  EXPECT_EQ(names.size(), 12U);
+  EXPECT_EQ(names.size(), 13U);
 }
 
 TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
@@ -224,10 +224,10 @@ smallest = 0.4
 name = "b"
 kind = "cell"
 )",
-     R"(s:2: blind = [ 'gap' ]: 'gap' is no variant
+     R"(s:2: blind = [ "gap" ]: 'gap' is no variant
 s:8: places = "own": does not go with kind = "coarse"
 s:10: name = "a": is used twice
-s:12: smallest = 0.4: must be above 0 and below 0.333333333333
+s:12: smallest = 0.4: must be above 0 and below 0.333333333333333
 s:15: kind = "cell": must be "cells", "stand-in", "mean-field", "coarse" or "shells"; nearest is "cells")"},
     {R"(kind = "inverse"
 [packing]

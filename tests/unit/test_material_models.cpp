@@ -38,8 +38,9 @@ MacroCurve exact(const CellCard& card, double start, double onset) {
     c.strain_z.push_back(e);
     c.strain_x.push_back(0.0);
     c.strain_y.push_back(0.0);
-    c.stress_axial.push_back(1.5 * p);
-    for (auto* column : {&c.stress_lateral, &c.stress_x, &c.stress_y}) column->push_back(0.75 * p);
+    const bool alike = e == 0.0;
+    c.stress_axial.push_back(alike ? p : 1.5 * p);
+    for (auto* column : {&c.stress_lateral, &c.stress_x, &c.stress_y}) column->push_back(alike ? p : 0.75 * p);
     c.more[kSolidFraction].push_back(phi);
   }
   return c;

@@ -33,7 +33,7 @@ std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
 std::string cost_figure(const std::vector<ModelScore>& scores) {
   Plot plot({.id = "models-cost",
              .title = "Error against cost",
-             .x = {.label = "time of the truth over that of the model", .scale = Scale::logarithmic},
+             .x = {.label = "evaluations of the truth over those of the model", .scale = Scale::logarithmic},
              .y = {.label = "error of the axial stress [%]", .scale = Scale::logarithmic}});
   std::vector<std::string> models;
   for (const ModelScore& s : scores)
@@ -42,8 +42,8 @@ std::string cost_figure(const std::vector<ModelScore>& scores) {
   for (std::size_t k = 0; k < models.size(); ++k) {
     Series points{.label = models[k], .hover = "", .x = {}, .y = {}};
     for (const ModelScore& s : scores)
-      if (s.model == models[k] && std::isfinite(s.axial) && s.axial > 0.0 && std::isfinite(s.seconds)) {
-        points.x.push_back(s.seconds);
+      if (s.model == models[k] && std::isfinite(s.axial) && s.axial > 0.0 && std::isfinite(s.evaluations)) {
+        points.x.push_back(s.evaluations);
         points.y.push_back(100.0 * s.axial);
       }
     points.style = {.color = palette::cycle(k), .width = 0.0, .marker = Marker::circle};
@@ -51,7 +51,10 @@ std::string cost_figure(const std::vector<ModelScore>& scores) {
     any = true;
     plot.add(std::move(points));
   }
-  return any ? figure(plot.svg(), "Each point is one material under one loading; tests alone, without preparation.")
+  return any ? figure(plot.svg(),
+                      "Each point is one material under one loading; contacts, or faces of cells, of the tests alone. "
+                      "A face costs more "
+                      "than a contact: see the times of the table.")
              : "";
 }
 

@@ -80,18 +80,18 @@ MaterialModelsScene read_material_models_scene(const Scene& scene) {
     (void)root.choice("kind", {"material-models"});
     MaterialModelsScene out;
     out.material = read_material(root);
-    std::set<std::string> names;
-    for (const SceneTable& t : root.tables("model")) {
-      MaterialModel m = read_model(scene, t, out);
-      if (!names.insert(m.name).second) t.mistake("name", "is used twice");
-      out.models.push_back(std::move(m));
-    }
-    if (out.models.empty()) root.mistake("model", "give at least one [[model]]");
     if (root.has("blind")) out.blind = root.texts("blind");
     for (const std::string& name : out.blind)
       if (std::none_of(out.material.variants.begin(), out.material.variants.end(),
                        [&](const MaterialVariant& v) { return v.name == name || v.packings == name; }))
         root.mistake("blind", "'" + name + "' is no variant");
+    std::set<std::string> names;
+    for (const SceneTable& t : root.tables("model")) {
+      if (!names.insert(t.text("name", "")).second) t.mistake("name", "is used twice");
+      MaterialModel m = read_model(scene, t, out);
+      out.models.push_back(std::move(m));
+    }
+    if (out.models.empty()) root.mistake("model", "give at least one [[model]]");
     return out;
   });
 }
