@@ -76,6 +76,16 @@ void take_sizes(MacroSpec& spec, const Grading& sizes) {
   spec.solid_polydispersity = sizes.largest() / sizes.smallest();
 }
 
+/// Of a mixture, so many bodies that about as many as in the truth are coarse.
+std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uint64_t seed) {
+  constexpr std::int64_t kTrial = 4000;
+  spec.bodies = kTrial;
+  double found = 0.0;
+  for (const MacroBody& b : drawn_bodies(spec, seed, 0)) found += !b.soft && b.r >= cut ? 1.0 : 0.0;
+  if (!(found > 0.0)) throw NotUsable("a stand-in of this material has hardly any coarse grains");
+  return std::max<std::int64_t>(30, std::llround(static_cast<double>(kTrial) * static_cast<double>(coarse) / found));
+}
+
 MacroCurve cells_of(const OneSample& one, std::size_t sample) {
   const MaterialModel& m = one.model;
   const MacroPacking& whole = one.truth.packings[sample];
@@ -88,6 +98,12 @@ MacroCurve cells_of(const OneSample& one, std::size_t sample) {
   if (by_density) setup.spec.cells->solid_fraction = whole.solid_fraction();
   take_sizes(setup.spec,
              Grading::classes(pieces_between(sizes_of(spec_of(one.truth)), cut_of(m, one.truth), kInfinity)));
+  if (m.soft_share > 0.0) {
+    setup.spec.soft_share = m.soft_share;
+    setup.spec.soft_radius_max = m.radii[1] * spec_of(one.truth).solid_radius_max;
+    setup.spec.soft_polydispersity = m.radii[1] / m.radii[0];
+    setup.spec.bodies = bodies_for(setup.spec, cut_of(m, one.truth), parts.coarse.size(), one.run.seed);
+  }
   const MacroPacking own = make_cell_packing(setup.spec, one.run.seed, sample);
   return one.test(setup, own, sample, nullptr);
 }
@@ -106,16 +122,6 @@ MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
   setup.spec.bodies = static_cast<std::int64_t>(parts.coarse.size());
   const NamedLaws laws = no_soft_laws();
   return one.test(setup, in_box_of(whole, parts.coarse), sample, &laws);
-}
-
-/// Of a mixture, so many bodies that about as many as in the truth are coarse.
-std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uint64_t seed) {
-  constexpr std::int64_t kTrial = 4000;
-  spec.bodies = kTrial;
-  double found = 0.0;
-  for (const MacroBody& b : drawn_bodies(spec, seed, 0)) found += b.r >= cut ? 1.0 : 0.0;
-  if (!(found > 0.0)) throw NotUsable("a stand-in of this material has hardly any coarse grains");
-  return std::max<std::int64_t>(30, std::llround(static_cast<double>(kTrial) * static_cast<double>(coarse) / found));
 }
 
 MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
@@ -174,6 +180,7 @@ MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
   const double pressure = spec_of(one.truth).start_pressure;
   const CellCard& card = *one.model.card;
   if (truth.test == MacroTest::shear) throw NotUsable("the mean field knows no shear");
+  if (truth.test == MacroTest::stages) throw NotUsable("the mean field knows no way back");
   double onset = kNaN;
   if (one.model.start == ModelStart::density) {
     const CoarseAndFine parts =

@@ -17,16 +17,22 @@ namespace {
 
 std::string percent(double x) { return std::isfinite(x) ? fmt::format("{:.1f} %", 100.0 * x) : "–"; }
 
+std::string with_error(double x, double error) {
+  return std::isfinite(error) && std::isfinite(x) ? fmt::format("{:.1f} ± {:.1f} %", 100.0 * x, 100.0 * error)
+                                                  : percent(x);
+}
+
 std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
   HtmlTable table({"material", "model", "bodies", "axial", "lateral", "at 2 %", "at the end", "q/p at 2 %",
                    "q/p at 6 %", "unloading modulus", "truth ±", "fewer evaluations", "faster", "with preparation",
                    "remark"});
   for (const ModelScore& s : scores)
     if (s.blind == blind)
-      table.row({s.variant, s.model, format_count(s.bodies), percent(s.axial), percent(s.lateral),
-                 percent(s.axial_at_2), percent(s.axial_at_end), percent(s.ratio_at_2), percent(s.ratio_at_6),
-                 percent(s.unloading), percent(s.truth_error), format_number(s.evaluations, 3),
-                 format_number(s.seconds, 3), format_number(s.seconds_all, 3), s.refusal});
+      table.row({s.variant, s.model, format_count(s.bodies), with_error(s.axial, s.axial_error),
+                 with_error(s.lateral, s.lateral_error), percent(s.axial_at_2), percent(s.axial_at_end),
+                 percent(s.ratio_at_2), percent(s.ratio_at_6), percent(s.unloading), percent(s.truth_error),
+                 format_number(s.evaluations, 3), format_number(s.seconds, 3), format_number(s.seconds_all, 3),
+                 s.refusal});
   return table.empty() ? "" : table.html();
 }
 

@@ -23,7 +23,9 @@ void require_own_keys(const SceneTable& t, ModelKind kind) {
   only("start", {ModelKind::cells, ModelKind::mean_field});
   only("smallest", {ModelKind::stand_in});
   only("mapped", {ModelKind::stand_in});
-  for (const char* key : {"table", "form", "radii", "scale"}) only(key, {ModelKind::shells});
+  for (const char* key : {"table", "form", "scale"}) only(key, {ModelKind::shells});
+  only("radii", {ModelKind::shells, ModelKind::cells});
+  only("soft_share", {ModelKind::cells});
   only("card", {ModelKind::cells, ModelKind::mean_field, ModelKind::stand_in});
 }
 
@@ -59,6 +61,9 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
   m.places = t.choice<ModelPlaces>("places", m.places);
   m.start = t.choice<ModelStart>("start", m.start);
   m.smallest = t.number("smallest", Unit::none, Range{0.0, m.split, true, true}, std::min(m.smallest, 0.6 * m.split));
+  m.soft_share = t.number("soft_share", Unit::none, Range{0.0, 0.6, false, false}, 0.0);
+  if (m.soft_share > 0.0 && m.places == ModelPlaces::truth)
+    t.mistake("soft_share", "soft bodies are at places of their own: places = \"own\"");
   m.mapped = t.flag("mapped", false);
   m.scale = t.number("scale", Unit::none, Range{0.0, 2.0, true, false}, m.scale);
   const std::vector<double> radii = t.numbers("radii", Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});

@@ -48,10 +48,11 @@ struct MaterialModel {
   ModelPlaces places = ModelPlaces::truth;
   ModelStart start = ModelStart::pressure;
   std::optional<CellCard> card{};         ///< of cells, mean fields and stand-ins (for the equation of state)
+  double soft_share = 0.0;                ///< of cells in own places: soft bodies, of the volume of all bodies
   double smallest = 0.2;                  ///< of stand-ins: smallest radius over the largest of the material
   bool mapped = false;                    ///< of stand-ins: stresses mapped by the equation of state
   std::optional<LawSources> law{};        ///< of shells
-  std::array<double, 2> radii{0.2, 0.6};  ///< of shells: over the largest grain
+  std::array<double, 2> radii{0.2, 0.6};  ///< of shells and soft bodies: over the largest grain
   double scale = 1.0;                     ///< of shells: of their radii once they are placed
 };
 

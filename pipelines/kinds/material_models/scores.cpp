@@ -36,6 +36,37 @@ std::vector<double> lateral_of(const MacroCurve& c) { return c.stress_lateral; }
 std::vector<double> strain_of(const MacroCurve& c) { return c.strain_z; }
 std::vector<double> ratio_of(const MacroCurve& c) { return stress_ratios(c); }
 
+/// Samples that both truth and model came through, side by side.
+struct Pairs {
+  std::vector<MacroCurve> truth;
+  std::vector<MacroCurve> model;
+};
+
+Pairs pairs_of(const ModelRun& run, std::string& refusal) {
+  Pairs out;
+  for (std::size_t k = 0; k < std::min(run.curves.size(), run.truth->curves.size()); ++k) {
+    const MacroCurve& t = run.truth->curves[k];
+    const MacroCurve& m = run.curves[k];
+    const bool whole = m.usable && m.strain.size() == t.strain.size();
+    if (t.usable && whole) {
+      out.truth.push_back(t);
+      out.model.push_back(m);
+    } else if (t.usable) {
+      refusal += fmt::format("{}sample {} left out: {}", refusal.empty() ? "" : "; ", k,
+                             m.note.empty() ? "it ends early" : m.note);
+    }
+  }
+  return out;
+}
+
+/// Standard error of an error that every pair has by itself; NaN with one.
+double scatter_of(const Pairs& pairs, Column column, std::size_t first) {
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < pairs.truth.size(); ++k)
+    errors.push_back(relative_difference(column(pairs.model[k]), column(pairs.truth[k]), first));
+  return errors.size() > 1 ? mean_error(errors).error : kNaN;
+}
+
 double excess(const std::vector<double>& model, const std::vector<double>& truth, std::size_t k) {
   return k < model.size() && k < truth.size() && truth[k] != 0.0 ? model[k] / truth[k] - 1.0 : kNaN;
 }
@@ -116,46 +147,71 @@ ModelScore score(const ModelRun& run, bool blind) {
                .kind = run.model->kind,
                .blind = blind,
                .refusal = run.refusal};
-  for (double* value : {&s.axial, &s.lateral, &s.axial_at_2, &s.axial_at_end, &s.ratio_at_2, &s.ratio_at_6,
-                        &s.unloading, &s.truth_error, &s.evaluations, &s.seconds, &s.seconds_all})
+  for (double* value :
+       {&s.axial, &s.axial_error, &s.lateral, &s.lateral_error, &s.axial_at_2, &s.axial_at_end, &s.ratio_at_2,
+        &s.ratio_at_6, &s.unloading, &s.truth_error, &s.evaluations, &s.seconds, &s.seconds_all})
     *value = kNaN;
-  const bool usable = std::any_of(run.curves.begin(), run.curves.end(), [](const MacroCurve& c) { return c.usable; });
-  if (!usable && s.refusal.empty() && !run.curves.empty()) s.refusal = "no usable curve: " + run.curves.front().note;
-  if (!usable) return s;
-  const std::vector<MacroCurve>& truth = run.truth->curves;
-  s.bodies = run.curves.front().bodies;
+  const Pairs pairs = pairs_of(run, s.refusal);
+  if (pairs.truth.empty()) return s;
+  const std::vector<MacroCurve>& truth = pairs.truth;
+  s.samples = static_cast<std::int64_t>(truth.size());
+  s.bodies = pairs.model.front().bodies;
   const auto strain = mean_of(truth, strain_of);
   const std::size_t first = point_at(strain, 0.01);
   const std::size_t two = point_at(strain, 0.02);
   const auto end = static_cast<std::size_t>(std::max_element(strain.begin(), strain.end()) - strain.begin());
   const auto t = mean_of(truth, axial_of);
-  const auto m = mean_of(run.curves, axial_of);
+  const auto m = mean_of(pairs.model, axial_of);
   s.axial = relative_difference(m, t, first);
-  s.lateral = relative_difference(mean_of(run.curves, lateral_of), mean_of(truth, lateral_of), first);
+  s.lateral = relative_difference(mean_of(pairs.model, lateral_of), mean_of(truth, lateral_of), first);
+  s.axial_error = scatter_of(pairs, axial_of, first);
+  s.lateral_error = scatter_of(pairs, lateral_of, first);
   s.axial_at_2 = excess(m, t, two);
   s.axial_at_end = excess(m, t, end);
   s.truth_error = error_at(truth, end);
   if (run.truth->variant->setup.spec.test == MacroTest::shear) {
     const auto q_truth = mean_of(truth, ratio_of);
-    const auto q_model = mean_of(run.curves, ratio_of);
+    const auto q_model = mean_of(pairs.model, ratio_of);
     s.ratio_at_2 = excess(q_model, q_truth, two);
     s.ratio_at_6 = excess(q_model, q_truth, point_at(strain, 0.06));
   }
-  s.unloading = unloading_of(run.curves) / unloading_of(truth) - 1.0;
+  s.unloading = unloading_of(pairs.model) / unloading_of(truth) - 1.0;
   add_costs(run, s);
   return s;
 }
 
 TextTable table_of(const std::vector<ModelScore>& scores) {
-  TextTable out{{"variant", "model", "kind", "blind", "bodies", "axial", "lateral", "axial at 2 %", "axial at the end",
-                 "q/p at 2 %", "q/p at 6 %", "unloading modulus", "standard error of the truth", "evaluations",
-                 "seconds", "seconds with preparation", "refusal"},
+  TextTable out{{"variant",
+                 "model",
+                 "kind",
+                 "blind",
+                 "samples",
+                 "bodies",
+                 "axial",
+                 "axial standard error",
+                 "lateral",
+                 "lateral standard error",
+                 "axial at 2 %",
+                 "axial at the end",
+                 "q/p at 2 %",
+                 "q/p at 6 %",
+                 "unloading modulus",
+                 "standard error of the truth",
+                 "evaluations",
+                 "seconds",
+                 "seconds with preparation",
+                 "refusal"},
                 {}};
   for (const ModelScore& s : scores) {
-    std::vector<std::string> row{s.variant, s.model, to_string(s.kind), s.blind ? "yes" : "no",
+    std::vector<std::string> row{s.variant,
+                                 s.model,
+                                 to_string(s.kind),
+                                 s.blind ? "yes" : "no",
+                                 std::to_string(s.samples),
                                  std::to_string(s.bodies)};
-    for (const double x : {s.axial, s.lateral, s.axial_at_2, s.axial_at_end, s.ratio_at_2, s.ratio_at_6, s.unloading,
-                           s.truth_error, s.evaluations, s.seconds, s.seconds_all})
+    for (const double x :
+         {s.axial, s.axial_error, s.lateral, s.lateral_error, s.axial_at_2, s.axial_at_end, s.ratio_at_2, s.ratio_at_6,
+          s.unloading, s.truth_error, s.evaluations, s.seconds, s.seconds_all})
       row.push_back(std::isfinite(x) ? fmt::format("{:.4g}", x) : "");
     row.push_back(s.refusal);
     out.rows.push_back(std::move(row));
@@ -167,7 +223,7 @@ std::string people_text(const std::vector<ModelScore>& scores) {
   std::string text;
   for (const ModelScore& s : scores) {
     text += fmt::format("{}{}, {}: ", s.variant, s.blind ? " (blind)" : "", s.model);
-    if (!s.refusal.empty()) {
+    if (s.samples == 0) {
       text += s.refusal + "\n";
       continue;
     }
@@ -176,7 +232,8 @@ std::string people_text(const std::vector<ModelScore>& scores) {
     if (std::isfinite(s.ratio_at_6))
       text += fmt::format(", q/p at 2 and 6 % {} and {}", percent(s.ratio_at_2), percent(s.ratio_at_6));
     if (std::isfinite(s.unloading)) text += ", unloading modulus " + percent(s.unloading);
-    text += fmt::format("; {} times fewer evaluations, {} times faster\n", times(s.evaluations), times(s.seconds));
+    text += fmt::format("; {} times fewer evaluations, {} times faster{}\n", times(s.evaluations), times(s.seconds),
+                        s.refusal.empty() ? "" : "; " + s.refusal);
   }
   return text;
 }

@@ -7,7 +7,8 @@
 
 namespace softgrain {
 
-/// Mean curves of the usable samples are compared, point by point; strain and stress of z are axial.
+/// Samples that truth and model came through to the end are compared, pair by pair, by their mean curves, point by
+/// point; those that a model did not are named. Strain and stress of z are axial.
 ModelScore score(const ModelRun& run, bool blind);
 
 /// Square root of sum (model - truth)^2 over sum truth^2 of the points from `first` on. NaN where there is none.

@@ -12,10 +12,13 @@ struct ModelScore {
   std::string model;
   ModelKind kind = ModelKind::cells;
   bool blind = false;
-  std::string refusal;  ///< why nothing was run; or what is wrong with a curve
+  std::string refusal;       ///< why nothing was run; or what is wrong with a curve
+  std::int64_t samples = 0;  ///< that truth and model came through; 0: nothing is known
   std::int64_t bodies = 0;
-  double axial = 0.0;         ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
-  double lateral = 0.0;       ///< the same of the lateral stress
+  double axial = 0.0;        ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
+  double axial_error = 0.0;  ///< standard error, of the same in every sample
+  double lateral = 0.0;      ///< the same of the lateral stress
+  double lateral_error = 0.0;
   double axial_at_2 = 0.0;    ///< model/truth - 1 at 2 % strain
   double axial_at_end = 0.0;  ///< at the end of the first stage
   double ratio_at_2 = 0.0;    ///< q/p, model/truth - 1
@@ -33,9 +36,12 @@ void fields(auto&& visit, Of<ModelScore> auto& s) {
   visit("kind", s.kind);
   visit("blind", s.blind);
   visit("refusal", s.refusal);
+  visit("samples", s.samples);
   visit("bodies", s.bodies);
   visit("axial", s.axial);
+  visit("axial_standard_error", s.axial_error);
   visit("lateral", s.lateral);
+  visit("lateral_standard_error", s.lateral_error);
   visit("axial_at_2", s.axial_at_2);
   visit("axial_at_end", s.axial_at_end);
   visit("q_over_p_at_2", s.ratio_at_2);
