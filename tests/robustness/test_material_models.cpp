@@ -1,0 +1,81 @@
+// Models beside a resolved material, from outside: a mixture that the law was not measured on.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/io/text_file.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+std::string scene_of(const std::string& grains, const std::string& more) {
+  const std::string card = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/cell_law.toml";
+  return "kind = \"material-models\"\nsamples = 2\n[packing]\npreparation = \"fast\"\nstart_pressure = 1e-4\n"
+         "[test]\nstrain = 0.08\nsteps = 8\nincrements_per_step = 4\ntolerance = 1e-2\n" +
+         grains +
+         fmt::format(
+             "[[model]]\nname = \"cells\"\nkind = \"cells\"\ncard = \"{0}\"\n"
+             "[[model]]\nname = \"density\"\nkind = \"cells\"\nplaces = \"own\"\nstart = \"density\"\ncard = "
+             "\"{0}\"\n",
+             card) +
+         more;
+}
+
+/// By the name of the model.
+nlohmann::json scores_of(const std::string& directory) {
+  nlohmann::json out;
+  const nlohmann::json summary = summary_of(directory);
+  for (const auto& one : summary["models"]) out[one["model"].get<std::string>()] = one;
+  return out;
+}
+
+/// Nothing between a third and a half of the largest radius: neither law nor start know of it.
+TEST(SlowMaterialModels, AGapGradedMaterialIsForeseenByCells) {
+  const TemporaryDirectory directory;
+  write_text_atomic(directory.file("scene.toml"),
+                    scene_of("[grains]\ncount = 2500\nsizes = { form = \"classes\", class = [\n"
+                             "  { radius_min = 0.008, radius_max = 0.016, exponent = 3.5, volume_share = 0.6 },\n"
+                             "  { radius_min = 0.002667, radius_max = 0.005333, exponent = 3.5, volume_share = 0.4 } "
+                             "] }\n",
+                             ""));
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + directory.file("out") + "'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const nlohmann::json scores = scores_of(directory.file("out"));
+  EXPECT_LT(scores["cells"]["axial"].get<double>(), 0.2);
+  EXPECT_LT(scores["cells"]["lateral"].get<double>(), 0.2);
+  EXPECT_LT(std::abs(scores["density"]["axial_at_2"].get<double>()), 0.4);
+  EXPECT_LT(std::abs(scores["density"]["axial_at_end"].get<double>()), 0.2);
+  EXPECT_GT(scores["cells"]["evaluations"].get<double>(), 50.0);
+}
+
+/// The same in seconds, on few grains: the table is there, a model that cannot be is named.
+TEST(MaterialModelsRun, WritesItsTableAndSaysWhatCouldNotBe) {
+  const TemporaryDirectory directory;
+  write_text_atomic(directory.file("scene.toml"),
+                    scene_of("[grains]\ncount = 400\nratio = 4\n",
+                             "[[model]]\nname = \"split\"\nkind = \"coarse\"\nsplit = 0.2\n"
+                             "[[model]]\nname = \"coarse\"\nkind = \"coarse\"\n"));
+  const std::string out = directory.file("out");
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + out + "'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const nlohmann::json scores = scores_of(out);
+  EXPECT_EQ(scores["split"]["samples"], 0);
+  EXPECT_NE(scores["split"]["refusal"].get<std::string>().find("one side of the split"), std::string::npos);
+  EXPECT_EQ(scores["cells"]["samples"], 2);
+  EXPECT_LT(scores["cells"]["axial"].get<double>(), 0.35);
+  EXPECT_GT(scores["coarse"]["axial"].get<double>(), 0.5);  // a material is not its coarse grains
+  const std::string page = read_text(out + "/report.html");
+  for (const char* part : {"Models beside the truth", "models-cost", "models-material"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_NE(read_text(out + "/models.csv").find("density,cells,no,"), std::string::npos);
+}
+
+}  // namespace
