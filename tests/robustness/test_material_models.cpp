@@ -68,7 +68,7 @@ TEST(MaterialModelsRun, WritesItsTableAndSaysWhatCouldNotBe) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json scores = scores_of(out);
   EXPECT_EQ(scores["split"]["samples"], 0);
-  EXPECT_NE(scores["split"]["refusal"].get<std::string>().find("one side of the split"), std::string::npos);
+  EXPECT_NE(scores["split"]["remark"].get<std::string>().find("one side of the split"), std::string::npos);
   EXPECT_EQ(scores["cells"]["samples"], 2);
   EXPECT_LT(scores["cells"]["axial"].get<double>(), 0.35);
   EXPECT_GT(scores["coarse"]["axial"].get<double>(), 0.5);  // a material is not its coarse grains

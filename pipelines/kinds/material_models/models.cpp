@@ -220,8 +220,23 @@ CoarseAndFine parted(const MacroPacking& packing, double cut) {
   return out;
 }
 
+std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
+  if (!model.card) return "";
+  const CellCard& card = *model.card;
+  std::string text;
+  const auto add = [&text](const std::string& one) { text += (text.empty() ? "" : "; ") + one; };
+  const double span = card.split * spec.solid_polydispersity;
+  constexpr double kAlike = 0.1;
+  if (std::abs(span / card.fines_ratio - 1.0) > kAlike)
+    add(fmt::format("the card is of fines of ratio {:.3g}, these have {:.3g}", card.fines_ratio, span));
+  if (card.preparation != to_string(spec.preparation))
+    add(fmt::format("the card is of fines prepared '{}', these are '{}'", card.preparation,
+                    to_string(spec.preparation)));
+  return text;
+}
+
 ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run) {
-  ModelRun out{&model, &truth, {}, ""};
+  ModelRun out{&model, &truth, {}, "", other_fines(model, spec_of(truth))};
   const OneSample one{model, truth, run};
   try {
     for (std::size_t k = 0; k < truth.packings.size(); ++k) out.curves.push_back(curve_of(one, k));

@@ -15,6 +15,7 @@ struct ModelRun {
   const VariantResult* truth = nullptr;
   std::vector<MacroCurve> curves;  ///< one per sample
   std::string refusal;             ///< why there are none
+  std::string remark;              ///< what to mind about them
 };
 
 /// Throws what runs throw, but for a model that this material is none for (BadInput, NotUsable): then a refusal.
@@ -29,6 +30,9 @@ struct CoarseAndFine {
   [[nodiscard]] double share() const { return fines_volume / (coarse_volume + fines_volume); }
 };
 CoarseAndFine parted(const MacroPacking& packing, double cut);
+
+/// Whether the fines are not those of the card: their span, form and preparation; empty when they are.
+std::string other_fines(const MaterialModel& model, const MacroSpec& spec);
 
 /// The equation of state alone, along the strains of `truth`, from its start pressure p0 and solid fraction phi0:
 /// x0 = (p0/EK)^(1/n), phi_J = (phi0 - x0)/(1 - x0) of the porosity form, lateral/axial = K0 as long as the volume

@@ -32,7 +32,7 @@ std::string score_table(const std::vector<ModelScore>& scores, bool blind) {
                  with_error(s.lateral, s.lateral_error), percent(s.axial_at_2), percent(s.axial_at_end),
                  percent(s.ratio_at_2), percent(s.ratio_at_6), percent(s.unloading), percent(s.truth_error),
                  format_number(s.evaluations, 3), format_number(s.seconds, 3), format_number(s.seconds_all, 3),
-                 s.refusal});
+                 s.remark});
   return table.empty() ? "" : table.html();
 }
 
@@ -69,6 +69,14 @@ std::vector<double> in_percent(std::vector<double> values) {
   return values;
 }
 
+/// Models that are far off leave the drawing.
+double shown_up_to(const std::vector<MacroCurve>& truth) {
+  double largest = 0.0;
+  for (const MacroCurve& c : truth)
+    for (const double stress : c.stress_axial) largest = std::max(largest, stress);
+  return 2.0 * largest;
+}
+
 /// First samples of the truth and of every model.
 std::string stress_figure_of(const RunData& run, const MaterialVariantSummary& v) {
   const auto* truth = run.file(v.file, load_macro);
@@ -77,7 +85,7 @@ std::string stress_figure_of(const RunData& run, const MaterialVariantSummary& v
   Plot plot({.id = "models-" + v.name,
              .title = v.name,
              .x = {.label = "axial strain [%]"},
-             .y = {.label = "axial stress [Pa]", .low = 0.0}});
+             .y = {.label = "axial stress [Pa]", .low = 0.0, .high = shown_up_to(*truth)}});
   for (const MacroCurve& c : *truth) {
     Series s{
         .label = &c == truth->data() ? "truth" : "", .hover = "", .x = in_percent(c.strain_z), .y = c.stress_axial};

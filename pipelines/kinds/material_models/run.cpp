@@ -10,9 +10,8 @@ namespace softgrain {
 
 namespace {
 
-bool is_blind(const MaterialModelsScene& scene, const MaterialVariant& v) {
-  return std::any_of(scene.blind.begin(), scene.blind.end(),
-                     [&](const std::string& name) { return name == v.name || name == v.packings; });
+bool among(const std::vector<std::string>& names, const MaterialVariant& v) {
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return is_named(v, name); });
 }
 
 /// Every model of every variant; curves to models_VARIANT.h5.
@@ -22,8 +21,9 @@ std::vector<ModelScore> run_models(const MaterialModelsScene& scene, const std::
   for (const VariantResult& truth : truths) {
     std::vector<MacroCurve> curves;
     for (const MaterialModel& model : scene.models) {
+      if (!model.variants.empty() && !among(model.variants, *truth.variant)) continue;
       const ModelRun one = run_model(model, truth, run);
-      scores.push_back(score(one, is_blind(scene, *truth.variant)));
+      scores.push_back(score(one, among(scene.blind, *truth.variant)));
       curves.insert(curves.end(), one.curves.begin(), one.curves.end());
     }
     if (!curves.empty()) save_macro(curves, run.path("models_" + truth.variant->name + ".h5"), run.provenance);

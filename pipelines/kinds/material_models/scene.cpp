@@ -56,6 +56,7 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
   MaterialModel m;
   m.name = read_variant_name(t);
   m.kind = t.choice<ModelKind>("kind");
+  if (t.has("variants")) m.variants = t.texts("variants");
   require_own_keys(t, m.kind);
   m.split = t.number("split", Unit::none, Range{0.0, 1.0, true, true}, m.split);
   m.places = t.choice<ModelPlaces>("places", m.places);
@@ -80,20 +81,26 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
 
 }  // namespace
 
+bool is_named(const MaterialVariant& v, const std::string& name) { return name == v.name || name == v.packings; }
+
 MaterialModelsScene read_material_models_scene(const Scene& scene) {
   return scene.read([&](const SceneTable& root) {
     (void)root.choice("kind", {"material-models"});
     MaterialModelsScene out;
     out.material = read_material(root);
     if (root.has("blind")) out.blind = root.texts("blind");
-    for (const std::string& name : out.blind)
-      if (std::none_of(out.material.variants.begin(), out.material.variants.end(),
-                       [&](const MaterialVariant& v) { return v.name == name || v.packings == name; }))
-        root.mistake("blind", "'" + name + "' is no variant");
+    const auto require_variants = [&](const SceneTable& t, const char* key, const std::vector<std::string>& names) {
+      for (const std::string& name : names)
+        if (std::none_of(out.material.variants.begin(), out.material.variants.end(),
+                         [&](const MaterialVariant& v) { return is_named(v, name); }))
+          t.mistake(key, "'" + name + "' is no variant");
+    };
+    require_variants(root, "blind", out.blind);
     std::set<std::string> names;
     for (const SceneTable& t : root.tables("model")) {
       if (!names.insert(t.text("name", "")).second) t.mistake("name", "is used twice");
       MaterialModel m = read_model(scene, t, out);
+      require_variants(t, "variants", m.variants);
       out.models.push_back(std::move(m));
     }
     if (out.models.empty()) root.mistake("model", "give at least one [[model]]");

@@ -44,7 +44,8 @@ inline constexpr auto words<ModelStart> = word_list<ModelStart>({{ModelStart::pr
 struct MaterialModel {
   std::string name;
   ModelKind kind = ModelKind::cells;
-  double split = 1.0 / 3.0;  ///< radius over the largest below which grains are fines
+  std::vector<std::string> variants{};  ///< that it is for; empty: all
+  double split = 1.0 / 3.0;             ///< radius over the largest below which grains are fines
   ModelPlaces places = ModelPlaces::truth;
   ModelStart start = ModelStart::pressure;
   std::optional<CellCard> card{};         ///< of cells, mean fields and stand-ins (for the equation of state)
@@ -63,6 +64,9 @@ struct MaterialModelsScene {
   std::vector<std::string> files;  ///< of laws
   std::string text;                ///< of these
 };
+
+/// By its own name, or that of the packings which its loadings share.
+bool is_named(const MaterialVariant& v, const std::string& name);
 
 /// Throws BadInput, FileTrouble.
 MaterialModelsScene read_material_models_scene(const Scene& scene);

@@ -146,12 +146,12 @@ ModelScore score(const ModelRun& run, bool blind) {
                .model = run.model->name,
                .kind = run.model->kind,
                .blind = blind,
-               .refusal = run.refusal};
+               .remark = run.refusal};
   for (double* value :
        {&s.axial, &s.axial_error, &s.lateral, &s.lateral_error, &s.axial_at_2, &s.axial_at_end, &s.ratio_at_2,
         &s.ratio_at_6, &s.unloading, &s.truth_error, &s.evaluations, &s.seconds, &s.seconds_all})
     *value = kNaN;
-  const Pairs pairs = pairs_of(run, s.refusal);
+  const Pairs pairs = pairs_of(run, s.remark);
   if (pairs.truth.empty()) return s;
   const std::vector<MacroCurve>& truth = pairs.truth;
   s.samples = static_cast<std::int64_t>(truth.size());
@@ -177,6 +177,7 @@ ModelScore score(const ModelRun& run, bool blind) {
   }
   s.unloading = unloading_of(pairs.model) / unloading_of(truth) - 1.0;
   add_costs(run, s);
+  if (!run.remark.empty()) s.remark += (s.remark.empty() ? "" : "; ") + run.remark;
   return s;
 }
 
@@ -213,7 +214,7 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
          {s.axial, s.axial_error, s.lateral, s.lateral_error, s.axial_at_2, s.axial_at_end, s.ratio_at_2, s.ratio_at_6,
           s.unloading, s.truth_error, s.evaluations, s.seconds, s.seconds_all})
       row.push_back(std::isfinite(x) ? fmt::format("{:.4g}", x) : "");
-    row.push_back(s.refusal);
+    row.push_back(s.remark);
     out.rows.push_back(std::move(row));
   }
   return out;
@@ -224,7 +225,7 @@ std::string people_text(const std::vector<ModelScore>& scores) {
   for (const ModelScore& s : scores) {
     text += fmt::format("{}{}, {}: ", s.variant, s.blind ? " (blind)" : "", s.model);
     if (s.samples == 0) {
-      text += s.refusal + "\n";
+      text += s.remark + "\n";
       continue;
     }
     text += fmt::format("axial {}, lateral {}, at 2 % {}, at the end {}", percent(s.axial), percent(s.lateral),
@@ -233,7 +234,7 @@ std::string people_text(const std::vector<ModelScore>& scores) {
       text += fmt::format(", q/p at 2 and 6 % {} and {}", percent(s.ratio_at_2), percent(s.ratio_at_6));
     if (std::isfinite(s.unloading)) text += ", unloading modulus " + percent(s.unloading);
     text += fmt::format("; {} times fewer evaluations, {} times faster{}\n", times(s.evaluations), times(s.seconds),
-                        s.refusal.empty() ? "" : "; " + s.refusal);
+                        s.remark.empty() ? "" : "; " + s.remark);
   }
   return text;
 }

@@ -12,7 +12,7 @@ struct ModelScore {
   std::string model;
   ModelKind kind = ModelKind::cells;
   bool blind = false;
-  std::string refusal;       ///< why nothing was run; or what is wrong with a curve
+  std::string remark;        ///< why nothing was run; or what to mind
   std::int64_t samples = 0;  ///< that truth and model came through; 0: nothing is known
   std::int64_t bodies = 0;
   double axial = 0.0;        ///< square root of sum (model - truth)^2/sum truth^2 of points beyond 1 % strain
@@ -35,7 +35,7 @@ void fields(auto&& visit, Of<ModelScore> auto& s) {
   visit("model", s.model);
   visit("kind", s.kind);
   visit("blind", s.blind);
-  visit("refusal", s.refusal);
+  visit("remark", s.remark);
   visit("samples", s.samples);
   visit("bodies", s.bodies);
   visit("axial", s.axial);
