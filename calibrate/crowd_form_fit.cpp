@@ -46,8 +46,11 @@ LeastSquaresFit fit_model(const CrowdModel& model, const StateSelection& selecti
 std::vector<const CrowdState*> loading_states(const CrowdStates& states) {
   std::vector<const CrowdState*> out;
   std::vector<double> deepest(states.configuration->partners.size(), 0.0);
+  bool pressed_alone = true;
   for (const CrowdState& s : states.states) {
-    bool loading = s.slide == 0.0;
+    const CrowdMove move = states.configuration->stages[static_cast<std::size_t>(s.stage)].move;
+    pressed_alone = pressed_alone && s.slide == 0.0 && move != CrowdMove::roll;
+    bool loading = pressed_alone;
     for (std::size_t k = 0; k < deepest.size(); ++k) {
       loading = loading && s.overlap[k] >= deepest[k] - 1e-9;
       deepest[k] = std::max(deepest[k], s.overlap[k]);

@@ -107,9 +107,14 @@ void assign_use(const std::vector<CrowdStates*>& group) {
     (held_out != nullptr ? held_out : group.front())->use = CrowdUse::predicted;
 }
 
+/// Begins with a loading; what slides from the start has none.
+bool begins_with_load(const CrowdStates& c) { return c.configuration->stages.front().slide == 0.0; }
+
 void assign_uses(std::vector<CrowdStates>& all) {
   std::vector<std::vector<CrowdStates*>> groups;
   for (CrowdStates& c : all) {
+    c.use = CrowdUse::repeated;
+    if (!begins_with_load(c)) continue;
     const auto known = std::find_if(groups.begin(), groups.end(), [&](const std::vector<CrowdStates*>& g) {
       return same_loading(*g.front()->configuration, *c.configuration);
     });

@@ -9,6 +9,7 @@
 #include "macrosim/grain_record.h"
 #include "macrosim/pressed_box.h"
 #include "macrosim/staged_test.h"
+#include "macrosim/twin_motion.h"
 
 namespace softgrain {
 
@@ -60,7 +61,10 @@ void record_point(CompressionState& state, const MacroSpec& spec, const MacroSta
 
 RelaxationResult step_of(MacroSystem& macro, const MacroSpec& spec, const MacroStage& stage, const Vec3& strain,
                          const Vec3& stress) {
-  if (strain != Vec3{}) strain_box(macro.system, macro.box, strain);
+  if (macro.dashpots && spec.twin.relaxation == TwinRelaxation::slow_dynamics)
+    strain_in_motion(macro, spec, strain);
+  else if (strain != Vec3{})
+    strain_box(macro.system, macro.box, strain);
   DampedRelaxation<3> relaxation(relaxation_options(spec, stage, macro));
   if (!stage.by_stress() || stress == Vec3{}) return relaxation.relax(macro.system);
   if (const auto mean = mean_first(spec, stage, stress)) {

@@ -87,6 +87,25 @@ struct CellMatter {
   bool at_density = false;      ///< pressure at the start follows from the density; else excess pores from the pressure
 };
 
+/// How a resolved twin comes to rest after an increment of strain.
+enum class TwinRelaxation {
+  slow_dynamics,  ///< strained in motion, and left to move, with its grains' inertia: as laws are measured
+  damped          ///< strained in one stroke and relaxed without inertia: cheaper, and stiff near the threshold
+};
+
+template <>
+inline constexpr auto words<TwinRelaxation> =
+    word_list<TwinRelaxation>({{TwinRelaxation::slow_dynamics, "slow-dynamics"}, {TwinRelaxation::damped, "damped"}});
+
+/// The motion of twins. Lengths and times in those of the soft particles, as in their measurement.
+struct TwinMotion {
+  TwinRelaxation relaxation = TwinRelaxation::slow_dynamics;
+  double speed = 1.4142e-4;    ///< of neighbours of the largest radius towards each other, over sqrt(E/rho)
+  double step_factor = 4.0;    ///< time step over that of the published protocol
+  double settle_time = 240.0;  ///< after each increment, over R sqrt(rho/E), R the largest radius of soft particles
+  double restitution = 0.5;    ///< of the grains
+};
+
 /// Solid grains and soft particles of any sizes in a box of six planes or a periodic cell, compressed [SP 1.9]. SI
 /// units.
 struct MacroSpec {
@@ -124,7 +143,8 @@ struct MacroSpec {
   double force_floor = 1.0e-4;  ///< the mean contact force never counts for less than this, over E R^2 (R the largest
                                 ///< radius): else loose states before the first stress would be relaxed for ever
   std::int64_t max_passes = 20000;  ///< per relaxation
-  bool kt_secant = false;           ///< tangential law: secant at 1 degree instead of the initial slope
+  TwinMotion twin;
+  bool kt_secant = false;  ///< tangential law: secant at 1 degree instead of the initial slope
 };
 
 }  // namespace softgrain

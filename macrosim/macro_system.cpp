@@ -17,8 +17,8 @@ Material solid_material(const MacroSpec& spec, const char* name) {
   return {name, spec.density, spec.youngs_modulus, spec.poisson_ratio, false};
 }
 
-AnyLaw solid_law(const Material& material, double friction) {
-  return hertz_law(HertzCoefficients::of(material, material, friction, 1.0), false);
+AnyLaw solid_law(const Material& material, double friction, double restitution = 1.0) {
+  return hertz_law(HertzCoefficients::of(material, material, friction, restitution), false);
 }
 
 /// A rotation drawn uniformly (random unit quaternion), as the images of the three axes.
@@ -101,6 +101,13 @@ void add_shells(MacroSystem& out, const MacroSpec& spec, const MacroPacking& pac
   }
 }
 
+LawSet twin_laws(const Material& grain, const MacroSpec& spec, double restitution) {
+  LawSet laws(2);
+  laws.set(0, 0, solid_law(grain, spec.friction, restitution));
+  laws.set(0, 1, solid_law(grain, spec.wall_friction, restitution));
+  return laws;
+}
+
 /// Solid grains first, then the contents of the soft particles, then their shells (of the shelled twin).
 MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const std::vector<ShellPacking>& contents,
                       std::uint64_t seed, std::uint64_t sample, bool shelled) {
@@ -109,9 +116,8 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
   MacroSystem out;
   System3& s = out.system;
   s.materials = {solid_material(spec, "grain"), solid_material(spec, "wall")};
-  s.laws = LawSet(2);
-  s.laws.set(0, 0, solid_law(s.materials[0], spec.friction));
-  s.laws.set(0, 1, solid_law(s.materials[0], spec.wall_friction));
+  out.dashpots = {twin_laws(s.materials[0], spec, 1.0), twin_laws(s.materials[0], spec, spec.twin.restitution)};
+  s.laws = out.dashpots->off;
   out.inner_grains = count_inner_grains(packing, contents);
   const auto bodies = static_cast<std::int32_t>(packing.bodies.size());
   for (std::int32_t n = 0; n < bodies; ++n) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/contact/law_set.h"
 #include "common/data/shell_packing.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "macrosim/box.h"
 #include "macrosim/macro_packing.h"
 
@@ -20,6 +22,16 @@ struct MacroSystem {
   std::vector<std::int32_t> body;
   std::int32_t bodies = 0;
   double largest_radius = 0.0;  ///< of the bodies [m]: the scale of the force floor, the same for all engines
+
+  /// Of twins, which can move by dynamics: their laws while they rest, and with the dashpots of contacts.
+  struct Dashpots {
+    LawSet off;
+    LawSet on;
+  };
+  std::optional<Dashpots> dashpots{};
+
+  /// Gives contacts of a twin Tsuji damping, or takes it away.
+  void set_damping(bool on) { take_laws(system, on ? dashpots->on : dashpots->off); }
 };
 
 /// The laws of soft particles in a macro scene, as the contact loop takes them: frictions set, without damping

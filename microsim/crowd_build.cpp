@@ -71,8 +71,9 @@ class ContentLaws {
 
 std::int32_t other_material(std::size_t soft) { return kFirstOther + 2 * static_cast<std::int32_t>(soft); }
 
-LawSet crowd_laws(const SoftParticleSpec& spec, const Material& grain, std::size_t softs, const InnerLaws* inner) {
-  const AnyLaw hertz = hertz_law(HertzCoefficients::of(grain, grain, spec.friction, 1.0), false);
+LawSet crowd_laws(const SoftParticleSpec& spec, const Material& grain, double restitution, std::size_t softs,
+                  const InnerLaws* inner) {
+  const AnyLaw hertz = hertz_law(HertzCoefficients::of(grain, grain, spec.friction, restitution), false);
   ContentLaws table(other_material(softs), hertz, inner);
   table.contents(kGrain, kGrain);
   table.content_with(kGrain, kSolid);
@@ -281,7 +282,12 @@ CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguratio
   e.configuration = configuration;
   e.overlap.assign(configuration.partners.size(), 0.0);
   e.system.materials = crowd_materials(spec, others.size());
-  e.system.laws = crowd_laws(spec, e.system.materials[kGrain], others.size(), inner ? laws : nullptr);
+  const auto laws_with = [&](double restitution) {
+    return crowd_laws(spec, e.system.materials[kGrain], restitution, others.size(), inner ? laws : nullptr);
+  };
+  e.undamped = laws_with(1.0);
+  e.damped = laws_with(spec.restitution);
+  e.system.laws = e.undamped;
   Builder(e, others, laws == nullptr ? 1.0 : laws->solid_fraction).build(centre);
   return e;
 }

@@ -7,6 +7,7 @@
 #include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/residual.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "microsim/protocol.h"
 
 namespace softgrain {
@@ -24,16 +25,28 @@ std::vector<std::int32_t> owners(const CrowdExperiment& e) {
   return owner;
 }
 
-/// Force on each neighbour from the content of the centre [N].
-std::vector<Vec3> neighbour_forces(const CrowdExperiment& e, const std::vector<ContactRecord<3>>& records) {
+/// Force on each neighbour from the content of the centre [N], and its moment about the contact point [N m].
+struct Load {
+  Vec3 force{};
+  Vec3 moment{};
+};
+
+std::vector<Load> neighbour_loads(const CrowdExperiment& e, const std::vector<ContactRecord<3>>& records) {
   const std::vector<std::int32_t> owner = owners(e);
-  std::vector<Vec3> forces(e.neighbours.size());
+  std::vector<Vec3> touch;
+  for (std::size_t k = 0; k < e.neighbours.size(); ++k)
+    touch.push_back(e.system.particles.sphere[at(e.centre_shell)].x +
+                    e.direction(k) * ((1.0 - 0.5 * e.overlap[k]) * e.spec.shell_radius));
+  std::vector<Load> loads(e.neighbours.size());
   for (const ContactRecord<3>& c : records) {
     if (c.i >= e.centre_bodies) continue;
     const std::int32_t k = owner[static_cast<std::size_t>(c.j)];
-    if (k >= 0) forces[static_cast<std::size_t>(k)] -= c.normal * c.normal_force + c.tangential_force;
+    if (k < 0) continue;
+    const Vec3 force = c.normal * c.normal_force + c.tangential_force;
+    loads[at(k)].force -= force;
+    loads[at(k)].moment -= cross(c.point - touch[at(k)], force);
   }
-  return forces;
+  return loads;
 }
 
 /// h/Rs of neighbour k, towards the shell where it is now.
@@ -42,8 +55,19 @@ double present_overlap(const CrowdExperiment& e, std::size_t k) {
   const Vec3 apart =
       p.sphere[static_cast<std::size_t>(e.neighbours[k].body)].x - p.sphere[static_cast<std::size_t>(e.centre_shell)].x;
   const CrowdPartner& partner = e.configuration.partners[k];
-  const double distance = partner.kind == PartnerKind::plane ? dot(apart, partner.direction) : norm(apart);
+  const double distance = partner.kind == PartnerKind::plane ? dot(apart, e.direction(k)) : norm(apart);
   return 1.0 + partner.ratio - distance / e.spec.shell_radius;
+}
+
+/// The first neighbour, a plane, to its direction and its foot there.
+void turn_plane(CrowdExperiment& e) {
+  const Slot slot = e.neighbours[0].body;
+  auto& p = e.system.particles;
+  const Vec3 n = e.direction(0);
+  p.plane_normal[at(slot - p.first_plane())] = -n;
+  p.sphere[at(slot)].x =
+      p.sphere[at(e.centre_shell)].x + neighbour_place(e.spec, e.configuration.partners[0], n, e.overlap[0]);
+  e.system.neighbours.reference.clear();  // a list knows how far planes go, not that they turn
 }
 
 }  // namespace
@@ -54,48 +78,58 @@ Vec3 neighbour_place(const SoftParticleSpec& spec, const CrowdPartner& p, const 
 
 Vec3 CrowdExperiment::direction(std::size_t k) const {
   const CrowdPartner& p = configuration.partners[k];
-  if (k > 0 || slide == 0.0 || p.kind == PartnerKind::plane) return p.direction;
-  const double angle = slide / (1.0 + p.ratio - overlap[0]);
+  if (k > 0 || (slide == 0.0 && roll == 0.0)) return p.direction;
+  const double round = p.kind == PartnerKind::plane ? 0.0 : slide / (1.0 + p.ratio - overlap[0]);
+  const double angle = round + roll / (1.0 - 0.5 * overlap[0]);
+  if (angle == 0.0) return p.direction;
   return p.direction * std::cos(angle) + slide_direction(p.direction) * std::sin(angle);
 }
 
-void CrowdExperiment::move_to(const std::vector<double>& overlaps, double slide_to) {
+void CrowdExperiment::set_damping(bool on) { take_laws(system, on ? damped : undamped); }
+
+std::vector<Vec3> CrowdExperiment::prescribe(const CrowdTarget& to) {
   std::vector<Vec3> moves(static_cast<std::size_t>(system.particles.size()));
+  const CrowdTarget from = now();
   std::vector<Vec3> before(neighbours.size());
   for (std::size_t k = 0; k < neighbours.size(); ++k) before[k] = direction(k);
-  const std::vector<double> overlaps_before = overlap;
-  const double slide_before = slide;
-  overlap = overlaps;
-  slide = slide_to;
+  overlap = to.overlap;
+  slide = to.slide;
+  roll = to.roll;
   for (std::size_t k = 0; k < neighbours.size(); ++k) {
     const CrowdPartner& p = configuration.partners[k];
-    Vec3 move = before[k] * ((overlaps_before[k] - overlap[k]) * spec.shell_radius);
-    if (k == 0 && slide != slide_before)
-      move = p.kind == PartnerKind::plane
-                 ? move + slide_direction(p.direction) * ((slide - slide_before) * spec.shell_radius)
-                 : neighbour_place(spec, p, direction(0), overlap[0]) -
-                       neighbour_place(spec, p, before[0], overlaps_before[0]);
+    const bool plane = p.kind == PartnerKind::plane;
+    Vec3 move = before[k] * ((from.overlap[k] - overlap[k]) * spec.shell_radius);
+    if (k == 0 && plane) {
+      move = move + slide_direction(p.direction) * ((slide - from.slide) * spec.shell_radius);
+      if (roll != from.roll) turn_plane(*this);
+    } else if (k == 0 && (slide != from.slide || roll != from.roll)) {
+      move = neighbour_place(spec, p, direction(0), overlap[0]) - neighbour_place(spec, p, before[0], from.overlap[0]);
+    }
     for (Slot i = neighbours[k].begin; i < neighbours[k].end; ++i) moves[static_cast<std::size_t>(i)] = move;
     moves[static_cast<std::size_t>(neighbours[k].body)] = move;
   }
-  displace(system, moves);
+  return moves;
 }
+
+void CrowdExperiment::move_to(const CrowdTarget& to) { displace(system, prescribe(to)); }
 
 CrowdPoint CrowdExperiment::observe() const {
   CrowdPoint point;
   const double unit = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
-  const std::vector<Vec3> forces = neighbour_forces(*this, contact_records(system));
+  const std::vector<Load> loads = neighbour_loads(*this, contact_records(system));
   for (std::size_t k = 0; k < neighbours.size(); ++k) {
     const Vec3 n = direction(k);
-    const double normal = dot(forces[k], n);
+    const double normal = dot(loads[k].force, n);
     point.overlap.push_back(present_overlap(*this, k));
     point.normal.push_back(normal / unit);
-    point.tangential.push_back((forces[k] - n * normal) * (1.0 / unit));
+    point.tangential.push_back((loads[k].force - n * normal) * (1.0 / unit));
+    point.moment.push_back(loads[k].moment * (1.0 / (unit * spec.shell_radius)));
   }
   const Residual rest = softgrain::residual(system);
   point.residual = rest.relative(force_floor(spec));
   point.max_overlap = rest.max_overlap;
   point.slide = slide;
+  point.roll = roll;
   point.centre = system.particles.sphere[static_cast<std::size_t>(centre_shell)].x * (1.0 / spec.shell_radius);
   return point;
 }

@@ -2,6 +2,7 @@
 // are pressed in along a given path while the grains come to rest.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/contact/law_set.h"
@@ -10,6 +11,7 @@
 #include "common/data/slide_direction.h"
 #include "common/state/run_control.h"
 #include "common/system.h"
+#include "microsim/protocol.h"
 
 namespace softgrain {
 
@@ -36,21 +38,39 @@ struct InnerLaws {
   double solid_fraction = 1.0;  ///< of an inner soft particle, for its mass (no effect on states of rest)
 };
 
-/// How states come to rest: mass-scaled relaxation with adaptive damping.
+/// How neighbours move and states come to rest.
 struct CrowdOptions {
-  double increment = 0.005;         ///< largest change of an overlap (or slide) between two relaxations [Rs]
-  double tolerance = 1e-2;          ///< of a recorded state: largest net force over mean contact force
-  double tolerance_between = 0.3;   ///< of all states between
+  /// slow_dynamics: molecular dynamics all along the way, masses of the quickest grains raised (the means of the
+  /// published protocol within their errors, see results/relaxation). damped: increments, each relaxed without inertia
+  /// (stiff by 10 to 60 % near a threshold). published: real masses, six stops; the reference. Never least_work.
+  Relaxation relaxation = Relaxation::slow_dynamics;
+  double increment = 0.005;  ///< largest change of an overlap (or slide) between two relaxations [Rs]; of dynamics:
+                             ///< between two points at which a run can be left and taken up again
+  double tolerance = 1e-2;   ///< of a recorded state: largest net force over mean contact force
+  double tolerance_between = 0.3;   ///< damped: of all states between
   std::int64_t max_passes = 20000;  ///< per relaxation
-  /// Of the relaxation: no body counts as softer than this times E times its radius. About the stiffness of a contact
-  /// at an overlap of 0.4 % of the radius: without it loose grains kick each other about near the onset, where hardly
-  /// anything touches, and a relaxation takes 2 to 5 times as many passes to the same mean force.
+  /// Of a damped relaxation: no body counts as softer than this times E times its radius. About the stiffness of a
+  /// contact at an overlap of 0.4 % of the radius: without it loose grains kick each other about near the onset, where
+  /// hardly anything touches, and a relaxation takes 2 to 5 times as many passes to the same mean force.
   double least_stiffness = 0.05;
+  double approach_speed = 0.0;  ///< of dynamics [m/s]; 0: as in the published protocol
+  double step_factor = 4.0;     ///< slow_dynamics: time step over that of the published protocol
+  double settle_time = 240.0;   ///< slow_dynamics: before a state is recorded [Rs sqrt(rho/E)]
 };
+
+/// How, in one line for files and tables.
+std::string relaxation_text(const CrowdOptions& options);
 
 /// Where states are recorded: per stage, ascending shares of the stage in (0, 1]; the end of a stage is recorded only
 /// when 1 is among them.
 using CrowdPlan = std::vector<std::vector<double>>;
+
+/// Prescribed position: overlaps, slide and roll of the first neighbour [Rs].
+struct CrowdTarget {
+  std::vector<double> overlap;
+  double slide = 0.0;
+  double roll = 0.0;
+};
 
 /// Slots: grains and inner soft particles of the centre, then those of soft neighbours, solid spheres, shells (centre
 /// first), planes. Materials: see microsim/crowd_build.cpp.
@@ -70,12 +90,26 @@ struct CrowdExperiment {
   Slot centre_shell = 0;        ///< slot
   std::vector<double> overlap;  ///< as prescribed, towards the shell where it was at first [Rs]
   double slide = 0.0;           ///< of the first neighbour [Rs]
+  double roll = 0.0;            ///< of its contact over the surface of the centre [Rs]
+  LawSet undamped;              ///< laws of system while it rests; no other ones while it is kept
+  LawSet damped;                ///< the same with the dashpots of contacts between grains
 
-  /// Direction from the first place of the shell to neighbour k; a sphere that slides goes round.
+  /// Direction from the first place of the shell to neighbour k; a sphere that slides goes round, and so does every
+  /// first neighbour that rolls.
   [[nodiscard]] Vec3 direction(std::size_t k) const;
 
-  /// Moves every neighbour to these overlaps and the first one to this slide, in one stroke; springs follow.
-  void move_to(const std::vector<double>& overlaps, double slide_to);
+  /// Gives contacts between grains Tsuji damping with the spec's restitution, or takes it away. The list of neighbours
+  /// is made anew.
+  void set_damping(bool on);
+
+  /// How every body has to move for this position [m]; from now on it is what is prescribed. A plane that rolls is put
+  /// there at once: what it is made of stands still where it touches.
+  [[nodiscard]] std::vector<Vec3> prescribe(const CrowdTarget& to);
+
+  /// Moves every neighbour there in one stroke; springs follow. Never while rolling.
+  void move_to(const CrowdTarget& to);
+
+  [[nodiscard]] CrowdTarget now() const { return {overlap, slide, roll}; }
 
   /// Forces, overlaps, residual of the state as it is; `stage` and `converged` are left to the caller.
   [[nodiscard]] CrowdPoint observe() const;
@@ -90,12 +124,6 @@ Vec3 neighbour_place(const SoftParticleSpec& spec, const CrowdPartner& partner, 
 CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguration& configuration,
                            const SoftContent& centre, const std::vector<const SoftContent*>& others,
                            const InnerLaws* laws = nullptr);
-
-/// Prescribed position: overlaps and slide [Rs].
-struct CrowdTarget {
-  std::vector<double> overlap;
-  double slide = 0.0;
-};
 
 /// Where in its plan a run stands; with the experiment it is all that the run needs to go on.
 struct CrowdPlace {

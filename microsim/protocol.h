@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/data/measurements.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "microsim/soft_experiment.h"
 
 namespace softgrain {
@@ -24,9 +25,9 @@ struct PublishedOptions {
   double approach_speed = 0.0;  ///< [m/s]; 0: 0.002 m/s at the published Rs, rho, E, scaled with sqrt(E/rho) otherwise
   double stop_interval = 0.0;   ///< [s]; 0: 0.3 s at the published Rs, rho, E, scaled with Rs sqrt(rho/E) otherwise
   int stops = 6;                ///< stops of all motion, each after one interval; one more interval follows
-  double step_fraction = 0.2;   ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
+  double step_fraction = kPublishedStep;  ///< dt over sqrt(m_min/k), k at 5 % overlap of the smallest grain
   double crowded_fraction =
-      0.5;  ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
+      kCrowdedFraction;  ///< and dt never above this times sqrt(m/K), K the sum of all contact stiffnesses of a grain
   double tolerance = 1e-2;  ///< a point is called converged below this (largest net force over mean contact force)
 };
 
@@ -59,6 +60,9 @@ double force_floor(const SoftParticleSpec& spec);
 
 /// The speed of approach of the published protocol at these Rs, rho and E [m/s].
 double published_speed(const SoftParticleSpec& spec);
+
+/// Between two stops of the published protocol at these Rs, rho and E [s].
+double published_interval(const SoftParticleSpec& spec);
 
 struct SettleResult {
   Vec3 force{};  ///< on the second body, x along the normal [N]

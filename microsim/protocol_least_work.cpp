@@ -3,51 +3,18 @@
 
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
-#include "common/dynamics/scaled_masses.h"
-#include "common/dynamics/time_step.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "common/dynamics/verlet.h"
-#include "common/io/interrupt.h"
-#include "common/neighbours/verlet_list.h"
 #include "common/statics/least_work_step.h"
 #include "microsim/protocol.h"
-#include "microsim/shorter_steps.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Steps are counted in those of the published protocol.
-constexpr PublishedOptions kPublishedOptions{};
 /// After an increment without equilibrium the next ones go straight to dynamics, in one stretch: 1, 2, 4... up to
 /// these.
 constexpr int kLongestDetour = 8;
-
-/// A stretch of slow dynamics with real contact damping; the grains' own inertia, but for the quickest. Motion goes on
-/// from what it was and is left as it is: a pack that rearranges carries its momentum on, and stopping it every now and
-/// then raises the force near the threshold by a third.
-void run_steps(SoftExperiment& e, double speed, double duration, std::int64_t steps) {
-  const double dt = duration / static_cast<double>(steps);
-  {
-    const ScaledMasses<3> raised(e.system, dt, kPublishedOptions.crowded_fraction);
-    e.set_damping(true);
-    e.add_approach_speed(speed);
-    VelocityVerlet<3> integrator(dt);
-    integrator.initialise(e.system);
-    for (std::int64_t k = 0; k < steps; ++k) {
-      stop_if_interrupted("relaxing");
-      integrator.step(e.system);
-    }
-    e.add_approach_speed(-speed);
-  }
-  e.set_damping(false);
-  update_neighbours(e.system);  // a checkpoint wants a list that is whole
-}
-
-void run_dynamics(SoftExperiment& e, double speed, double duration, double step_factor) {
-  const double nominal = step_factor * kPublishedOptions.step_fraction * step_limit(e.system).natural_time;
-  const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
-  with_steps_short_enough(e, [&](int halves) { run_steps(e, speed, duration, steps * halves); });
-}
 
 class LeastWorkProtocol : public Protocol {
  public:
@@ -73,7 +40,7 @@ class LeastWorkProtocol : public Protocol {
       }
       detour = std::min(std::clamp(2 * detour, 1, kLongestDetour), steps - k);
       last.clear();
-      run_dynamics(e, v, detour * move / v, options_.step_factor);
+      run_slow(e, driven_at(e.second_moves(v)), detour * move / v, options_.step_factor);
       k += detour;
     }
     e.normal_overlap = overlap;
@@ -101,7 +68,7 @@ class LeastWorkProtocol : public Protocol {
  private:
   /// Dynamics for a time in units of Rs sqrt(rho/E), then no motion.
   static void rest(SoftExperiment& e, double time, double step_factor) {
-    if (time > 0.0) run_dynamics(e, 0.0, time * natural_time(e.spec), step_factor);
+    if (time > 0.0) run_slow(e, {}, time * natural_time(e.spec), step_factor);
     stop_motion(e.system.particles);
   }
 

@@ -6,6 +6,7 @@
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/displace.h"
 #include "common/dynamics/force_pass.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "common/dynamics/system_snapshot.h"
 #include "common/neighbours/verlet_list.h"
 
@@ -92,10 +93,7 @@ double natural_time(const SoftParticleSpec& spec) {
   return spec.shell_radius * std::sqrt(spec.density / spec.youngs_modulus);
 }
 
-void SoftExperiment::set_damping(bool damped) {
-  system.laws = grain_laws(spec, system.materials[0], damped);
-  system.neighbours.reference.clear();  // the next pass rebuilds the list, with the constants of this law
-}
+void SoftExperiment::set_damping(bool damped) { take_laws(system, grain_laws(spec, system.materials[0], damped)); }
 
 Vec3 SoftExperiment::force_on_second() const {
   Vec3 sum{};
@@ -118,12 +116,6 @@ std::vector<Vec3> SoftExperiment::second_moves(double distance) const {
 void SoftExperiment::push(double distance) {
   displace(system, second_moves(distance));
   normal_overlap += distance;
-}
-
-void SoftExperiment::add_approach_speed(double speed) {
-  auto& p = system.particles;
-  for (Slot i = first_grains; i < p.size(); ++i)
-    if (i != p.grains) p.velocity[static_cast<std::size_t>(i)][0] -= speed;
 }
 
 void SoftExperiment::rotate_first(double degrees, double step_degrees, bool shell_turns) {

@@ -33,9 +33,6 @@ struct SoftExperiment {
   /// tangential springs follow. Contacts must be without dashpots.
   void push(double distance);
 
-  /// Gives the second body, grains included, this approach speed on top of what it has [m/s].
-  void add_approach_speed(double speed);
-
   /// Turns every grain of body 1 rigidly about the z axis through its centre by `degrees`, in steps no larger than
   /// `step_degrees`: positions and inner springs turn together, springs to the second body (and to the shell when it
   /// stays) load up and slide at the Coulomb limit on the way. Positive angles drag the second body towards +y.

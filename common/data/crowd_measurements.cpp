@@ -27,6 +27,13 @@ void fields(auto&& visit, Of<NeighbourRow> auto& r) {
   visit("tangential", r.tangential, "E Rs^2");
 }
 
+/// What a point says of one neighbour since moments are recorded.
+struct MomentRow {
+  Vec3 moment{};
+};
+
+void fields(auto&& visit, Of<MomentRow> auto& r) { visit("moment", r.moment, "E Rs^3"); }
+
 void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration>& configurations) {
   std::vector<CrowdPartner> all;
   for (const auto& c : configurations) all.insert(all.end(), c.partners.begin(), c.partners.end());
@@ -57,6 +64,7 @@ void write_stages(const h5::Group& group, const std::vector<CrowdConfiguration>&
   const h5::Group g = group.create("stages");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), to_string(all[k].move));
   write_column(g, "slide", "Rs", all, [](const auto& s) { return s.slide; });
+  write_column(g, "roll", "Rs", all, [](const auto& s) { return s.roll; });
   write_column(g, "overlaps", "1", all, [](const auto& s) { return s.overlap.size(); });
   std::vector<double> overlaps;
   for (const auto& s : all) overlaps.insert(overlaps.end(), s.overlap.begin(), s.overlap.end());
@@ -70,10 +78,12 @@ std::vector<CrowdStage> read_stages(const h5::Group& group) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const std::string name = g.text("name_" + std::to_string(k));
     const auto move = from_word<CrowdMove>(name);
-    if (!move) throw FileTrouble("a stage is called '" + name + "'; known are load, unload, reload and slide");
+    if (!move)
+      throw FileTrouble("a stage is called '" + name + "'; known are load, unload, reload, slide, oblique and roll");
     all[k].move = *move;
   }
   read_finite(g, "slide", "Rs", all, [](auto& s, double v) { s.slide = v; });
+  if (g.has("roll")) read_finite(g, "roll", "Rs", all, [](auto& s, double v) { s.roll = v; });
   const std::vector<double> overlaps = read_numbers(g, "overlap", "Rs", {g.doubles("overlap").size()}, kOverlaps);
   Slices slices(overlaps.size());
   read_integers(g, "overlaps", all, [&](auto& s, auto v) { s.overlap = take(overlaps, slices, v); });
@@ -116,11 +126,16 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
 void write_points(const h5::Group& group, const std::vector<CrowdPoint>& points) {
   const h5::Group g = group.create("points");
   write_records(g, points);
+  write_column(g, "roll", "Rs", points, [](const auto& p) { return p.roll; });
   write_column(g, "neighbours", "1", points, [](const auto& p) { return p.overlap.size(); });
   std::vector<NeighbourRow> rows;
   for (const CrowdPoint& p : points)
     for (std::size_t k = 0; k < p.overlap.size(); ++k) rows.push_back({p.overlap[k], p.normal[k], p.tangential[k]});
   write_records(group.create("neighbours"), rows);
+  std::vector<MomentRow> moments;
+  for (const CrowdPoint& p : points)
+    for (const Vec3& m : p.moment) moments.push_back({m});
+  if (moments.size() == rows.size()) write_records(group.create("moments"), moments);
 }
 
 std::vector<NeighbourRow> read_neighbours(const h5::Group& group) {
@@ -138,6 +153,16 @@ void append_neighbours(CrowdPoint& p, const std::vector<NeighbourRow>& rows) {
   }
 }
 
+/// One for each neighbour of each point, `count` in all.
+void read_moments(const h5::Group& group, std::vector<CrowdPoint>& points, std::size_t count) {
+  require_shape(group, "moment_x", {count});
+  std::vector<MomentRow> rows(count);
+  read_records(group, rows);
+  std::size_t next = 0;
+  for (CrowdPoint& p : points)
+    for (std::size_t k = 0; k < p.overlap.size(); ++k) p.moment.push_back(rows[next++].moment);
+}
+
 std::vector<CrowdPoint> read_points(const h5::Group& group) {
   const h5::Group g = group.open("points");
   std::vector<CrowdPoint> points(column_length(g, "stage"));
@@ -146,6 +171,8 @@ std::vector<CrowdPoint> read_points(const h5::Group& group) {
   Slices slices(rows.size());
   read_integers(g, "neighbours", points, [&](auto& p, auto v) { append_neighbours(p, take(rows, slices, v)); });
   slices.finish();
+  if (g.has("roll")) read_finite(g, "roll", "Rs", points, [](auto& p, double v) { p.roll = v; });
+  if (group.has("moments")) read_moments(group.open("moments"), points, rows.size());
   return points;
 }
 

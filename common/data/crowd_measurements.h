@@ -26,20 +26,30 @@ struct CrowdPartner {
   Vec3 direction{};    ///< unit vector from the centre of the soft particle to the neighbour
 };
 
-enum class CrowdMove { load, unload, reload, slide };
+enum class CrowdMove {
+  load,
+  unload,
+  reload,
+  slide,
+  oblique,  ///< pressed and slid at once
+  roll      ///< the first neighbour rolls over the soft particle, at constant overlaps
+};
 
 template <>
 inline constexpr auto words<CrowdMove> = word_list<CrowdMove>({{CrowdMove::load, "load"},
                                                                {CrowdMove::unload, "unload"},
                                                                {CrowdMove::reload, "reload"},
-                                                               {CrowdMove::slide, "slide"}});
+                                                               {CrowdMove::slide, "slide"},
+                                                               {CrowdMove::oblique, "oblique"},
+                                                               {CrowdMove::roll, "roll"}});
 
 /// A stretch of the path: all overlaps go in straight lines from where they are to `overlap`, one value per neighbour
 /// [Rs].
 struct CrowdStage {
   CrowdMove move = CrowdMove::load;
-  std::vector<double> overlap;  ///< h/Rs of each neighbour at the end
-  double slide = 0.0;           ///< stage "slide": how far the first neighbour moves across its normal [Rs]
+  std::vector<double> overlap{};  ///< h/Rs of each neighbour at the end
+  double slide = 0.0;             ///< how far the first neighbour moves across its normal [Rs]; back: negative
+  double roll = 0.0;              ///< how far its contact goes over the surface of the centre without sliding [Rs]
 };
 
 /// A measurement set: neighbours and path.
@@ -57,7 +67,10 @@ struct CrowdPoint {
   std::vector<double> overlap;   ///< h/Rs of each neighbour, towards the shell where it is now
   std::vector<double> normal;    ///< force on each neighbour along its direction, over E Rs^2, compression positive
   std::vector<Vec3> tangential;  ///< the rest of that force
+  std::vector<Vec3> moment;      ///< of the forces on each neighbour about its contact point (1 - h/2 Rs from the
+                                 ///< centre along its direction), over E Rs^3; empty: not recorded
   double slide = 0.0;            ///< of the first neighbour so far [Rs]
+  double roll = 0.0;             ///< likewise
   Vec3 centre{};                 ///< displacement of the shell [Rs]; zero when it is held
   double residual = 0.0;         ///< largest net force on a grain over the mean contact force (or floor)
   double max_overlap = 0.0;      ///< largest overlap over the smaller radius

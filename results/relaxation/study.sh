@@ -34,4 +34,21 @@ for seed in 3001 3002 3003; do
     "$program" microsim "$root/results/relaxation/stiffness_study.toml" --seed $seed --out "$work/stiffness-$seed" --resume --quiet \
       >/dev/null || [ $? -eq 3 ]
 done
+# With several neighbours.
+crowd() { # name, then key=value ...
+  local name=$1 options=() setting
+  shift
+  for setting in "$@"; do options+=(--set "$setting"); done
+  [ -f "$work/$name/summary.json" ] ||
+    "$program" run "$root/results/relaxation/crowd_study.toml" --out "$work/$name" --resume --quiet "${options[@]}" >/dev/null ||
+    [ $? -eq 3 ]
+}
+crowd crowd-scenes
+crowd crowd-finer crowd.step_factor=2 crowd.settle_time=480
+crowd crowd-longer crowd.settle_time=480
+crowd crowd-short crowd.step_factor=2 crowd.settle_time=120
+crowd crowd-damped crowd.relaxation=damped
+crowd crowd-damped-half crowd.relaxation=damped crowd.increment=0.0025
+crowd crowd-published crowd.relaxation=published
+python3 "$root/results/relaxation/crowd.py" "$work"
 python3 "$root/results/relaxation/collect.py" "$work"

@@ -44,8 +44,14 @@ std::vector<double> single_contact_forces(const SoftParticleSpec& spec, MakeExpe
   return forces;
 }
 
-CrowdOptions binary_options() {
+CrowdOptions damped_options() {
   CrowdOptions options;
+  options.relaxation = Relaxation::damped;
+  return options;
+}
+
+CrowdOptions binary_options() {
+  CrowdOptions options = damped_options();
   options.increment = 0x1p-7;
   options.least_stiffness = 0.0;  // as the measurement of one contact
   return options;
@@ -84,6 +90,126 @@ TEST(CrowdExperiment, OneEqualSoftNeighbourIsTheSoftSoftMeasurementBitForBit) {
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(run.points[k].normal[0], expected[k]);
 }
 
+/// Speed, overlaps and Rs are powers of two, and each approach is one stretch: the same motion in both experiments.
+struct BinaryMotion {
+  static constexpr double kSpeed = 0x1p-6;
+  static constexpr double kStep = 2.0;
+  static constexpr double kSettle = 32.0;
+
+  static std::vector<double> single(SoftExperiment e, const double (&deltas)[2]) {
+    LeastWorkProtocolOptions o;
+    o.increment = 1.0;
+    o.increment_passes = 0;
+    o.approach_speed = kSpeed;
+    o.step_factor = kStep;
+    o.settle_time = o.path_settle_time = kSettle;
+    const auto protocol = make_least_work_protocol(o);
+    std::vector<double> forces;
+    for (const double delta : deltas) {
+      protocol->approach(e, delta * e.spec.shell_radius);
+      forces.push_back(protocol->settle(e, false).force[0] /
+                       (e.spec.youngs_modulus * e.spec.shell_radius * e.spec.shell_radius));
+    }
+    return forces;
+  }
+  static CrowdRun several(CrowdExperiment e) {
+    CrowdOptions o;
+    o.relaxation = Relaxation::slow_dynamics;
+    o.increment = 1.0;
+    o.approach_speed = kSpeed;
+    o.step_factor = kStep;
+    o.settle_time = kSettle;
+    o.least_stiffness = 0.0;
+    return run_crowd(e, kHalfAndEnd, o);
+  }
+};
+
+TEST(CrowdExperiment, SlowDynamicsOfOnePlaneIsThatOfOneContactBitForBit) {
+  const SoftParticleSpec spec = binary_spec();
+  const SoftContent content = content_of(spec, 0);
+  const auto expected = BinaryMotion::single(make_soft_solid(spec, content.grains, false), {0.125, 0.25});
+  const CrowdRun run = BinaryMotion::several(
+      make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::one), 0.25), content, {}));
+  EXPECT_GT(run.points[1].normal[0], 1e-4);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(run.points[k].normal[0], expected[k]);
+}
+
+TEST(CrowdExperiment, SlowDynamicsOfASoftNeighbourIsThatOfOneContactBitForBit) {
+  const SoftParticleSpec spec = binary_spec();
+  const SoftContent first = content_of(spec, 0);
+  const SoftContent second = content_of(spec, 1);
+  const auto expected = BinaryMotion::single(make_soft_soft(spec, first.grains, second.grains, false), {0.25, 0.5});
+  const CrowdRun run = BinaryMotion::several(
+      make_crowd(spec, crowd_of(PartnerKind::soft, 1.0, directions_of(Arrangement::one), 0.5), first, {&second}));
+  EXPECT_GT(run.points[1].normal[0], 1e-5);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(run.points[k].normal[0], expected[k]);
+}
+
+/// One grain that fills its shell nearly: the law of the contact is that of two spheres, or of a sphere and a plane.
+SoftContent one_grain() { return {ShellPacking{0, {Vec3{}}, {0.9999}}, {}, {}}; }
+
+/// Moved along the surface by `way`, sliding or rolling, at an overlap of 1 %.
+CrowdExperiment moved_along(PartnerKind kind, CrowdMove move, double way, CrowdRun& run) {
+  CrowdConfiguration c = crowd_of(kind, 1.0, directions_of(Arrangement::one), 0.01);
+  CrowdStage along{move, c.stages[0].overlap};
+  (move == CrowdMove::roll ? along.roll : along.slide) = way;
+  c.stages.push_back(along);
+  CrowdOptions options;
+  options.settle_time = 20.0;
+  options.approach_speed = 0.02;
+  CrowdExperiment e = make_crowd(coarse_spec(), c, one_grain(), {});
+  run = run_crowd(e, {{1.0}, {0.5, 1.0}}, options);
+  return e;
+}
+
+/// Sliding drags the grain along. Rolling does so no more than a pressed grain is off its centre: h/2 times the angle.
+TEST(CrowdExperiment, WhatRollsDoesNotSlide) {
+  constexpr double kWay = 0.02;
+  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid}) {
+    CrowdRun rolled;
+    CrowdRun slid;
+    (void)moved_along(kind, CrowdMove::roll, kWay, rolled);
+    (void)moved_along(kind, CrowdMove::slide, kWay, slid);
+    const CrowdPoint& end = rolled.points.back();
+    EXPECT_NEAR(end.normal[0], rolled.points.front().normal[0], 0.01 * end.normal[0]);
+    EXPECT_GT(norm(slid.points.back().tangential[0]), 0.15 * slid.points.back().normal[0]) << to_string(kind);
+    EXPECT_LT(norm(end.tangential[0]), 0.015 * end.normal[0]) << to_string(kind);
+  }
+}
+
+/// Its contact goes over the surface, at 1 - h/2 from the centre.
+TEST(CrowdExperiment, WhatRollsGoesRound) {
+  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid}) {
+    CrowdRun run;
+    const CrowdExperiment e = moved_along(kind, CrowdMove::roll, 0.2, run);
+    EXPECT_NEAR(run.points.back().roll, 0.2, 1e-15);
+    EXPECT_NEAR(run.points.back().overlap[0], 0.01, 1e-5);
+    const double angle = 0.2 / (1.0 - 0.5 * 0.01);
+    EXPECT_NEAR(dot(e.direction(0), e.configuration.partners[0].direction), std::cos(angle), 1e-12);
+    const Vec3 place = e.system.particles.sphere[at(e.neighbours[0].body)].x;
+    const double distance = (kind == PartnerKind::plane ? 0.99 : 1.99) * e.spec.shell_radius;
+    EXPECT_NEAR(norm(place - e.direction(0) * distance), 0.0, 1e-5 * distance) << to_string(kind);
+  }
+}
+
+TEST(CrowdExperiment, MomentsAreThoseOfTheForcesOnEachNeighbour) {
+  const SoftParticleSpec spec = coarse_spec();
+  const CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::orthogonal), 0.2);
+  CrowdExperiment e = make_crowd(spec, c, content_of(spec, 1), {});
+  (void)run_crowd(e, {{1.0}}, damped_options());
+  const CrowdPoint point = e.observe();
+  const double unit = spec.youngs_modulus * std::pow(spec.shell_radius, 3);
+  for (std::size_t k = 0; k < 2; ++k) {
+    Vec3 moment{};
+    for (const ContactRecord<3>& r : contact_records(e.system))
+      if (r.j == e.neighbours[k].body)
+        moment += cross(r.point - e.direction(k) * (0.9 * spec.shell_radius),
+                        -(r.normal * r.normal_force + r.tangential_force));
+    EXPECT_GT(norm(moment), 1e-8 * unit);
+    EXPECT_NEAR(norm(point.moment[k] * unit - moment), 0.0, 1e-12 * norm(moment));
+  }
+}
+
 /// Sum of all forces on what is not moved by forces, over the sum of their sizes.
 double imbalance(const CrowdExperiment& e) {
   Vec3 sum{};
@@ -106,7 +232,7 @@ TEST(CrowdExperiment, ForcesOfNeighboursAndShellBalance) {
   c.partners[1].ratio = 0.5;
   c.partners[2].kind = PartnerKind::soft;
   c.partners[2].ratio = 1.0;
-  CrowdOptions options;
+  CrowdOptions options = damped_options();
   options.tolerance = 1e-6;
   CrowdExperiment e = make_crowd(spec, c, content, {&other});
   const CrowdRun run = run_crowd(e, {{1.0}}, options);
@@ -120,7 +246,7 @@ TEST(CrowdExperiment, ForceOnAFreeShellVanishesAndOverlapsFollowIt) {
   const SoftParticleSpec spec = coarse_spec();
   CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::cube), 0.15);
   c.centre_free = true;
-  CrowdOptions options;
+  CrowdOptions options = damped_options();
   options.tolerance = 1e-5;
   CrowdExperiment e = make_crowd(spec, c, content_of(spec, 4), {});
   const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
@@ -237,7 +363,7 @@ TEST(CrowdExperiment, TheLeastStiffnessSavesPassesAndLeavesTheMeanAlone) {
   std::int64_t passes[2] = {0, 0};
   for (std::uint64_t packing = 0; packing < 16; ++packing)
     for (int k = 0; k < 2; ++k) {
-      CrowdOptions options;
+      CrowdOptions options = damped_options();
       if (k == 0) options.least_stiffness = 0.0;
       CrowdExperiment e =
           make_crowd(spec, crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::opposite), 0.25),
@@ -280,7 +406,7 @@ TEST(CrowdExperiment, AnInnerSoftParticleCarriesTheForceOfItsLaw) {
   const SoftParticleSpec spec = coarse_spec();
   const InnerLaws laws = inner_laws(spec);
   const CrowdConfiguration c = crowd_of(PartnerKind::plane, 0.0, directions_of(Arrangement::one), 0.6);
-  CrowdOptions options;
+  CrowdOptions options = damped_options();
   options.tolerance = 1e-8;
   // The grain stays out of the way. The plane, 0.6 deep, leaves 1.4 between it and the shell for a diameter of 1.6.
   constexpr double kRadius = 0.8;
@@ -298,7 +424,7 @@ TEST(CrowdExperiment, InnerSoftParticlesMeetThoseOfSoftNeighboursAndSolids) {
   c.partners[1].kind = PartnerKind::solid;
   const SoftContent content = one_inner(1.0 - 1e-9);
   CrowdExperiment e = make_crowd(spec, c, content, {&content}, &laws);
-  CrowdOptions options;
+  CrowdOptions options = damped_options();
   options.tolerance = 1e-8;
   const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
   ASSERT_TRUE(p.converged);

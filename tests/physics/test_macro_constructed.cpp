@@ -135,9 +135,10 @@ MacroSpec shear_of_solids() {
   return spec;
 }
 
-/// Without soft particles all engines are the same system.
+/// Without soft particles all engines are the same system, relaxed alike.
 TEST(MacroConstructed, WithoutSoftParticlesLawsAndTwinsAgreeToTheLastBit) {
-  const MacroSpec spec = shear_of_solids();
+  MacroSpec spec = shear_of_solids();
+  spec.twin.relaxation = TwinRelaxation::damped;
   const MacroPacking packing = make_packing(spec, 3, 0);
   const MacroCurve law = tested(spec, packing, make_law_system(spec, packing, {}, 1.0), "pair").curve;
   const MacroCurve shelled = tested(spec, packing, make_shelled_system(spec, packing, {}, 3, 0), "shelled").curve;
@@ -184,7 +185,7 @@ TEST(MacroConstructed, ShearKeepsTheVolumeAndLoadsTheShortenedAxisMost) {
 TEST(MacroConstructed, ContactsBetweenBodiesCarryTheWallStress) {
   MacroSpec spec = small_scene();
   spec.bodies = 12;
-  spec.strain_end = 0.15;
+  spec.strain_end = 0.25;
   const MacroPacking packing = make_packing(spec, 3, 0);
   const auto contents = few_grains();
   for (const bool shelled : {true, false}) {

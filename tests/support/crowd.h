@@ -41,7 +41,9 @@ inline void expect_equal(const std::vector<CrowdPoint>& a, const std::vector<Cro
     EXPECT_EQ(a[k].overlap, b[k].overlap);
     EXPECT_EQ(a[k].normal, b[k].normal);
     EXPECT_EQ(a[k].tangential, b[k].tangential);
+    EXPECT_EQ(a[k].moment, b[k].moment);
     EXPECT_EQ(a[k].slide, b[k].slide);
+    EXPECT_EQ(a[k].roll, b[k].roll);
     EXPECT_EQ(a[k].centre, b[k].centre);
     EXPECT_EQ(a[k].residual, b[k].residual);
     EXPECT_EQ(a[k].max_overlap, b[k].max_overlap);

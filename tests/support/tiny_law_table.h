@@ -30,7 +30,7 @@ path = "unload"
 arrangement = "one"
 partner = "soft"
 ratio = 1.0
-overlap = 0.4
+overlap = 0.6
 held_out = true
 )";
 

@@ -81,6 +81,8 @@ CrowdConfiguration loading_part(const CrowdConfiguration& configuration) {
   CrowdConfiguration c = configuration;
   c.name = "pilot";
   c.held_out = false;
+  CrowdStage& first = c.stages.front();
+  if (first.move == CrowdMove::oblique) first = {CrowdMove::load, first.overlap};
   const auto other =
       std::find_if(c.stages.begin(), c.stages.end(), [](const auto& s) { return s.move != CrowdMove::load; });
   c.stages.erase(other, c.stages.end());
@@ -111,7 +113,7 @@ CrowdPlan recording_plan(const CrowdConfiguration& configuration, const std::vec
                          std::int64_t points, double increment) {
   CrowdPlan plan;
   for (std::size_t k = 0; k < configuration.stages.size(); ++k) {
-    if (configuration.stages[k].move == CrowdMove::slide) {
+    if (configuration.stages[k].move == CrowdMove::slide || configuration.stages[k].move == CrowdMove::roll) {
       plan.push_back(slide_shares(points));
       continue;
     }

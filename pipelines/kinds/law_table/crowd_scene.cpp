@@ -1,6 +1,8 @@
 #include "pipelines/kinds/law_table/crowd_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "microsim/crowd_arrangements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -11,12 +13,29 @@ namespace {
 
 const Range kShare{0.0, 1.0, true, true};
 
+/// Least work is for one neighbour alone.
+void read_relaxation(const SceneTable& t, CrowdOptions& o) {
+  if (t.has("relaxation"))
+    o.relaxation =
+        t.choice<Relaxation>("relaxation", {Relaxation::slow_dynamics, Relaxation::damped, Relaxation::published});
+  const auto only_dynamics = [&](const char* key) {
+    if (t.has(key) && o.relaxation == Relaxation::damped)
+      t.mistake(key, "relaxation = \"damped\" knows no motion; leave it out");
+  };
+  for (const char* key : {"approach_speed", "step_factor", "settle_time"}) only_dynamics(key);
+  if (t.has("approach_speed"))
+    o.approach_speed = t.number("approach_speed", Unit::velocity, Range::positive(), o.approach_speed);
+  o.step_factor = t.number("step_factor", Unit::none, Range::closed(0.01, 10.0), o.step_factor);
+  o.settle_time = t.number("settle_time", Unit::none, Range::not_negative(), o.settle_time);
+}
+
 void read_crowd(const SceneTable& t, CrowdSetup& setup) {
   CrowdOptions& o = setup.options;
   o.increment = t.number("increment", Unit::none, Range::closed(1e-7, 0.1), o.increment);
   o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
   o.tolerance_between = t.number("tolerance_between", Unit::none, Range{0.0, 10.0, true, false}, o.tolerance_between);
   o.max_passes = t.count("max_passes", 10, 100000000, o.max_passes);
+  read_relaxation(t, o);
   setup.packings_min = t.count("packings_min", 2, 100000, setup.packings_min);
   setup.packings_max = t.count("packings_max", 2, 100000, std::max(setup.packings_max, setup.packings_min));
   if (setup.packings_max < setup.packings_min) t.mistake("packings_max", "must be at least packings_min");
@@ -25,7 +44,16 @@ void read_crowd(const SceneTable& t, CrowdSetup& setup) {
 }
 
 /// How the neighbours come and go.
-enum class CrowdPath { together, sequential, unload, slide };
+enum class CrowdPath {
+  together,
+  sequential,
+  unload,
+  slide,
+  back_and_forth,  ///< slides, back past where it began, and forth again
+  oblique,         ///< pressed and slid at once, at an angle to the normal
+  slide_press,     ///< half of the way in, a slide, the rest of the way
+  roll
+};
 enum class Centre { fixed, free };
 
 }  // namespace
@@ -34,7 +62,11 @@ template <>
 inline constexpr auto words<CrowdPath> = word_list<CrowdPath>({{CrowdPath::together, "together"},
                                                                {CrowdPath::sequential, "sequential"},
                                                                {CrowdPath::unload, "unload"},
-                                                               {CrowdPath::slide, "slide"}});
+                                                               {CrowdPath::slide, "slide"},
+                                                               {CrowdPath::back_and_forth, "back-and-forth"},
+                                                               {CrowdPath::oblique, "oblique"},
+                                                               {CrowdPath::slide_press, "slide-press"},
+                                                               {CrowdPath::roll, "roll"}});
 template <>
 inline constexpr auto words<Centre> = word_list<Centre>({{Centre::fixed, "fixed"}, {Centre::free, "free"}});
 
@@ -48,8 +80,29 @@ struct Wanted {
   double overlap = 0.0;
   double shallow = 1.0;
   CrowdPath path = CrowdPath::together;
-  double slide = 0.0;
+  double slide = 0.0;  ///< or roll [Rs]
+  double angle = 0.0;  ///< of an oblique path to the normal [degree]
 };
+
+bool slides(CrowdPath path) {
+  return path == CrowdPath::slide || path == CrowdPath::back_and_forth || path == CrowdPath::slide_press;
+}
+
+/// How far the first neighbour slides or rolls, and at which angle it comes.
+void read_way(const SceneTable& t, Wanted& w) {
+  if (slides(w.path))
+    w.slide = t.number("slide", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
+  else if (t.has("slide"))
+    t.mistake("slide", "only paths that slide have it: \"slide\", \"back-and-forth\", \"slide-press\"");
+  if (w.path == CrowdPath::roll)
+    w.slide = t.number("roll", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
+  else if (t.has("roll"))
+    t.mistake("roll", "only a path that rolls has it: path = \"roll\"");
+  if (w.path == CrowdPath::oblique)
+    w.angle = t.number("angle", Unit::none, Range::closed(0.0, 85.0), 45.0);
+  else if (t.has("angle"))
+    t.mistake("angle", "only an oblique path has it: path = \"oblique\"");
+}
 
 Wanted read_wanted(const SceneTable& t) {
   Wanted w;
@@ -62,10 +115,7 @@ Wanted read_wanted(const SceneTable& t) {
   if (!plane && w.overlap >= w.ratio)
     t.mistake("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
   w.path = t.choice<CrowdPath>("path", CrowdPath::together);
-  if (w.path == CrowdPath::slide)
-    w.slide = t.number("slide", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
-  else if (t.has("slide"))
-    t.mistake("slide", "only a path that slides has it: path = \"slide\"");
+  read_way(t, w);
   if (w.arrangement == Arrangement::beside_five)
     w.shallow = t.number("shallow", Unit::none, Range{0.0, 1.0, true, false}, 0.5);
   else if (t.has("shallow"))
@@ -75,15 +125,36 @@ Wanted read_wanted(const SceneTable& t) {
 
 std::vector<CrowdStage> stages_of(const Wanted& w, const std::vector<double>& deepest) {
   const std::vector<double> apart(deepest.size(), 0.0);
-  if (w.path == CrowdPath::unload)
-    return {{CrowdMove::load, deepest, 0.0}, {CrowdMove::unload, apart, 0.0}, {CrowdMove::reload, deepest, 0.0}};
-  if (w.path == CrowdPath::slide) return {{CrowdMove::load, deepest, 0.0}, {CrowdMove::slide, deepest, w.slide}};
-  if (w.path == CrowdPath::together) return {{CrowdMove::load, deepest, 0.0}};
+  const CrowdStage load{CrowdMove::load, deepest};
+  switch (w.path) {
+    case CrowdPath::together:
+      return {load};
+    case CrowdPath::unload:
+      return {load, {CrowdMove::unload, apart}, {CrowdMove::reload, deepest}};
+    case CrowdPath::slide:
+      return {load, {CrowdMove::slide, deepest, w.slide}};
+    case CrowdPath::back_and_forth:
+      return {load,
+              {CrowdMove::slide, deepest, w.slide},
+              {CrowdMove::slide, deepest, -2.0 * w.slide},
+              {CrowdMove::slide, deepest, 2.0 * w.slide}};
+    case CrowdPath::oblique:
+      return {{CrowdMove::oblique, deepest, deepest[0] * std::tan(w.angle * std::numbers::pi / 180.0)}};
+    case CrowdPath::slide_press: {
+      std::vector<double> half = deepest;
+      for (double& h : half) h *= 0.5;
+      return {{CrowdMove::load, half}, {CrowdMove::slide, half, w.slide}, {CrowdMove::oblique, deepest}};
+    }
+    case CrowdPath::roll:
+      return {load, {CrowdMove::roll, deepest, 0.0, w.slide}};
+    case CrowdPath::sequential:
+      break;
+  }
   std::vector<CrowdStage> stages;
   std::vector<double> reached = apart;
   for (std::size_t k = 0; k < deepest.size(); ++k) {
     reached[k] = deepest[k];
-    stages.push_back({CrowdMove::load, reached, 0.0});
+    stages.push_back({CrowdMove::load, reached});
   }
   return stages;
 }
@@ -100,6 +171,7 @@ std::string default_name(const Wanted& w, bool free) {
   std::string name = to_string(w.arrangement) + "-" + to_string(w.partner);
   if (w.partner != PartnerKind::plane) name += "-" + short_number(w.ratio);
   if (w.path != CrowdPath::together) name += "-" + to_string(w.path);
+  if (w.path == CrowdPath::oblique) name += "-" + short_number(w.angle);
   return free ? name + "-free" : name;
 }
 
@@ -137,6 +209,8 @@ CrowdSetup read_crowd_setup(const SceneTable& root) {
   for (const SceneTable& t : root.tables("configuration")) {
     setup.configurations.push_back(read_configuration(t));
     const CrowdConfiguration& c = setup.configurations.back();
+    if (setup.options.relaxation == Relaxation::damped && c.stages.back().roll != 0.0)
+      t.mistake("path", "\"roll\" needs motion: relaxation = \"slow-dynamics\"");
     if (root.table_or_empty("crowd").sound()) require_packings(t, c, setup.packings_max);
     for (std::size_t k = 0; k + 1 < setup.configurations.size(); ++k)
       if (setup.configurations[k].name == c.name)

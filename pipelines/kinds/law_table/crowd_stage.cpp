@@ -169,6 +169,7 @@ class Pilot {
   Pilot(const CrowdSetup& setup, CrowdRunner& runner) : setup_(setup) {
     for (const CrowdConfiguration& c : setup.configurations) add(loading_part(c));
     CrowdOptions options = setup.options;
+    options.relaxation = Relaxation::damped;
     options.increment *= kPilotIncrement;
     std::vector<CrowdTask> tasks;
     const std::int64_t packings = std::min(kPilotPackings, setup.packings_max);
@@ -279,8 +280,7 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::
   });
   CrowdMeasurements data;
   data.spec = setup.spec;
-  data.relaxation = fmt::format("damped, increments of {} Rs, residual {} ({} between)", setup.options.increment,
-                                setup.options.tolerance, setup.options.tolerance_between);
+  data.relaxation = relaxation_text(setup.options);
   data.configurations = setup.configurations;
   for (const ShellPacking& p : pool) data.packings.push_back(describe(p, setup.spec));
   CrowdRunner runner(setup, run, filled, level);

@@ -9,15 +9,18 @@ namespace {
 void write_target(const h5::Group& group, const std::string& name, const CrowdTarget& target) {
   std::vector<double> values = target.overlap;
   values.push_back(target.slide);
+  values.push_back(target.roll);
   group.write(name, values);
 }
 
 CrowdTarget read_target(const h5::Group& group, const std::string& name) {
   std::vector<double> values = group.doubles(name);
-  if (values.empty()) throw FileTrouble("saved state: '" + name + "' is empty");
+  if (values.size() < 2) throw FileTrouble("saved state: '" + name + "' is too short");
+  const double roll = values.back();
+  values.pop_back();
   const double slide = values.back();
   values.pop_back();
-  return {std::move(values), slide};
+  return {std::move(values), slide, roll};
 }
 
 void write_place(const h5::Group& group, const CrowdPlace& place, const CrowdExperiment& e) {
@@ -26,7 +29,7 @@ void write_place(const h5::Group& group, const CrowdPlace& place, const CrowdExp
   group.attribute("increments", place.increments);
   write_target(group, "stage_from", place.stage_from);
   write_target(group, "leg_from", place.leg_from);
-  write_target(group, "now", {e.overlap, e.slide});
+  write_target(group, "now", e.now());
   write_crowd_runs(group.create("run"), {place.run});
   write_system(group.create("system"), e.system);
 }
@@ -41,6 +44,7 @@ CrowdPlace read_place(const h5::Group& group, CrowdExperiment& e) {
   CrowdTarget now = read_target(group, "now");
   e.overlap = std::move(now.overlap);
   e.slide = now.slide;
+  e.roll = now.roll;
   place.run = read_crowd_runs(group.open("run")).at(0);
   read_system(group.open("system"), e.system);
   return place;

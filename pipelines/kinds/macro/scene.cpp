@@ -201,6 +201,16 @@ std::vector<Twin> read_twins(const SceneTable& t, const std::vector<Twin>& fallb
   return twins;
 }
 
+void read_twin_motion(const SceneTable& t, TwinMotion& m) {
+  m.relaxation = t.choice<TwinRelaxation>("twin_relaxation", m.relaxation);
+  if (m.relaxation == TwinRelaxation::damped)
+    mistake_beside(t, {"twin_speed", "twin_step_factor", "twin_settle_time"},
+                   "goes without motion: twin_relaxation = \"damped\"");
+  m.speed = t.number("twin_speed", Unit::none, Range{0.0, 0.1, true, false}, m.speed);
+  m.step_factor = t.number("twin_step_factor", Unit::none, Range::closed(0.01, 10.0), m.step_factor);
+  m.settle_time = t.number("twin_settle_time", Unit::none, Range::not_negative(), m.settle_time);
+}
+
 }  // namespace
 
 void require_own_preparation(const SceneTable& macro, const MacroSetup& setup) {
@@ -217,6 +227,7 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
   spec.solid_radius_max = spec.soft_radius_max = defaults.shell_radius;
   spec.youngs_modulus = defaults.youngs_modulus;
   if (is_known(defaults.exponent)) spec.exponent = defaults.exponent;
+  if (is_known(defaults.restitution)) spec.twin.restitution = defaults.restitution;
   const auto take = [&](const char* name, double known, double& value, const char* unit) {
     if (is_known(known))
       value = known;
@@ -256,6 +267,7 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   setup.samples = macro.count("samples", 1, 10000, setup.samples);
   read_given(macro, setup);
   setup.twins = read_twins(macro, setup.twins);
+  read_twin_motion(macro, spec.twin);
   return setup;
 }
 

@@ -1,0 +1,85 @@
+// Stretches of molecular dynamics in which some bodies are driven: how a pack rearranges with its own inertia.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "common/core/error.h"
+#include "common/dynamics/time_step.h"
+#include "common/neighbours/verlet_list.h"
+#include "common/system.h"
+
+namespace softgrain {
+
+/// Share of sqrt(m/K), K the sum of all contact stiffnesses of a grain, that a step never exceeds: a heavily damped
+/// contact evaluated once per step otherwise keeps jittering, and the forces come out plausible and 10-15 % low.
+inline constexpr double kCrowdedFraction = 0.5;
+
+/// Time step of the published protocol over sqrt(m_min/k), k at 5 % overlap of the smallest grain.
+inline constexpr double kPublishedStep = 0.2;
+
+/// Which masses the bodies have while they move.
+enum class StretchMasses {
+  raised,  ///< those of the quickest are raised until the step suits them (ScaledMasses)
+  real     ///< the step has to suit them
+};
+
+/// Adds `share` times the motion that bodies, walls or the cell are given while a stretch lasts.
+using Drive = std::function<void(System3& system, double share)>;
+
+/// A velocity per body [m/s], and a spin [rad/s] (none at all: no body is turned).
+Drive driven_at(std::vector<Vec3> velocity, std::vector<Vec3> spin = {});
+
+/// Steps of velocity Verlet. What the drive gives (empty: nothing) is added at the begin and taken off at the end;
+/// motion goes on from what it was and is left as it is: stopping it every now and then raises the force of a pack near
+/// its threshold by a third. Throws Interrupted and NotUsable (a grain is lost).
+void run_steps(System3& system, const Drive& drive, double dt, std::int64_t steps, StretchMasses masses);
+
+/// Takes these laws, and makes the list of neighbours anew, with their constants.
+void take_laws(System3& system, const LawSet& laws);
+
+/// Longest step that suits all bodies with their real masses, at most `fraction` of the natural time of the stiffest
+/// pairing [s].
+double real_mass_step(System3& system, double fraction, double crowded_fraction);
+
+/// The step of a stretch is chosen for the contacts at its beginning. A grain that gets wedged between stiffer ones on
+/// the way can be thrown through its shell by a step that has become too long, which many large grains with much
+/// friction between them bring about. Calls `stretch(halves)`, which is to run the whole stretch with its time step
+/// divided by `halves`; when that ends with NotUsable, again from the same state with half the step, up to a sixteenth.
+/// A stretch that goes through the first time is not touched. What was tried counts as cost.
+template <class Experiment, class Work>
+void with_steps_short_enough(Experiment& e, const Work& stretch) {
+  constexpr int kShortest = 16;
+  const Experiment before = e;
+  for (int halves = 1;; halves *= 2) {
+    try {
+      stretch(halves);
+      return;
+    } catch (const NotUsable&) {
+      if (halves == kShortest) throw;
+      const Cost spent = e.system.cost;
+      e = before;
+      e.system.cost = spent;
+    }
+  }
+}
+
+/// Dynamics with dashpots for a time [s], in steps of `step_factor` times that of the published protocol, masses raised
+/// to match. Experiment: has `system` and set_damping(bool), and is without damping before and after.
+template <class Experiment>
+void run_slow(Experiment& e, const Drive& drive, double duration, double step_factor) {
+  const double nominal = step_factor * kPublishedStep * step_limit(e.system).natural_time;
+  const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / nominal)));
+  with_steps_short_enough(e, [&](int halves) {
+    const double dt = duration / static_cast<double>(steps * halves);
+    e.set_damping(true);
+    run_steps(e.system, drive, dt, steps * halves, StretchMasses::raised);
+    e.set_damping(false);
+    update_neighbours(e.system);  // a checkpoint wants a list that is whole
+  });
+}
+
+}  // namespace softgrain
