@@ -81,6 +81,13 @@ double drag_at(const std::vector<const CrowdState*>& along, const CrowdState& be
   return last * slide / last_slide;
 }
 
+/// Pressed in first and then slid, nothing after: other paths are not those of the definitions.
+bool slides_once(const CrowdConfiguration& c) {
+  return c.stages.size() > 1 && c.stages.back().move == CrowdMove::slide &&
+         std::all_of(c.stages.begin(), c.stages.end() - 1,
+                     [](const CrowdStage& s) { return s.move == CrowdMove::load; });
+}
+
 /// From the state before the slide and those along it; false when the configuration does not slide, or nothing holds it
 /// back.
 bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& out) {
@@ -100,14 +107,63 @@ bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& ou
   return true;
 }
 
-/// Every configuration of one kind of neighbour that slides.
+/// R of a rolling contact over Rs, see SoftCrowd: of equal soft particles and against all others 1.
+double rolling_radius(const CrowdPartner& p) {
+  return p.kind == PartnerKind::soft ? 2.0 * p.ratio / (1.0 + p.ratio) : 1.0;
+}
+
+struct RollResult {
+  double stiffness = 0.0;
+  double friction = 0.0;
+};
+
+/// False when the configuration does not roll, or nothing holds it back.
+bool roll_result(const CrowdStates& c, RollResult& out) {
+  const CrowdState* before = nullptr;
+  std::vector<const CrowdState*> along;
+  for (const CrowdState& s : c.states) {
+    if (s.roll == 0.0)
+      before = &s;
+    else if (before != nullptr)
+      along.push_back(&s);
+  }
+  if (along.empty()) return false;
+  const double radius = rolling_radius(c.configuration->partners.front());
+  double last_roll = 0.0;
+  double last = 0.0;
+  for (const CrowdState* s : along) {
+    const double now = s->moment - before->moment;
+    if (s->roll >= kSecantSlide || s == along.back()) {
+      const double share = std::min((kSecantSlide - last_roll) / (s->roll - last_roll), 1.0);
+      out.stiffness = (last + share * (now - last)) / (last_roll + share * (s->roll - last_roll)) / (radius * radius);
+      break;
+    }
+    last_roll = s->roll;
+    last = now;
+  }
+  constexpr double kFar = 0.4;
+  Tally limit;
+  for (const CrowdState* s : along)
+    if (s->roll >= kFar * along.back()->roll && s->mean[0] > 0.0)
+      limit.add((s->moment - before->moment) / (s->mean[0] * radius), 1.0);
+  out.friction = limit.mean();
+  return out.stiffness > 0.0 && out.friction > 0.0;
+}
+
+/// Every configuration of one kind of neighbour that slides or rolls.
 SideValues::Slides slides(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind) {
   SideValues::Slides out;
   for (const CrowdStates& c : states) {
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(kind)) continue;
     SlideResult slide;
-    if (c.states.empty() || c.configuration->held_out || !c.all_of(kind) || !slide_result(c, model, slide)) continue;
-    out.kt_ratio.push_back(slide.kt_ratio);
-    out.friction.push_back(slide.friction);
+    if (slides_once(*c.configuration) && slide_result(c, model, slide)) {
+      out.kt_ratio.push_back(slide.kt_ratio);
+      out.friction.push_back(slide.friction);
+    }
+    RollResult roll;
+    if (!roll_result(c, roll)) continue;
+    out.rolling.push_back(roll.stiffness);
+    out.rolling_friction.push_back(roll.friction);
   }
   return out;
 }
@@ -182,9 +238,22 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
     };
     return {part(&SideValues::Slides::kt_ratio), part(&SideValues::Slides::friction)};
   };
+  const auto roll = [&](SideValues::Slides SideValues::*kind, SlideLaw& law) {
+    law.rolls = !(measured.*kind).rolling.empty();
+    if (!law.rolls) return;
+    const auto part = [&](std::vector<double> SideValues::Slides::*quantity) {
+      return estimate_of(
+          measured, drawn, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
+    };
+    law.rolling = part(&SideValues::Slides::rolling);
+    law.rolling_friction = part(&SideValues::Slides::rolling_friction);
+  };
   entry.slide_plane = slide(&SideValues::plane, {guessed(0.3), guessed(entry.spec.friction), false});
   entry.slide_solid = slide(&SideValues::solid, borrowed(entry.slide_plane));
   entry.slide_soft = slide(&SideValues::soft, borrowed(entry.slide_solid));
+  roll(&SideValues::plane, entry.slide_plane);
+  roll(&SideValues::solid, entry.slide_solid);
+  roll(&SideValues::soft, entry.slide_soft);
   entry.retreat_measured = !measured.retreat.empty();
   entry.retreat = measured.retreat.empty()
                       ? guessed(1.0)

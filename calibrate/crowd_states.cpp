@@ -14,12 +14,20 @@ struct Sums {
   std::vector<Tally> overlap;
   std::vector<Tally> force;
   Tally tangential;
+  Tally moment;
 };
 
 /// What holds the first neighbour back on its slide, over E Rs^2.
 double against_slide(const CrowdPoint& point, const CrowdConfiguration& configuration) {
   if (configuration.partners.empty()) return 0.0;
   return -dot(point.tangential.front(), slide_direction(configuration.partners.front().direction));
+}
+
+/// What holds it back from rolling, over E Rs^3; 0 where moments were not recorded.
+double against_roll(const CrowdPoint& point, const CrowdConfiguration& configuration) {
+  if (point.moment.empty()) return 0.0;
+  const Vec3& n = configuration.partners.front().direction;
+  return -dot(point.moment.front(), cross(n, slide_direction(n)));
 }
 
 void average(const CrowdMeasurements& data, std::size_t configuration, const std::vector<double>& weight,
@@ -32,7 +40,7 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
     if (!(w > 0.0)) continue;
     for (std::size_t k = 0; k < run.points.size(); ++k) {
       if (k >= sums.size()) {
-        sums.push_back({std::vector<Tally>(neighbours), std::vector<Tally>(neighbours), {}});
+        sums.push_back({std::vector<Tally>(neighbours), std::vector<Tally>(neighbours), {}, {}});
         out.states.emplace_back();
       }
       const CrowdPoint& point = run.points[k];
@@ -42,9 +50,11 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
         sums[k].force[j].add(point.normal[j], w);
       }
       sums[k].tangential.add(against_slide(point, *out.configuration), w);
+      sums[k].moment.add(against_roll(point, *out.configuration), w);
       CrowdState& state = out.states[k];
       state.stage = point.stage;
       state.slide = point.slide;
+      state.roll = point.roll;
       state.max_overlap = std::max(state.max_overlap, point.max_overlap);
       ++state.packings;
     }
@@ -58,6 +68,7 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
       state.error.push_back(sums[k].force[j].statistics().error_or_zero());
     }
     state.tangential = sums[k].tangential.mean();
+    state.moment = sums[k].moment.mean();
   }
   std::erase_if(out.states, [](const CrowdState& s) { return s.packings < 2; });
 }

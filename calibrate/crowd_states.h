@@ -16,6 +16,8 @@ struct CrowdState {
   std::vector<double> error;    ///< its standard error
   double tangential = 0.0;      ///< what holds the first neighbour back on its slide
   double slide = 0.0;           ///< of the first neighbour [Rs]
+  double moment = 0.0;          ///< that holds the first neighbour back from rolling on, over E Rs^3
+  double roll = 0.0;            ///< of the first neighbour [Rs]
   double max_overlap = 0.0;     ///< of grains, largest over packings
   std::int64_t stage = 0;
   std::int64_t packings = 0;  ///< converged ones

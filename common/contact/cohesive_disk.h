@@ -78,6 +78,7 @@ struct CohesiveDisk {
     const T angle = s.memory + s.turning[0] * s.dt;
     out.memory = choose<T>(angle < -limit, -limit, choose<T>(limit < angle, limit, angle));
     out.rolling_moment[0] = -rolling * out.memory;
+    out.rolling_stiffness = T(rolling);
   }
 
   /// Where bodies are apart nothing is left but the attraction.

@@ -63,12 +63,15 @@ struct ContactList {
   std::vector<Stored<D>> spring_next;    ///< history of the state tried last; there after the first pass that tries
   std::vector<double> memory;  ///< committed history of laws with a memory; empty when no law of the scene has one
   std::vector<double> memory_next;
+  std::vector<Stored<D>> roll;  ///< committed history of laws with rolling resistance in space; empty without them
+  std::vector<Stored<D>> roll_next;
   std::vector<std::uint8_t> touched;      ///< 0: the committed history is known to be empty
   std::vector<CrowdSum<D>> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
   std::vector<ContactSection> sections;
   PassPlan plan;            ///< of the pass on several threads
   bool has_spring = false;  ///< some law of the scene has a tangential spring
   bool has_memory = false;
+  bool has_roll = false;
   std::uint64_t build = 0;  ///< number of the build, unique in the process; not part of a saved state
 
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(i.size()); }
@@ -77,12 +80,14 @@ struct ContactList {
   void make_next() {
     spring_next.resize(spring.size());
     memory_next.resize(memory.size());
+    roll_next.resize(roll.size());
   }
 
   /// The state tried last becomes the state that is.
   void commit() {
     if (has_spring) spring.swap(spring_next);
     if (has_memory) memory.swap(memory_next);
+    if (has_roll) roll.swap(roll_next);
     std::fill(touched.begin(), touched.end(), std::uint8_t{1});
   }
 };

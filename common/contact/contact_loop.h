@@ -4,7 +4,7 @@
 // A source has kDimension and knows its pairs by their place: pair(c) with the bodies i and j; meet(pair, reach, g);
 // state<traits>(pair, c, g), which tells a law all but motion and sums, history included; move<kSpins>(pair, g, state)
 // and turning(pair); give_sums(pair, state) and sums_of(pair, f), of laws with a particle pass; evaluate(law, state);
-// and keep<Law>(c, spring, memory), forget<Law>(c) for the new history. A sink has apart(c) and touch<traits of the
+// and keep<Law>(c, response), forget<Law>(c) for the new history. A sink has apart(c) and touch<traits of the
 // law>(c, i, j, geometry, response).
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
@@ -55,7 +55,7 @@ void run_section(Source& source, const Law& law, const PairRange& range, Sink& s
       source, reach_of(law), range,
       [&](std::size_t c, const auto& pair, const auto& g) {
         const auto response = response_of(source, law, c, pair, g);
-        source.template keep<Law>(c, response.spring, response.memory);
+        source.template keep<Law>(c, response);
         sink.template touch<Law::traits>(c, pair.i, pair.j, g, response);
       },
       [&](std::size_t c) {

@@ -15,7 +15,7 @@ struct LawTraits {
   bool has_tangential = false;    ///< a tangential force with its spring; needs velocity
   bool has_memory = false;        ///< one more number of history
   bool memory_has_sides = false;  ///< that changes its sign when the pair is seen from the other body, as an angle does
-  bool has_rolling = false;       ///< bodies resist turning against each other
+  bool has_rolling = false;       ///< bodies resist turning against each other; in space with a history of its own
   bool has_onset = false;         ///< overlaps below onset() carry nothing
   bool acts_at_distance = false;  ///< pairs interact up to a gap of reach()
   bool needs_particle_pass = false;  ///< sums over all contacts of a body: share() and finish()
@@ -45,6 +45,7 @@ struct ContactState {
   ConstantsOf<T> constants{};
   Vec<D, T> spring{};  ///< history: tangential spring [m]
   T memory{};          ///< history: one number for laws that ask for it
+  Rot<D, T> roll{};    ///< history: by how much i has turned against j, of laws with rolling resistance in space [rad]
   T radius_i{};
   T radius_j{};                           ///< 0 for a plane, negative for the inside of a shell
   const CrowdSum<D, T>* sum_i = nullptr;  ///< of the particle pass, for laws that ask for it: all contacts of body i
@@ -63,6 +64,8 @@ struct ContactResponse {
   Vec<D, T> spring{};            ///< new history
   T memory{};                    ///< new history
   Rot<D, T> rolling_moment{};    ///< on i, the opposite on j; of laws with rolling resistance [N m]
+  Rot<D, T> roll{};              ///< new history
+  T rolling_stiffness{};         ///< [N m]
 };
 
 /// Lane by lane: the answer `yes` where the mask holds, else `no`.
@@ -83,8 +86,16 @@ ContactResponse<D, T> select(const Mask<T>& mask, const ContactResponse<D, T>& y
             (mask && yes.sliding) || (!mask && no.sliding),
             vec(yes.spring, no.spring),
             choose<T>(mask, yes.memory, no.memory),
-            vec(yes.rolling_moment, no.rolling_moment)};
+            vec(yes.rolling_moment, no.rolling_moment),
+            vec(yes.roll, no.roll),
+            choose<T>(mask, yes.rolling_stiffness, no.rolling_stiffness)};
   }
+}
+
+/// Whether a law keeps what bodies have turned against each other as a vector. In the plane it is one number, `memory`.
+template <int D>
+constexpr bool has_roll_history(const LawTraits& law) {
+  return D == 3 && law.has_rolling;
 }
 
 /// What a law is asked for when a pair enters the list.

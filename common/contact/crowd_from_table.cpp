@@ -21,9 +21,9 @@ const CrowdLaw& usable(const LawTableEntry& entry, Crowd form) {
   return *law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling>
 CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const CrowdChoices& choices) {
-  SoftCrowd<kCrowd, kUnloading> law;
+  SoftCrowd<kCrowd, kUnloading, kRolling> law;
   law.form = model.form;
   law.partner = model.solid;
   law.modulus = choices.modulus;
@@ -31,6 +31,8 @@ CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const Cro
   const auto slides = [&](const SlideLaw& slide) {
     law.friction = choices.friction >= 0.0 ? choices.friction : slide.friction.value;
     law.kt_ratio = slide.kt_ratio.value;
+    law.rolling = slide.rolling.value;
+    law.rolling_friction = slide.rolling_friction.value;
   };
   CrowdLaws out;
   slides(entry.slide_plane);
@@ -45,6 +47,12 @@ CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const Cro
   slides(entry.slide_soft);
   out.soft_soft = law;
   return out;
+}
+
+template <Crowd kCrowd, bool kUnloading>
+CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const CrowdChoices& choices) {
+  return choices.rolling && entry.rolls() ? laws_of<kCrowd, kUnloading, true>(entry, model, choices)
+                                          : laws_of<kCrowd, kUnloading, false>(entry, model, choices);
 }
 
 template <Crowd kCrowd>

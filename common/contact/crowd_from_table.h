@@ -19,6 +19,7 @@ struct CrowdChoices {
   double modulus = 0.0;            ///< E of what the soft particles hold [Pa]
   double friction = -1.0;          ///< mu_soft; negative: as measured
   bool unloading = false;          ///< with the measured unloading branch
+  bool rolling = true;             ///< with rolling resistance, where that was measured
   std::optional<Beyond> beyond{};  ///< instead of what the table says
 };
 

@@ -19,6 +19,7 @@ class Reader {
     origin_ += ": law '" + name + "'";
   }
 
+  [[nodiscard]] bool has(const char* key) const { return table_.contains(key); }
   std::string text(const char* key) {
     const auto value = node(key).value<std::string>();
     if (!value) fail(key, "must be a text");
@@ -151,9 +152,9 @@ AnyLaw read_soft(Reader& r) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling>
 AnyLaw read_crowd_law(Reader& r) {
-  SoftCrowd<kCrowd, kUnloading> law;
+  SoftCrowd<kCrowd, kUnloading, kRolling> law;
   const auto pressure = r.three("pressure");
   const auto coupling = r.three("coupling");
   law.form.pressure = {pressure[0], pressure[1], pressure[2], r.range()};
@@ -165,15 +166,24 @@ AnyLaw read_crowd_law(Reader& r) {
   law.friction = r.not_negative("friction");
   law.kt_ratio = r.not_negative("kt_ratio");
   law.retreat = r.positive("retreat");
+  if (kRolling) {
+    law.rolling = r.not_negative("rolling");
+    law.rolling_friction = r.not_negative("rolling_friction");
+  }
   law.i_is_soft = r.flag("first_is_soft");
   law.j_is_soft = r.flag("second_is_soft");
   if (!law.i_is_soft && !law.j_is_soft) r.fail("first_is_soft", "or second_is_soft must be true");
   return law;
 }
 
+template <Crowd kCrowd, bool kUnloading>
+AnyLaw read_rolling(Reader& r) {
+  return r.has("rolling") ? read_crowd_law<kCrowd, kUnloading, true>(r) : read_crowd_law<kCrowd, kUnloading, false>(r);
+}
+
 template <Crowd kCrowd>
 AnyLaw read_crowd_form(Reader& r) {
-  return r.flag("unloading") ? read_crowd_law<kCrowd, true>(r) : read_crowd_law<kCrowd, false>(r);
+  return r.flag("unloading") ? read_rolling<kCrowd, true>(r) : read_rolling<kCrowd, false>(r);
 }
 
 AnyLaw read_crowd(Reader& r) {

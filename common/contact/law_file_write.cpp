@@ -80,8 +80,8 @@ void write(std::string& out, const std::string& name, const SoftContact& law) {
   w.range(law.range);
 }
 
-template <Crowd kCrowd, bool kUnloading>
-void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kUnloading>& law) {
+template <Crowd kCrowd, bool kUnloading, bool kRolling>
+void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kUnloading, kRolling>& law) {
   Writer w(out, name, LawType::crowd);
   w.text("form", to_string(kCrowd));
   w.flag("unloading", kUnloading);
@@ -97,6 +97,10 @@ void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kU
   w.value("friction", law.friction);
   w.value("kt_ratio", law.kt_ratio);
   w.value("retreat", law.retreat);
+  if (kRolling) {
+    w.value("rolling", law.rolling);
+    w.value("rolling_friction", law.rolling_friction);
+  }
   w.flag("first_is_soft", law.i_is_soft);
   w.flag("second_is_soft", law.j_is_soft);
 }
@@ -126,8 +130,8 @@ AnyLaw mirror(SoftContact law) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
-AnyLaw mirror(SoftCrowd<kCrowd, kUnloading> law) {
+template <Crowd kCrowd, bool kUnloading, bool kRolling>
+AnyLaw mirror(SoftCrowd<kCrowd, kUnloading, kRolling> law) {
   std::swap(law.i_is_soft, law.j_is_soft);
   return law;
 }

@@ -23,6 +23,9 @@ using AnyLaw =
                  HertzMindlin<Tangential::rescaled, false>, HertzMindlin<Tangential::rescaled, true>, LinearSpring,
                  SoftContact, SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::pair, true>, SoftCrowd<Crowd::bag, false>,
                  SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, false>, SoftCrowd<Crowd::directional, true>,
+                 SoftCrowd<Crowd::pair, false, true>, SoftCrowd<Crowd::pair, true, true>,
+                 SoftCrowd<Crowd::bag, false, true>, SoftCrowd<Crowd::bag, true, true>,
+                 SoftCrowd<Crowd::directional, false, true>, SoftCrowd<Crowd::directional, true, true>,
                  CohesiveDisk<false, false>, CohesiveDisk<true, false>, CohesiveDisk<true, true>>;
 
 /// What every law is: traits, constants of a pair, and a force for a number or for several side by side; and what it
@@ -44,9 +47,6 @@ concept ContactLaw = std::is_same_v<const LawTraits, decltype(Law::traits)> &&
   };
   requires !Law::traits.is_fitted || requires {
     { law.soft_sides() } -> std::same_as<SoftSides>;
-  };
-  requires !Law::traits.has_rolling || requires {
-    { law.rolling } -> std::convertible_to<double>;
   };
   requires !Law::traits.stores_energy || requires {
     { law.stored_energy(0.0, PairConstants{}) } -> std::same_as<double>;

@@ -31,23 +31,32 @@ struct LostVolumeTable {
 
 /// F = sum over the soft bodies of the pair of E R^2 dnu/dx p(S)/S B, kt = kt_ratio kn, |Ft| <= mu F, no dashpots
 /// (quasi-static). kUnloading: a contact that retreats from its deepest overlap x_max feels x_max - s (x_max - x)
-/// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. SI units; 3D only.
-template <Crowd kCrowd, bool kUnloading>
+/// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. kRolling: bodies that turn
+/// against each other across the normal by the angle theta feel the moment E R^2 R12 rolling theta, at most
+/// rolling_friction F R, R the harmonic mean of both radii (R of the soft body alone against a plane and solids) and
+/// R12 as in the law of Hertz; the contact then goes R12 theta over the surface. A spring of one stiffness under a
+/// limit that falls with the force: it can give back no more than it took. SI units; 3D only.
+template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
 struct SoftCrowd {
   static constexpr LawTraits traits{.dimension = 3,
                                     .needs_velocity = true,
                                     .has_tangential = true,
                                     .has_memory = kUnloading,
+                                    .has_rolling = kRolling,
                                     .needs_particle_pass = kCrowd != Crowd::pair,
                                     .is_fitted = true,
                                     .is_crowd = true};
 
+  static constexpr Crowd kForm = kCrowd;
+
   CrowdForm form;
-  LostVolumeTable partner;  ///< of the body on the other side, for this kind of pair
-  double modulus = 0.0;     ///< E [Pa]
-  double friction = 0.0;    ///< mu_soft
-  double kt_ratio = 0.0;    ///< tangential over normal stiffness
-  double retreat = 1.0;     ///< s of the unloading branch
+  LostVolumeTable partner;        ///< of the body on the other side, for this kind of pair
+  double modulus = 0.0;           ///< E [Pa]
+  double friction = 0.0;          ///< mu_soft
+  double kt_ratio = 0.0;          ///< tangential over normal stiffness
+  double retreat = 1.0;           ///< s of the unloading branch
+  double rolling = 0.0;           ///< stiffness against rolling over E R^2 R12
+  double rolling_friction = 0.0;  ///< largest moment over F R
   bool i_is_soft = true;
   bool j_is_soft = false;
 
@@ -97,6 +106,7 @@ struct SoftCrowd {
     if (i_is_soft) add_side(s, true, out);
     if (j_is_soft) add_side(s, false, out);
     out.normal_force = out.elastic_force;
+    if constexpr (kRolling) roll(s, out);
     const T stiffness = kt_ratio * out.normal_stiffness;
     const Mask<T> held = stiffness > 0.0 && out.elastic_force > 0.0;
     if (!any(held)) return out;
@@ -106,6 +116,26 @@ struct SoftCrowd {
   }
 
  private:
+  /// The spring is carried along with the normal, turned by this step and cut at the limit.
+  template <int D, class T>
+  void roll(const ContactState<D, T>& s, ContactResponse<D, T>& out) const {
+    const T plane = T(0.0);
+    const Mask<T> flat = s.radius_j == plane;
+    const T other = choose<T>(flat, T(1.0), s.radius_j);
+    const T both = choose<T>(flat, s.radius_i, s.radius_i * other / (s.radius_i + other));  // R12
+    const T soft = i_is_soft && j_is_soft ? T(2.0 * both) : i_is_soft ? s.radius_i : s.radius_j;
+    const T stiffness = modulus * rolling * soft * soft * both;
+    const Rot<D, T> turned = s.turning - s.normal * dot(s.turning, s.normal);
+    Rot<D, T> angle = carried_spring<D, T>(s.roll, s.normal) + turned * T(s.dt);
+    const T size = root(norm2(angle)) * stiffness;
+    const T limit = rolling_friction * soft * largest(out.elastic_force, T(0.0));
+    const Mask<T> slips = size > limit;
+    if (any(slips)) angle *= choose<T>(slips, limit / size, T(1.0));
+    out.roll = angle;
+    out.rolling_moment = angle * -stiffness;
+    out.rolling_stiffness = choose<T>(out.elastic_force > 0.0, stiffness, T(0.0));
+  }
+
   /// Overlap as it is felt [m].
   template <int D, class T>
   [[nodiscard]] T felt_overlap(const ContactState<D, T>& s) const {

@@ -112,12 +112,18 @@ LawTableEntry interpolate(const LawTable& table, double x) {
         along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).kt_ratio; });
     (out.*slide).friction =
         along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).friction; });
+    (out.*slide).rolling =
+        along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).rolling; });
+    (out.*slide).rolling_friction =
+        along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).rolling_friction; });
   }
   out.retreat = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.retreat; });
   for (const LawTableEntry& e : table.entries) {  // what one entry does not know is not known between them
     out.retreat_measured = out.retreat_measured && e.retreat_measured;
-    for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
+    for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
       (out.*slide).measured = (out.*slide).measured && (e.*slide).measured;
+      (out.*slide).rolls = (out.*slide).rolls && (e.*slide).rolls;
+    }
   }
   out.volume_max = along.value([](const LawTableEntry& e) { return e.volume_max; });
   out.overlap_max = along.value([](const LawTableEntry& e) { return e.overlap_max; });
@@ -206,6 +212,9 @@ std::string numbers_of(const LawTableEntry& entry, Crowd form) {
   for (const auto& parameter : kCrowdParameters) text += fmt::format(" {:a}", (law.*parameter.estimate).value);
   for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
     text += fmt::format(" {:a} {:a}", (entry.*slide).kt_ratio.value, (entry.*slide).friction.value);
+  if (entry.rolls())
+    for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
+      text += fmt::format(" {:a} {:a}", (entry.*slide).rolling.value, (entry.*slide).rolling_friction.value);
   text += fmt::format(" {:a}", entry.retreat.value);
   for (const PartnerRow& row : law.partners)
     text += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);

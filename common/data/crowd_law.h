@@ -91,6 +91,10 @@ struct SlideLaw {
   Estimate kt_ratio;     ///< kt/kn, kt the secant at a slide of pi Rs/180 (1 degree)
   Estimate friction;     ///< mu_soft: largest tangential over normal force of the measured slides
   bool measured = true;  ///< false: numbers that stand in, of another kind of neighbour or of the grains
+  /// And how it rolls: moment over E R^2 R12 per angle, and largest moment over F R (see SoftCrowd).
+  Estimate rolling{};
+  Estimate rolling_friction{};
+  bool rolls = false;  ///< measured; else it rolls freely
 };
 
 /// All laws of one kind of packing.
@@ -114,6 +118,9 @@ struct LawTableEntry {
   Crowd best = Crowd::pair;  ///< the form that cross-validation prefers among good ones; what is held out has no say
 
   [[nodiscard]] const CrowdLaw* find(Crowd form) const;
+
+  /// Whether rolling was measured, of any kind of neighbour.
+  [[nodiscard]] bool rolls() const { return slide_plane.rolls || slide_solid.rolls || slide_soft.rolls; }
 };
 
 /// Every number of one law that forces depend on, exactly, as text: the same text, the same forces.

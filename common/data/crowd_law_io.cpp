@@ -91,12 +91,17 @@ void write_entry(Out out, const LawTableEntry& e) {
                  real(e.grain_overlap_max));
   fmt::format_to(out, "retreat = {}  # s of the unloading branch\n", estimate_text(e.retreat));
   fmt::format_to(out, "retreat_measured = {}\n", e.retreat_measured);
-  for (const SlideName& slide : kSlides)
+  for (const SlideName& slide : kSlides) {
+    const SlideLaw& law = e.*slide.law;
     fmt::format_to(out,
                    "\n[entry.{}]  # kt/kn and mu_soft against this kind of neighbour\nkt_ratio = {}\nfriction = "
                    "{}\nmeasured = {}\n",
-                   slide.key, estimate_text((e.*slide.law).kt_ratio), estimate_text((e.*slide.law).friction),
-                   (e.*slide.law).measured);
+                   slide.key, estimate_text(law.kt_ratio), estimate_text(law.friction), law.measured);
+    if (law.rolls)
+      fmt::format_to(out,
+                     "rolling = {}  # moment over E R^2 R12 per angle\nrolling_friction = {}  # largest over F R\n",
+                     estimate_text(law.rolling), estimate_text(law.rolling_friction));
+  }
   fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
   for (const CrowdLaw& law : e.laws) write_law(out, law);
 }
@@ -171,6 +176,11 @@ LawTableEntry read_entry(const SceneTable& t) {
     (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::closed(0.0, kLargestShare));
     // Where it is not said: what stands in for a measurement has no error.
     (e.*slide.law).measured = of_kind.flag("measured", std::isfinite((e.*slide.law).friction.standard_error));
+    if (!of_kind.has("rolling") && !of_kind.has("rolling_friction")) continue;
+    (e.*slide.law).rolling = read_estimate_text(of_kind.table("rolling"), Range::closed(0.0, kLargestShare));
+    (e.*slide.law).rolling_friction =
+        read_estimate_text(of_kind.table("rolling_friction"), Range::closed(0.0, kLargestShare));
+    (e.*slide.law).rolls = true;
   }
   e.retreat = read_estimate_text(t.table("retreat"), Range::closed(1.0, kLargestShare));
   e.retreat_measured = t.flag("retreat_measured", std::isfinite(e.retreat.standard_error));

@@ -16,7 +16,16 @@ std::string slides_text(const LawTableEntry& entry) {
     text += (text.empty() ? "" : "; ") +
             (slide->measured ? numbers + " " + name : fmt::format("not measured {} ({} stand in)", name, numbers));
   }
-  return "friction limit and kt/kn: " + text;
+  text = "friction limit and kt/kn: " + text;
+  if (!entry.rolls()) return text;
+  std::string rolling;
+  for (const auto& [name, slide] : {std::pair{"against planes", &entry.slide_plane},
+                                    {"against solid spheres", &entry.slide_solid},
+                                    {"among soft particles", &entry.slide_soft}})
+    rolling += (rolling.empty() ? "" : "; ") + (slide->rolls
+                                                    ? fmt::format("{:.3f} F R {}", slide->rolling_friction.value, name)
+                                                    : fmt::format("not measured {} (free)", name));
+  return text + "; largest moment against rolling: " + rolling;
 }
 
 std::string unloading_text(const LawTableEntry& entry) {

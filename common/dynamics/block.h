@@ -51,6 +51,10 @@ struct SumRows {
   Row gain, gain_slope;
 };
 
+/// Numbers of a roll history: none in the plane.
+template <int D>
+inline constexpr int kRollsOf = D == 3 ? 3 : 0;
+
 /// The touching pairs of a block, number by number.
 template <int D>
 struct Block {
@@ -67,12 +71,15 @@ struct Block {
   Rows<kRot<D>> spin_i, spin_j;
   Rows<D> spring;
   Row a, b, memory;
+  Rows<kRollsOf<D>> roll;  ///< in space
   SumRows<D> sum_i, sum_j;
   // Results.
   Rows<D> force;         ///< on i
   Rows<kRot<D>> moment;  ///< of a unit arm
   Row arm_i, arm_j;
-  Row rolling;  ///< moment of rolling resistance, in two dimensions
+  Row rolling;                    ///< moment of rolling resistance, in two dimensions
+  Rows<kRollsOf<D>> roll_moment;  ///< likewise in space
+  Row rolling_stiffness;
   Row normal_force, stiffness, tangential_stiffness;
   Rows<D> normal;        ///< of the particle pass
   Row taken_i, taken_j;  ///< of the particle pass

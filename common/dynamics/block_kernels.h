@@ -45,6 +45,7 @@ template <int D, Geometry kGeometry, class Law>
   }
   if constexpr (Law::traits.has_tangential) s.spring = at<D>(b.spring, g);
   if constexpr (Law::traits.has_memory) s.memory = b.memory.at(g);
+  if constexpr (has_roll_history<D>(Law::traits)) s.roll = at<D>(b.roll, g);
   return s;
 }
 
@@ -81,7 +82,13 @@ template <int D, Geometry kGeometry, class Law>
       put<D>(b.force, g, geometry.normal * r.normal_force);
     }
     if constexpr (kLaw.has_memory) b.memory.put(g, r.memory);
-    if constexpr (kLaw.has_rolling) b.rolling.put(g, r.rolling_moment[0]);
+    if constexpr (has_roll_history<D>(kLaw)) {
+      put<D>(b.roll_moment, g, r.rolling_moment);
+      put<D>(b.roll, g, r.roll);
+      if (stiffness) b.rolling_stiffness.put(g, r.rolling_stiffness);
+    } else if constexpr (kLaw.has_rolling) {
+      b.rolling.put(g, r.rolling_moment[0]);
+    }
     if (!stiffness) continue;
     b.normal_force.put(g, r.normal_force);
     b.stiffness.put(g, r.normal_stiffness + r.tangential_stiffness);

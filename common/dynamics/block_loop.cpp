@@ -127,7 +127,7 @@ class Gatherer {
     if (pass_.history == History::none) return;
     if (pass_.history == History::next) {
       for (int l = 0; l < valid; ++l)
-        if ((touch >> l & 1) == 0) forget(list_.spring_next, list_.memory_next, u(c[u(l)]));
+        if ((touch >> l & 1) == 0) forget(list_.spring_next, list_.memory_next, list_.roll_next, u(c[u(l)]));
       return;
     }
     std::uint8_t* const touched = list_.touched.data();
@@ -140,7 +140,7 @@ class Gatherer {
         if (old == now) return;
         std::memcpy(touched + c[0], &now, sizeof now);
         for (int l = 0; l < 4; ++l)
-          if ((old & ~now) >> (8 * l) & 1U) forget(list_.spring, list_.memory, u(c[u(l)]));
+          if ((old & ~now) >> (8 * l) & 1U) forget(list_.spring, list_.memory, list_.roll, u(c[u(l)]));
         return;
       }
     }
@@ -150,12 +150,16 @@ class Gatherer {
     }
     if ((had & ~touch) == 0) return;
     for (int l = 0; l < valid; ++l)
-      if (((had & ~touch) >> l & 1) != 0) forget(list_.spring, list_.memory, u(c[u(l)]));
+      if (((had & ~touch) >> l & 1) != 0) forget(list_.spring, list_.memory, list_.roll, u(c[u(l)]));
   }
 
-  static void forget(std::vector<Stored<D>>& spring, std::vector<double>& memory, std::size_t c) {
+  static constexpr bool kRolls = has_roll_history<D>(kTraits);
+
+  static void forget(std::vector<Stored<D>>& spring, std::vector<double>& memory, std::vector<Stored<D>>& roll,
+                     std::size_t c) {
     spring[c] = {};
     if constexpr (kTraits.has_memory) memory[c] = 0.0;
+    if constexpr (kRolls) roll[c] = {};
   }
 
   /// From records to rows, four contacts at a time.
@@ -170,7 +174,7 @@ class Gatherer {
     const Stored<D>* const springs = list_.spring.data();
     const PairConstants* const all_constants = list_.constants.data();
     for (int g = 0; g < block_.touching; g += 4) {
-      std::array<Quad, 4> branch, motion, spin_i, spin_j, spring, normal;
+      std::array<Quad, 4> branch, motion, spin_i, spin_j, spring, normal, roll;
       for (std::size_t l = 0; l < 4; ++l) {
         const std::size_t c = u(block_.pair[u(g) + l]);
         const std::size_t i = u(first[c]);
@@ -187,6 +191,7 @@ class Gatherer {
           spin_j[l] = with_fourth(quad_of(spins[j]), place(spheres[j]));
           spring[l] = quad_of(springs[c]);
         }
+        if constexpr (kRolls) roll[l] = quad_of(list_.roll[c]);
         if constexpr (kTraits.is_crowd && !kTraits.has_tangential) {
           block_.radius_i.v[u(g) + l] = spheres[i].r;
           block_.radius_j.v[u(g) + l] = spheres[j].r;
@@ -219,6 +224,10 @@ class Gatherer {
         transpose(spring[0], spring[1], spring[2], spring[3]);
         store_rows<D>(block_.spring, g, spring);
       }
+      if constexpr (kRolls) {
+        transpose(roll[0], roll[1], roll[2], roll[3]);
+        store_rows<D>(block_.roll, g, roll);
+      }
     }
   }
 
@@ -244,7 +253,7 @@ class Gatherer {
 template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, bool kOrdered>
 class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
   using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered>;
-  using Base::block_, Base::list_, Base::pass_, Base::s_, Base::u;
+  using Base::block_, Base::list_, Base::pass_, Base::s_, Base::u, Base::kRolls;
 
  public:
   using Base::Base;
@@ -304,8 +313,15 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
       }
       if constexpr (kTraits.has_rolling) {
         if constexpr (kWalls) let_go();
-        torques[i][0] += block_.rolling.v[k];
-        torques[j][0] -= block_.rolling.v[k];
+        if constexpr (kRolls) {
+          for (std::size_t a = 0; a < D; ++a) {
+            torques[i][static_cast<int>(a)] += block_.roll_moment[a].v[k];
+            torques[j][static_cast<int>(a)] -= block_.roll_moment[a].v[k];
+          }
+        } else {
+          torques[i][0] += block_.rolling.v[k];
+          torques[j][0] -= block_.rolling.v[k];
+        }
       }
     });
     if constexpr (kWalls) let_go();
@@ -328,6 +344,10 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
         out.rotation[i] += block_.tangential_stiffness.v[k] * block_.arm_i.v[k] * block_.arm_i.v[k];
         out.rotation[j] += block_.tangential_stiffness.v[k] * block_.arm_j.v[k] * block_.arm_j.v[k];
       }
+      if constexpr (kRolls) {
+        out.rotation[i] += block_.rolling_stiffness.v[k];
+        out.rotation[j] += block_.rolling_stiffness.v[k];
+      }
     }
   }
 
@@ -347,7 +367,12 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
       } else {
         force[3] = 0.0;
       }
-      if constexpr (kTraits.has_rolling) moment[1] = block_.rolling.v[k];
+      if constexpr (kRolls) {
+        ContactRoll& roll = pass_.rolls[block_.number[u(k)]];
+        for (std::size_t a = 0; a < D; ++a) roll.moment[a] = block_.roll_moment[a].v[k];
+      } else if constexpr (kTraits.has_rolling) {
+        moment[1] = block_.rolling.v[k];
+      }
       store_quad(load.force, force);
       store_quad(load.moment, moment);
     });
@@ -360,6 +385,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
     const bool keep = pass_.history != History::none;
     Stored<D>* const springs = next ? list_.spring_next.data() : list_.spring.data();
     double* const memories = next ? list_.memory_next.data() : list_.memory.data();
+    [[maybe_unused]] Stored<D>* const rolls = next ? list_.roll_next.data() : list_.roll.data();
     for (int g = 0; g < block_.touching; g += 4) {
       const std::array<Quad, 4> force = quads<D>(block_.force, g);
       std::array<Quad, 4> moment{}, spring;
@@ -375,6 +401,8 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
           if (keep) store(springs[c], spring[u(l)]);
         if constexpr (kTraits.has_memory)
           if (keep) memories[c] = block_.memory.v[g + l];
+        if constexpr (kRolls)
+          if (keep) rolls[c] = Vec<D>{{block_.roll[0].v[g + l], block_.roll[1].v[g + l], block_.roll[2].v[g + l]}};
       }
     }
   }

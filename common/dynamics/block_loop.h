@@ -18,6 +18,11 @@ struct alignas(64) ContactLoad {
   double arm_j;      ///< [m]
 };
 
+/// Moment of rolling resistance of a contact in space, likewise.
+struct ContactRoll {
+  double moment[3];  ///< on i [N m]
+};
+
 /// Loads that wait to be added to bodies, in list order.
 class WaitingLoads {
  public:
@@ -31,7 +36,7 @@ class WaitingLoads {
 /// Sums of contact stiffness per body, for mass scaling and step control, and the mean contact force of the same pass.
 struct BodyStiffness {
   std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
-  std::vector<double> rotation;     ///< sum of kt arm^2 [N m]
+  std::vector<double> rotation;     ///< sum of kt arm^2, in space with that of rolling [N m]
   double force_sum = 0.0;           ///< of |normal force| over contacts [N]
   std::int64_t contacts = 0;        ///< force-carrying
 
@@ -45,6 +50,7 @@ struct BlockPass {
   History history = History::next;
   ContactLoad* loads =
       nullptr;  ///< when there, bodies are left alone: the load of pair k of the range goes to loads[k]
+  ContactRoll* rolls = nullptr;        ///< likewise, of laws with rolling resistance in space
   std::uint8_t* touches = nullptr;     ///< and touches[k] says whether it touches
   WaitingLoads* waiting = nullptr;     ///< added in between, in list order
   BodyStiffness* stiffness = nullptr;  ///< gets the sums of what goes to the bodies

@@ -60,7 +60,8 @@ class Watcher {
       if constexpr (Law::traits.has_tangential) {
         const ContactResponse<D> r = law.evaluate(state);
         if (r.tangential_stiffness > 0.0) out_.stored += 0.5 * norm2(r.tangential_force) / r.tangential_stiffness;
-        if constexpr (Law::traits.has_rolling) out_.stored += 0.5 * norm2(r.rolling_moment) / law.rolling;
+        if constexpr (Law::traits.has_rolling)
+          if (r.rolling_stiffness > 0.0) out_.stored += 0.5 * norm2(r.rolling_moment) / r.rolling_stiffness;
       }
     } else {
       out_.energy_known = false;

@@ -58,6 +58,7 @@ struct SystemPairs {
     state.constants = s.contacts.constants[c];
     if constexpr (kLaw.has_tangential) state.spring = s.contacts.spring[c];
     if constexpr (kLaw.has_memory) state.memory = s.contacts.memory[c];
+    if constexpr (has_roll_history<D>(kLaw)) state.roll = s.contacts.roll[c];
     const double rj = s.particles.sphere[pair.j].r;
     state.radius_i = s.particles.sphere[pair.i].r;
     state.radius_j = kGeometry == Geometry::sphere_shell ? -rj : rj;
@@ -92,17 +93,18 @@ struct SystemPairs {
   }
 
   template <class Law>
-  void keep(std::size_t c, const Vec<D>& spring, double memory) const {
+  void keep(std::size_t c, const ContactResponse<D>& r) const {
     if (history == History::none) return;
     auto& list = s.contacts;
     const bool next = history == History::next;
     if (!next) list.touched[c] = 1;
-    if constexpr (Law::traits.has_tangential) (next ? list.spring_next : list.spring)[c] = spring;
-    if constexpr (Law::traits.has_memory) (next ? list.memory_next : list.memory)[c] = memory;
+    if constexpr (Law::traits.has_tangential) (next ? list.spring_next : list.spring)[c] = r.spring;
+    if constexpr (Law::traits.has_memory) (next ? list.memory_next : list.memory)[c] = r.memory;
+    if constexpr (has_roll_history<D>(Law::traits)) (next ? list.roll_next : list.roll)[c] = r.roll;
   }
   template <class Law>
   void forget(std::size_t c) const {
-    keep<Law>(c, {}, 0.0);
+    keep<Law>(c, {});
   }
 };
 

@@ -25,6 +25,7 @@ struct Share {
   std::vector<std::int32_t> inner;    ///< places in the list of pairs whose bodies are both the thread's
   std::vector<std::int32_t> outer;    ///< of those whose first body is the thread's and whose second is another's
   std::vector<ContactLoad> loads;     ///< of outer
+  std::vector<ContactRoll> rolls;     ///< of outer, in space where some law has rolling resistance
   std::vector<std::uint8_t> touches;  ///< of outer
   std::vector<Waiting> waiting;       ///< bodies here of all pairs that were put down, in list order
 };
@@ -91,6 +92,7 @@ void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t
   }
   for (auto& of_thread : plan.shares) {
     of_thread[k].loads.resize(of_thread[k].outer.size());
+    of_thread[k].rolls.assign(D == 3 && plan.rolls ? of_thread[k].outer.size() : 0, {});
     of_thread[k].touches.resize(of_thread[k].outer.size());
   }
 }
@@ -135,8 +137,11 @@ class Waiters : public WaitingLoads {
     const double arm = w.first ? load.arm_i : load.arm_j;
     for (int k = 0; k < D; ++k) s_.particles.force[body][k] += sign * load.force[k];
     for (int k = 0; k < (D == 3 ? 3 : 1); ++k) s_.particles.torque[body][k] -= load.moment[k] * arm;
+    if (!plan_.rolls) return;
     if constexpr (D == 2)
-      if (plan_.rolls) s_.particles.torque[body][0] += sign * load.moment[1];
+      s_.particles.torque[body][0] += sign * load.moment[1];
+    else
+      for (int k = 0; k < 3; ++k) s_.particles.torque[body][k] += sign * from.rolls[n].moment[k];
   }
 
   System<D>& s_;
@@ -157,7 +162,11 @@ class Pass {
       const ContactSection& section = s_.contacts.sections[k];
       const PairRange range{0, static_cast<std::int32_t>(share.outer.size()), share.outer.data()};
       block_loop<D>(s_, section, range,
-                    {.dt = dt_, .history = history_, .loads = share.loads.data(), .touches = share.touches.data()});
+                    {.dt = dt_,
+                     .history = history_,
+                     .loads = share.loads.data(),
+                     .rolls = share.rolls.data(),
+                     .touches = share.touches.data()});
     }
   }
 

@@ -80,6 +80,7 @@ struct RenamedPair {
   std::int32_t image = 0;
   Stored<D> spring{};
   double memory = 0.0;
+  Stored<D> roll{};
 
   /// As in a list that has just been made.
   friend bool operator<(const RenamedPair& a, const RenamedPair& b) {
@@ -99,9 +100,10 @@ RenamedPair<D> renamed(const System<D>& s, const ContactSection& section, std::s
   const auto name = [&](Slot slot) {
     return slot < static_cast<Slot>(slot_of.size()) ? slot_of[static_cast<std::size_t>(slot)] : slot;
   };
-  RenamedPair<D> pair{section.geometry, section.law, name(list.i[c]), name(list.j[c]), list.image[c], {}, 0.0};
+  RenamedPair<D> pair{section.geometry, section.law, name(list.i[c]), name(list.j[c]), list.image[c], {}, 0.0, {}};
   if (list.has_spring) pair.spring = list.spring[c];
   if (list.has_memory) pair.memory = list.memory[c];
+  if (list.has_roll) pair.roll = list.roll[c];
   if (pair.i < pair.j) return pair;
   std::swap(pair.i, pair.j);
   pair.law = s.laws.index(s.particles.material[static_cast<std::size_t>(pair.i)],
@@ -109,6 +111,7 @@ RenamedPair<D> renamed(const System<D>& s, const ContactSection& section, std::s
   if (pair.law == LawSet::kNoContact) throw std::logic_error("two materials have a contact law in one order alone");
   pair.image = image_count<D>() - 1 - pair.image;
   pair.spring = -pair.spring;
+  pair.roll = -pair.roll;
   if (memory_has_sides_under(s.laws.law(pair.law))) pair.memory = -pair.memory;
   return pair;
 }
@@ -147,6 +150,7 @@ void rename_pairs(System<D>& s, const std::vector<Slot>& order) {
   for (std::size_t c = 0; c < pairs.size(); ++c) {
     if (list.has_spring) list.spring[c] = pairs[c].spring;
     if (list.has_memory) list.memory[c] = pairs[c].memory;
+    if (list.has_roll) list.roll[c] = pairs[c].roll;
   }
 }
 

@@ -149,12 +149,13 @@ struct OldHistory {
   std::vector<ContactSection> sections;
   std::vector<Stored<D>> spring;
   std::vector<double> memory;
+  std::vector<Stored<D>> roll;
 };
 
 template <int D>
 OldHistory<D> take_history(ContactList<D>& list) {
-  OldHistory<D> old{std::move(list.i), std::move(list.j), std::move(list.sections), std::move(list.spring),
-                    std::move(list.memory)};
+  OldHistory<D> old{std::move(list.i),      std::move(list.j),      std::move(list.sections),
+                    std::move(list.spring), std::move(list.memory), std::move(list.roll)};
   list.i.clear();
   list.j.clear();
   list.image.clear();
@@ -176,6 +177,7 @@ void merge_history(const OldHistory<D>& old, const ContactSection& from, Contact
     if (old.i[a] != list.i[c] || old.j[a] != list.j[c]) continue;
     if (!old.spring.empty() && list.has_spring) list.spring[c] = old.spring[a];
     if (!old.memory.empty() && list.has_memory) list.memory[c] = old.memory[a];
+    if (!old.roll.empty() && list.has_roll) list.roll[c] = old.roll[a];
   }
 }
 
@@ -189,12 +191,13 @@ void restore_history(ContactList<D>& list, const OldHistory<D>& old) {
 template <int D>
 void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) {
   bool sums = false;
-  list.has_spring = list.has_memory = false;
+  list.has_spring = list.has_memory = list.has_roll = false;
   for (std::int32_t l = 0; l < laws.size(); ++l)
     std::visit(
         [&]<class Law>(const Law&) {
           list.has_spring = list.has_spring || Law::traits.has_tangential;
           list.has_memory = list.has_memory || Law::traits.has_memory;
+          list.has_roll = list.has_roll || has_roll_history<D>(Law::traits);
           sums = sums || Law::traits.needs_particle_pass;
         },
         laws.law(l));
@@ -204,6 +207,8 @@ void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) 
   list.spring_next.clear();
   list.memory.assign(memories, 0.0);
   list.memory_next.clear();
+  list.roll.assign(list.has_roll ? list.i.size() : 0, Vec<D>{});
+  list.roll_next.clear();
   list.touched.assign(list.i.size(), 1);
   list.particle_sum.assign(sums ? bodies : 0, CrowdSum<D>{});
 }

@@ -223,6 +223,7 @@ void write_contacts(const h5::Group& g, const ContactList<D>& list) {
   g.write("sections", sections, {list.sections.size(), 4});
   write_vectors(g, "spring", list.spring);
   g.write("memory", list.memory);
+  if (list.has_roll) write_vectors(g, "roll", list.roll);
 }
 
 void read_sections(const h5::Group& g, std::vector<ContactSection>& sections, Count pairs, Count laws) {
@@ -266,6 +267,7 @@ void read_contacts(const h5::Group& g, System<D>& s) {
   adopt_list(s);
   list.spring = read_vectors<D, Stored<D>>(g, "spring", list.has_spring ? pairs : 0);
   list.memory = read_numbers(g, "memory", list.has_memory ? pairs : 0);
+  if (list.has_roll) list.roll = read_vectors<D, Stored<D>>(g, "roll", pairs);
 }
 
 }  // namespace

@@ -108,12 +108,17 @@ ContactResponse<3> evaluate_flat(const Law& law, const ContactState<3>& s) {
   out.sliding = r.sliding;
   out.memory = r.memory;
   out.rolling_moment[2] = r.rolling_moment[0];
+  out.rolling_stiffness = r.rolling_stiffness;
   for (int k = 0; k < 2; ++k) {
     out.tangential_force[k] = r.tangential_force[k];
     out.spring[k] = r.spring[k];
   }
   return out;
 }
+
+/// Of laws in space: those in the plane keep an angle as their memory.
+template <class Law>
+inline constexpr bool kRolls = law_serves<Law, 3>() && has_roll_history<3>(Law::traits);
 
 /// Pairs of a store as a source; a store that is const keeps no history.
 template <class Surface, class Store>
@@ -141,6 +146,7 @@ struct StorePairs {
     s.constants = store.constants[c];
     s.spring = store.spring[c];
     s.memory = store.memory[c];
+    s.roll = store.roll[c];
     s.radius_i = surface.b.r(p.i);
     s.radius_j = surface.radius_j(p.j);
     return s;
@@ -171,11 +177,12 @@ struct StorePairs {
   }
 
   template <class Law>
-  void keep(std::size_t c, const Vec<3>& spring, double memory) const {
+  void keep(std::size_t c, const ContactResponse<3>& r) const {
     if (!pass.advance) return;
     store.touched[c] = 1;
-    if constexpr (Law::traits.has_tangential) store.spring[c] = spring;
-    if constexpr (Law::traits.has_memory) store.memory[c] = memory;
+    if constexpr (Law::traits.has_tangential) store.spring[c] = r.spring;
+    if constexpr (Law::traits.has_memory) store.memory[c] = r.memory;
+    if constexpr (kRolls<Law>) store.roll[c] = r.roll;
   }
   template <class Law>
   void forget(std::size_t c) const {
@@ -183,6 +190,7 @@ struct StorePairs {
     store.touched[c] = 0;
     store.spring[c] = {};
     store.memory[c] = 0.0;
+    store.roll[c] = {};
   }
 };
 template <class Surface, class Store>

@@ -27,6 +27,7 @@ void ContactStore::assign(const std::vector<NearPair>& pairs, std::size_t laws) 
   }
   spring.assign(pairs.size(), {});
   memory.assign(pairs.size(), 0.0);
+  roll.assign(pairs.size(), {});
   touched.assign(pairs.size(), 0);
 }
 

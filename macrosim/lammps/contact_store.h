@@ -30,6 +30,7 @@ struct ContactStore {
   std::vector<PairConstants> constants;
   std::vector<Vec<3>> spring;  ///< of i against j
   std::vector<double> memory;
+  std::vector<Vec<3>> roll;   ///< of i against j
   std::vector<char> touched;  ///< 0: the history is known to be empty
   std::vector<Section> sections;
 
@@ -44,6 +45,7 @@ struct Remembered {
   int partner = 0;
   Vec<3> spring{};  ///< seen from this atom, as is a memory that has sides
   double memory = 0.0;
+  Vec<3> roll{};
 };
 
 using AtomMemory = std::vector<Remembered>;

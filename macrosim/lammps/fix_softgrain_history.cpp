@@ -19,7 +19,7 @@ namespace bridge = softgrain::lammps;
 
 namespace {
 
-constexpr int kWords = 5;  ///< of one remembered contact
+constexpr int kWords = 8;  ///< of one remembered contact
 
 double* put(const bridge::AtomMemory& memory, double* buf) {
   *buf++ = static_cast<double>(memory.size());
@@ -27,6 +27,7 @@ double* put(const bridge::AtomMemory& memory, double* buf) {
     *buf++ = r.partner;
     for (int k = 0; k < 3; ++k) *buf++ = r.spring[k];
     *buf++ = r.memory;
+    for (int k = 0; k < 3; ++k) *buf++ = r.roll[k];
   }
   return buf;
 }
@@ -37,6 +38,7 @@ const double* take(const double* buf, bridge::AtomMemory& memory) {
     r.partner = static_cast<int>(*buf++);
     for (int k = 0; k < 3; ++k) r.spring[k] = *buf++;
     r.memory = *buf++;
+    for (int k = 0; k < 3; ++k) r.roll[k] = *buf++;
   }
   return buf;
 }
@@ -66,7 +68,7 @@ void FixSoftgrainHistory::init() {
 
 void FixSoftgrainHistory::remember(int tag, int partner, const softgrain::Vec<3>& spring) {
   const int i = atom->map(tag);
-  if (i >= 0 && i < atom->nlocal) memory_[static_cast<std::size_t>(i)].push_back({partner, spring, 0.0});
+  if (i >= 0 && i < atom->nlocal) memory_[static_cast<std::size_t>(i)].push_back({partner, spring, 0.0, {}});
 }
 
 /// The first rank reads, in blocks; every rank keeps what its atoms need.
@@ -109,8 +111,8 @@ void FixSoftgrainHistory::store() {
       if (s.touched[c] == 0) continue;
       const auto i = static_cast<std::size_t>(s.i[c]);
       const auto j = static_cast<std::size_t>(s.j[c]);
-      memory_[i].push_back({atom->tag[j], s.spring[c], s.memory[c]});
-      if (j < own) memory_[j].push_back({atom->tag[i], -s.spring[c], kOtherSide * s.memory[c]});
+      memory_[i].push_back({atom->tag[j], s.spring[c], s.memory[c], s.roll[c]});
+      if (j < own) memory_[j].push_back({atom->tag[i], -s.spring[c], kOtherSide * s.memory[c], -s.roll[c]});
     }
   });
   int before = 0;
@@ -118,7 +120,8 @@ void FixSoftgrainHistory::store() {
     const bridge::ContactStore& w = wall->store;
     for (std::size_t c = 0; c < w.size(); ++c)
       if (w.touched[c] != 0)
-        memory_[static_cast<std::size_t>(w.i[c])].push_back({-(before + w.j[c] + 1), w.spring[c], w.memory[c]});
+        memory_[static_cast<std::size_t>(w.i[c])].push_back(
+            {-(before + w.j[c] + 1), w.spring[c], w.memory[c], w.roll[c]});
     before += static_cast<int>(wall->planes.size());
   }
 }

@@ -163,6 +163,7 @@ void FixSoftgrainWall::build(const bridge::Bodies& b, const std::vector<bridge::
     store.touched[c] = 1;
     store.spring[c] = past->spring;
     store.memory[c] = past->memory;
+    store.roll[c] = past->roll;
   }
   listed_.clear();
   for (const bridge::Plane& p : planes) listed_.push_back(p.point);
@@ -210,7 +211,8 @@ void FixSoftgrainWall::post_force(int) {
     }
     force_[static_cast<std::size_t>(plane)] += r.normal_force;
     if (!gathered.wanted) return;
-    gathered.add(i, r.normal_stiffness + r.tangential_stiffness, r.tangential_stiffness * g.arm_i * g.arm_i);
+    gathered.add(i, r.normal_stiffness + r.tangential_stiffness,
+                 r.tangential_stiffness * g.arm_i * g.arm_i + r.rolling_stiffness);
     if (r.normal_force == 0.0) return;
     gathered.force_sum += std::abs(r.normal_force);
     gathered.contacts += 1.0;

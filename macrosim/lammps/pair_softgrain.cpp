@@ -40,8 +40,8 @@ constexpr int kSumSize = 14;
 void gather(PairSoftgrain::Gathered& out, int i, int j, int own, const ContactGeometry<3>& g,
             const ContactResponse<3>& r) {
   const double k = r.normal_stiffness + r.tangential_stiffness;
-  out.add(i, k, r.tangential_stiffness * g.arm_i * g.arm_i);
-  if (j < own) out.add(j, k, r.tangential_stiffness * g.arm_j * g.arm_j);
+  out.add(i, k, r.tangential_stiffness * g.arm_i * g.arm_i + r.rolling_stiffness);
+  if (j < own) out.add(j, k, r.tangential_stiffness * g.arm_j * g.arm_j + r.rolling_stiffness);
   if (r.normal_force == 0.0) return;
   const double share = j < own ? 1.0 : 0.5;
   out.force_sum += share * std::abs(r.normal_force);
@@ -238,6 +238,7 @@ void PairSoftgrain::build(const std::vector<bridge::AtomMemory>& memory_of) {
     store.touched[c] = 1;
     store.spring[c] = past->spring;
     store.memory[c] = past->memory;
+    store.roll[c] = past->roll;
   }
 }
 

@@ -59,6 +59,7 @@ CrowdChoices read_choices(const SceneTable& t, const LawTableEntry& entry) {
   choices.modulus = read_modulus(t);
   if (t.has("mu")) choices.friction = t.number("mu", Unit::none, Range::not_negative());
   choices.unloading = t.flag("unloading", false);
+  choices.rolling = t.flag("rolling", true);
   choices.beyond = read_beyond(t);
   return choices;
 }
@@ -92,7 +93,7 @@ std::int32_t SoftLawReader::soft_of(const SceneTable& t, const PairOfMaterials& 
 }
 
 void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, const std::string& path) {
-  for (const char* key : {"form", "solid_fraction", "range", "unloading"})
+  for (const char* key : {"form", "solid_fraction", "range", "unloading", "rolling"})
     if (t.has(key)) t.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   const auto kind = t.choice<PairKind>("kind");
   const LawCard card = load_card(path);

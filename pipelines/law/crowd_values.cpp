@@ -74,8 +74,7 @@ class Middle {
   }
 
  private:
-  static constexpr bool is_bag_ =
-      std::is_same_v<Law, SoftCrowd<Crowd::bag, false>> || std::is_same_v<Law, SoftCrowd<Crowd::bag, true>>;
+  static constexpr bool is_bag_ = Law::kForm == Crowd::bag;
 
   const Law& law_;
   CrowdSum<3> own_;

@@ -55,6 +55,10 @@ json slide_json(const SlideLaw& slide) {
   json out;
   put(out, "kt_ratio", slide.kt_ratio);
   put(out, "friction", slide.friction);
+  if (slide.rolls) {
+    put(out, "rolling", slide.rolling);
+    put(out, "rolling_friction", slide.rolling_friction);
+  }
   return out;
 }
 

@@ -76,9 +76,9 @@ class RangeCheck {
 
 /// A short name of all numbers of a law, so that a run that goes on does not mistake another law for this one.
 std::string tag_of(const LawTableEntry& entry, const LawSources& sources, Crowd form) {
-  return short_hash(fmt::format("{} {} {} {} {:a}", sources.friction.value_or(-1.0), sources.unloading,
-                                numbers_of(entry, form), to_string(sources.beyond.value_or(entry.beyond)),
-                                entry.volume_max));
+  return short_hash(fmt::format("{}{} {} {} {} {:a}", sources.rolling ? "" : "rolls freely ",
+                                sources.friction.value_or(-1.0), sources.unloading, numbers_of(entry, form),
+                                to_string(sources.beyond.value_or(entry.beyond)), entry.volume_max));
 }
 
 /// E scales; nu and mu do not.
@@ -131,7 +131,7 @@ std::function<std::string(const System3&)> card_note(const LawCard& card, const 
 }
 
 /// Keys that choose among what a table offers.
-constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "unloading"};
+constexpr std::array kTableKeys{"solid_fraction", "range", "mu", "unloading", "rolling"};
 
 void read_table_choices(const SceneTable& t, LawSources& out) {
   if (t.has("solid_fraction"))
@@ -140,6 +140,7 @@ void read_table_choices(const SceneTable& t, LawSources& out) {
   out.range = t.choice<RangePolicy>("range", RangePolicy::reject);
   if (t.has("mu")) out.friction = t.number("mu", Unit::none, Range::not_negative());
   out.unloading = t.flag("unloading", false);
+  out.rolling = t.flag("rolling", true);
 }
 
 std::vector<WantedForm> read_forms(const SceneTable& law, bool has_table) {
@@ -203,6 +204,7 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   choices.modulus = spec.youngs_modulus;
   choices.friction = sources.friction.value_or(-1.0);
   choices.unloading = sources.unloading;
+  choices.rolling = sources.rolling;
   choices.beyond = sources.beyond;
   const CrowdLaws laws = make_crowd_laws(entry, choices);
   choices.friction = spec.wall_friction;
@@ -282,7 +284,7 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
     root.mistake("form", "\"cell\" goes with a card of the cell law, and " + path + " is a law of soft particles");
   if (kind == LawFileKind::cells) {
     if (!asks_cells && root.has("form")) root.mistake("form", path + " is a card of the cell law: \"cell\"");
-    for (const char* key : {"solid_fraction", "range", "mu", "unloading", "beyond"})
+    for (const char* key : {"solid_fraction", "range", "mu", "unloading", "rolling", "beyond"})
       if (root.has(key)) root.mistake(key, "goes with laws of soft particles; " + path + " is a card of the cell law");
     out.cells = read_cell_card(path);
     return out;

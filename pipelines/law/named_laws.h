@@ -40,6 +40,7 @@ struct LawSources {
   RangePolicy range = RangePolicy::reject;  ///< of solid fractions outside the table
   std::optional<double> friction;           ///< mu_soft of the table's laws; empty: as measured
   bool unloading = false;                   ///< with the measured unloading branch
+  bool rolling = true;                      ///< with the measured rolling resistance
   std::optional<Beyond> beyond{};           ///< instead of what card or table say
   std::vector<std::string> files{};         ///< that they come from
   std::string text;                         ///< of these

@@ -47,14 +47,17 @@ std::string partners_text(const CrowdLaw& law) {
 
 std::string slides_table(const LawTableEntry& e) {
   Rows rows{{"friction", "mu_soft", "kt/kn"}};
+  Rows rolls{{"rolling", "largest moment/FR", "stiffness/E R^2 R12"}};
   const auto add = [&](const char* name, const SlideLaw& slide) {
     const std::string from = slide.measured ? "" : " (not measured)";
     rows.push_back({name, with_error(slide.friction) + from, with_error(slide.kt_ratio) + from});
+    rolls.push_back({name, slide.rolls ? with_error(slide.rolling_friction) : "not measured: free",
+                     slide.rolls ? with_error(slide.rolling) : "-"});
   };
   add("on planes", e.slide_plane);
   add("on solid spheres", e.slide_solid);
   add("on soft ones", e.slide_soft);
-  return aligned(rows, 2);
+  return aligned(rows, 2) + (e.rolls() ? aligned(rolls, 2) : "");
 }
 
 /// Forms that are no good say why.

@@ -61,9 +61,9 @@ Family pair_family(double damping, Beyond beyond) {
           both};
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
 Family crowd_family(const std::string& name) {
-  SoftCrowd<kCrowd, kUnloading> law;
+  SoftCrowd<kCrowd, kUnloading, kRolling> law;
   law.form.pressure = {0.8, 3.0, 0.02, {0.01, Beyond::clamp}};
   law.form.coupling = {0.8, 0.15, 0.1};
   law.partner = table(false);
@@ -71,7 +71,9 @@ Family crowd_family(const std::string& name) {
   law.friction = 0.3;
   law.kt_ratio = 0.4;
   law.retreat = 1.7;
-  SoftCrowd<kCrowd, kUnloading> both = law;
+  law.rolling = 0.01;
+  law.rolling_friction = 0.05;
+  SoftCrowd<kCrowd, kUnloading, kRolling> both = law;
   both.partner = table(true);
   both.j_is_soft = true;
   return {name, HertzMindlin<Tangential::none, false>{HertzCoefficients::of(kMaterial, kMaterial, 0.0, 1.0)}, law,
@@ -88,8 +90,8 @@ std::vector<Family> families() {
           pair_family(0.0, Beyond::clamp),
           crowd_family<Crowd::pair, true>("crowd pair"),
           crowd_family<Crowd::bag, false>("bag"),
-          crowd_family<Crowd::directional, false>("directional"),
-          crowd_family<Crowd::directional, true>("directional, unloading")};
+          crowd_family<Crowd::directional, true>("directional, unloading"),
+          crowd_family<Crowd::directional, false, true>("directional, rolling")};
 }
 
 /// Clusters of two to five bodies of one family far from each other, those of the first layer on a plane that moves.

@@ -120,6 +120,7 @@ void expect_same_state(const System<D>& a, const System<D>& b) {
   EXPECT_EQ(a.contacts.j, b.contacts.j);
   EXPECT_EQ(a.contacts.image, b.contacts.image);
   EXPECT_EQ(a.contacts.memory, b.contacts.memory);
+  expect_same_bits(a.contacts.roll, b.contacts.roll, "roll");
   EXPECT_TRUE(a.cell.edges == b.cell.edges);
   EXPECT_TRUE(same_bits(a.time, b.time));
   EXPECT_EQ(a.step, b.step);

@@ -80,17 +80,20 @@ inline CrowdConfiguration crowd_configuration(Arrangement arranged, PartnerKind 
   if (after == CrowdMove::unload)
     c.stages.push_back({CrowdMove::unload, std::vector<double>(c.partners.size(), 0.0), 0.0});
   if (after == CrowdMove::slide) c.stages.push_back({CrowdMove::slide, c.stages[0].overlap, 0.4});
+  if (after == CrowdMove::roll) c.stages.push_back({CrowdMove::roll, c.stages[0].overlap, 0.0, 0.4});
   return c;
 }
 
 /// What the packings of a made-up measurement do besides following the law.
 struct CrowdOptionsKnown {
   int packings = 12;
-  double noise = 0.0;    ///< relative, of every force by itself
-  int points = 12;       ///< per stage
-  double retreat = 1.5;  ///< unloading: x_max - s (x_max - x) is felt
-  double kt = 0.5;       ///< slide: drag grows by this per slide, over E Rs
-  double limit = 0.2;    ///< up to this share of the normal force
+  double noise = 0.0;             ///< relative, of every force by itself
+  int points = 12;                ///< per stage
+  double retreat = 1.5;           ///< unloading: x_max - s (x_max - x) is felt
+  double kt = 0.5;                ///< slide: drag grows by this per slide, over E Rs
+  double limit = 0.2;             ///< up to this share of the normal force
+  double rolling = 0.006;         ///< roll: moment grows by this per way, over E Rs^2
+  double rolling_friction = 0.1;  ///< up to this share of the normal force times Rs
   std::uint64_t seed = 1;
 };
 
@@ -103,7 +106,9 @@ inline CrowdPoint crowd_point(const CrowdModel& model, const CrowdConfiguration&
   p.max_overlap = 0.1 + share;
   std::vector<double> felt;
   for (const double deepest : c.stages[0].overlap) {
-    const double x = stage == 0 ? share * deepest : c.stages[stage].slide > 0.0 ? deepest : (1.0 - share) * deepest;
+    const double x = stage == 0                                           ? share * deepest
+                     : c.stages[stage].slide + c.stages[stage].roll > 0.0 ? deepest
+                                                                          : (1.0 - share) * deepest;
     p.overlap.push_back(x);
     felt.push_back(stage == 0 ? x : std::max(deepest - o.retreat * (deepest - x), 0.0));
   }
@@ -112,6 +117,11 @@ inline CrowdPoint crowd_point(const CrowdModel& model, const CrowdConfiguration&
   p.slide = c.stages[stage].slide * share;
   if (p.slide > 0.0)
     p.tangential[0] = slide_direction(c.partners[0].direction) * -std::min(o.kt * p.slide, o.limit * p.normal[0]);
+  p.roll = c.stages[stage].roll * share;
+  p.moment.resize(p.normal.size());
+  const Vec3& n = c.partners[0].direction;
+  if (p.roll > 0.0)
+    p.moment[0] = cross(n, slide_direction(n)) * -std::min(o.rolling * p.roll, o.rolling_friction * p.normal[0]);
   return p;
 }
 

@@ -42,6 +42,10 @@ struct PlainSink {
     stiffness.translation[j] += k;
     stiffness.rotation[i] += r.tangential_stiffness * g.arm_i * g.arm_i;
     stiffness.rotation[j] += r.tangential_stiffness * g.arm_j * g.arm_j;
+    if constexpr (has_roll_history<D>(kLaw)) {
+      stiffness.rotation[i] += r.rolling_stiffness;
+      stiffness.rotation[j] += r.rolling_stiffness;
+    }
     stiffness.force_sum += std::abs(r.normal_force);
     stiffness.contacts += r.normal_force != 0.0 ? 1 : 0;
     for (int a = 0; a < D; ++a) virial[a] += f[a] * g.branch[a];
@@ -143,9 +147,9 @@ SoftContact soft(bool both, double damping) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
 AnyLaw counting(bool both) {
-  SoftCrowd<kCrowd, kUnloading> law;
+  SoftCrowd<kCrowd, kUnloading, kRolling> law;
   law.form.pressure = {0.6, 2.2, 0.1};
   law.form.coupling = {0.6, 0.5, 0.1};
   law.partner.log_weight = MonotoneCurve({-1.4, 0.0, 1.4}, {-0.5, -0.4, -0.3});
@@ -154,6 +158,8 @@ AnyLaw counting(bool both) {
   law.friction = 0.3;
   law.kt_ratio = 0.3;
   law.retreat = 1.5;
+  law.rolling = 0.02;
+  law.rolling_friction = 1e-3;
   law.j_is_soft = both;
   return law;
 }
@@ -187,6 +193,10 @@ std::vector<AnyLaw> laws() {
     out.push_back(counting<Crowd::bag, true>(both));
     out.push_back(counting<Crowd::directional, false>(both));
     out.push_back(counting<Crowd::directional, true>(both));
+    out.push_back(counting<Crowd::pair, false, true>(both));
+    out.push_back(counting<Crowd::bag, true, true>(both));
+    out.push_back(counting<Crowd::directional, false, true>(both));
+    out.push_back(counting<Crowd::directional, true, true>(both));
   }
   for (const double adhesion : {0.0, 2e4}) {
     out.push_back(disk<CohesiveDisk<false, false>>(adhesion));
@@ -256,6 +266,9 @@ void expect_same(const System<D>& a, const System<D>& b) {
   for (std::size_t c = 0; c < a.contacts.spring.size(); ++c)
     ASSERT_EQ(a.contacts.spring[c], b.contacts.spring[c]) << "contact " << c;
   ASSERT_EQ(a.contacts.memory, b.contacts.memory);
+  ASSERT_EQ(a.contacts.roll.size(), b.contacts.roll.size());
+  for (std::size_t c = 0; c < a.contacts.roll.size(); ++c)
+    ASSERT_EQ(a.contacts.roll[c], b.contacts.roll[c]) << "contact " << c;
 }
 
 template <int D>

@@ -197,6 +197,48 @@ TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
   EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
 }
 
+TEST(CrowdFit, RollsGiveStiffnessAndLimit) {
+  auto list = arrangements();
+  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::soft})
+    list.push_back(
+        crowd_configuration(Arrangement::cube, kind, kind == PartnerKind::plane ? 0.0 : 2.0, 0.25, CrowdMove::roll));
+  CrowdOptionsKnown o;
+  o.rolling = 0.005;
+  o.points = 40;
+  const auto fitted = [&](double friction) {
+    o.rolling_friction = friction;
+    return fit_crowd_laws(crowd_measurements(known(Crowd::directional), list, o), quick());
+  };
+  LawTableEntry entry = fitted(10.0);  // never reached
+  EXPECT_TRUE(entry.slide_plane.rolls);
+  EXPECT_NEAR(entry.slide_plane.rolling.value, 0.005, 1e-9);
+  // Of unequal soft particles by the harmonic mean of both radii, 4/3 Rs.
+  EXPECT_NEAR(entry.slide_soft.rolling.value, 0.005 * 9.0 / 16.0, 1e-9);
+  entry = fitted(0.001);  // reached early
+  EXPECT_NEAR(entry.slide_plane.rolling_friction.value, 0.001, 1e-9);
+  EXPECT_NEAR(entry.slide_soft.rolling_friction.value, 0.001 * 0.75, 1e-9);
+  EXPECT_FALSE(entry.slide_solid.rolls) << "nothing rolled on solid spheres";
+  EXPECT_FALSE(entry.slide_plane.measured) << "nor did anything slide";
+}
+
+/// What was slid back, pressed on or came at an angle is not what the definitions speak of.
+TEST(CrowdFit, OtherPathsGiveNoFrictionLimit) {
+  auto list = arrangements();
+  CrowdConfiguration back = crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide);
+  back.stages.push_back({CrowdMove::slide, back.stages[0].overlap, 0.2});
+  list.push_back(back);
+  CrowdConfiguration oblique = crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3);
+  oblique.name = "oblique";
+  oblique.stages = {{CrowdMove::oblique, {0.3}, 0.2}};
+  list.push_back(oblique);
+  CrowdMeasurements data = crowd_measurements(known(Crowd::directional), list, {});
+  const auto states = average_states(data);
+  EXPECT_EQ(states.back().use, CrowdUse::repeated) << "no loading";
+  EXPECT_TRUE(loading_states(states.back()).empty());
+  const LawTableEntry entry = fit_crowd_laws(data, quick());
+  EXPECT_FALSE(entry.slide_plane.measured);
+}
+
 /// Errors of one configuration are those of its packings; of two that differ, the difference is in them too.
 TEST(CrowdFit, ErrorsOfSlidesAndRetreatsAreThoseOfPackingsAndConfigurations) {
   const CrowdModel model = known(Crowd::bag);

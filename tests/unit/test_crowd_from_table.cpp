@@ -58,6 +58,24 @@ TEST(CrowdFromTable, FormAndUnloadingChooseTheTypeOfTheLaw) {
   EXPECT_EQ((std::get<SoftCrowd<Crowd::bag, true>>(law(Crowd::bag, true)).retreat), entry.retreat.value);
 }
 
+/// What was not measured to roll rolls freely under a law whose others do not.
+TEST(CrowdFromTable, RollingComesWhereItWasMeasuredAndIsAsked) {
+  LawTableEntry entry = law_entry();
+  const std::string before = numbers_of(entry, Crowd::directional);
+  entry.slide_soft.rolling.value = 0.004;
+  entry.slide_soft.rolling_friction.value = 0.12;
+  entry.slide_soft.rolls = true;
+  EXPECT_NE(numbers_of(entry, Crowd::directional), before) << "other forces, another name";
+  CrowdChoices choices;
+  const CrowdLaws laws = make_crowd_laws(entry, choices);
+  using Rolling = SoftCrowd<Crowd::directional, false, true>;
+  EXPECT_EQ(std::get<Rolling>(laws.soft_soft).rolling, 0.004);
+  EXPECT_EQ(std::get<Rolling>(laws.soft_soft).rolling_friction, 0.12);
+  EXPECT_EQ(std::get<Rolling>(laws.soft_plane).rolling, 0.0);
+  choices.rolling = false;
+  EXPECT_TRUE(std::holds_alternative<Directional>(make_crowd_laws(entry, choices).soft_soft));
+}
+
 TEST(CrowdFromTable, WhatIsNotUsableIsRefused) {
   const auto refused = [](const LawTableEntry& entry, Crowd form, const std::string& word) {
     CrowdChoices choices;

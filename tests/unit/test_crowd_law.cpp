@@ -89,6 +89,10 @@ void expect_same(const LawTableEntry& a, const LawTableEntry& b) {
   for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
     expect_same((a.*slide).kt_ratio, (b.*slide).kt_ratio);
     expect_same((a.*slide).friction, (b.*slide).friction);
+    EXPECT_EQ((a.*slide).rolls, (b.*slide).rolls);
+    if (!(a.*slide).rolls) continue;
+    expect_same((a.*slide).rolling, (b.*slide).rolling);
+    expect_same((a.*slide).rolling_friction, (b.*slide).rolling_friction);
   }
   expect_same(a.retreat, b.retreat);
   EXPECT_EQ(a.best, b.best);
@@ -128,6 +132,9 @@ class CrowdLawIo : public ::testing::Test {
 TEST_F(CrowdLawIo, RoundTripIsExact) {
   LawTable table{1, {law_entry(0.7), law_entry(0.1 * 7.5, 1e-3 / 3.0)}};
   table.entries[0].slide_soft = {unknown(0.3), unknown(0.25)};
+  table.entries[1].slide_solid.rolling = {0.01 / 3.0, 1e-3, 0.001, 0.005};
+  table.entries[1].slide_solid.rolling_friction = {0.1 / 3.0, 1e-2, 0.01, 0.05};
+  table.entries[1].slide_solid.rolls = true;
   table.entries[0].laws[1].status = LawStatus::underdetermined;
   table.entries[0].laws[1].reason = "planes: \"3 of 6\" \\ more";
   table.entries[0].laws[1].criterion = HUGE_VAL;

@@ -36,9 +36,9 @@ SoftContact contact_law(bool partner_is_soft) {
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
-SoftCrowd<kCrowd, kUnloading> crowd_law(bool partner_is_soft) {
-  SoftCrowd<kCrowd, kUnloading> law;
+template <Crowd kCrowd, bool kUnloading, bool kRolling>
+SoftCrowd<kCrowd, kUnloading, kRolling> crowd_law(bool partner_is_soft) {
+  SoftCrowd<kCrowd, kUnloading, kRolling> law;
   law.form.pressure = {0.8, 2.0, 0.001};
   if (kCrowd == Crowd::directional) law.form.coupling = {0.8, 0.15, 0.1};
   law.partner.log_weight = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {-0.9, -0.5, -0.1});
@@ -48,13 +48,15 @@ SoftCrowd<kCrowd, kUnloading> crowd_law(bool partner_is_soft) {
   law.friction = 0.4;
   law.kt_ratio = 0.5;
   law.retreat = 1.7;
+  law.rolling = 0.1;
+  law.rolling_friction = 0.1;
   law.j_is_soft = partner_is_soft;
   return law;
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
 Pairing crowd_pairing(const char* name, const AnyLaw& solid) {
-  return {name, solid, crowd_law<kCrowd, kUnloading>(false), crowd_law<kCrowd, kUnloading>(true)};
+  return {name, solid, crowd_law<kCrowd, kUnloading, kRolling>(false), crowd_law<kCrowd, kUnloading, kRolling>(true)};
 }
 
 AnyLaw hertz(bool rescaled) {
@@ -73,7 +75,8 @@ std::vector<Pairing> pairings(std::integral_constant<int, 3>) {
           {"soft contact", hertz(true), contact_law(false), contact_law(true)},
           crowd_pairing<Crowd::pair, true>("crowd: pair", hertz(false)),
           crowd_pairing<Crowd::bag, false>("crowd: bag", hertz(false)),
-          crowd_pairing<Crowd::directional, true>("crowd: directional", spring)};
+          crowd_pairing<Crowd::directional, true>("crowd: directional", spring),
+          crowd_pairing<Crowd::bag, false, true>("crowd: bag that rolls", hertz(false))};
 }
 
 std::vector<Pairing> pairings(std::integral_constant<int, 2>) {
@@ -226,6 +229,23 @@ TEST(RenamedPairs, OneByOneAndBack) {
   restore_order(s);
   EXPECT_EQ(s.contacts.memory[0], turned);
   EXPECT_EQ(s.contacts.spring[0], slid);
+}
+
+TEST(RenamedPairs, WhatHasRolledInSpaceIsSeenFromTheOtherSide) {
+  System<3> s;
+  s.materials = {glass()};
+  s.laws = LawSet(1);
+  s.laws.set(0, 0, crowd_law<Crowd::pair, false, true>(true));
+  add_grain(s.particles, test_sphere<3>({{0.0, 0.0, 0.0}}, 0.1, 2500.0));
+  add_grain(s.particles, test_sphere<3>({{0.15, 0.0, 0.0}}, 0.1, 2500.0));
+  s.particles.spin[0] = Vec3{{0.0, 1e-3, 2e-3}};
+  force_pass(s, 1e-3, History::advance);
+  const Vec3 rolled = s.contacts.roll[0];
+  ASSERT_NEAR(rolled[1], 1e-6, 1e-12);
+  reorder_grains(s, {1, 0});
+  EXPECT_EQ(Vec3(s.contacts.roll[0]), -rolled);
+  restore_order(s);
+  EXPECT_EQ(Vec3(s.contacts.roll[0]), rolled);
 }
 
 }  // namespace

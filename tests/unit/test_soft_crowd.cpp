@@ -149,7 +149,8 @@ template <class Law>
 class SoftCrowdLaws : public ::testing::Test {};
 using AllForms =
     ::testing::Types<SoftCrowd<Crowd::pair, false>, SoftCrowd<Crowd::bag, false>, SoftCrowd<Crowd::directional, false>,
-                     SoftCrowd<Crowd::pair, true>, SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, true>>;
+                     SoftCrowd<Crowd::pair, true>, SoftCrowd<Crowd::bag, true>, SoftCrowd<Crowd::directional, true>,
+                     SoftCrowd<Crowd::directional, false, true>>;
 TYPED_TEST_SUITE(SoftCrowdLaws, AllForms);
 
 TYPED_TEST(SoftCrowdLaws, ForcesAddUpToNothing) {

@@ -13,8 +13,9 @@ namespace softgrain {
 namespace {
 
 std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
-  return fmt::format("{} {} voids {:a} {:a} {} {}", to_string(setup.form), setup.unloading, setup.voids.r_max,
-                     setup.voids.r_min, setup.voids.count, numbers_of(below, setup.form));
+  return fmt::format("{} {} {}voids {:a} {:a} {} {}", to_string(setup.form), setup.unloading,
+                     setup.rolling ? "" : "rolls freely ", setup.voids.r_max, setup.voids.r_min, setup.voids.count,
+                     numbers_of(below, setup.form));
 }
 
 /// Facts about the inner soft particles, over the packings of the pool.
@@ -126,6 +127,7 @@ InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
   choices.form = setup.form;
   choices.modulus = setup.crowd.spec.youngs_modulus;
   choices.unloading = setup.unloading;
+  choices.rolling = setup.rolling;
   const CrowdLaws laws = make_crowd_laws(below, choices);
   return {laws.soft_plane, laws.soft_solid, laws.solid_soft, laws.soft_soft, below.solid_fraction};
 }

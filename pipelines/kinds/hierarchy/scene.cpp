@@ -18,6 +18,7 @@ void read_levels(const SceneTable& t, HierarchySetup& out) {
   out.voids.count = t.count("inner_count", 1, kMany, kMany);
   out.form = t.choice<Crowd>("form", out.form);
   out.unloading = t.flag("unloading", out.unloading);
+  out.rolling = t.flag("rolling", out.rolling);
 }
 
 void read_fixed_point(const SceneTable& t, HierarchySetup& out) {

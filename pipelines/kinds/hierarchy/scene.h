@@ -18,6 +18,7 @@ struct HierarchySetup {
   VoidFillingOptions voids;  ///< soft particles between the grains of a level, over Rs
   Crowd form = Crowd::directional;
   bool unloading = false;
+  bool rolling = true;
   std::int64_t iterations = 8;         ///< levels at most, counted from the finest, on the way to the fixed point
   double tolerance = 0.01;             ///< the fixed point is reached when laws of two levels differ by less
   std::int64_t check_packings = 0;     ///< of the resolved check of two decades; 0: none

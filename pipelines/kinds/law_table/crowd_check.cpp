@@ -50,6 +50,8 @@ void warn_of_configurations(const CrowdSetup& setup, Findings& out) {
   if (!any(partner(PartnerKind::soft))) out.warn("no soft neighbours: macro scenes cannot use such a table");
   if (!any([](const CrowdConfiguration& c) { return has_stage(c, CrowdMove::slide); }))
     out.warn("no path slides: friction limit and tangential stiffness will not be measured");
+  if (!any([](const CrowdConfiguration& c) { return has_stage(c, CrowdMove::roll); }))
+    out.warn("no path rolls: soft particles will roll freely, and resist shear less than they do");
   if (!any([](const CrowdConfiguration& c) { return has_stage(c, CrowdMove::unload); }))
     out.warn("no path unloads: the unloading branch will not be measured");
   if (!any([](const CrowdConfiguration& c) { return c.held_out; }))

@@ -37,7 +37,12 @@ nlohmann::json estimate_json(const Estimate& e) {
 }
 
 nlohmann::json slide_json(const SlideLaw& s) {
-  return {{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
+  nlohmann::json out{{"kt_ratio", estimate_json(s.kt_ratio)}, {"friction", estimate_json(s.friction)}};
+  if (s.rolls) {
+    out["rolling"] = estimate_json(s.rolling);
+    out["rolling_friction"] = estimate_json(s.rolling_friction);
+  }
+  return out;
 }
 
 nlohmann::json law_json(const CrowdLaw& law) {
