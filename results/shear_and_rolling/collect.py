@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""tables.md of this folder from a run of study.toml: python3 results/shear_and_rolling/collect.py RUN (needs h5py)"""
+import pathlib
+import sys
+
+import h5py
+import numpy as np
+
+HERE = pathlib.Path(__file__).parent
+
+
+def slide_direction(n):
+    """As the program has it: the coordinate axis least aligned with n, made perpendicular to it."""
+    axis = 0
+    for k in range(1, 3):
+        if abs(n[k]) < abs(n[axis]):
+            axis = k
+    along = np.zeros(3)
+    along[axis] = 1.0
+    along -= n * n.dot(along)
+    return along / np.linalg.norm(along)
+
+
+def turned(n, along, kind, ratio, state):
+    """Direction of the first neighbour and of its drag, once it has gone round."""
+    angle = state["roll"] / (1.0 - 0.5 * state["overlap"])
+    if kind != 0:
+        angle += state["slide"] / (1.0 + ratio - state["overlap"])
+    return along * np.cos(angle) - n * np.sin(angle)
+
+
+def load(file):
+    """By configuration: list of states, each with overlap, slide, roll, and per packing normal force, drag, moment against rolling."""
+    with h5py.File(file) as f:
+        count = len(f["configurations/held_out"])
+        names = [f["configurations"].attrs[f"name_{k}"].decode() for k in range(count)]
+        first = np.concatenate([[0], np.cumsum(f["configurations/partner_count"][:])[:-1]]).astype(int)
+        partners = f["configurations/partners"]
+        direction = np.stack([partners[f"direction_{c}"][:] for c in "xyz"], 1)
+        runs = f["runs"]
+        rows = {q: runs[f"neighbours/{q}"][:] for q in ("normal", "overlap")}
+        drag = np.stack([runs[f"neighbours/tangential_{c}"][:] for c in "xyz"], 1)
+        moment = np.stack([runs[f"moments/moment_{c}"][:] for c in "xyz"], 1)
+        points = {q: runs[f"points/{q}"][:] for q in ("slide", "roll", "stage", "neighbours")}
+        out = {name: [] for name in names}
+        point = row = 0
+        for run, length in enumerate(runs["point_count"][:]):
+            c = runs["configuration"][run]
+            n = direction[first[c]]
+            along = slide_direction(n)
+            kind, ratio = partners["kind"][first[c]], partners["ratio"][first[c]]
+            states = out[names[c]]
+            for k in range(length):
+                if k == len(states):
+                    states.append({"stage": points["stage"][point], "slide": points["slide"][point], "roll": points["roll"][point],
+                                   "overlap": rows["overlap"][row], "N": [], "T": [], "M": []})
+                s = states[k]
+                s["N"].append(rows["normal"][row])
+                s["T"].append(-drag[row].dot(turned(n, along, kind, ratio, s)))
+                s["M"].append(-moment[row].dot(np.cross(n, along)))
+                point, row = point + 1, row + points["neighbours"][point]
+        return out
+
+
+def share(values, normal):
+    """Ratio of means with its jackknife error."""
+    v, n = np.array(values), np.array(normal)
+    count = len(v)
+    left = np.array([(v.sum() - a) / (n.sum() - b) for a, b in zip(v, n)])
+    return v.sum() / n.sum(), np.sqrt((count - 1) / count * ((left - left.mean()) ** 2).sum())
+
+
+def line(name, s, before):
+    n = np.array(s["N"])
+    t, te = share(np.array(s["T"]) - (np.array(before["T"]) if before else 0.0), n)
+    m, me = share(np.array(s["M"]) - (np.array(before["M"]) if before else 0.0), n)
+    return (f"| {name} | {s['overlap']:.2f} | {s['slide']:.3f} | {s['roll']:.3f} | {n.mean():.5f} | {n.std(ddof=1) / len(n) ** 0.5:.5f} | "
+            f"{t:+.3f} ± {te:.3f} | {m:+.3f} ± {me:.3f} |")
+
+
+def main():
+    lines = ["| path | h/Rs | slid | rolled | N/(E Rs²) | ± | T/N | M/(N Rs) |", "|" + "---|" * 8]
+    for name, states in load(pathlib.Path(sys.argv[1]) / "crowd.h5").items():
+        moves = [s for s in states if s["slide"] or s["roll"]]
+        before = next((s for s in reversed(states) if not s["slide"] and not s["roll"]), None)
+        if "oblique" in name or not moves:
+            lines.append(line(name, states[-1], None))
+            continue
+        lines.append(line(name, before, None))
+        ends = [k for k in range(len(moves)) if k + 1 == len(moves) or moves[k + 1]["stage"] != moves[k]["stage"]]
+        middle = [k for k in range(0, len(moves), 2)] if len(ends) == 1 else []
+        lines += [line(name, moves[k], before) for k in sorted(set(middle + ends))]
+    (HERE / "tables.md").write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
