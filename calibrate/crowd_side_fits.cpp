@@ -88,17 +88,24 @@ bool slides_once(const CrowdConfiguration& c) {
                      [](const CrowdStage& s) { return s.move == CrowdMove::load; });
 }
 
-/// From the state before the slide and those along it; false when the configuration does not slide, or nothing holds it
-/// back.
-bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& out) {
+/// The last state before the first neighbour slides or rolls, and those along its way.
+struct Way {
   const CrowdState* before = nullptr;
   std::vector<const CrowdState*> along;
-  for (const CrowdState& s : c.states) {
-    if (s.slide == 0.0)
-      before = &s;
-    else if (before != nullptr)
-      along.push_back(&s);
+
+  Way(const CrowdStates& c, double CrowdState::*moved) {
+    for (const CrowdState& s : c.states) {
+      if (s.*moved == 0.0)
+        before = &s;
+      else if (before != nullptr)
+        along.push_back(&s);
+    }
   }
+};
+
+/// False when the configuration does not slide, or nothing holds it back.
+bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& out) {
+  const auto [before, along] = Way(c, &CrowdState::slide);
   if (along.empty()) return false;
   for (const CrowdState* s : along) out.friction = std::max(out.friction, drag(*s, *before));
   const double kn = normal_stiffness(model, *c.configuration, before->overlap);
@@ -119,14 +126,7 @@ struct RollResult {
 
 /// False when the configuration does not roll, or nothing holds it back.
 bool roll_result(const CrowdStates& c, RollResult& out) {
-  const CrowdState* before = nullptr;
-  std::vector<const CrowdState*> along;
-  for (const CrowdState& s : c.states) {
-    if (s.roll == 0.0)
-      before = &s;
-    else if (before != nullptr)
-      along.push_back(&s);
-  }
+  const auto [before, along] = Way(c, &CrowdState::roll);
   if (along.empty()) return false;
   const double radius = rolling_radius(c.configuration->partners.front());
   double last_roll = 0.0;
