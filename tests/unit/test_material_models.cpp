@@ -103,5 +103,39 @@ TEST(MaterialModels, TheirErrorIsRelativeToTheTruth) {
   EXPECT_TRUE(std::isnan(relative_difference({1.0}, {1.0}, 1)));
 }
 
+/// A sample that either did not come through has no part in errors or costs.
+TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
+  const CellCard card = card_of(StateForm::porosity);
+  const auto sample = [&](double stress, double seconds, std::int64_t evaluations, bool usable) {
+    MacroCurve c = exact(card, 0.66, 0.64);
+    for (double& s : c.stress_axial) s *= stress;
+    c.stages = {StageRecord{}};
+    c.stage.assign(c.strain.size(), 0.0);
+    c.usable = usable;
+    c.note = usable ? "" : "broke off";
+    c.cost.seconds = seconds;
+    c.cost.contact_evaluations = evaluations;
+    c.preparation.seconds = 3.0 * seconds;
+    return c;
+  };
+  const MaterialVariant variant{"v", {}};
+  const MaterialModel model{.name = "m"};
+  VariantResult truth{&variant, "", {}, {}};
+  truth.curves = {sample(1.0, 8.0, 600, true), sample(1.0, 100.0, 9999, true), sample(1.0, 70.0, 7777, false)};
+  ModelRun run{&model, &truth, {}, "", ""};
+  run.curves = {sample(1.1, 2.0, 30, true), sample(3.0, 50.0, 1, false), sample(5.0, 9.0, 5, true)};
+  const ModelScore s = score(run, false);
+  EXPECT_EQ(s.samples, 1);
+  EXPECT_NEAR(s.axial, 0.1, 1e-12);
+  EXPECT_NEAR(s.axial_at_end, 0.1, 1e-12);
+  EXPECT_EQ(s.evaluations, 20.0);
+  EXPECT_EQ(s.seconds, 4.0);
+  EXPECT_EQ(s.seconds_all, 4.0);
+  EXPECT_EQ(s.remark, "sample 1 left out: broke off");
+  const TextTable table = table_of({s});
+  EXPECT_EQ(table.header.back(), "remark");
+  EXPECT_EQ(table.rows.front().back(), s.remark);
+}
+
 }  // namespace
 }  // namespace softgrain

@@ -15,19 +15,15 @@ namespace {
 
 using Column = std::vector<double> (*)(const MacroCurve&);
 
-/// Mean over usable samples of the points that all have.
+/// Of the points that all have.
 std::vector<double> mean_of(const std::vector<MacroCurve>& curves, Column column) {
-  std::vector<double> sum;
-  double samples = 0.0;
+  std::vector<double> sum(column(curves.front()).size(), 0.0);
   for (const MacroCurve& c : curves) {
-    if (!c.usable) continue;
     const std::vector<double> values = column(c);
-    if (samples == 0.0) sum = std::vector<double>(values.size(), 0.0);
     sum.resize(std::min(sum.size(), values.size()));
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += values[k];
-    samples += 1.0;
   }
-  for (double& v : sum) v /= samples;
+  for (double& v : sum) v /= static_cast<double>(curves.size());
   return sum;
 }
 
@@ -42,7 +38,7 @@ struct Pairs {
   std::vector<MacroCurve> model;
 };
 
-Pairs pairs_of(const ModelRun& run, std::string& refusal) {
+Pairs pairs_of(const ModelRun& run, std::string& remark) {
   Pairs out;
   for (std::size_t k = 0; k < std::min(run.curves.size(), run.truth->curves.size()); ++k) {
     const MacroCurve& t = run.truth->curves[k];
@@ -52,8 +48,8 @@ Pairs pairs_of(const ModelRun& run, std::string& refusal) {
       out.truth.push_back(t);
       out.model.push_back(m);
     } else if (t.usable) {
-      refusal += fmt::format("{}sample {} left out: {}", refusal.empty() ? "" : "; ", k,
-                             m.note.empty() ? "it ends early" : m.note);
+      remark += fmt::format("{}sample {} left out: {}", remark.empty() ? "" : "; ", k,
+                            m.note.empty() ? "it ends early" : m.note);
     }
   }
   return out;
@@ -78,12 +74,11 @@ std::size_t point_at(const std::vector<double>& strain, double wanted) {
   return strain.size();
 }
 
-/// Mean over the usable samples; NaN where there is no unloading.
+/// Mean over the samples; NaN where there is no unloading.
 double unloading_of(const std::vector<MacroCurve>& curves) {
   double sum = 0.0;
   double samples = 0.0;
   for (const MacroCurve& c : curves) {
-    if (!c.usable) continue;
     for (const StageResult& s : stage_results(c))
       if (s.record.kind == StageKind::unload) {
         sum += s.modulus_begin;
@@ -97,29 +92,24 @@ double unloading_of(const std::vector<MacroCurve>& curves) {
 double error_at(const std::vector<MacroCurve>& curves, std::size_t k) {
   std::vector<double> values;
   for (const MacroCurve& c : curves)
-    if (c.usable && k < c.stress_axial.size()) values.push_back(c.stress_axial[k]);
+    if (k < c.stress_axial.size()) values.push_back(c.stress_axial[k]);
   if (values.size() < 2) return kNaN;
   const MeanError m = mean_error(values);
   return m.error / m.mean;
 }
 
+Cost total(const std::vector<MacroCurve>& curves, Cost MacroCurve::*part) {
+  Cost sum;
+  for (const MacroCurve& c : curves) sum += c.*part;
+  return sum;
+}
+
 /// Cost of the truth over that of the model.
-void add_costs(const ModelRun& run, ModelScore& s) {
-  Cost truth;
-  Cost model;
-  double truth_preparation = 0.0;
-  double model_preparation = 0.0;
-  const std::size_t n = std::min(run.curves.size(), run.truth->curves.size());
-  for (std::size_t k = 0; k < n; ++k) {
-    const MacroCurve& t = run.truth->curves[k];
-    const MacroCurve& c = run.curves[k];
-    truth.contact_evaluations += t.cost.contact_evaluations;
-    truth.seconds += t.cost.seconds;
-    truth_preparation += t.preparation.seconds;
-    model.contact_evaluations += c.cost.contact_evaluations;
-    model.seconds += c.cost.seconds;
-    model_preparation += c.preparation.seconds;
-  }
+void add_costs(const Pairs& pairs, ModelScore& s) {
+  const Cost truth = total(pairs.truth, &MacroCurve::cost);
+  const Cost model = total(pairs.model, &MacroCurve::cost);
+  const double truth_preparation = total(pairs.truth, &MacroCurve::preparation).seconds;
+  const double model_preparation = total(pairs.model, &MacroCurve::preparation).seconds;
   s.evaluations = static_cast<double>(truth.contact_evaluations) / static_cast<double>(model.contact_evaluations);
   s.seconds = truth.seconds / model.seconds;
   s.seconds_all = (truth.seconds + truth_preparation) / (model.seconds + model_preparation);
@@ -176,7 +166,7 @@ ModelScore score(const ModelRun& run, bool blind) {
     s.ratio_at_6 = excess(q_model, q_truth, point_at(strain, 0.06));
   }
   s.unloading = unloading_of(pairs.model) / unloading_of(truth) - 1.0;
-  add_costs(run, s);
+  add_costs(pairs, s);
   if (!run.remark.empty()) s.remark += (s.remark.empty() ? "" : "; ") + run.remark;
   return s;
 }
@@ -201,7 +191,7 @@ TextTable table_of(const std::vector<ModelScore>& scores) {
                  "evaluations",
                  "seconds",
                  "seconds with preparation",
-                 "refusal"},
+                 "remark"},
                 {}};
   for (const ModelScore& s : scores) {
     std::vector<std::string> row{s.variant,
