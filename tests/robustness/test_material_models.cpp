@@ -77,4 +77,23 @@ TEST(MaterialModelsRun, WritesItsTableAndSaysWhatCouldNotBe) {
   EXPECT_NE(read_text(out + "/models.csv").find("density,cells,no,"), std::string::npos);
 }
 
+/// The card is of grains with mu = 0.3; what needs none is run.
+TEST(MaterialModelsRun, RefusesACardOfGrainsWithAnotherFriction) {
+  const TemporaryDirectory directory;
+  write_text_atomic(directory.file("scene.toml"), scene_of("[grains]\ncount = 200\nratio = 4\n[material]\nmu = 0.5\n",
+                                                           "[[model]]\nname = \"coarse\"\nkind = \"coarse\"\n"));
+  const std::string out = directory.file("out");
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + out + "'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const std::string message = "measured with nu = 0.3, mu = 0.3 and serves no grains of nu = 0.3, mu = 0.5";
+  EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+  const nlohmann::json scores = scores_of(out);
+  for (const char* model : {"cells", "density"}) {
+    EXPECT_EQ(scores[model]["samples"], 0) << model;
+    EXPECT_NE(scores[model]["remark"].get<std::string>().find(message), std::string::npos) << model;
+  }
+  EXPECT_EQ(scores["coarse"]["samples"], 2);
+}
+
 }  // namespace
