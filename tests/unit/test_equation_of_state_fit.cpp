@@ -200,17 +200,22 @@ TEST(EquationOfStateFit, IsTheSameForAnyOrderOfCurves) {
   EXPECT_EQ(turned.groups[1].name, fit.groups[1].name);
 }
 
-class OnsetGrowth : public testing::TestWithParam<OnsetForm> {};
+struct Growth {
+  OnsetForm form;
+  int seeds;  ///< that take less than two seconds
+};
+
+class OnsetGrowth : public testing::TestWithParam<Growth> {};
 
 /// Groups up to 6 tell 12 and four decades: whichever form is true.
 TEST_P(OnsetGrowth, IntervalsFromSmallSpansHoldTheOnsetsOfLargeOnes) {
   Truth t;
-  t.growth = GetParam();
+  t.growth = GetParam().form;
   t.spans = {1.5, 2.4, 4.0, 6.0};
   std::array<int, 2> hits{};
   double width = 0.0;
-  constexpr int kSeeds = 8;
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  const int seeds = GetParam().seeds;
+  for (int seed = 0; seed < seeds; ++seed) {
     const StateFit fit = fitted(t, static_cast<std::uint64_t>(300 + seed));
     ASSERT_TRUE(fit.usable);
     for (std::size_t k = 0; k < 2; ++k) {
@@ -228,16 +233,16 @@ TEST_P(OnsetGrowth, IntervalsFromSmallSpansHoldTheOnsetsOfLargeOnes) {
       EXPECT_LE(found.onset.low, found.onset.value);
       EXPECT_GE(found.onset.high, found.onset.value);
       hits[k] += found.onset.low <= onset_of(t, span) && onset_of(t, span) <= found.onset.high ? 1 : 0;
-      if (k == 0) width += (found.onset.high - found.onset.low) / kSeeds;
+      if (k == 0) width += (found.onset.high - found.onset.low) / seeds;
     }
   }
-  for (const int h : hits) EXPECT_GE(h, 7);
+  for (const int h : hits) EXPECT_GE(h, 0.84 * seeds);
   EXPECT_GT(width, 0.002);
   EXPECT_LT(width, 0.05);
 }
 INSTANTIATE_TEST_SUITE_P(Truths, OnsetGrowth,
-                         testing::Values(OnsetForm::void_power, OnsetForm::saturating, OnsetForm::void_ratio,
-                                         OnsetForm::rods));
+                         testing::Values(Growth{OnsetForm::void_power, 10}, Growth{OnsetForm::saturating, 15},
+                                         Growth{OnsetForm::void_ratio, 11}, Growth{OnsetForm::rods, 8}));
 
 TEST(OnsetExtrapolation, ExactOnsetsGiveTheTrueFormAllItsDigits) {
   Truth t;
