@@ -13,15 +13,14 @@
 
 namespace softgrain {
 
-namespace {
-
-/// Nothing soft is there: the laws of soft particles are never asked.
-NamedLaws no_laws() {
+NamedLaws no_soft_laws() {
   NamedLaws laws;
   laws.name = kMaterialEngine;
   laws.laws = pair_soft_laws({}, {}, 0.0);
   return laws;
 }
+
+namespace {
 
 /// A scene without variants has one name, which says nothing.
 std::string file_of(const std::string& name, const std::string& kind) {
@@ -32,7 +31,7 @@ const std::string& packings_name(const MaterialVariant& v) { return v.packings.e
 
 /// LAMMPS, if it runs the tests.
 struct Engines {
-  const NamedLaws laws = no_laws();
+  const NamedLaws laws = no_soft_laws();
   std::optional<LammpsEngine> lammps;
 };
 
@@ -292,7 +291,7 @@ void add_directories(const MaterialScene& scene, const Run& run, MaterialSummary
 
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
 ExitStatus write_only(const MaterialScene& scene, const Run& run) {
-  const NamedLaws laws = no_laws();
+  const NamedLaws laws = no_soft_laws();
   std::vector<MacroPacking> packings;
   run.context.guard([&] {
     for (const MaterialVariant& v : scene.variants) {

@@ -13,6 +13,9 @@
 
 namespace softgrain {
 
+/// Of packings without soft particles, which never ask them.
+NamedLaws no_soft_laws();
+
 struct VariantResult {
   const MaterialVariant* variant = nullptr;
   std::string file;  ///< of its curves

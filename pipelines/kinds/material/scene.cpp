@@ -55,10 +55,8 @@ void read_grains(const SceneTable& t, MacroSpec& spec) {
   spec.solid_radius_max = t.number("radius_max", Unit::length, Range::positive(), spec.solid_radius_max);
   spec.solid_polydispersity = t.number("ratio", Unit::none, Range::above(1.0), spec.solid_polydispersity);
   if (!t.has("sizes")) return;
-  spec.solid_sizes = read_sizes(t, "sizes", {"exponent", "radius_max", "ratio"});
-  if (!spec.solid_sizes) return;
-  spec.solid_radius_max = spec.solid_sizes->largest();
-  spec.solid_polydispersity = spec.solid_sizes->largest() / spec.solid_sizes->smallest();
+  spec.solid_sizes.reset();
+  if (const auto sizes = read_sizes(t, "sizes", {"exponent", "radius_max", "ratio"})) take_sizes(spec, *sizes);
 }
 
 void read_splits(const SceneTable& t, MacroSpec& spec) {
@@ -87,6 +85,17 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup) {
   spec.protocol.tolerance = kPreparationTolerance;
   read_finer_preparation(root.table_or_empty("packing"), spec);
   read_test(root.table_or_empty("test"), spec);
+}
+
+Grading sizes_of(const MacroSpec& spec) {
+  if (spec.solid_sizes) return *spec.solid_sizes;
+  return Grading::power_law(spec.exponent, spec.solid_radius_max / spec.solid_polydispersity, spec.solid_radius_max);
+}
+
+void take_sizes(MacroSpec& spec, const Grading& sizes) {
+  spec.solid_sizes = sizes;
+  spec.solid_radius_max = sizes.largest();
+  spec.solid_polydispersity = sizes.largest() / sizes.smallest();
 }
 
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup) {

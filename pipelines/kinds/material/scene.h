@@ -33,10 +33,15 @@ MacroSetup material_defaults();
 /// BadInput.
 void read_material_tables(const SceneTable& root, MacroSetup& setup);
 
+/// Of the solid grains, whichever way the spec says them.
+Grading sizes_of(const MacroSpec& spec);
+void take_sizes(MacroSpec& spec, const Grading& sizes);
+
 /// Refuses samples that do not fit into memory, at `count` of this table. Throws BadInput.
 void require_material_memory(const SceneTable& grains, const MacroSetup& setup);
 
-/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws BadInput, FileTrouble.
+/// All tables but those of other kinds that hold materials too, which read theirs beside it. Throws BadInput,
+/// FileTrouble.
 MaterialScene read_material(const SceneTable& root);
 
 /// Reads the whole scene. Throws BadInput, FileTrouble.

@@ -34,16 +34,9 @@ MacroSetup law_defaults() {
   return setup;
 }
 
-Grading whole_of(const MacroSpec& spec) {
-  if (spec.solid_sizes) return *spec.solid_sizes;
-  return Grading::power_law(spec.exponent, spec.solid_radius_max / spec.solid_polydispersity, spec.solid_radius_max);
-}
-
 MaterialVariant variant_of(const std::string& name, const MacroSetup& base, const Grading& sizes) {
   MaterialVariant v{name, base};
-  v.setup.spec.solid_sizes = sizes;
-  v.setup.spec.solid_radius_max = sizes.largest();
-  v.setup.spec.solid_polydispersity = sizes.largest() / sizes.smallest();
+  take_sizes(v.setup.spec, sizes);
   return v;
 }
 
@@ -129,7 +122,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     read_law(law, out);
     const double shear = law.number("shear_strain", Unit::none, Range{0.0, 0.5, true, false}, 0.06);
     if (!root.sound()) return out;
-    out.sizes = whole_of(base.spec);
+    out.sizes = sizes_of(base.spec);
     make_variants(law, base, shear, out);
     require_material_memory(root.table("grains"), base);
     require_grains(law, out);

@@ -65,17 +65,6 @@ MacroSetup coarse_steps(MacroSetup setup) {
   return setup;
 }
 
-Grading sizes_of(const MacroSpec& spec) {
-  if (spec.solid_sizes) return *spec.solid_sizes;
-  return Grading::power_law(spec.exponent, spec.solid_radius_max / spec.solid_polydispersity, spec.solid_radius_max);
-}
-
-void take_sizes(MacroSpec& spec, const Grading& sizes) {
-  spec.solid_sizes = sizes;
-  spec.solid_radius_max = sizes.largest();
-  spec.solid_polydispersity = sizes.largest() / sizes.smallest();
-}
-
 /// Of a mixture, so many bodies that about as many as in the truth are coarse.
 std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uint64_t seed) {
   constexpr std::int64_t kTrial = 4000;
@@ -106,13 +95,6 @@ MacroCurve cells_of(const OneSample& one, std::size_t sample) {
   }
   const MacroPacking own = make_cell_packing(setup.spec, one.run.seed, sample);
   return one.test(setup, own, sample, nullptr);
-}
-
-NamedLaws no_soft_laws() {
-  NamedLaws laws;
-  laws.name = "coarse";
-  laws.laws = pair_soft_laws({}, {}, 0.0);
-  return laws;
 }
 
 MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
