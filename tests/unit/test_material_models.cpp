@@ -120,7 +120,7 @@ TEST(MaterialModels, ErrorsAndCostsAreOfTheSameSamples) {
   };
   const MaterialVariant variant{"v", {}};
   const MaterialModel model{.name = "m"};
-  VariantResult truth{&variant, "", {}, {}};
+  VariantResult truth{&variant, "", {}, nullptr};
   truth.curves = {sample(1.0, 8.0, 600, true), sample(1.0, 100.0, 9999, true), sample(1.0, 70.0, 7777, false)};
   ModelRun run{&model, &truth, {}, "", ""};
   run.curves = {sample(1.1, 2.0, 30, true), sample(3.0, 50.0, 1, false), sample(5.0, 9.0, 5, true)};

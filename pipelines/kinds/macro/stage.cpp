@@ -175,26 +175,13 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
   return out;
 }
 
-/// Given, made by an earlier part of this run, kept by another run, or made now.
 MacroPacking sample_packing(const MacroSetup& setup, const Run& run, std::int64_t sample, const std::string& file_name,
                             const PreparationWatch& watch) {
   if (setup.given) return *setup.given;
-  const std::string task = file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample);
-  std::optional<MacroPacking> packing;
-  const auto read = [&](const h5::Group& g) { packing = read_macro_packing(g); };
-  const auto write = [&](const h5::Group& g) { write_macro_packing(g, *packing); };
-  run.store.load(task, read);
-  if (packing) return std::move(*packing);
-  const ResultCache cache(run.context.packing_cache(), "macro packing", "packing", "prepared again",
-                          [&](const std::string& remark) { run.context.say(remark); });
   const auto number = static_cast<std::uint64_t>(sample);
-  const std::string key = packing_key(setup.spec, run.seed, number);
-  if (!cache.find(key, read)) {
-    packing = make_packing(setup.spec, run.seed, number, watch);
-    cache.keep(key, write);
-  }
-  run.store.save(task, write);
-  return std::move(*packing);
+  return kept_packing(packing_key(setup.spec, run.seed, number),
+                      file_name.substr(0, file_name.rfind('.')) + "-" + std::to_string(sample), run,
+                      [&] { return make_packing(setup.spec, run.seed, number, watch); });
 }
 
 /// All samples of all engines, in that order: engines of a kind cost about the same, and share the threads.
@@ -250,6 +237,23 @@ std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64
     contents[static_cast<std::size_t>(k)] = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
   });
   return contents;
+}
+
+MacroPacking kept_packing(const std::string& key, const std::string& task, const Run& run,
+                          const std::function<MacroPacking()>& make) {
+  std::optional<MacroPacking> packing;
+  const auto read = [&](const h5::Group& g) { packing = read_macro_packing(g); };
+  const auto write = [&](const h5::Group& g) { write_macro_packing(g, *packing); };
+  run.store.load(task, read);
+  if (packing) return std::move(*packing);
+  const ResultCache cache(run.context.packing_cache(), "macro packing", "packing", "prepared again",
+                          [&](const std::string& remark) { run.context.say(remark); });
+  if (!cache.find(key, read)) {
+    packing = make();
+    cache.keep(key, write);
+  }
+  run.store.save(task, write);
+  return std::move(*packing);
 }
 
 std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& run, const std::string& file_name) {

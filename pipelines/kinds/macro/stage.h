@@ -1,6 +1,7 @@
 // The macro part of a run: samples with laws, their resolved twins, and what they have in common.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,11 @@ namespace softgrain {
 
 /// Packings number 0 .. count-1 of a seed, to fill soft particles with.
 std::vector<ShellPacking> make_contents(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed);
+
+/// Made by an earlier part of this run, which kept it as `task`, taken from the packings that runs share, or made now;
+/// `key`: all that determines it.
+MacroPacking kept_packing(const std::string& key, const std::string& task, const Run& run,
+                          const std::function<MacroPacking()>& make);
 
 /// The starting states of all samples, the same for all engines (with preparation "lammps": where bodies are placed
 /// before it); they are kept in the store until the run has ended, under the name of `file` without its extension.

@@ -29,45 +29,44 @@ std::string file_of(const std::string& name, const std::string& kind) {
 
 const std::string& packings_name(const MaterialVariant& v) { return v.packings.empty() ? v.name : v.packings; }
 
-/// LAMMPS, if it runs the tests.
-struct Engines {
-  const NamedLaws laws = no_soft_laws();
-  std::optional<LammpsEngine> lammps;
-};
-
 std::string folder_of(const MaterialVariant& v) { return v.name == kMaterialEngine ? "lammps" : "lammps-" + v.name; }
 
 LammpsRuns lammps_runs(const MaterialScene& scene, const MaterialVariant& v, const NamedLaws& laws, const Run& run) {
   return {v.setup, laws, 1.0, scene.title, lammps_identity(run.provenance, v.name), v.name, folder_of(v)};
 }
 
-/// As they are handed to a test: in touch, or with preparation "lammps" only placed.
-void prepare(const MaterialVariant& v, const Run& run, std::vector<MacroPacking>& packings) {
-  if (v.same_packings) return;
+using Packings = std::shared_ptr<const std::vector<MacroPacking>>;
+
+/// As they are handed to a test: in touch, or with preparation "lammps" only placed; `before`: of the variant before.
+Packings packings_of(const MaterialVariant& v, const Run& run, const Packings& before) {
+  if (v.same_packings) return before;
   const std::string file = file_of(packings_name(v), "material_initial");
-  packings = prepare_packings(v.setup, run, file);
-  if (v.setup.spec.preparation != Preparation::lammps) save_packings(packings, run, file);
+  auto packings = std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file));
+  if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
+  return packings;
 }
 
 /// What LAMMPS prepared is that of this test alone: others begin where bodies were placed.
-std::vector<RunOutcome> outcomes_of_lammps(const MaterialScene& scene, const MaterialVariant& v, const Engines& engines,
-                                           const Run& run, std::vector<MacroPacking> packings) {
-  const LammpsRuns runs = lammps_runs(scene, v, engines.laws, run);
+std::vector<RunOutcome> outcomes_of_lammps(const MaterialScene& scene, const MaterialVariant& v,
+                                           const LammpsEngine& lammps, const Run& run,
+                                           std::vector<MacroPacking> packings) {
+  const NamedLaws laws = no_soft_laws();
+  const LammpsRuns runs = lammps_runs(scene, v, laws, run);
   write_lammps_files(runs, packings, run.context);
-  auto outcomes = run_with_lammps(runs, *engines.lammps, packings, run.context);
+  auto outcomes = run_with_lammps(runs, lammps, packings, run.context);
   if (v.setup.spec.preparation == Preparation::lammps && !v.same_packings)
     save_packings(packings, run, file_of(packings_name(v), "material_initial"));
   return outcomes;
 }
 
-VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v, const Engines& engines, const Run& run,
-                          std::vector<MacroPacking>& packings) {
-  prepare(v, run, packings);
-  VariantResult r{&v, file_of(v.name, "material"), {}, packings};
+VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,
+                          const std::optional<LammpsEngine>& lammps, const Run& run,
+                          const std::vector<MacroPacking>& packings) {
+  VariantResult r{&v, file_of(v.name, "material"), {}, nullptr};
   const MacroRuns runs{v.setup, packings, {}, run.seed, v.name};
   const std::string states = file_of(v.name, "states_material");
-  r.curves = engines.lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, engines, run, packings))
-                            : run_engines(runs, {engines.laws}, run, states);
+  r.curves = lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, *lammps, run, packings))
+                    : run_engines(runs, {no_soft_laws()}, run, states);
   for (MacroCurve& c : r.curves) c.law = {};
   save_macro(r.curves, run.path(r.file), run.provenance);
   return r;
@@ -110,16 +109,16 @@ void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine
 
 }  // namespace
 
-std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run,
-                                        const std::optional<LammpsEngine>& lammps) {
-  require_engine(scene, lammps);
-  const Engines engines{.lammps = lammps};
+std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options) {
+  require_engine(scene, options.lammps);
   std::vector<VariantResult> results;
-  std::vector<MacroPacking> packings;
+  Packings packings;
   run.context.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
       try {
-        results.push_back(run_variant(scene, v, engines, run, packings));
+        packings = packings_of(v, run, packings);
+        results.push_back(run_variant(scene, v, options.lammps, run, *packings));
+        if (options.packings) results.back().packings = packings;
       } catch (const NotUsable& e) {
         throw NotUsable(scene.variants.size() > 1 ? v.name + ": " + e.what() : e.what());
       }
@@ -292,11 +291,11 @@ void add_directories(const MaterialScene& scene, const Run& run, MaterialSummary
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
 ExitStatus write_only(const MaterialScene& scene, const Run& run) {
   const NamedLaws laws = no_soft_laws();
-  std::vector<MacroPacking> packings;
+  Packings packings;
   run.context.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
-      prepare(v, run, packings);
-      write_lammps_files(lammps_runs(scene, v, laws, run), packings, run.context);
+      packings = packings_of(v, run, packings);
+      write_lammps_files(lammps_runs(scene, v, laws, run), *packings, run.context);
     }
   });
   MaterialSummary summary;
@@ -315,7 +314,7 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   require_engine(material, lammps);
   const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
   if (lammps && lammps->write_only) return write_only(material, run);
-  const std::vector<VariantResult> results = run_variants(material, run, lammps);
+  const std::vector<VariantResult> results = run_variants(material, run, {.lammps = lammps});
   MaterialSummary summary = summarise(material, results, run).summary;
   if (lammps) {
     summary.engine = engine_use(*lammps, lammps_directory(run.context, 0, folder_of(material.variants.front())));

@@ -1,6 +1,7 @@
 // Variants of materials, prepared and tested: what kinds that measure materials share.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,12 +21,17 @@ struct VariantResult {
   const MaterialVariant* variant = nullptr;
   std::string file;  ///< of its curves
   std::vector<MacroCurve> curves;
-  std::vector<MacroPacking> packings;  ///< that they begin with
+  /// That they begin with, shared by the loadings of a material; null unless they are asked for.
+  std::shared_ptr<const std::vector<MacroPacking>> packings;
+};
+
+struct VariantOptions {
+  std::optional<LammpsEngine> lammps{};  ///< that runs the tests
+  bool packings = false;                 ///< kept in the results
 };
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.
-std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run,
-                                        const std::optional<LammpsEngine>& lammps = std::nullopt);
+std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options = {});
 
 /// One row per recorded point of every sample of every variant.
 TextTable points_of(const std::vector<VariantResult>& results);

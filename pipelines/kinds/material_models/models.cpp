@@ -77,7 +77,7 @@ std::int64_t bodies_for(MacroSpec spec, double cut, std::size_t coarse, std::uin
 
 MacroCurve cells_of(const OneSample& one, std::size_t sample) {
   const MaterialModel& m = one.model;
-  const MacroPacking& whole = one.truth.packings[sample];
+  const MacroPacking& whole = one.truth.packings->at(sample);
   const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
   MacroSetup setup = coarse_steps(one.truth.variant->setup);
   const bool by_density = m.start == ModelStart::density;
@@ -98,7 +98,7 @@ MacroCurve cells_of(const OneSample& one, std::size_t sample) {
 }
 
 MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
-  const MacroPacking& whole = one.truth.packings[sample];
+  const MacroPacking& whole = one.truth.packings->at(sample);
   const CoarseAndFine parts = parted_or_refused(whole, cut_of(one.model, one.truth));
   MacroSetup setup = one.truth.variant->setup;
   setup.spec.bodies = static_cast<std::int64_t>(parts.coarse.size());
@@ -111,7 +111,7 @@ MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
   const MacroSpec& truth = spec_of(one.truth);
   const double cut = cut_of(m, one.truth);
   const double smallest = m.smallest * truth.solid_radius_max;
-  const CoarseAndFine parts = parted_or_refused(one.truth.packings[sample], cut);
+  const CoarseAndFine parts = parted_or_refused(one.truth.packings->at(sample), cut);
   MacroSetup setup = one.truth.variant->setup;
   const auto fines = pieces_between(Grading::power_law(truth.exponent, smallest, cut), 0.0, kInfinity);
   take_sizes(setup.spec, mixture_of(pieces_between(sizes_of(truth), cut, kInfinity), fines, parts.share()));
@@ -128,7 +128,7 @@ MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
 MacroCurve shells_of(const OneSample& one, std::size_t sample) {
   const MaterialModel& m = one.model;
   const MacroSpec& truth = spec_of(one.truth);
-  const MacroPacking& whole = one.truth.packings[sample];
+  const MacroPacking& whole = one.truth.packings->at(sample);
   const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
   const double inside = law_fraction(*m.law, 0.0) > 0.0 ? law_fraction(*m.law, 0.0) : 1.0;
   MacroSetup setup = one.truth.variant->setup;
@@ -166,7 +166,7 @@ MacroCurve mean_field_of(const OneSample& one, std::size_t sample) {
   double onset = kNaN;
   if (one.model.start == ModelStart::density) {
     const CoarseAndFine parts =
-        parted_or_refused(one.truth.packings[sample], card.split * spec_of(one.truth).solid_radius_max);
+        parted_or_refused(one.truth.packings->at(sample), card.split * spec_of(one.truth).solid_radius_max);
     onset = onset_by_card(card, parts.share());
   }
   MacroCurve c = mean_field(card, truth, pressure, onset);
@@ -221,7 +221,7 @@ ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const
   ModelRun out{&model, &truth, {}, "", other_fines(model, spec_of(truth))};
   const OneSample one{model, truth, run};
   try {
-    for (std::size_t k = 0; k < truth.packings.size(); ++k) out.curves.push_back(curve_of(one, k));
+    for (std::size_t k = 0; k < truth.packings->size(); ++k) out.curves.push_back(curve_of(one, k));
   } catch (const NotUsable& e) {
     out.curves.clear();
     out.refusal = e.what();

@@ -35,7 +35,7 @@ ExitStatus run_material_models(const Scene& file, const CommonOptions& options) 
   const MaterialModelsScene scene = read_material_models_scene(file);
   const Run run(file, options, "run", scene.material.seed,
                 {.files = scene.files, .text = scene.text + sizes_text(scene.material)});
-  const std::vector<VariantResult> truths = run_variants(scene.material, run);
+  const std::vector<VariantResult> truths = run_variants(scene.material, run, {.packings = true});
   MaterialOutcome measured = summarise(scene.material, truths, run);
   write_text_atomic(run.path("material.csv"), as_csv(points_of(truths)));
   MaterialModelsSummary summary{std::move(measured.summary), {}};
