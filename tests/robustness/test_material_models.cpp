@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
@@ -94,6 +97,53 @@ TEST(MaterialModelsRun, RefusesACardOfGrainsWithAnotherFriction) {
     EXPECT_NE(scores[model]["remark"].get<std::string>().find(message), std::string::npos) << model;
   }
   EXPECT_EQ(scores["coarse"]["samples"], 2);
+}
+
+/// What was measured once is equal to the last bit, a time among it.
+TEST(MaterialModelsRun, MakesPackingsOnceForAllLoadingsAndRunsMappedStandInsWithTheRawOnes) {
+  const TemporaryDirectory directory;
+  const std::string table = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/law_table/law_table.toml";
+  write_text_atomic(
+      directory.file("scene.toml"),
+      scene_of("[grains]\ncount = 300\nratio = 4\n[[loading]]\nname = \"one\"\nstrain = 0.005\nsteps = 2\n"
+               "[[loading]]\nname = \"two\"\ntest = \"isotropic\"\nstrain = 0.005\nsteps = 2\n",
+               fmt::format("[[model]]\nname = \"own\"\nkind = \"cells\"\nplaces = \"own\"\ncard = \"{0}\"\n"
+                           "[[model]]\nname = \"raw\"\nkind = \"stand-in\"\n"
+                           "[[model]]\nname = \"mapped\"\nkind = \"stand-in\"\nmapped = true\ncard = \"{0}\"\n"
+                           "[[model]]\nname = \"shells\"\nkind = \"shells\"\nform = \"pair\"\ntable = \"{1}\"\n",
+                           std::string(SOFTGRAIN_SOURCE_DIR) + "/results/material_law/cell_law.toml", table)));
+  const auto run = [&](const std::string& name) {
+    return run_the_program("run '" + directory.file("scene.toml") + "' --quiet --packing-cache '" +
+                           directory.file("cache") + "' --out '" + directory.file(name) + "'");
+  };
+  const auto curve = [&](const std::string& name, const std::string& loading, const std::string& model) {
+    for (const MacroCurve& c : load_macro(directory.file(name) + "/models_" + loading + ".h5"))
+      if (c.engine == model && c.sample == 1) return c;
+    ADD_FAILURE() << name << " " << loading << " " << model;
+    return MacroCurve{};
+  };
+  const auto kept = [&] {
+    const std::filesystem::directory_iterator files(directory.file("cache"));
+    return std::distance(begin(files), end(files));
+  };
+  const ProgramOutcome first = run("first");
+  ASSERT_EQ(first.status, 0) << first.output;
+  const auto packings = kept();
+  ASSERT_EQ(run("second").status, 0);
+  EXPECT_EQ(kept(), packings);
+  const MacroCurve raw = curve("first", "one", "raw");
+  const MacroCurve mapped = curve("first", "one", "mapped");
+  EXPECT_EQ(raw.cost.seconds, mapped.cost.seconds) << "run again";
+  EXPECT_EQ(raw.strain, mapped.strain);
+  EXPECT_NE(raw.stress_axial, mapped.stress_axial);
+  for (const char* model : {"raw", "own", "shells"}) {
+    const MacroCurve one = curve("first", "one", model);
+    EXPECT_GT(one.preparation.seconds, 0.0) << model;
+    EXPECT_EQ(one.preparation.seconds, curve("first", "two", model).preparation.seconds) << model;
+    const MacroCurve taken = curve("second", "one", model);
+    EXPECT_EQ(one.preparation.seconds, taken.preparation.seconds) << model;
+    EXPECT_EQ(one.stress_axial, taken.stress_axial) << model;
+  }
 }
 
 }  // namespace

@@ -10,7 +10,10 @@
 #include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "common/packing/grading_parts.h"
+#include "macrosim/constructed_packing.h"
+#include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 
@@ -24,6 +27,15 @@ struct OneSample {
   const MaterialModel& model;
   const VariantResult& truth;
   const Run& run;
+  StandInRuns& stand_ins;
+
+  /// Bodies in places of their own, which no loading moves.
+  [[nodiscard]] MacroPacking own_packing(const std::string& key, const std::function<MacroPacking()>& make) const {
+    return kept_packing(key, ResultCache::name("model_packing", key), run, make);
+  }
+  [[nodiscard]] MacroPacking own_packing(const MacroSpec& spec, std::size_t sample) const {
+    return own_packing(packing_key(spec, run.seed, sample), [&] { return make_packing(spec, run.seed, sample); });
+  }
 
   /// Every sample may have a setup of its own: its share of fines, its start.
   MacroCurve test(MacroSetup setup, const MacroPacking& packing, std::size_t sample, const NamedLaws* law) const {
@@ -93,8 +105,7 @@ MacroCurve cells_of(const OneSample& one, std::size_t sample) {
     setup.spec.soft_polydispersity = m.radii[1] / m.radii[0];
     setup.spec.bodies = bodies_for(setup.spec, cut_of(m, one.truth), parts.coarse.size(), one.run.seed);
   }
-  const MacroPacking own = make_cell_packing(setup.spec, one.run.seed, sample);
-  return one.test(setup, own, sample, nullptr);
+  return one.test(setup, one.own_packing(setup.spec, sample), sample, nullptr);
 }
 
 MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
@@ -106,7 +117,7 @@ MacroCurve coarse_of(const OneSample& one, std::size_t sample) {
   return one.test(setup, in_box_of(whole, parts.coarse), sample, &laws);
 }
 
-MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
+MacroCurve raw_stand_in_of(const OneSample& one, std::size_t sample) {
   const MaterialModel& m = one.model;
   const MacroSpec& truth = spec_of(one.truth);
   const double cut = cut_of(m, one.truth);
@@ -116,24 +127,26 @@ MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
   const auto fines = pieces_between(Grading::power_law(truth.exponent, smallest, cut), 0.0, kInfinity);
   take_sizes(setup.spec, mixture_of(pieces_between(sizes_of(truth), cut, kInfinity), fines, parts.share()));
   setup.spec.bodies = bodies_for(setup.spec, cut, parts.coarse.size(), one.run.seed);
-  const MacroPacking packing = make_macro_packing(setup.spec, one.run.seed, sample);
   const NamedLaws laws = no_soft_laws();
-  MacroCurve c = one.test(setup, packing, sample, &laws);
-  if (m.mapped) map_by_state(*m.card, one.truth.curves[sample], truth.start_pressure, c);
+  return one.test(setup, one.own_packing(setup.spec, sample), sample, &laws);
+}
+
+MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
+  const MaterialModel& m = one.model;
+  const std::tuple key{m.split, m.smallest, sample};
+  auto raw = one.stand_ins.find(key);
+  if (raw == one.stand_ins.end()) raw = one.stand_ins.emplace(key, raw_stand_in_of(one, sample)).first;
+  MacroCurve c = raw->second;
+  c.engine = m.name;
+  if (m.mapped) map_by_state(*m.card, one.truth.curves[sample], spec_of(one.truth).start_pressure, c);
   return c;
 }
 
-/// The fines' volume in shells of the solid fraction that the law was measured with; packed with the coarse grains as
-/// hard spheres, brought into the box of the truth, shells then scaled.
-MacroCurve shells_of(const OneSample& one, std::size_t sample) {
+/// Coarse grains and shells of this volume, largest first.
+std::vector<MacroBody> with_shells(const OneSample& one, std::vector<MacroBody> bodies, double shells,
+                                   std::size_t sample) {
   const MaterialModel& m = one.model;
   const MacroSpec& truth = spec_of(one.truth);
-  const MacroPacking& whole = one.truth.packings->at(sample);
-  const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
-  const double inside = law_fraction(*m.law, 0.0) > 0.0 ? law_fraction(*m.law, 0.0) : 1.0;
-  MacroSetup setup = one.truth.variant->setup;
-  const double shells = parts.fines_volume / inside;
-  std::vector<MacroBody> bodies = parts.coarse;
   const Grading sizes =
       Grading::power_law(truth.exponent, m.radii[0] * truth.solid_radius_max, m.radii[1] * truth.solid_radius_max);
   RandomStream random(one.run.seed, kShellRadii, sample);
@@ -143,8 +156,25 @@ MacroCurve shells_of(const OneSample& one, std::size_t sample) {
   for (const double r : radii) drawn += kSphereVolume * cube(r);
   for (const double r : radii) bodies.push_back({{}, r * std::cbrt(shells / drawn), true});
   std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
-  setup.spec.bodies = static_cast<std::int64_t>(bodies.size());
-  MacroPacking packing = pack_bodies(setup.spec, std::move(bodies), one.run.seed, sample);
+  return bodies;
+}
+
+/// The fines' volume in shells of the solid fraction that the law was measured with; packed with the coarse grains as
+/// hard spheres, brought into the box of the truth, shells then scaled.
+MacroCurve shells_of(const OneSample& one, std::size_t sample) {
+  const MaterialModel& m = one.model;
+  const MacroPacking& whole = one.truth.packings->at(sample);
+  const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
+  const double inside = law_fraction(*m.law, 0.0) > 0.0 ? law_fraction(*m.law, 0.0) : 1.0;
+  MacroSetup setup = one.truth.variant->setup;
+  const std::string key =
+      fmt::format("{}shells for fines below {:.17g}, radii {:.17g} to {:.17g}, solid inside {:.17g}\n",
+                  packing_key(setup.spec, one.run.seed, sample), m.split, m.radii[0], m.radii[1], inside);
+  MacroPacking packing = one.own_packing(key, [&] {
+    return pack_bodies(setup.spec, with_shells(one, parts.coarse, parts.fines_volume / inside, sample), one.run.seed,
+                       sample);
+  });
+  setup.spec.bodies = static_cast<std::int64_t>(packing.bodies.size());
   packing.springs.clear();
   const double factor = std::cbrt((whole.size()[0] * whole.size()[1] * whole.size()[2]) /
                                   (packing.size()[0] * packing.size()[1] * packing.size()[2]));
@@ -217,9 +247,9 @@ std::string other_fines(const MaterialModel& model, const MacroSpec& spec) {
   return text;
 }
 
-ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run) {
+ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run, StandInRuns& stand_ins) {
   ModelRun out{&model, &truth, {}, "", other_fines(model, spec_of(truth))};
-  const OneSample one{model, truth, run};
+  const OneSample one{model, truth, run, stand_ins};
   try {
     for (std::size_t k = 0; k < truth.packings->size(); ++k) out.curves.push_back(curve_of(one, k));
   } catch (const NotUsable& e) {

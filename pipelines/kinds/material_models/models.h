@@ -1,7 +1,9 @@
 // Models of a resolved material: what runs in the place of its grains.
 #pragma once
 
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "pipelines/kinds/material/run.h"
@@ -18,8 +20,11 @@ struct ModelRun {
   std::string remark;              ///< what to mind about them
 };
 
+/// Curves of the stand-ins of one variant as they are run, by split, smallest radius and sample: mapped ones are these.
+using StandInRuns = std::map<std::tuple<double, double, std::size_t>, MacroCurve>;
+
 /// Throws what runs throw, but for a model that this material is none for (BadInput, NotUsable): then a refusal.
-ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run);
+ModelRun run_model(const MaterialModel& model, const VariantResult& truth, const Run& run, StandInRuns& stand_ins);
 
 /// Grains below `split` of the largest that the variant may have.
 struct CoarseAndFine {

@@ -20,9 +20,10 @@ std::vector<ModelScore> run_models(const MaterialModelsScene& scene, const std::
   std::vector<ModelScore> scores;
   for (const VariantResult& truth : truths) {
     std::vector<MacroCurve> curves;
+    StandInRuns stand_ins;
     for (const MaterialModel& model : scene.models) {
       if (!model.variants.empty() && !among(model.variants, *truth.variant)) continue;
-      const ModelRun one = run_model(model, truth, run);
+      const ModelRun one = run_model(model, truth, run, stand_ins);
       scores.push_back(score(one, among(scene.blind, *truth.variant)));
       curves.insert(curves.end(), one.curves.begin(), one.curves.end());
     }
