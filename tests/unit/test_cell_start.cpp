@@ -6,6 +6,7 @@
 
 #include "common/core/error.h"
 #include "tests/support/cell_samples.h"
+#include "tests/support/refusal.h"
 
 namespace softgrain {
 namespace {
@@ -149,16 +150,6 @@ TEST(CellStart, FollowsTheClosedFormOfThePoreForm) {
   EXPECT_NEAR(dense.state, 1.0 - (room - coarse - s.fines) / (w + s.fines * 0.567), 1e-12);
 }
 
-template <class F>
-void expect_start_refused(F&& make, const std::string& words) {
-  try {
-    make();
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const BadInput& e) {
-    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-  }
-}
-
 TEST_P(CellStarts, LeaveCellsThatAreTooSmallWithoutFinesAtTheSamePressure) {
   const CellSample s = cell_sample(40, 0.42, GetParam(), 2);
   const double fines = 0.5 * s.fines;
@@ -180,27 +171,27 @@ TEST_P(CellStarts, LeaveCellsThatAreTooSmallWithoutFinesAtTheSamePressure) {
 TEST_P(CellStarts, RefuseStatesThatCannotBeAndSayWhy) {
   const CellSample s = cell_sample(40, 0.42, GetParam(), 2);
   const auto at_pressure = [&](double p, double fines) { start_at_pressure(s.law, s.bodies, s.volume, fines, p); };
-  expect_start_refused([&] { at_pressure(1e-4, 1.3 * s.fines); }, "no room");
-  expect_start_refused([&] { at_pressure(0.0, s.fines); }, "above 0");
-  expect_start_refused([&] { at_pressure(1.0, s.fines); }, "below");
-  expect_start_refused([&] { at_pressure(1e-4, 0.05 * s.fines); }, "would hold no fines");
-  expect_start_refused([&] { start_at_density(s.law, s.bodies, s.volume, 0.8 * s.fines); }, "does not jam");
-  expect_start_refused([&] { at_pressure(1e-4, 3.0 * s.fines); }, "leaves no pores");
-  expect_start_refused([&] { at_pressure(1e-4, NAN); }, "fines");
+  test::expect_refused<BadInput>([&] { at_pressure(1e-4, 1.3 * s.fines); }, "no room");
+  test::expect_refused<BadInput>([&] { at_pressure(0.0, s.fines); }, "above 0");
+  test::expect_refused<BadInput>([&] { at_pressure(1.0, s.fines); }, "below");
+  test::expect_refused<BadInput>([&] { at_pressure(1e-4, 0.05 * s.fines); }, "would hold no fines");
+  test::expect_refused<BadInput>([&] { start_at_density(s.law, s.bodies, s.volume, 0.8 * s.fines); }, "does not jam");
+  test::expect_refused<BadInput>([&] { at_pressure(1e-4, 3.0 * s.fines); }, "leaves no pores");
+  test::expect_refused<BadInput>([&] { at_pressure(1e-4, NAN); }, "fines");
   CoarseBodies none = s.bodies;
   none.soft.assign(40, true);
-  expect_start_refused([&] { start_at_pressure(s.law, none, s.volume, s.fines, 1e-4); }, "there are none");
+  test::expect_refused<BadInput>([&] { start_at_pressure(s.law, none, s.volume, s.fines, 1e-4); }, "there are none");
   auto volume = s.volume;
   volume[3] = 0.5 * s.bodies.grain(3);
-  expect_start_refused([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "cell 3");
+  test::expect_refused<BadInput>([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "cell 3");
   volume.pop_back();
-  expect_start_refused([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "one volume");
+  test::expect_refused<BadInput>([&] { start_at_density(s.law, s.bodies, volume, s.fines); }, "one volume");
   FinesLaw law = s.law;
   law.equation = PoreForm{0.03, 0.9};
-  expect_start_refused([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "exponent");
+  test::expect_refused<BadInput>([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "exponent");
   law = s.law;
   law.void_ratio = 0.0;
-  expect_start_refused([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "void ratio");
+  test::expect_refused<BadInput>([&] { start_at_density(law, s.bodies, s.volume, s.fines); }, "void ratio");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "calibrate/rod_packing.h"
 #include "common/core/error.h"
 #include "common/core/random.h"
+#include "tests/support/refusal.h"
 
 namespace softgrain {
 namespace {
@@ -306,16 +307,6 @@ TEST(OnsetExtrapolation, OnsetsThatFallWithTheSpanFitNoForm) {
   EXPECT_EQ(found.message, "all forms are refused by the data");
 }
 
-template <class F>
-void expect_curves_refused(F&& make, const std::string& words) {
-  try {
-    make();
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const BadInput& e) {
-    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-  }
-}
-
 TEST(EquationOfStateFit, RefusesWhatTellsNothing) {
   const Truth t;
   const auto with = [&](auto change) {
@@ -323,18 +314,22 @@ TEST(EquationOfStateFit, RefusesWhatTellsNothing) {
     change(curves[2]);
     fit_equation_of_state(curves);
   };
-  expect_curves_refused([] { fit_equation_of_state({}); }, "no curves");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.phi.resize(3), c.pressure.resize(3); }); },
-                        "3 points with pressure");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.pressure.assign(12, 0.0); }); }, "never bears");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.phi[4] = NAN; }); }, "point 4");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.pressure[4] = INFINITY; }); }, "point 4");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.phi[4] = 1.0; }); }, "point 4");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.weight.assign(12, -1.0); }); }, "weight");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.phi.pop_back(); }); }, "11 solid fractions");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.span = 0.5; }); }, "span");
-  expect_curves_refused([&] { with([](StateCurve& c) { c.span = 7.0; }); }, "has spans of");
-  expect_curves_refused([&] { fit_equation_of_state(curves_of(t, 1), {StateForm::porosity, 10, 1}); }, "replicates");
+  test::expect_refused<BadInput>([] { fit_equation_of_state({}); }, "no curves");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi.resize(3), c.pressure.resize(3); }); },
+                                 "3 points with pressure");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.pressure.assign(12, 0.0); }); }, "never bears");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi[4] = NAN; }); }, "point 4");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.pressure[4] = INFINITY; }); }, "point 4");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi[4] = 1.0; }); }, "point 4");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.weight.assign(12, -1.0); }); }, "weight");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.phi.pop_back(); }); }, "11 solid fractions");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.span = 0.5; }); }, "span");
+  test::expect_refused<BadInput>([&] { with([](StateCurve& c) { c.span = 7.0; }); }, "has spans of");
+  test::expect_refused<BadInput>(
+      [&] {
+        fit_equation_of_state(curves_of(t, 1), {StateForm::porosity, 10, 1});
+      },
+      "replicates");
 }
 
 TEST(EquationOfStateFit, OneSampleInEveryGroupHasNoErrorsAndSaysSo) {
@@ -344,7 +339,7 @@ TEST(EquationOfStateFit, OneSampleInEveryGroupHasNoErrorsAndSaysSo) {
   EXPECT_TRUE(fit.usable);
   EXPECT_NE(fit.message.find("errors are not known"), std::string::npos);
   EXPECT_TRUE(std::isinf(fit.modulus.error));
-  expect_curves_refused([&] { extrapolate_onset(fit, 12.0); }, "two samples");
+  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, 12.0); }, "two samples");
 }
 
 TEST(OnsetExtrapolation, RefusesWhatItCannotStandOn) {
@@ -353,14 +348,14 @@ TEST(OnsetExtrapolation, RefusesWhatItCannotStandOn) {
   one.samples = {3};
   const StateFit alone = fitted(one, 1);
   ASSERT_TRUE(alone.usable) << alone.message;
-  expect_curves_refused([&] { extrapolate_onset(alone, 12.0); }, "1 span");
+  test::expect_refused<BadInput>([&] { extrapolate_onset(alone, 12.0); }, "1 span");
   const StateFit fit = fitted({}, 1);
-  expect_curves_refused([&] { extrapolate_onset(fit, 0.5); }, "span");
-  expect_curves_refused([&] { extrapolate_onset(fit, NAN); }, "span");
+  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, 0.5); }, "span");
+  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, NAN); }, "span");
   OnsetOptions options;
   options.groups = {"none such"};
-  expect_curves_refused([&] { extrapolate_onset(fit, 12.0, options); }, "no group");
-  expect_curves_refused([&] { extrapolate_onset({}, 12.0); }, "could not be fitted");
+  test::expect_refused<BadInput>([&] { extrapolate_onset(fit, 12.0, options); }, "no group");
+  test::expect_refused<BadInput>([&] { extrapolate_onset({}, 12.0); }, "could not be fitted");
 }
 
 }  // namespace

@@ -13,6 +13,11 @@
 
 namespace softgrain {
 
+std::string interval_text(double value, double low, double high) {
+  return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.4g} ({:.4g} to {:.4g})", value, low, high)
+                                                   : fmt::format("{:.4g}", value);
+}
+
 NamedLaws no_soft_laws() {
   NamedLaws laws;
   laws.name = kMaterialEngine;
@@ -200,27 +205,23 @@ std::vector<PredictionSummary> predictions(const MaterialScene& scene, const std
   return predict_spans(inputs, scene.equation, seed);
 }
 
-std::string interval_text(const StateEstimate& e) {
-  return std::isfinite(e.low) && std::isfinite(e.high)
-             ? fmt::format("{:.4g} ({:.4g} to {:.4g})", e.value, e.low, e.high)
-             : fmt::format("{:.4g}", e.value);
-}
+std::string text_of(const StateEstimate& e) { return interval_text(e.value, e.low, e.high); }
 
 std::string equation_text(const EquationSummary& s) {
   if (!s.usable) return "equation of state: not usable: " + s.message + "\n";
   std::string text =
       fmt::format("equation of state, {} form: K = {}, n = {}; pressures follow it to {:.2g} %\n", to_string(s.form),
-                  interval_text(s.modulus), interval_text(s.exponent), 100.0 * s.pressure_deviation);
+                  text_of(s.modulus), text_of(s.exponent), 100.0 * s.pressure_deviation);
   for (const OnsetSummary& o : s.onsets)
-    text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, interval_text(o.onset), o.own_modulus);
+    text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, text_of(o.onset), o.own_modulus);
   if (s.onsets.size() > 1)
     text +=
         fmt::format("  K of variants scatters by {:.2g} %; as much or more with a probability of {:.2g} if it is one\n",
                     100.0 * s.modulus_scatter, s.collapse_probability);
   for (const ExtrapolationSummary& e : s.extrapolations)
     text += fmt::format("  {}, span {:g}: {}{}\n", e.family, e.span,
-                        e.onset ? "phi_J = " + interval_text(*e.onset) : "not extrapolated: " + e.message,
-                        e.measured ? ", measured " + interval_text(*e.measured) : "");
+                        e.onset ? "phi_J = " + text_of(*e.onset) : "not extrapolated: " + e.message,
+                        e.measured ? ", measured " + text_of(*e.measured) : "");
   return text;
 }
 

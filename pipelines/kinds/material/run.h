@@ -46,6 +46,9 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
 
 std::string people_text(const MaterialSummary& summary);
 
+/// The interval behind the value, where it is known.
+std::string interval_text(double value, double low, double high);
+
 /// Text of all distributions that the variants ask for: kept tasks of a run hold to it.
 std::string sizes_text(const MaterialScene& scene);
 

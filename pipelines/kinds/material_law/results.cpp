@@ -1,5 +1,4 @@
 #include "pipelines/kinds/material_law/results.h"
-#include "pipelines/kinds/law_table/law_check.h"
 
 #include <fmt/format.h>
 

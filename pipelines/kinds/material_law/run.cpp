@@ -12,19 +12,15 @@ namespace softgrain {
 
 namespace {
 
-std::string interval_text(const Estimate& e) {
-  return std::isfinite(e.low) && std::isfinite(e.high)
-             ? fmt::format("{:.4g} ({:.4g} to {:.4g})", e.value, e.low, e.high)
-             : fmt::format("{:.4g}", e.value);
-}
+std::string text_of(const Estimate& e) { return interval_text(e.value, e.low, e.high); }
 
 std::string law_text(const CellLawSummary& s) {
   std::string text = fmt::format("cell law, {} form:", to_string(s.form));
   for (std::size_t k = 0; k < s.numbers.size(); ++k)
-    text += fmt::format("{} {} = {}", k == 0 ? "" : ",", s.numbers[k].name, interval_text(s.numbers[k].estimate));
+    text += fmt::format("{} {} = {}", k == 0 ? "" : ",", s.numbers[k].name, text_of(s.numbers[k].estimate));
   text += "\n";
   for (const MixtureSummary& m : s.mixtures)
-    text += fmt::format("  V_f/V_c = {:.3g}: W/V_c = {}{}\n", m.ratio, interval_text(m.pores),
+    text += fmt::format("  V_f/V_c = {:.3g}: W/V_c = {}{}\n", m.ratio, text_of(m.pores),
                         s.band ? fmt::format(", fitted {:.4g}", m.fitted) : "");
   if (s.usable)
     text += fmt::format("  W/V_c is {:.2g} about its form, stress ratios of the fines {:.2g} about the law\n",
