@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Error against cost of every relaxation, on 24 packings that no setting was chosen on: writes README.md and the pictures of
-# this folder. Usage: results/relaxation/study.sh [WORK_DIRECTORY]; an hour and a quarter on two cores, most of it the reference.
+# this folder. Usage: results/relaxation/study.sh [WORK_DIRECTORY]; an hour and a half on two cores, most of it the reference.
 # Finished runs in WORK_DIRECTORY are kept.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
