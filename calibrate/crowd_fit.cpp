@@ -12,6 +12,8 @@
 #include "calibrate/crowd_side_fits.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
+#include "common/core/limits.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
 #include "common/data/crowd_replicates.h"
 
@@ -60,16 +62,13 @@ class Filler {
     law.m2 = estimate(fit_.planes, 5, columns_[5], false);
   }
 
-  void partners(CrowdLaw& law, const std::vector<CrowdStates>& states, PartnerKind kind) const {
-    const LeastSquaresFit& fit = kind == PartnerKind::solid ? fit_.solid : fit_.soft;
-    const std::vector<double>& ratios = kind == PartnerKind::solid ? fit_.solid_ratios : fit_.soft_ratios;
-    std::size_t first = fit_.planes.parameters.size();
-    if (kind == PartnerKind::soft) first += fit_.solid.parameters.size();
-    for (std::size_t k = 0; k < ratios.size(); ++k) {
-      PartnerRow row{kind,
-                     ratios[k],
-                     estimate(fit, k, columns_[first + k], true),
-                     estimate(fit, ratios.size(), columns_[first + ratios.size()], false),
+  void partners(CrowdLaw& law, const std::vector<CrowdStates>& states, const PartnerFit& own) const {
+    const std::size_t ratios = own.ratios.size();
+    for (std::size_t k = 0; k < ratios; ++k) {
+      PartnerRow row{own.kind,
+                     own.ratios[k],
+                     estimate(own.fit, k, columns_[own.first + k], true),
+                     estimate(own.fit, ratios, columns_[own.first + ratios], false),
                      0.0,
                      0.0};
       describe(row, states);
@@ -81,11 +80,14 @@ class Filler {
   /// Range and error of one row, from the configurations that have this neighbour.
   void describe(PartnerRow& row, const std::vector<CrowdStates>& states) const {
     for (const CrowdStates& c : states) {
-      if (!fits(c, row.kind) || table_ratio(c.configuration->partners.front()) != row.ratio) continue;
+      const CrowdPartner& first = c.configuration->partners.front();
+      const bool smooth = row.kind == PartnerKind::plane;
+      const bool own = serves(c, fit_.model.crowd) && c.all_of(row.kind) && first.smooth == smooth;
+      if (!own || table_ratio(first) != row.ratio) continue;
       for (const CrowdState* s : loading_states(c))
         for (std::size_t k = 0; k < s->overlap.size(); ++k)
-          row.overlap_max =
-              std::max(row.overlap_max, s->overlap[k] / std::min(1.0, c.configuration->partners[k].ratio));
+          row.overlap_max = std::max(
+              row.overlap_max, s->overlap[k] / (smooth ? 1.0 : std::min(1.0, c.configuration->partners[k].ratio)));
       row.error = std::max(row.error, crowd_error(fit_.model, c));
     }
   }
@@ -97,21 +99,18 @@ class Filler {
 /// The replicates as rows of crowd_numbers() of this law.
 std::vector<std::vector<double>> replicate_rows(const CrowdLaw& law, const FormFit& fit,
                                                 const std::vector<std::vector<double>>& columns) {
-  const std::size_t planes = fit.planes.parameters.size();
-  const std::size_t solids = fit.solid_ratios.size();
   const std::vector<double> best = crowd_numbers(law);
   std::vector<std::vector<double>> rows(columns.front().size(), best);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto of = [&](std::size_t j) { return columns[j][r]; };
     rows[r][0] = std::exp(of(0));
-    for (std::size_t j = 1; j < planes; ++j) rows[r][j] = of(j);
-    for (std::size_t k = 0; k < law.partners.size(); ++k) {
-      const bool soft = law.partners[k].kind == PartnerKind::soft;
-      const std::size_t first = planes + (soft ? fit.solid.parameters.size() : 0);
-      const std::size_t ratios = soft ? fit.soft_ratios.size() : solids;
-      rows[r][kCrowdParameters.size() + 2 * k] = std::exp(of(first + (soft ? k - solids : k)));
-      rows[r][kCrowdParameters.size() + 2 * k + 1] = of(first + ratios);
-    }
+    for (std::size_t j = 1; j < fit.planes.parameters.size(); ++j) rows[r][j] = of(j);
+    std::size_t next = kCrowdParameters.size();
+    for (const PartnerFit& own : fit.partners)
+      for (std::size_t k = 0; k < own.ratios.size(); ++k) {
+        rows[r][next++] = std::exp(of(own.first + k));
+        rows[r][next++] = of(own.first + own.ratios.size());
+      }
   }
   return rows;
 }
@@ -144,10 +143,10 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   int counts[2] = {0, 0};
   for (const CrowdStates& c : states) {
     if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
-    const ConfigurationError e{c.configuration->name, c.use, crowd_error(fit.model, c), end_ratio(fit.model, c),
-                               noise(c)};
+    ConfigurationError e{c.configuration->name, c.use, crowd_error(fit.model, c), end_ratio(fit.model, c), noise(c)};
+    if (c.use != CrowdUse::repeated && law.form != Crowd::pair && !c.for_crowds) e.use = CrowdUse::apart;
     law.errors.push_back(e);
-    if (c.use == CrowdUse::repeated) continue;
+    if (e.use == CrowdUse::repeated || e.use == CrowdUse::apart) continue;
     const bool out = c.use == CrowdUse::predicted;
     sums[out ? 1 : 0] += e.error;
     ++counts[out ? 1 : 0];
@@ -156,28 +155,38 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   if (counts[1] > 0) law.error_held_out = sums[1] / counts[1];
 }
 
-/// Leave one loading of planes out of those that may be fitted, fit the others, predict it; the pair law, which is
-/// fitted to one plane alone, predicts all the others. What is held out has no say: errors on it would else be those of
-/// a law that was chosen by them. NaN when nothing can be left out.
+/// Leave one loading of planes, and around free shells of any neighbours, out of those that may be fitted, fit the
+/// others, predict it; the pair law, which is fitted to one plane alone, predicts all others of planes. What is held
+/// out has no say: errors on it would else be those of a law that was chosen by them. NaN when nothing can be left out.
 double cross_validate(const FormFit& full, const std::vector<CrowdStates>& states, double discrepancy) {
-  double sum = 0.0;
-  int count = 0;
-  for (const CrowdStates& c : states) {
-    if (!fits(c, PartnerKind::plane)) continue;
+  const Crowd form = full.model.crowd;
+  // All forms are asked for the same loadings.
+  const bool together = all_together(states, form);
+  const Crowd as = form == Crowd::pair ? Crowd::bag : form;
+  const bool any_kind = all_together(states, as);
+  std::vector<double> errors(states.size(), kNaN);
+  parallel_tasks(static_cast<std::int64_t>(states.size()), [&](std::int64_t number) {
+    const auto k = static_cast<std::size_t>(number);
+    const CrowdStates& c = states[k];
+    if (!(any_kind ? serves(c, as) : serves(c, as, PartnerKind::plane)) || !(c.largest_force() > 0.0)) return;
+    StateSelection rest = plane_selection(states, form);
+    std::erase(rest, &c);
+    if (rest.empty()) return;  // nothing else to predict it from
     CrowdModel model = full.model;
-    const StateSelection rest = plane_selection(states, model.crowd, &c);
-    if (rest.empty()) continue;  // nothing else to predict it from
-    if (model.crowd != Crowd::pair) (void)fit_planes(model, rest, discrepancy, false);
-    sum += crowd_error(model, c);
-    ++count;
-  }
-  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+    if (together)
+      model = refitted(full, states, discrepancy, &c).model;
+    else if (form != Crowd::pair)
+      (void)fit_planes(model, rest, discrepancy, false);
+    errors[k] = crowd_error(model, c);
+  });
+  std::erase_if(errors, [](double e) { return std::isnan(e); });
+  return mean_error(errors).mean;
 }
 
 /// Corrected Akaike information criterion over all configurations of planes that may be fitted, with errors of known
 /// size: S + 2 k + 2 k (k + 1)/(n - k - 1).
 double criterion(const FormFit& fit, const std::vector<CrowdStates>& states, double discrepancy) {
-  const auto r = crowd_residuals(fit.model, plane_selection(states, Crowd::bag, nullptr), discrepancy);
+  const auto r = crowd_residuals(fit.model, plane_selection(states, Crowd::bag), discrepancy);
   double s = 0.0;
   for (const double x : r) s += x * x;
   const auto k = static_cast<double>(fit.planes.parameters.size());
@@ -189,7 +198,7 @@ void set_status(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates
   const CrowdPressure& p = fit.model.form.pressure;
   double deepest = 0.0;
   for (const CrowdStates& c : states)
-    if (fits(c, PartnerKind::plane))
+    if (serves(c, fit.model.crowd, PartnerKind::plane))
       for (const CrowdState& s : c.states)
         deepest = std::max(deepest, *std::max_element(s.overlap.begin(), s.overlap.end()));
   if (!(p.delta < deepest)) {
@@ -218,8 +227,7 @@ FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>
   law.replicates_failed = refits.failed;
   const Filler filler(fit, refits.columns);
   filler.planes(law);
-  filler.partners(law, states, PartnerKind::solid);
-  filler.partners(law, states, PartnerKind::soft);
+  for (const PartnerFit& own : fit.partners) filler.partners(law, states, own);
   law.replicates = replicate_rows(law, fit, refits.columns);
   out.draws = refits.draws;
   set_status(law, fit, states);
@@ -256,8 +264,7 @@ void require_data(const CrowdMeasurements& data, const std::vector<CrowdStates>&
     throw BadInput(fmt::format("crowd laws: {} packings are too few, at least {} are needed", data.packings.size(),
                                o.min_packings));
   double force = 0.0;
-  for (const CrowdStates* c : plane_selection(states, Crowd::pair, nullptr))
-    force = std::max(force, c->largest_force());
+  for (const CrowdStates* c : plane_selection(states, Crowd::pair)) force = std::max(force, c->largest_force());
   if (!(force > 0.0))
     throw NotUsable(
         "crowd laws: no configuration with one plane crossed its threshold (no force at any recorded overlap); press "
@@ -275,7 +282,7 @@ void describe_packings(const CrowdMeasurements& data, LawTableEntry& entry) {
 
 void describe_range(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry) {
   for (const CrowdStates& c : states) {
-    if (!fits(c, PartnerKind::plane)) continue;
+    if (!serves(c, model.crowd, PartnerKind::plane)) continue;
     for (const CrowdState* s : loading_states(c)) {
       entry.volume_max = std::max(entry.volume_max, crowd_volume(model, c.configuration->partners, s->overlap));
       entry.grain_overlap_max = std::max(entry.grain_overlap_max, s->max_overlap);

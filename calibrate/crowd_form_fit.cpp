@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/contact/crowd_from_table.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/random.h"
 #include "common/io/interrupt.h"
 
@@ -19,18 +20,85 @@ void set_planes(CrowdModel& model, std::span<const double> p) {
   if (model.crowd == Crowd::directional) model.form.coupling = {p[3], p[4], p[5]};
 }
 
+std::vector<ParameterBounds> plane_bounds(Crowd form) {
+  std::vector<ParameterBounds> bounds{{-6.0, 6.0}, {1.05, 8.0}, {0.0, 0.3}};
+  bounds.insert(bounds.end(), static_cast<std::size_t>(coupling_parameters(form)), ParameterBounds{-3.0, 3.0});
+  return bounds;
+}
+
+std::vector<ParameterBounds> partner_bounds(std::size_t ratios) {
+  std::vector<ParameterBounds> bounds(ratios + 1, {-4.0, 4.0});
+  bounds.back() = {0.6, 3.0};
+  return bounds;
+}
+
+}  // namespace
+
+std::vector<const CrowdState*> loading_states(const CrowdStates& states) {
+  std::vector<const CrowdState*> out;
+  std::vector<double> deepest(states.configuration->partners.size(), 0.0);
+  bool pressed_alone = true;
+  for (const CrowdState& s : states.states) {
+    const CrowdMove move = states.configuration->stages[static_cast<std::size_t>(s.stage)].move;
+    pressed_alone = pressed_alone && s.slide == 0.0 && move != CrowdMove::roll;
+    const bool free = states.configuration->centre_free;  // the shell gives way: overlaps towards it may shrink
+    bool loading = pressed_alone && (!free || move == CrowdMove::load);
+    for (std::size_t k = 0; k < deepest.size(); ++k) {
+      loading = loading && (free || s.overlap[k] >= deepest[k] - 1e-9);
+      deepest[k] = std::max(deepest[k], s.overlap[k]);
+    }
+    if (loading) out.push_back(&s);
+  }
+  return out;
+}
+
+namespace {
+
+/// A force that a fit compares with, and its weight.
+struct WeighedState {
+  const std::vector<CrowdPartner>* partners = nullptr;
+  const CrowdState* state = nullptr;
+  std::vector<double> weight{};  ///< of every neighbour
+};
+
+std::vector<WeighedState> weighed_states(const StateSelection& selection, double discrepancy) {
+  std::vector<WeighedState> out;
+  for (const CrowdStates* c : selection) {
+    const double floor = 0.1 * discrepancy * c->largest_force();
+    const double share = 1.0 / std::sqrt(static_cast<double>(c->configuration->partners.size()));
+    for (const CrowdState* s : loading_states(*c)) {
+      WeighedState& w = out.emplace_back(WeighedState{&c->configuration->partners, s});
+      for (std::size_t k = 0; k < s->mean.size(); ++k) {
+        const double own = discrepancy * s->mean[k];
+        w.weight.push_back(share / std::sqrt(s->error[k] * s->error[k] + own * own + floor * floor));
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<double> weighed_residuals(const CrowdModel& model, const std::vector<WeighedState>& states) {
+  std::vector<double> out;
+  for (const WeighedState& w : states) {
+    const std::vector<double> force = crowd_forces(model, *w.partners, w.state->overlap);
+    for (std::size_t k = 0; k < force.size(); ++k) out.push_back(w.weight[k] * (force[k] - w.state->mean[k]));
+  }
+  return out;
+}
+
 /// Runs a fit whose residuals are those of a model that `set` fills from the parameters.
 template <class Set>
 LeastSquaresFit fit_model(const CrowdModel& model, const StateSelection& selection, double discrepancy,
                           const std::vector<double>& start, const std::vector<ParameterBounds>& bounds, bool thorough,
                           const Set& set) {
+  const std::vector<WeighedState> states = weighed_states(selection, discrepancy);
   LeastSquaresProblem problem;
-  problem.residuals = crowd_residuals(model, selection, discrepancy).size();
+  problem.residuals = weighed_residuals(model, states).size();
   problem.bounds = bounds;
   problem.evaluate = [&](std::span<const double> p, std::span<double> r) {
     CrowdModel tried = model;
     set(tried, p);
-    const std::vector<double> residuals = crowd_residuals(tried, selection, discrepancy);
+    const std::vector<double> residuals = weighed_residuals(tried, states);
     std::copy(residuals.begin(), residuals.end(), r.begin());
     return std::all_of(r.begin(), r.end(), [](double x) { return std::isfinite(x); });
   };
@@ -43,38 +111,8 @@ LeastSquaresFit fit_model(const CrowdModel& model, const StateSelection& selecti
 
 }  // namespace
 
-std::vector<const CrowdState*> loading_states(const CrowdStates& states) {
-  std::vector<const CrowdState*> out;
-  std::vector<double> deepest(states.configuration->partners.size(), 0.0);
-  bool pressed_alone = true;
-  for (const CrowdState& s : states.states) {
-    const CrowdMove move = states.configuration->stages[static_cast<std::size_t>(s.stage)].move;
-    pressed_alone = pressed_alone && s.slide == 0.0 && move != CrowdMove::roll;
-    bool loading = pressed_alone;
-    for (std::size_t k = 0; k < deepest.size(); ++k) {
-      loading = loading && s.overlap[k] >= deepest[k] - 1e-9;
-      deepest[k] = std::max(deepest[k], s.overlap[k]);
-    }
-    if (loading) out.push_back(&s);
-  }
-  return out;
-}
-
 std::vector<double> crowd_residuals(const CrowdModel& model, const StateSelection& selection, double discrepancy) {
-  std::vector<double> out;
-  for (const CrowdStates* c : selection) {
-    const double floor = 0.1 * discrepancy * c->largest_force();
-    const double share = 1.0 / std::sqrt(static_cast<double>(c->configuration->partners.size()));
-    for (const CrowdState* s : loading_states(*c)) {
-      const std::vector<double> force = crowd_forces(model, c->configuration->partners, s->overlap);
-      for (std::size_t k = 0; k < force.size(); ++k) {
-        const double own = discrepancy * s->mean[k];
-        out.push_back(share * (force[k] - s->mean[k]) /
-                      std::sqrt(s->error[k] * s->error[k] + own * own + floor * floor));
-      }
-    }
-  }
-  return out;
+  return weighed_residuals(model, weighed_states(selection, discrepancy));
 }
 
 double crowd_error(const CrowdModel& model, const CrowdStates& states) {
@@ -94,12 +132,9 @@ LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, d
   const CrowdPressure& p = model.form.pressure;
   const CrowdCoupling& m = model.form.coupling;
   std::vector<double> start{std::log(p.a), p.b, p.delta};
-  std::vector<ParameterBounds> bounds{{-6.0, 6.0}, {1.05, 8.0}, {0.0, 0.3}};
-  if (coupling_parameters(model.crowd) > 0) {
-    start.insert(start.end(), {m.m0, m.m1, m.m2});
-    bounds.insert(bounds.end(), 3, ParameterBounds{-3.0, 3.0});
-  }
-  LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, thorough, set_planes);
+  if (coupling_parameters(model.crowd) > 0) start.insert(start.end(), {m.m0, m.m1, m.m2});
+  LeastSquaresFit fit =
+      fit_model(model, selection, discrepancy, start, plane_bounds(model.crowd), thorough, set_planes);
   set_planes(model, fit.parameters);
   return fit;
 }
@@ -109,10 +144,9 @@ LeastSquaresFit fit_partners(CrowdModel& model, PartnerKind kind, const std::vec
   const auto set = [&](CrowdModel& tried, std::span<const double> p) {
     set_partners(tried, kind, ratios, {p.begin(), p.end() - 1}, p.back());
   };
-  std::vector<double> start(ratios.size() + 1, kind == PartnerKind::solid ? 0.0 : -1.0);
-  start.back() = kind == PartnerKind::solid ? 1.0 : 1.2;
-  std::vector<ParameterBounds> bounds(start.size(), {-4.0, 4.0});
-  bounds.back() = {0.6, 3.0};
+  std::vector<double> start(ratios.size() + 1, kind == PartnerKind::soft ? -1.0 : 0.0);
+  start.back() = kind == PartnerKind::soft ? 1.2 : 1.0;
+  const std::vector<ParameterBounds> bounds = partner_bounds(ratios.size());
   set(model, start);
   LeastSquaresFit fit = fit_model(model, selection, discrepancy, start, bounds, false, set);
   if (thorough && fit.end != FitEnd::converged)
@@ -130,11 +164,11 @@ std::vector<double> ratios_of(const StateSelection& selection) {
   return {out.begin(), out.end()};
 }
 
-StateSelection partner_selection(const std::vector<CrowdStates>& states, PartnerKind kind, Crowd crowd) {
+template <class Wanted>
+StateSelection selection_of(const std::vector<CrowdStates>& states, const Wanted& wanted) {
   StateSelection out;
   for (const CrowdStates& c : states)
-    if (fits(c, kind) && c.largest_force() > 0.0 && (crowd != Crowd::pair || c.configuration->partners.size() == 1))
-      out.push_back(&c);
+    if (wanted(c)) out.push_back(&c);
   return out;
 }
 
@@ -144,18 +178,74 @@ std::string trouble_of(const LeastSquaresFit& fit, const char* what, bool all_de
   return std::string(what) + ": " + fit.message;
 }
 
-}  // namespace
-
-bool fits(const CrowdStates& c, PartnerKind kind) {
-  return c.use == CrowdUse::fitted && !c.states.empty() && c.all_of(kind);
+/// The part of a fit that begins at parameter `first`, `count` long.
+LeastSquaresFit part_of(const LeastSquaresFit& all, std::size_t first, std::size_t count) {
+  const auto slice = [&](auto& values) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    values = {begin, begin + static_cast<std::ptrdiff_t>(count)};
+  };
+  LeastSquaresFit out = all;
+  const std::size_t n = all.parameters.size();
+  slice(out.parameters);
+  if (out.standard_deviations.size() == n) slice(out.standard_deviations);
+  if (out.at_bound.size() == n) slice(out.at_bound);
+  // The part may be determined where the whole is not.
+  out.rank_deficient = std::any_of(out.standard_deviations.begin(), out.standard_deviations.end(),
+                                   [](double sd) { return !std::isfinite(sd); });
+  out.covariance.clear();
+  for (std::size_t r = first; all.covariance.size() == n * n && r < first + count; ++r)
+    for (std::size_t c = first; c < first + count; ++c) out.covariance.push_back(all.covariance[r * n + c]);
+  return out;
 }
 
-StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd crowd, const CrowdStates* without) {
-  StateSelection out;
-  for (const CrowdStates& c : states)
-    if (&c != without && fits(c, PartnerKind::plane) && (crowd != Crowd::pair || c.configuration->partners.size() == 1))
-      out.push_back(&c);
-  return out;
+void set_all(CrowdModel& model, const std::vector<PartnerFit>& partners, std::size_t planes,
+             std::span<const double> p) {
+  set_planes(model, p.first(planes));
+  for (const PartnerFit& k : partners) {
+    if (k.ratios.empty()) continue;
+    const auto own = p.subspan(k.first, k.ratios.size() + 1);
+    set_partners(model, k.kind, k.ratios, {own.begin(), own.end() - 1}, own.back());
+  }
+}
+
+/// From where the fits one after the other ended.
+void fit_together(FormFit& form, const StateSelection& selection, double discrepancy) {
+  const std::size_t planes = form.planes.parameters.size();
+  std::vector<ParameterBounds> bounds = plane_bounds(form.model.crowd);
+  for (const PartnerFit& k : form.partners) {
+    if (k.ratios.empty()) continue;
+    const auto own = partner_bounds(k.ratios.size());
+    bounds.insert(bounds.end(), own.begin(), own.end());
+  }
+  const auto set = [&](CrowdModel& tried, std::span<const double> p) { set_all(tried, form.partners, planes, p); };
+  const LeastSquaresFit all = fit_model(form.model, selection, discrepancy, form.parameters(), bounds, false, set);
+  if (all.end == FitEnd::failed || all.end == FitEnd::capped) return;
+  set(form.model, all.parameters);
+  form.planes = part_of(all, 0, planes);
+  for (PartnerFit& k : form.partners)
+    if (!k.ratios.empty()) k.fit = part_of(all, k.first, k.ratios.size() + 1);
+}
+
+/// All neighbours planes without friction, or all something else.
+bool all_smooth(const CrowdStates& c) {
+  const auto& partners = c.configuration->partners;
+  return std::all_of(partners.begin(), partners.end(), [](const CrowdPartner& p) { return p.smooth; });
+}
+
+}  // namespace
+
+bool serves(const CrowdStates& c, Crowd form) {
+  const bool alone = c.configuration->partners.size() == 1;
+  return c.use == CrowdUse::fitted && !c.states.empty() && !loading_states(c).empty() &&
+         (form == Crowd::pair ? alone : c.for_crowds);
+}
+
+bool serves(const CrowdStates& c, Crowd form, PartnerKind kind) {
+  return serves(c, form) && c.all_of(kind) && (kind != PartnerKind::plane || !all_smooth(c));
+}
+
+StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd form) {
+  return selection_of(states, [&](const CrowdStates& c) { return serves(c, form, PartnerKind::plane); });
 }
 
 double table_ratio(const CrowdPartner& p) {
@@ -164,33 +254,60 @@ double table_ratio(const CrowdPartner& p) {
 
 std::vector<double> FormFit::parameters() const {
   std::vector<double> all = planes.parameters;
-  all.insert(all.end(), solid.parameters.begin(), solid.parameters.end());
-  all.insert(all.end(), soft.parameters.begin(), soft.parameters.end());
+  for (const PartnerFit& k : partners) all.insert(all.end(), k.fit.parameters.begin(), k.fit.parameters.end());
   return all;
 }
 
 std::string FormFit::trouble() const {
-  for (const std::string& t : {trouble_of(planes, "planes", true), trouble_of(solid, "solid neighbours", false),
-                               trouble_of(soft, "soft neighbours", false)})
-    if (!t.empty()) return t;
+  if (const std::string t = trouble_of(planes, "planes", true); !t.empty()) return t;
+  for (const PartnerFit& k : partners) {
+    const char* what = k.kind == PartnerKind::solid  ? "solid neighbours"
+                       : k.kind == PartnerKind::soft ? "soft neighbours"
+                                                     : "planes without friction";
+    if (const std::string t = trouble_of(k.fit, what, false); !t.empty()) return t;
+  }
   return "";
 }
 
 FormFit fit_form(Crowd form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
-                 const CrowdModel& start) {
+                 const CrowdModel& start, const CrowdStates* without) {
   FormFit out;
   out.model = start;
   out.model.crowd = form;
-  const StateSelection planes = plane_selection(states, out.model.crowd, nullptr);
-  out.planes = fit_planes(out.model, planes, discrepancy, thorough);
-  const StateSelection solid = partner_selection(states, PartnerKind::solid, out.model.crowd);
-  out.solid_ratios = ratios_of(solid);
-  if (!solid.empty())
-    out.solid = fit_partners(out.model, PartnerKind::solid, out.solid_ratios, solid, discrepancy, thorough);
-  const StateSelection soft = partner_selection(states, PartnerKind::soft, out.model.crowd);
-  out.soft_ratios = ratios_of(soft);
-  if (!soft.empty())
-    out.soft = fit_partners(out.model, PartnerKind::soft, out.soft_ratios, soft, discrepancy, thorough);
+  const auto select = [&](const auto& wanted) {
+    return selection_of(states, [&](const CrowdStates& c) { return &c != without && wanted(c); });
+  };
+  out.planes = fit_planes(out.model, select([&](const CrowdStates& c) { return serves(c, form, PartnerKind::plane); }),
+                          discrepancy, thorough);
+  std::size_t first = out.planes.parameters.size();
+  for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft, PartnerKind::plane}) {
+    const StateSelection own = select([&](const CrowdStates& c) {
+      const bool wanted = kind == PartnerKind::plane ? serves(c, form) && all_smooth(c) : serves(c, form, kind);
+      return wanted && c.largest_force() > 0.0;
+    });
+    PartnerFit& k = out.partners.emplace_back(PartnerFit{kind, ratios_of(own), {}, first});
+    if (own.empty()) continue;
+    k.fit = fit_partners(out.model, kind, k.ratios, own, discrepancy, thorough);
+    first += k.fit.parameters.size();
+  }
+  if (all_together(states, form)) out = refitted(out, states, discrepancy, without);
+  return out;
+}
+
+bool all_together(const std::vector<CrowdStates>& states, Crowd form) {
+  return form != Crowd::pair &&
+         std::any_of(states.begin(), states.end(), [](const CrowdStates& c) { return !c.for_crowds; });
+}
+
+FormFit refitted(const FormFit& near, const std::vector<CrowdStates>& states, double discrepancy,
+                 const CrowdStates* without) {
+  FormFit out = near;
+  fit_together(out,
+               selection_of(states,
+                            [&](const CrowdStates& c) {
+                              return &c != without && serves(c, near.model.crowd) && c.largest_force() > 0.0;
+                            }),
+               discrepancy);
   return out;
 }
 
@@ -202,19 +319,24 @@ std::vector<double> packing_weights(std::size_t packings, std::uint64_t seed, in
 }
 
 FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options) {
+  std::vector<FormFit> fits(static_cast<std::size_t>(options.replicates));
+  parallel_tasks(options.replicates, [&](std::int64_t k) {
+    const auto r = static_cast<std::size_t>(k);
+    const auto weights = packing_weights(data.packings.size(), options.seed, static_cast<int>(r));
+    const auto states = average_states(data, weights);
+    fits[r] = all_together(states, form) ? refitted(full, states, options.discrepancy)
+                                         : fit_form(form, states, options.discrepancy, false, full.model);
+  });
   FormRefits out;
   out.columns.resize(full.parameters().size());
-  for (int r = 0; r < options.replicates; ++r) {
-    stop_if_interrupted("refitting to drawn packings");
-    const auto states = average_states(data, packing_weights(data.packings.size(), options.seed, r));
-    const FormFit fit = fit_form(form, states, options.discrepancy, false, full.model);
-    const std::vector<double> p = fit.parameters();
-    if (!fit.trouble().empty() || p.size() != out.columns.size()) {
+  for (std::size_t r = 0; r < fits.size(); ++r) {
+    const std::vector<double> p = fits[r].parameters();
+    if (!fits[r].trouble().empty() || p.size() != out.columns.size()) {
       ++out.failed;
       continue;
     }
     for (std::size_t j = 0; j < p.size(); ++j) out.columns[j].push_back(p[j]);
-    out.draws.push_back(r);
+    out.draws.push_back(static_cast<int>(r));
   }
   return out;
 }

@@ -31,33 +31,49 @@ LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, d
 LeastSquaresFit fit_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
                              const StateSelection& selection, double discrepancy, bool thorough);
 
-/// Whether a configuration may be fitted and all its neighbours are of this kind.
-bool fits(const CrowdStates& c, PartnerKind kind);
+/// Whether a law of this form is fitted to a configuration: the pair law knows one contact only.
+bool serves(const CrowdStates& c, Crowd form);
 
-/// The pair law knows one contact only; the others use every configuration of planes that is not held out. `without`:
-/// left out besides.
-StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd crowd, const CrowdStates* without);
+/// And all its neighbours are of this kind; planes are those with the friction of the grains.
+bool serves(const CrowdStates& c, Crowd form, PartnerKind kind);
+
+/// Configurations of planes that this form is fitted to.
+StateSelection plane_selection(const std::vector<CrowdStates>& states, Crowd form);
 
 /// Size of a neighbour as the tables know it: soft ones the same from either side.
 double table_ratio(const CrowdPartner& p);
 
-/// The parameters of one form, as one row: planes, then per kind ln w by ratio and m.
+/// What was fitted of one kind of neighbour: ln w by ratio, then m.
+struct PartnerFit {
+  PartnerKind kind = PartnerKind::solid;  ///< plane: planes without friction
+  std::vector<double> ratios;
+  LeastSquaresFit fit;    ///< not run without such neighbours
+  std::size_t first = 0;  ///< of its parameters among all
+};
+
+/// The parameters of one form, as one row: planes, then those of each kind of neighbour.
 struct FormFit {
   CrowdModel model;
   LeastSquaresFit planes;
-  std::vector<double> solid_ratios;
-  std::vector<double> soft_ratios;
-  LeastSquaresFit solid;  ///< not run without such neighbours
-  LeastSquaresFit soft;
+  std::vector<PartnerFit> partners;  ///< solid, soft, planes without friction
 
   [[nodiscard]] std::vector<double> parameters() const;
   /// Why it is not the minimum that it should be, or not the only one; empty when it is.
   [[nodiscard]] std::string trouble() const;
 };
 
-/// `thorough`: every strategy for the planes, and for the neighbours when the first one does not come to a minimum.
+/// Planes first, then each kind of neighbour; of crowds around free shells in the end all together, with those that mix
+/// kinds. `thorough`: every strategy for the planes, and for the neighbours when the first one does not come to a
+/// minimum. `without`: a configuration that is left out.
 FormFit fit_form(Crowd form, const std::vector<CrowdStates>& states, double discrepancy, bool thorough,
-                 const CrowdModel& start);
+                 const CrowdModel& start, const CrowdStates* without = nullptr);
+
+/// Whether a form is fitted to all its configurations at once.
+bool all_together(const std::vector<CrowdStates>& states, Crowd form);
+
+/// Such a fit from a near one on: to states of other draws, or without one of them.
+FormFit refitted(const FormFit& near, const std::vector<CrowdStates>& states, double discrepancy,
+                 const CrowdStates* without = nullptr);
 
 /// How often each packing counts in replicate `r`.
 std::vector<double> packing_weights(std::size_t packings, std::uint64_t seed, int r);

@@ -89,7 +89,7 @@ bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
   for (std::size_t k = 0; k < a.partners.size(); ++k) {
     const CrowdPartner& p = a.partners[k];
     const CrowdPartner& q = b.partners[k];
-    if (p.kind != q.kind || p.ratio != q.ratio || norm(p.direction - q.direction) > kSame ||
+    if (p.kind != q.kind || p.ratio != q.ratio || p.smooth != q.smooth || norm(p.direction - q.direction) > kSame ||
         std::abs(x[k] / deep_x - y[k] / deep_y) > kSame)
       return false;
   }
@@ -99,10 +99,11 @@ bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
 /// Held out as a loading, not only as a path that goes on from it.
 bool holds_out(const CrowdStates& c) { return c.configuration->held_out && c.configuration->stages.size() == 1; }
 
-bool may_be_fitted(const CrowdStates& c) { return !c.configuration->held_out && !c.configuration->centre_free; }
-
-/// One loading: of its configurations the deepest is used, the others repeat it.
-void assign_use(const std::vector<CrowdStates*>& group) {
+/// One loading: of its configurations the deepest is used, the others repeat it. `free`: shells that are free count.
+void assign_use(const std::vector<CrowdStates*>& group, bool free) {
+  const auto may_be_fitted = [free](const CrowdStates& c) {
+    return !c.configuration->held_out && (free || !c.configuration->centre_free);
+  };
   for (CrowdStates* c : group) c->use = CrowdUse::repeated;
   const auto deepest_of = [&](auto&& wanted) {
     CrowdStates* best = nullptr;
@@ -121,20 +122,32 @@ void assign_use(const std::vector<CrowdStates*>& group) {
 /// Begins with a loading; what slides from the start has none.
 bool begins_with_load(const CrowdStates& c) { return c.configuration->stages.front().slide == 0.0; }
 
+/// Whether crowds were measured around free shells.
+bool enough_free(const std::vector<CrowdStates>& all) {
+  return kEnoughFree <= std::count_if(all.begin(), all.end(), [](const CrowdStates& c) {
+           return c.configuration->centre_free && !c.configuration->held_out && begins_with_load(c) &&
+                  c.all_of(PartnerKind::plane);
+         });
+}
+
 void assign_uses(std::vector<CrowdStates>& all) {
+  const bool free = enough_free(all);
   std::vector<std::vector<CrowdStates*>> groups;
   for (CrowdStates& c : all) {
     c.use = CrowdUse::repeated;
+    c.for_crowds = !free || c.configuration->centre_free;
     if (!begins_with_load(c)) continue;
     const auto known = std::find_if(groups.begin(), groups.end(), [&](const std::vector<CrowdStates*>& g) {
-      return same_loading(*g.front()->configuration, *c.configuration);
+      const CrowdConfiguration& first = *g.front()->configuration;
+      return same_loading(first, *c.configuration) && first.turning == c.configuration->turning &&
+             (!free || first.centre_free == c.configuration->centre_free);
     });
     if (known == groups.end())
       groups.push_back({&c});
     else
       known->push_back(&c);
   }
-  for (const auto& group : groups) assign_use(group);
+  for (const auto& group : groups) assign_use(group, free);
 }
 
 }  // namespace

@@ -28,15 +28,19 @@ struct CrowdStates {
   const CrowdConfiguration* configuration = nullptr;  ///< in the data they come from
   std::vector<CrowdState> states;
   CrowdUse use = CrowdUse::fitted;
+  bool for_crowds = true;  ///< whether laws of crowds may be fitted to it, too
 
   [[nodiscard]] bool all_of(PartnerKind kind) const;
   [[nodiscard]] double largest_force() const;  ///< mean normal force of a neighbour, over all states
 };
 
 /// Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
-/// ratios of their overlaps) only the first with a held shell is fitted, or none when plain loading is held out.
+/// ratios of their overlaps) only the deepest is fitted, or none when plain loading is held out. Bodies of a scene are
+/// never held: where there are kEnoughFree loadings of planes around a free shell, laws of crowds are fitted to free
+/// shells alone, and the pair law, which has but one neighbour, to held ones; else all laws to held ones.
 /// `weight[p]` says how often packing p counts (a bootstrap replicate); empty: once each. States with fewer than two
 /// converged packings are left out.
+inline constexpr int kEnoughFree = 4;
 std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std::vector<double>& weight = {});
 
 }  // namespace softgrain

@@ -97,6 +97,7 @@ RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, co
 
 struct ContactTest {
   const MacroSpec& spec;
+  const PointRecord& also;
 
   RelaxationResult step(CompressionState& state, const MacroStage& stage, const Vec3& strain,
                         const Vec3& stress) const {
@@ -105,6 +106,7 @@ struct ContactTest {
   void record(CompressionState& state, const MacroStage& stage, std::int64_t number,
               const RelaxationResult& rest) const {
     record_point(state, spec, stage, number, rest);
+    if (also) also(state.macro, state.curve);
   }
   static LawUse watch(CompressionState& state) { return watch_bodies(state); }
   static void note_use(CompressionState& state, const LawUse& last) {
@@ -124,8 +126,9 @@ MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const
   return curve;
 }
 
-void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control) {
-  run_stages(state, spec, ContactTest{spec}, control);
+void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control,
+              const PointRecord& also) {
+  run_stages(state, spec, ContactTest{spec, also}, control);
 }
 
 }  // namespace softgrain

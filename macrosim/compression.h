@@ -1,6 +1,8 @@
 // Tests of a macro system, law-based or resolved, by relaxed increments of strain and stress.
 #pragma once
 
+#include <functional>
+
 #include "common/data/macro_result.h"
 #include "common/state/run_control.h"
 #include "macrosim/macro_system.h"
@@ -16,6 +18,9 @@ struct CompressionState {
   bool over = false;            ///< ended before its last point
 };
 
+/// Adds to the curve what else somebody wants of a point that was recorded.
+using PointRecord = std::function<void(const MacroSystem&, MacroCurve&)>;
+
 /// Takes the box through the stages of the test (stages_of), increment by increment: strains axes that go by strain,
 /// then relaxes the bodies, together with the axes that go by stress. Records strain (nominal from the start; of the
 /// short form "shear" logarithmic from the end of the preload, which is recorded at -preload .. 0), stresses on the box
@@ -23,7 +28,8 @@ struct CompressionState {
 /// Points that did not converge make the curve not usable, with a note; so does a law asked beyond its range that does
 /// not allow it, and a stress that cannot be reached, and the test ends there. Throws NotUsable (lost grain) and
 /// Interrupted.
-void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control = {});
+void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control = {},
+              const PointRecord& also = {});
 
 /// A curve with the facts of the packing filled in.
 MacroCurve begin_curve(const MacroSpec& spec, const MacroPacking& packing, const MacroSystem& macro,

@@ -114,4 +114,14 @@ double test_force_floor(const MacroSpec& spec, double largest_radius) {
   return spec.force_floor * spec.youngs_modulus * largest_radius * largest_radius;
 }
 
+MacroSpec slightly_changed(MacroSpec spec) {
+  constexpr double kSlightly = 1.0 + 1e-12;
+  spec.strain_end *= kSlightly;
+  spec.preload *= kSlightly;
+  for (MacroStage& stage : spec.stages)
+    for (AxisDrive& axis : stage.axis)
+      if (!axis.by_stress) axis.value *= kSlightly;
+  return spec;
+}
+
 }  // namespace softgrain

@@ -54,21 +54,48 @@ double nearest(const std::vector<Vec3>& all, const Vec3& v) {
   return largest;
 }
 
-/// Each direction is the one of many random ones that is farthest from all before it (Mitchell's best candidate).
-std::vector<Vec3> random_directions(int count) {
-  constexpr std::uint64_t kSeed = 1;
-  constexpr int kCandidates = 40;
-  RandomStream random(kSeed, RandomPurpose::directions, 0);
+/// Each direction is the one of some random ones that is farthest from all before it (Mitchell's best candidate).
+std::vector<Vec3> spread_directions(RandomStream& random, std::size_t count, int candidates) {
   std::vector<Vec3> out;
-  while (static_cast<int>(out.size()) < count) {
+  while (out.size() < count) {
     Vec3 best = random_direction(random);
-    for (int k = 1; k < kCandidates; ++k) {
+    for (int k = 1; k < candidates; ++k) {
       const Vec3 v = random_direction(random);
       if (nearest(out, v) < nearest(out, best)) best = v;
     }
     out.push_back(best);
   }
   return out;
+}
+
+std::vector<Vec3> random_directions(std::size_t count) {
+  constexpr std::uint64_t kSeed = 1;
+  constexpr int kCandidates = 40;
+  RandomStream random(kSeed, RandomPurpose::directions, 0);
+  return spread_directions(random, count, kCandidates);
+}
+
+/// Whether a body among these cannot slip away: near every one of many directions there is one of them.
+bool encloses(const std::vector<Vec3>& directions) {
+  constexpr std::size_t kProbes = 400;
+  constexpr double kNear = 0.17;  // cosine of 80 degrees
+  static const std::vector<Vec3> probes = random_directions(kProbes);
+  return std::all_of(probes.begin(), probes.end(), [&](const Vec3& v) { return nearest(directions, v) > kNear; });
+}
+
+/// In the order in which they are asked for: what is drawn of one does not change the others.
+CrowdPartner draw_partner(const ScatterChoice& choice, RandomStream& random) {
+  const double which = random.uniform();
+  const double size = random.uniform();
+  CrowdPartner p;
+  p.kind = choice.kind.value_or(which < 0.6   ? PartnerKind::solid
+                                : which < 0.8 ? PartnerKind::plane
+                                              : PartnerKind::soft);
+  if (p.kind == PartnerKind::plane)
+    p.smooth = choice.smooth;
+  else
+    p.ratio = choice.ratios[static_cast<std::size_t>(size * static_cast<double>(choice.ratios.size()))];
+  return p;
 }
 
 }  // namespace
@@ -91,6 +118,8 @@ std::vector<Vec3> directions_of(Arrangement arrangement) {
       return icosahedron();
     case Arrangement::random_8:
       return random_directions(8);
+    case Arrangement::scattered:
+      return {};
     default:
       return cube();
   }
@@ -100,6 +129,24 @@ std::vector<double> depth_shares(Arrangement arrangement, double shallow) {
   std::vector<double> shares(directions_of(arrangement).size(), 1.0);
   if (arrangement == Arrangement::beside_five) shares[0] = shallow;
   return shares;
+}
+
+std::vector<ScatteredNeighbour> scattered_neighbours(const ScatterChoice& choice) {
+  constexpr int kCandidates = 8;
+  RandomStream random(choice.draw, RandomPurpose::directions, 1);
+  std::vector<Vec3> directions;
+  do directions = spread_directions(random, static_cast<std::size_t>(choice.count), kCandidates);
+  while (!encloses(directions));
+  std::vector<ScatteredNeighbour> out;
+  double deepest = 0.0;
+  for (const Vec3& d : directions) {
+    ScatteredNeighbour n{draw_partner(choice, random), choice.shallow + (1.0 - choice.shallow) * random.uniform()};
+    n.partner.direction = d;
+    deepest = std::max(deepest, n.share);
+    out.push_back(n);
+  }
+  for (ScatteredNeighbour& n : out) n.share /= deepest;
+  return out;
 }
 
 }  // namespace softgrain

@@ -1,5 +1,6 @@
 // What a crowd experiment is made of: laws, materials and bodies in their slots. How it moves and what it records is in
 // crowd_experiment.cpp.
+#include <algorithm>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -17,7 +18,8 @@ constexpr std::int32_t kInner = kGrain + 1;  ///< so for every soft particle: th
 constexpr std::int32_t kSolid = 2;           ///< solid spheres as neighbours
 constexpr std::int32_t kWall = 3;            ///< planes and shells: neither meets the other, both meet grains
 constexpr std::int32_t kPlane = 4;
-constexpr std::int32_t kFirstOther = 5;
+constexpr std::int32_t kSmoothPlane = 5;
+constexpr std::int32_t kFirstOther = 6;
 
 std::int32_t inner_of(std::int32_t grain) { return grain + kInner - kGrain; }
 
@@ -56,11 +58,19 @@ class ContentLaws {
   /// A content meets a plane or the inside of a shell.
   void content_with_plane(std::int32_t grain, std::int32_t plane) {
     solids(grain, plane);
-    if (soft_plane_ != LawSet::kNoContact) laws_.use(inner_of(grain), plane, soft_plane_);
+    soft_with_plane(grain, plane);
+  }
+  void content_with_smooth(std::int32_t grain, std::int32_t plane, const AnyLaw& smooth) {
+    laws_.use(grain, plane, laws_.add(smooth));
+    soft_with_plane(grain, plane);
   }
   [[nodiscard]] const LawSet& laws() const { return laws_; }
 
  private:
+  void soft_with_plane(std::int32_t grain, std::int32_t plane) {
+    if (soft_plane_ != LawSet::kNoContact) laws_.use(inner_of(grain), plane, soft_plane_);
+  }
+
   LawSet laws_;
   std::int32_t hertz_ = LawSet::kNoContact;
   std::int32_t soft_plane_ = LawSet::kNoContact;
@@ -71,13 +81,19 @@ class ContentLaws {
 
 std::int32_t other_material(std::size_t soft) { return kFirstOther + 2 * static_cast<std::int32_t>(soft); }
 
-LawSet crowd_laws(const SoftParticleSpec& spec, const Material& grain, double restitution, std::size_t softs,
-                  const InnerLaws* inner) {
-  const AnyLaw hertz = hertz_law(HertzCoefficients::of(grain, grain, spec.friction, restitution), false);
+LawSet crowd_laws(const CrowdExperiment& e, double restitution, std::size_t softs, const InnerLaws* inner) {
+  const Material& grain = e.system.materials[kGrain];
+  const auto law = [&](double friction) {
+    return hertz_law(HertzCoefficients::of(grain, grain, friction, restitution), false);
+  };
+  const AnyLaw hertz = law(e.spec.friction);
   ContentLaws table(other_material(softs), hertz, inner);
   table.contents(kGrain, kGrain);
   table.content_with(kGrain, kSolid);
   for (const std::int32_t wall : {kWall, kPlane}) table.content_with_plane(kGrain, wall);
+  const auto& partners = e.configuration.partners;
+  if (std::any_of(partners.begin(), partners.end(), [](const CrowdPartner& p) { return p.smooth; }))
+    table.content_with_smooth(kGrain, kSmoothPlane, law(0.0));
   for (std::size_t k = 0; k < softs; ++k) {
     const std::int32_t other = other_material(k);
     table.contents(other, other);
@@ -218,6 +234,13 @@ class Builder {
   }
   [[nodiscard]] Vec3 at(const CrowdPartner& p) const { return neighbour_place(e_.spec, p, p.direction, 0.0); }
 
+  /// Goes where it is led: without a mass. Where it may turn, it does so with the inertia of what it holds.
+  [[nodiscard]] NewBody<3> led_sphere(const CrowdPartner& p, double fraction, std::int32_t material) const {
+    NewBody<3> body = solid_sphere(at(p), p.ratio * e_.spec.shell_radius, e_.spec.density * fraction, material);
+    body.mass = 0.0;
+    if (!e_.configuration.turning) body.inertia = 0.0;
+    return body;
+  }
   Slot first_shell() {
     Slot grains = e_.centre_bodies;
     each(PartnerKind::soft, [&](const auto&, auto&, std::size_t k) { grains += count(*others_[k]); });
@@ -234,27 +257,19 @@ class Builder {
   }
   void solids() {
     each(PartnerKind::solid, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      NewBody<3> ball;
-      ball.x = at(p);
-      ball.r = p.ratio * e_.spec.shell_radius;
-      ball.material = kSolid;
-      n.body = add_grain(e_.system.particles, ball);
+      n.body = add_grain(e_.system.particles, led_sphere(p, 1.0, kSolid));
     });
   }
   void soft_shells() {
-    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      NewBody<3> shell;
-      shell.x = at(p);
-      shell.r = p.ratio * e_.spec.shell_radius;
-      shell.material = kWall;
-      n.body = add_shell(e_.system.particles, shell);
+    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t k) {
+      n.body = add_shell(e_.system.particles, led_sphere(p, solid_fraction(*others_[k], fraction_), kWall));
     });
   }
   void planes() {
     each(PartnerKind::plane, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
       NewBody<3> plane;
       plane.x = at(p);
-      plane.material = kPlane;
+      plane.material = p.smooth ? kSmoothPlane : kPlane;
       n.body = add_plane(e_.system.particles, plane, -p.direction);
     });
   }
@@ -283,7 +298,7 @@ CrowdExperiment make_crowd(const SoftParticleSpec& spec, const CrowdConfiguratio
   e.overlap.assign(configuration.partners.size(), 0.0);
   e.system.materials = crowd_materials(spec, others.size());
   const auto laws_with = [&](double restitution) {
-    return crowd_laws(spec, e.system.materials[kGrain], restitution, others.size(), inner ? laws : nullptr);
+    return crowd_laws(e, restitution, others.size(), inner ? laws : nullptr);
   };
   e.undamped = laws_with(1.0);
   e.damped = laws_with(spec.restitution);

@@ -1,5 +1,6 @@
 #include "common/contact/crowd_from_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -21,6 +22,16 @@ const CrowdLaw& usable(const LawTableEntry& entry, Crowd form) {
   return *law;
 }
 
+/// How planes count that are less rough than grains: between those without friction and those with that of the grains.
+LostVolumeTable planes_of(const LawTableEntry& entry, const CrowdModel& model, double wall_friction) {
+  LostVolumeTable planes = model.solid;
+  if (wall_friction < 0.0 || !(entry.spec.friction > 0.0)) return planes;
+  const double rough = std::min(1.0, wall_friction / entry.spec.friction);
+  planes.plane_weight = std::pow(model.smooth.a, 1.0 - rough);
+  planes.common_exponent = model.smooth.b + rough * (1.0 - model.smooth.b);
+  return planes;
+}
+
 template <Crowd kCrowd, bool kUnloading, bool kRolling>
 CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const CrowdChoices& choices) {
   SoftCrowd<kCrowd, kUnloading, kRolling> law;
@@ -36,7 +47,9 @@ CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const Cro
   };
   CrowdLaws out;
   slides(entry.slide_plane);
+  law.partner = planes_of(entry, model, choices.wall_friction);
   out.soft_plane = law;
+  law.partner = model.solid;
   slides(entry.slide_solid);
   out.soft_solid = law;
   law.i_is_soft = false;
@@ -68,7 +81,7 @@ CrowdModel crowd_model(const CrowdLaw& law) {
   model.crowd = law.form;
   model.form.pressure = {law.a.value, law.b.value, law.delta.value};
   model.form.coupling = {law.m0.value, law.m1.value, law.m2.value};
-  for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {
+  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft}) {
     std::vector<double> ratios;
     std::vector<double> weights;
     double exponent = 1.0;

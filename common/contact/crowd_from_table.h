@@ -18,6 +18,7 @@ struct CrowdChoices {
   Crowd form = Crowd::directional;
   double modulus = 0.0;            ///< E of what the soft particles hold [Pa]
   double friction = -1.0;          ///< mu_soft; negative: as measured
+  double wall_friction = -1.0;     ///< of planes: what grains have with them; negative: as among themselves
   bool unloading = false;          ///< with the measured unloading branch
   bool rolling = true;             ///< with rolling resistance, where that was measured
   std::optional<Beyond> beyond{};  ///< instead of what the table says

@@ -10,7 +10,7 @@ constexpr double kPlaneLike = 100.0;
 double positive(double x) { return std::max(x, 0.0); }
 
 PairConstants constants_of(const CrowdModel& model, const CrowdPartner& p) {
-  if (p.kind == PartnerKind::plane) return model.solid.at(0.0);
+  if (p.kind == PartnerKind::plane) return p.smooth ? model.smooth : model.solid.at(0.0);
   if (p.kind == PartnerKind::solid) return model.solid.at(p.ratio);
   return model.soft.at(p.ratio);
 }
@@ -72,6 +72,10 @@ double crowd_volume(const CrowdModel& model, const std::vector<CrowdPartner>& pa
 
 void set_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
                   const std::vector<double>& log_weights, double exponent) {
+  if (kind == PartnerKind::plane) {
+    model.smooth = {std::exp(log_weights.front()), exponent};
+    return;
+  }
   LostVolumeTable& table = kind == PartnerKind::solid ? model.solid : model.soft;
   std::vector<double> x;
   std::vector<double> y;

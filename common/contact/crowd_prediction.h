@@ -15,6 +15,7 @@ struct CrowdModel {
   CrowdForm form;
   LostVolumeTable solid;
   LostVolumeTable soft;
+  PairConstants smooth{1.0, 1.0};  ///< w and m of a plane without friction
 };
 
 /// Forces on the neighbours over E Rs^2 at these overlaps [Rs]. Soft neighbours have this one contact only.
@@ -25,7 +26,8 @@ std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<Crow
 double crowd_volume(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
                     const std::vector<double>& overlap);
 
-/// Sets w per ratio (ascending; soft neighbours: at least 1, the same from either side) and m of one kind.
+/// Sets w per ratio (ascending; soft neighbours: at least 1, the same from either side) and m of one kind; of planes
+/// those without friction, whatever the ratio.
 void set_partners(CrowdModel& model, PartnerKind kind, const std::vector<double>& ratios,
                   const std::vector<double>& log_weights, double exponent);
 

@@ -15,15 +15,17 @@
 
 namespace softgrain {
 
-/// Constants w and m of nu = w v^m against the logarithm of R'/R; planes and the insides of shells have w = m = 1.
+/// Constants w and m of nu = w v^m against the logarithm of R'/R; insides of shells, and planes with the friction of
+/// the grains, have w = m = 1.
 struct LostVolumeTable {
   MonotoneCurve log_weight;      ///< ln w over ln(R'/R)
   MonotoneCurve exponent;        ///< m over ln(R'/R); empty: common_exponent
   double common_exponent = 1.0;  ///< m at every ratio: of soft-soft pairs
+  double plane_weight = 1.0;     ///< w of planes
 
   /// {w, m} for a partner of radius ratio * R; ratio <= 0: plane or inside of a shell.
   [[nodiscard]] PairConstants at(double ratio) const {
-    if (!(ratio > 0.0) || log_weight.empty()) return {1.0, common_exponent};
+    if (!(ratio > 0.0) || log_weight.empty()) return {plane_weight, common_exponent};
     const double x = std::log(ratio);
     return {std::exp(log_weight.value(x)), exponent.empty() ? common_exponent : exponent.value(x)};
   }

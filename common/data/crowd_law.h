@@ -15,25 +15,27 @@ namespace softgrain {
 
 /// nu = w v^m of one kind of neighbour at one size ratio.
 struct PartnerRow {
-  PartnerKind kind = PartnerKind::solid;
-  double ratio = 1.0;        ///< radius of the neighbour over that of the soft particle
-  Estimate weight;           ///< w
-  Estimate exponent;         ///< m; the same for all ratios of soft neighbours
-  double overlap_max = 0.0;  ///< h over the smaller radius, the end of what was measured
-  double error = 0.0;        ///< root mean square of (law - mean) over that of the mean
+  PartnerKind kind = PartnerKind::solid;  ///< plane: one without friction; those with that of the grains have w = m = 1
+  double ratio = 1.0;                     ///< radius of the neighbour over that of the soft particle; 0 of planes
+  Estimate weight;                        ///< w
+  Estimate exponent;                      ///< m; the same for all ratios of soft neighbours
+  double overlap_max = 0.0;               ///< h over the smaller radius, the end of what was measured
+  double error = 0.0;                     ///< root mean square of (law - mean) over that of the mean
 };
 
 /// What a fit of forces does with a configuration.
 enum class CrowdUse {
   fitted,
   predicted,  ///< held out, with every other path that begins with the same loading
-  repeated    ///< the same loading of the same packings as one that is fitted or predicted: says nothing new
+  repeated,   ///< the same loading of the same packings as one that is fitted or predicted: says nothing new
+  apart       ///< of no weight in this form of law: a held shell, where crowds were measured with free ones
 };
 
 template <>
 inline constexpr auto words<CrowdUse> = word_list<CrowdUse>({{CrowdUse::fitted, "fitted"},
                                                              {CrowdUse::predicted, "predicted"},
-                                                             {CrowdUse::repeated, "repeated"}});
+                                                             {CrowdUse::repeated, "repeated"},
+                                                             {CrowdUse::apart, "apart"}});
 
 /// What somebody may ask for: a form, or (empty) the best of an entry.
 using WantedForm = std::optional<Crowd>;
@@ -58,7 +60,7 @@ struct CrowdLaw {
   Estimate m0;  ///< coupling M(c) = m0 - m1 c - m2 c^2
   Estimate m1;
   Estimate m2;
-  std::vector<PartnerRow> partners;  ///< solid, then soft, by ratio
+  std::vector<PartnerRow> partners;  ///< solid, then soft, by ratio, then planes without friction
   std::vector<ConfigurationError> errors;
   double error_fitted = 0.0;                                         ///< mean over the configurations of the fit
   double error_held_out = std::numeric_limits<double>::quiet_NaN();  ///< over those left out of it; NaN: none was

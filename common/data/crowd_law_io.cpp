@@ -33,9 +33,10 @@ void write_head(Out out, const LawTable& table, const Provenance& provenance, co
   fmt::format_to(out, "seed = {}\nthreads = {}\n", quoted(fmt::format("{}", provenance.seed)), provenance.threads);
   if (!table_id.empty()) fmt::format_to(out, "table = {}  # the .h5 that belongs to this table\n", quoted(table_id));
   fmt::format_to(out, "\n[definitions]\n");
-  fmt::format_to(out,
-                 "lost_volume = \"nu = w v^m, v the volume of the lens with the neighbour over that of the shell; a "
-                 "plane has w = m = 1\"\n");
+  fmt::format_to(
+      out,
+      "lost_volume = \"nu = w v^m, v the volume of the lens with the neighbour over that of the shell; a "
+      "plane with the friction of the grains has w = m = 1; rows of kind plane are of planes without friction\"\n");
   fmt::format_to(out,
                  "equivalent_volume = \"S^2 = sum_cd M(n_c.n_d) nu_c nu_d, M = 1 for a contact with itself, else m0 - "
                  "m1 c - m2 c^2; the pair law has M = 0 else\"\n");
@@ -119,8 +120,10 @@ Range range_of(const CrowdParameterName& p) {
 
 PartnerRow read_partner(const SceneTable& t) {
   PartnerRow row;
-  row.kind = t.choice("kind", {PartnerKind::solid, PartnerKind::soft});
-  row.ratio = t.number("ratio", Unit::none, Range::positive());
+  row.kind = t.choice<PartnerKind>("kind");
+  row.ratio = t.number("ratio", Unit::none, Range::not_negative());
+  if ((row.kind == PartnerKind::plane) != (row.ratio == 0.0))
+    t.mistake("ratio", "0 is that of planes, and theirs alone");
   row.weight = read_estimate_text(t.table("weight"), Range{0.0, 1e3, true, false});
   row.exponent = read_estimate_text(t.table("exponent"), Range{0.0, kLargestExponent, true, false});
   row.overlap_max = t.number("overlap_max", Unit::none, Range::closed(0.0, kLargestOverlap));
@@ -148,7 +151,7 @@ CrowdLaw read_law(const SceneTable& t) {
     law.errors.push_back({e.text("configuration"), e.choice<CrowdUse>("use"),
                           e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
                           e.number("noise", Unit::none, Range::not_negative())});
-  for (const PartnerKind kind : {PartnerKind::solid, PartnerKind::soft}) {
+  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft}) {
     const auto rows = law.rows(kind);
     for (std::size_t k = 1; k < rows.size(); ++k)
       if (!(rows[k - 1].ratio < rows[k].ratio)) t.reject("partner", "ratios of one kind must ascend");

@@ -40,6 +40,7 @@ void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration
   const h5::Group g = group.create("partners");
   g.attribute("kinds", "0 plane, 1 solid, 2 soft");
   write_column(g, "kind", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.kind); });
+  write_column(g, "smooth", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.smooth); });
   write_records(g, all);
 }
 
@@ -48,6 +49,7 @@ std::vector<CrowdPartner> read_partners(const h5::Group& group) {
   std::vector<CrowdPartner> all(column_length(g, "kind"));
   read_integers(g, "kind", all,
                 [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
+  if (g.has("smooth")) read_integers(g, "smooth", all, [](auto& p, auto v) { p.smooth = v != 0; });
   read_records(g, all);
   for (const CrowdPartner& p : all) {
     constexpr double kUnit = 1e-6;
@@ -95,6 +97,7 @@ void write_configurations(const h5::Group& root, const std::vector<CrowdConfigur
   const h5::Group g = root.create("configurations");
   for (std::size_t k = 0; k < all.size(); ++k) g.attribute("name_" + std::to_string(k), all[k].name);
   write_records(g, all);
+  write_column(g, "turning", "1", all, [](const auto& c) { return static_cast<std::int64_t>(c.turning); });
   write_column(g, "partner_count", "1", all, [](const auto& c) { return c.partners.size(); });
   write_column(g, "stage_count", "1", all, [](const auto& c) { return c.stages.size(); });
   write_partners(g, all);
@@ -106,6 +109,7 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
   std::vector<CrowdConfiguration> all(column_length(g, "centre_free"));
   for (std::size_t k = 0; k < all.size(); ++k) all[k].name = g.text("name_" + std::to_string(k));
   read_records(g, all);
+  if (g.has("turning")) read_integers(g, "turning", all, [](auto& c, auto v) { c.turning = v != 0; });
   const std::vector<CrowdPartner> partners = read_partners(g);
   const std::vector<CrowdStage> stages = read_stages(g);
   Slices partner_slices(partners.size());

@@ -22,8 +22,9 @@ inline constexpr auto words<PartnerKind> =
 /// One neighbour; it is moved towards the centre and never by forces.
 struct CrowdPartner {
   PartnerKind kind = PartnerKind::plane;
-  double ratio = 0.0;  ///< its radius over Rs; 0 for planes (infinite)
-  Vec3 direction{};    ///< unit vector from the centre of the soft particle to the neighbour
+  double ratio = 0.0;   ///< its radius over Rs; 0 for planes (infinite)
+  Vec3 direction{};     ///< unit vector from the centre of the soft particle to the neighbour
+  bool smooth = false;  ///< a plane without friction; else mu is that of the grains
 };
 
 enum class CrowdMove {
@@ -59,6 +60,7 @@ struct CrowdConfiguration {
   std::vector<CrowdStage> stages;
   bool centre_free = false;  ///< the shell moves and turns with the forces of its grains; else it is held
   bool held_out = false;     ///< not for the fit: the law has to predict it
+  bool turning = false;      ///< neighbours that are spheres turn with the forces on them; they go where they are led
 };
 
 /// One relaxed state.

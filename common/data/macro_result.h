@@ -167,6 +167,10 @@ struct MacroCurve {
   [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }  ///< empty: made by a law
 };
 
+/// Columns of `more`: the stresses of the same test run a second time, with strains that differ in the twelfth digit.
+inline constexpr const char* kAgainAxial = "again_stress_axial";
+inline constexpr const char* kAgainLateral = "again_stress_lateral";
+
 /// One curve as a group of a file, for checkpoints.
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve);
 /// Throws FileTrouble.

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "macrosim/twin_places.h"
 #include "pipelines/compare/compare.h"
 
 namespace softgrain {
@@ -96,11 +98,75 @@ MeanError mean_of(const Pairs& pairs, const std::function<double(const MacroCurv
   return finite_mean(values);
 }
 
+/// Mean axial stresses of the curves but one; empty where they do not have the same points.
+std::vector<double> mean_axial(const Curves& curves, std::size_t without) {
+  std::vector<double> sum;
+  double count = 0.0;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    if (k == without) continue;
+    const std::vector<double>& stress = curves[k]->stress_axial;
+    if (stress.size() != curves.front()->strain.size()) return {};
+    sum.resize(stress.size(), 0.0);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += stress[i];
+    count += 1.0;
+  }
+  for (double& x : sum) x /= count;
+  return sum;
+}
+
+/// Relative L2 difference of mean curves. Jackknife: n - 1 over n times the sum of squares about the mean of the values
+/// without one sample each.
+MeanError difference_of_means(const Pairs& pairs) {
+  Curves mine;
+  Curves twins;
+  for (const auto& [c, t] : pairs) mine.push_back(c), twins.push_back(t);
+  const auto value = [&](std::size_t without) {
+    const std::vector<double> a = mean_axial(mine, without);
+    const std::vector<double> b = mean_axial(twins, without);
+    return a.empty() || b.empty() ? kNaN : difference(abscissa_of(*mine.front()), a, abscissa_of(*twins.front()), b);
+  };
+  MeanError out{0, kNaN, kNaN, kNaN};
+  if (pairs.empty() || !std::isfinite(value(pairs.size()))) return out;
+  out = {pairs.size(), value(pairs.size()), kNaN, kNaN};
+  if (pairs.size() < 3) return out;
+  std::vector<double> values;
+  for (std::size_t k = 0; k < pairs.size(); ++k) values.push_back(value(k));
+  const MeanError spread = mean_error(values);
+  out.error = spread.deviation *
+              std::sqrt(std::pow(static_cast<double>(values.size()) - 1.0, 2) / static_cast<double>(values.size()));
+  return out;
+}
+
+/// Law over twin, forces of all recorded points.
+double places_ratio(const MacroCurve& twin, const std::string& engine, const char* partner) {
+  const auto sum = [&](const std::string& name) {
+    const auto column = twin.more.find(places_column(name, partner));
+    double total = 0.0;
+    if (column != twin.more.end())
+      for (const double f : column->second) total += f;
+    return total;
+  };
+  return ratio(sum(engine), sum(twin.engine));
+}
+
+double own_noise(const MacroCurve& c) {
+  const auto again = c.more.find(kAgainAxial);
+  if (again == c.more.end()) return kNaN;
+  return difference(abscissa_of(c), again->second, abscissa_of(c), c.stress_axial) / std::numbers::sqrt2;
+}
+
+/// A crowd law goes over its contacts once for the sums of each particle and once for the forces.
+double visits(const MacroCurve& c) {
+  const bool crowd = c.law.form && *c.law.form != Crowd::pair;
+  return (crowd ? 2.0 : 1.0) * static_cast<double>(c.cost.contact_evaluations);
+}
+
 TwinErrors errors_against(const Pairs& pairs) {
   using C = const MacroCurve&;
   TwinErrors e;
   e.axial = mean_of(
       pairs, [](C c, C t) { return difference(abscissa_of(c), c.stress_axial, abscissa_of(t), t.stress_axial); });
+  e.axial_of_mean = difference_of_means(pairs);
   e.axial_end = mean_of(pairs, [](C c, C t) { return ratio(last(c.stress_axial), last(t.stress_axial)); });
   e.deviator = mean_of(pairs, deviator_difference);
   e.lateral_ratio = mean_of(pairs, [](C c, C t) { return lateral_ratio(c) - lateral_ratio(t); });
@@ -113,10 +179,14 @@ TwinErrors errors_against(const Pairs& pairs) {
       mean_of(pairs, [](C c, C t) { return kolmogorov_smirnov(over_mean(c.body_forces), over_mean(t.body_forces)); });
   Cost engine;
   Cost twin;
-  for (const auto& [c, t] : pairs) engine += c->cost, twin += t->cost;
+  double mine = 0.0;
+  double theirs = 0.0;
+  for (const auto& [c, t] : pairs) {
+    engine += c->cost, twin += t->cost;
+    mine += visits(*c), theirs += visits(*t);
+  }
   e.speedup_seconds = ratio(twin.seconds, engine.seconds);
-  e.speedup_evaluations =
-      ratio(static_cast<double>(twin.contact_evaluations), static_cast<double>(engine.contact_evaluations));
+  e.speedup_evaluations = ratio(theirs, mine);
   return e;
 }
 
@@ -132,7 +202,15 @@ EngineScore score_of(const std::vector<MacroCurve>& curves, const std::string& e
   s.fabric = mean_of(mine, [](C c) { return last(c.fabric_bodies); });
   s.force_mean = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).first; });
   s.force_variation = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).second; });
-  s.contact_evaluations = mean_of(mine, [](C c) { return static_cast<double>(c.cost.contact_evaluations); }).mean;
+  s.contact_evaluations = mean_of(mine, visits).mean;
+  s.noise = mean_of(mine, own_noise);
+  const auto at_places = [&](const char* partner) {
+    const bool law = !s.twin();
+    return law ? mean_of(usable_of(curves, to_string(Twin::shelled)),
+                         [&](C c) { return places_ratio(c, engine, partner); })
+               : MeanError{0, kNaN, kNaN, kNaN};
+  };
+  s.places = {at_places("solid"), at_places("wall"), at_places("soft")};
   s.seconds = mean_of(mine, [](C c) { return c.cost.seconds; }).mean;
   const auto against = [&](Twin twin) {
     return s.twin() == twin ? TwinErrors{} : errors_against(pair_up(mine, usable_of(curves, to_string(twin))));
@@ -151,8 +229,8 @@ std::string cell(const MeanError& m, int digits = 4) {
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : ""; }
 
 void add_cells(const TwinErrors& e, std::vector<std::string>& row) {
-  for (const MeanError* m : {&e.axial, &e.axial_end, &e.deviator, &e.lateral_ratio, &e.coordination, &e.fabric,
-                             &e.force_mean, &e.force_distance})
+  for (const MeanError* m : {&e.axial, &e.axial_of_mean, &e.axial_end, &e.deviator, &e.lateral_ratio, &e.coordination,
+                             &e.fabric, &e.force_mean, &e.force_distance})
     row.push_back(cell(*m, 3));
   row.push_back(e.axial.n > 0 ? cell(e.speedup_evaluations) : "");
   row.push_back(e.axial.n > 0 ? cell(e.speedup_seconds) : "");
@@ -196,12 +274,14 @@ std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves) {
 
 ScoreTable score_table(const std::vector<EngineScore>& scores) {
   ScoreTable table;
-  table.header = {"engine", "samples",        "axial stress [Pa]", "lateral/axial",       "coordination",
-                  "fabric", "mean force [N]", "force variation",   "contact evaluations", "seconds"};
+  table.header = {"engine",         "samples",         "axial stress [Pa]",   "lateral/axial", "coordination", "fabric",
+                  "mean force [N]", "force variation", "contact evaluations", "seconds",       "noise"};
+  for (const char* partner : kPlacesPartners)
+    table.header.push_back(fmt::format("at the twin's places: force on {}, law/twin", partner));
   for (const auto& [ignored, twin] : words<Twin>)
-    for (const char* what :
-         {"stress error", "end stress ratio", "deviator error", "lateral/axial difference", "coordination difference",
-          "fabric difference", "mean force ratio", "force KS distance", "fewer evaluations", "faster"})
+    for (const char* what : {"stress error", "stress error of the mean", "end stress ratio", "deviator error",
+                             "lateral/axial difference", "coordination difference", "fabric difference",
+                             "mean force ratio", "force KS distance", "fewer evaluations", "faster"})
       table.header.push_back(fmt::format("{}: {}", twin, what));
   for (const EngineScore& s : scores) {
     std::vector<std::string> row{s.engine, std::to_string(s.samples)};
@@ -210,6 +290,7 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
       row.push_back(cell(*m));
     row.push_back(cell(s.contact_evaluations));
     row.push_back(cell(s.seconds));
+    for (const MeanError* m : {&s.noise, &s.places.solid, &s.places.wall, &s.places.soft}) row.push_back(cell(*m, 3));
     add_cells(s.shelled, row);
     add_cells(s.free, row);
     table.rows.push_back(std::move(row));

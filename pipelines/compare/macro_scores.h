@@ -12,7 +12,8 @@ namespace softgrain {
 
 /// Differences of one engine from one twin, over the samples that both ran usably.
 struct TwinErrors {
-  MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference
+  MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference, per sample
+  MeanError axial_of_mean;       ///< the same of the mean curves over the samples; error by jackknife over them
   MeanError axial_end;           ///< axial stress over that of the twin, at the end
   MeanError deviator;            ///< shear and stages: relative L2 difference of axial minus x stress after the preload
   MeanError lateral_ratio;       ///< lateral over axial stress at the end, minus that of the twin
@@ -24,16 +25,28 @@ struct TwinErrors {
   double speedup_evaluations = 0.0;
 };
 
+/// A law at the places of the shelled twin: sums of the normal forces on soft particles over those of the twin, all
+/// recorded points together.
+struct PlacesScore {
+  MeanError solid;
+  MeanError wall;
+  MeanError soft;
+};
+
 struct EngineScore {
   std::string engine;
-  std::size_t samples = 0;           ///< usable
+  std::size_t samples = 0;  ///< usable
+  /// Relative L2 difference of the axial stress of one run from the same one with strains that differ in the twelfth
+  /// digit, over sqrt(2): what paths alone make of one run. Empty: not run.
+  MeanError noise;
+  PlacesScore places;
   MeanError axial;                   ///< stress at the end [Pa]
   MeanError lateral_ratio;           ///< lateral over axial stress at the end
   MeanError coordination;            ///< of bodies at the end
   MeanError fabric;                  ///< of bodies at the end
   MeanError force_mean;              ///< of contacts between bodies at the end [N]
   MeanError force_variation;         ///< their standard deviation over their mean
-  double contact_evaluations = 0.0;  ///< per sample
+  double contact_evaluations = 0.0;  ///< per sample; a crowd law's visits to a contact count each: there are two
   double seconds = 0.0;              ///< per sample
   TwinErrors shelled;                ///< against the shelled twin; empty means (n = 0) when there is none
   TwinErrors free;

@@ -208,6 +208,7 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   choices.beyond = sources.beyond;
   const CrowdLaws laws = make_crowd_laws(entry, choices);
   choices.friction = spec.wall_friction;
+  choices.wall_friction = spec.wall_friction;
   const RangeCheck check(entry, form);
   const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft};
   return {to_string(form),
@@ -243,8 +244,9 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
     out.text += read_text(out.files.back());
   }
   if (law.has("table")) {
-    out.table = load_law_table(scene.resolve(law.text("table")));
-    out.files.push_back(scene.resolve(law.text("table")));
+    out.table_file = scene.resolve(law.text("table"));
+    out.table = load_law_table(out.table_file);
+    out.files.push_back(out.table_file);
     out.text += read_text(out.files.back());
   }
   if (!out.card && !out.table) law.reject("table", "give a law table, a law card, or both");
@@ -291,6 +293,7 @@ LawSources read_scene_law(const SceneTable& root, const std::string& path) {
   }
   if (kind == LawFileKind::table) {
     out.table = load_law_table(path);
+    out.table_file = path;
     require_fraction(root, out);
     return out;
   }

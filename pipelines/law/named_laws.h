@@ -43,6 +43,7 @@ struct LawSources {
   bool rolling = true;                      ///< with the measured rolling resistance
   std::optional<Beyond> beyond{};           ///< instead of what card or table say
   std::vector<std::string> files{};         ///< that they come from
+  std::string table_file{};                 ///< of them, that of the table
   std::string text;                         ///< of these
 };
 

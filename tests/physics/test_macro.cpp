@@ -8,7 +8,10 @@
 
 #include "common/core/statistics.h"
 #include "common/dynamics/force_pass.h"
+#include "common/neighbours/verlet_list.h"
+#include "macrosim/body_contacts.h"
 #include "macrosim/compression.h"
+#include "macrosim/twin_places.h"
 #include "microsim/shell_packing.h"
 
 namespace softgrain {
@@ -264,6 +267,43 @@ TEST(Macro, AStrainOfTheBoxLeavesTheInsideOfShellsAlone) {
     const Vec3 expected{{-0.01 * from[0], 0.005 * from[1], -0.02 * from[2]}};
     EXPECT_LT(norm(move - expected), 1e-15) << u;
   }
+}
+
+/// At the places of the twin a law says what a law run says there, and the twin what its bodies do.
+TEST(Macro, LawsAreAskedAtThePlacesOfTheTwin) {
+  MacroSpec spec = small_spec();
+  spec.strain_end = 0.08;
+  spec.steps = 2;
+  const MacroPacking packing = make_macro_packing(spec, 3, 0);
+  const SoftLaws laws = in_scene(some_laws(spec.youngs_modulus, spec.friction));
+  CompressionState twin;
+  twin.macro = make_shelled_system(spec, packing, two_contents(), 3, 0);
+  twin.curve = begin_curve(spec, packing, twin.macro, "shelled", 0);
+  compress(twin, spec, {}, [&](const MacroSystem& macro, MacroCurve& curve) {
+    record_places(spec, packing, 0.7, {{"pair", laws}}, macro, curve);
+  });
+  for (const char* partner : kPlacesPartners)
+    for (const char* engine : {"shelled", "pair"})
+      EXPECT_EQ(twin.curve.more.at(places_column(engine, partner)).size(), twin.curve.strain.size()) << partner;
+  const MacroPacking places = packing_of_twin(twin.macro, packing);
+  EXPECT_EQ(places.high, box_high(twin.macro.system, twin.macro.box));
+  MacroSystem there = make_law_system(spec, places, laws, 0.7);
+  rebuild_neighbours(there.system);
+  const SoftForces law = soft_forces(there, places);
+  EXPECT_GT(law.solid, 0.0);
+  EXPECT_EQ(twin.curve.more.at("places_pair_solid").back(), law.solid);
+  EXPECT_EQ(twin.curve.more.at("places_pair_wall").back(), law.wall);
+  // All forces between bodies of the twin: those on soft particles and those between solid grains.
+  const SoftForces soft = soft_forces(twin.macro, packing);
+  double all = 0.0;
+  double solids = 0.0;
+  for (const BodyContact& c : body_contacts(twin.macro, contact_records(twin.macro.system))) {
+    all += c.normal_force;
+    const bool b_solid = c.b >= twin.macro.bodies || !packing.bodies[static_cast<std::size_t>(c.b)].soft;
+    if (!packing.bodies[static_cast<std::size_t>(c.a)].soft && b_solid) solids += c.normal_force;
+  }
+  EXPECT_NEAR(soft.solid + soft.wall + soft.soft, all - solids, 1e-12 * all);
+  EXPECT_EQ(twin.curve.more.at("places_shelled_solid").back(), soft.solid);
 }
 
 TEST(Macro, TheTwinHoldsTheSameBodies) {

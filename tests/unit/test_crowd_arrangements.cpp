@@ -56,6 +56,70 @@ TEST(CrowdArrangements, TheShallowOneIsTheFirst) {
   EXPECT_EQ(depth_shares(Arrangement::opposite, 0.4), (std::vector<double>{1.0, 1.0}));
 }
 
+ScatterChoice scattered(std::int64_t count, std::uint64_t draw) {
+  ScatterChoice choice;
+  choice.count = count;
+  choice.draw = draw;
+  choice.ratios = {0.5, 2.0};
+  return choice;
+}
+
+/// Whatever is drawn holds a body from all sides, and one neighbour presses as deep as was asked for.
+TEST(CrowdArrangements, ScatteredNeighboursLeaveNoWayOut) {
+  for (const std::int64_t count : {4, 5, 6, 8, 12})
+    for (const std::uint64_t draw : {1U, 2U, 3U}) {
+      const auto all = scattered_neighbours(scattered(count, draw));
+      ASSERT_EQ(all.size(), static_cast<std::size_t>(count));
+      double deepest = 0.0;
+      for (const ScatteredNeighbour& n : all) {
+        EXPECT_NEAR(norm(n.partner.direction), 1.0, 1e-12);
+        EXPECT_GE(n.share, 0.3);
+        deepest = std::max(deepest, n.share);
+      }
+      EXPECT_EQ(deepest, 1.0);
+      for (const ScatteredNeighbour& probe : scattered_neighbours(scattered(20, 77))) {
+        double nearest = -1.0;
+        for (const ScatteredNeighbour& n : all)
+          nearest = std::max(nearest, dot(n.partner.direction, probe.partner.direction));
+        EXPECT_GT(nearest, 0.1) << count << " neighbours, draw " << draw;
+      }
+    }
+}
+
+TEST(CrowdArrangements, ADrawIsTheSameAlwaysAndAnotherOneIsNot) {
+  const auto one = scattered_neighbours(scattered(6, 1));
+  const auto again = scattered_neighbours(scattered(6, 1));
+  const auto other = scattered_neighbours(scattered(6, 2));
+  EXPECT_EQ(one[3].partner.direction, again[3].partner.direction);
+  EXPECT_EQ(one[3].share, again[3].share);
+  EXPECT_NE(one[3].partner.direction, other[3].partner.direction);
+  // Of one kind or mixed, they come from the same sides.
+  ScatterChoice planes = scattered(6, 1);
+  planes.kind = PartnerKind::plane;
+  planes.smooth = true;
+  for (const ScatteredNeighbour& n : scattered_neighbours(planes)) {
+    EXPECT_EQ(n.partner.kind, PartnerKind::plane);
+    EXPECT_TRUE(n.partner.smooth);
+    EXPECT_EQ(n.partner.ratio, 0.0);
+  }
+  EXPECT_EQ(scattered_neighbours(planes)[2].partner.direction, one[2].partner.direction);
+}
+
+TEST(CrowdArrangements, MixedNeighboursAreOfAllKindsAndSizes) {
+  int kinds[3] = {0, 0, 0};
+  int large = 0;
+  for (std::uint64_t draw = 1; draw <= 50; ++draw)
+    for (const ScatteredNeighbour& n : scattered_neighbours(scattered(6, draw))) {
+      ++kinds[static_cast<int>(n.partner.kind)];
+      large += n.partner.ratio == 2.0 ? 1 : 0;
+      EXPECT_EQ(n.partner.kind == PartnerKind::plane, n.partner.ratio == 0.0);
+    }
+  EXPECT_NEAR(kinds[static_cast<int>(PartnerKind::solid)], 180, 30);
+  EXPECT_NEAR(kinds[static_cast<int>(PartnerKind::plane)], 60, 24);
+  EXPECT_NEAR(kinds[static_cast<int>(PartnerKind::soft)], 60, 24);
+  EXPECT_NEAR(large, 120, 30);
+}
+
 TEST(CrowdArrangements, SlidesGoAcross) {
   EXPECT_EQ(slide_direction({{1.0, 0.0, 0.0}}), (Vec3{{0.0, 1.0, 0.0}}));
   for (const Vec3& d : directions_of(Arrangement::icosahedron)) {

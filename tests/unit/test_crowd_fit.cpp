@@ -197,6 +197,60 @@ TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
   EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
 }
 
+/// Crowds around free shells: laws of crowds are fitted to them alone, the pair law to one neighbour of a held one.
+TEST(CrowdFit, WhereShellsWereFreeHeldOnesServeThePairLawAlone) {
+  CrowdModel crowd = known(Crowd::directional);
+  crowd.smooth = {0.6, 1.2};
+  auto list = arrangements();
+  std::vector<CrowdConfiguration> free;
+  for (const CrowdConfiguration& c : list) {
+    if (c.partners.size() == 1) continue;
+    free.push_back(c);
+    free.back().centre_free = true;
+    free.back().name += "-free";
+  }
+  free.push_back(crowd_configuration(Arrangement::random_8, PartnerKind::plane, 0.0, 0.2));
+  free.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2));
+  free.back().name = "smooth";
+  for (CrowdPartner& p : free.back().partners) p.smooth = true;
+  free.push_back(crowd_configuration(Arrangement::tetrahedron, PartnerKind::solid, 0.5, 0.3));
+  free.push_back(crowd_configuration(Arrangement::cube, PartnerKind::solid, 2.0, 0.25));
+  free.push_back(crowd_configuration(Arrangement::cube, PartnerKind::soft, 1.0, 0.3));
+  free.push_back(crowd_configuration(Arrangement::octant, PartnerKind::plane, 0.0, 0.25));
+  free.back().name = "mixed";
+  free.back().partners[0] = {PartnerKind::solid, 2.0, free.back().partners[0].direction};
+  free.back().partners[1] = {PartnerKind::soft, 1.0, free.back().partners[1].direction};
+  for (std::size_t k = 5; k < free.size(); ++k) free[k].centre_free = true;
+  // Held shells are stiffer: a law that listened to both would be neither.
+  CrowdModel held = crowd;
+  held.form.pressure.a *= 1.5;
+  CrowdMeasurements data = crowd_measurements(crowd, free, {});
+  for (CrowdRun& run : data.runs) run.configuration += static_cast<std::int64_t>(list.size());
+  const CrowdMeasurements stiff = crowd_measurements(held, list, {});
+  data.runs.insert(data.runs.end(), stiff.runs.begin(), stiff.runs.end());
+  data.configurations = list;
+  data.configurations.insert(data.configurations.end(), free.begin(), free.end());
+  const LawTableEntry entry = fit_crowd_laws(data, quick());
+  const CrowdLaw& law = *entry.find(Crowd::directional);
+  EXPECT_EQ(entry.best, Crowd::directional);
+  EXPECT_NEAR(law.a.value, 0.62, 1e-6);
+  EXPECT_NEAR(law.m1.value, 0.55, 1e-5);
+  EXPECT_NEAR(entry.find(Crowd::pair)->a.value, 1.5 * 0.62, 1e-6);
+  const auto smooth = law.rows(PartnerKind::plane);
+  ASSERT_EQ(smooth.size(), 1U);
+  EXPECT_NEAR(smooth[0].weight.value, 0.6, 1e-5);
+  EXPECT_NEAR(smooth[0].exponent.value, 1.2, 1e-5);
+  EXPECT_LT(law.error_fitted, 1e-6) << "the mixed one too";
+  for (const ConfigurationError& e : law.errors) {
+    if (e.name.starts_with("cube-plane") && !e.name.ends_with("free")) {
+      EXPECT_EQ(e.use, CrowdUse::apart) << e.name;
+    }
+    if (e.name == "mixed") {
+      EXPECT_EQ(e.use, CrowdUse::fitted);
+    }
+  }
+}
+
 TEST(CrowdFit, RollsGiveStiffnessAndLimit) {
   auto list = arrangements();
   for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::soft})

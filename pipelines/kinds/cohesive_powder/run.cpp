@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
@@ -14,7 +15,6 @@
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
 #include "pipelines/kinds/cohesive_powder/variants_run.h"
-#include "pipelines/run/parallel_tasks.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/sample_statistics.h"
 

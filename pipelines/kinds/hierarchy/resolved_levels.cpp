@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/law_table/kept_crowd.h"
-#include "pipelines/run/parallel_tasks.h"
 
 namespace softgrain {
 

@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "common/io/interrupt.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/soft_particle/stage.h"
-#include "pipelines/run/parallel_tasks.h"
 
 namespace softgrain {
 

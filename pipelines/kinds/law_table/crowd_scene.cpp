@@ -1,8 +1,11 @@
 #include "pipelines/kinds/law_table/crowd_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "microsim/crowd_arrangements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
@@ -55,6 +58,13 @@ enum class CrowdPath {
   roll
 };
 enum class Centre { fixed, free };
+/// As PartnerKind, or all of them.
+enum class Partners {
+  plane = static_cast<int>(PartnerKind::plane),
+  solid = static_cast<int>(PartnerKind::solid),
+  soft = static_cast<int>(PartnerKind::soft),
+  mixed
+};
 
 }  // namespace
 
@@ -68,6 +78,9 @@ inline constexpr auto words<CrowdPath> = word_list<CrowdPath>({{CrowdPath::toget
                                                                {CrowdPath::slide_press, "slide-press"},
                                                                {CrowdPath::roll, "roll"}});
 template <>
+inline constexpr auto words<Partners> = word_list<Partners>(
+    {{Partners::plane, "plane"}, {Partners::solid, "solid"}, {Partners::soft, "soft"}, {Partners::mixed, "mixed"}});
+template <>
 inline constexpr auto words<Centre> = word_list<Centre>({{Centre::fixed, "fixed"}, {Centre::free, "free"}});
 
 namespace {
@@ -75,8 +88,10 @@ namespace {
 /// What a [[configuration]] says, before it becomes neighbours and stages.
 struct Wanted {
   Arrangement arrangement = Arrangement::one;
-  PartnerKind partner = PartnerKind::plane;
+  std::optional<PartnerKind> partner{};  ///< empty: mixed
   double ratio = 0.0;
+  bool smooth = false;
+  ScatterChoice scatter{};
   double overlap = 0.0;
   double shallow = 1.0;
   CrowdPath path = CrowdPath::together;
@@ -104,22 +119,63 @@ void read_way(const SceneTable& t, Wanted& w) {
     t.mistake("angle", "only an oblique path has it: path = \"oblique\"");
 }
 
+/// Radii of spheres: one, or those that scattered ones are drawn from.
+void read_ratios(const SceneTable& t, Wanted& w) {
+  const bool scattered = w.arrangement == Arrangement::scattered;
+  if (w.partner == PartnerKind::plane) {
+    for (const char* key : {"ratio", "ratios"})
+      if (t.has(key)) t.mistake(key, "a plane has no radius; leave it out");
+  } else if (scattered && t.has("ratios")) {
+    w.scatter.ratios = t.numbers("ratios", Unit::none, Range::positive());
+    if (w.scatter.ratios.empty()) {
+      t.mistake("ratios", "at least one");
+      w.scatter.ratios = {1.0};
+    }
+    if (t.has("ratio")) t.mistake("ratio", "the ratios are given already; leave one of the two out");
+  } else {
+    w.ratio = t.number("ratio", Unit::none, Range::positive(), 1.0);
+    w.scatter.ratios = {w.ratio};
+    if (t.has("ratios")) t.mistake("ratios", "only the arrangement scattered draws radii; give one ratio");
+  }
+  for (const double ratio : w.scatter.ratios)
+    if (w.overlap >= ratio)
+      t.mistake("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
+}
+
+/// Which neighbours are drawn.
+void read_scatter(const SceneTable& t, Wanted& w) {
+  ScatterChoice& s = w.scatter;
+  s.kind = w.partner;
+  s.smooth = w.smooth;
+  s.count = t.count("neighbours", 4, 20, s.count);
+  s.draw = static_cast<std::uint64_t>(t.count("draw", 0, 1000000, static_cast<std::int64_t>(s.draw)));
+  s.shallow = t.number("shallow", Unit::none, kShare, s.shallow);
+}
+
 Wanted read_wanted(const SceneTable& t) {
   Wanted w;
   w.arrangement = t.choice<Arrangement>("arrangement");
-  w.partner = t.choice<PartnerKind>("partner");
-  const bool plane = w.partner == PartnerKind::plane;
-  if (plane && t.has("ratio")) t.mistake("ratio", "a plane has no radius; leave it out");
-  if (!plane) w.ratio = t.number("ratio", Unit::none, Range::positive(), 1.0);
+  const bool scattered = w.arrangement == Arrangement::scattered;
+  const Partners partner = t.choice<Partners>("partner");
+  if (partner == Partners::mixed && !scattered)
+    t.mistake("partner", "only the arrangement scattered mixes them: one of plane, solid, soft");
+  if (partner != Partners::mixed) w.partner = static_cast<PartnerKind>(partner);
   w.overlap = t.number("overlap", Unit::none, kShare);
-  if (!plane && w.overlap >= w.ratio)
-    t.mistake("overlap", "must be below the ratio, so that the neighbour's centre stays outside");
+  read_ratios(t, w);
+  w.smooth = t.flag("smooth", false);
+  if (w.smooth && w.partner.value_or(PartnerKind::plane) != PartnerKind::plane)
+    t.mistake("smooth", "only planes are without friction");
   w.path = t.choice<CrowdPath>("path", CrowdPath::together);
   read_way(t, w);
+  if (scattered)
+    read_scatter(t, w);
+  else
+    for (const char* key : {"neighbours", "draw"})
+      if (t.has(key)) t.mistake(key, "only the arrangement scattered is drawn");
   if (w.arrangement == Arrangement::beside_five)
     w.shallow = t.number("shallow", Unit::none, Range{0.0, 1.0, true, false}, 0.5);
-  else if (t.has("shallow"))
-    t.mistake("shallow", "only the arrangement beside-five has a shallow neighbour");
+  else if (!scattered && t.has("shallow"))
+    t.mistake("shallow", "only the arrangements beside-five and scattered have shallow neighbours");
   return w;
 }
 
@@ -168,8 +224,10 @@ std::string short_number(double x) {
 }
 
 std::string default_name(const Wanted& w, bool free) {
-  std::string name = to_string(w.arrangement) + "-" + to_string(w.partner);
-  if (w.partner != PartnerKind::plane) name += "-" + short_number(w.ratio);
+  std::string name = to_string(w.arrangement) + "-" + (w.partner ? to_string(*w.partner) : "mixed");
+  if (w.arrangement == Arrangement::scattered) name += fmt::format("-{}-{}", w.scatter.count, w.scatter.draw);
+  if (w.smooth) name += "-smooth";
+  if (w.ratio > 0.0) name += "-" + short_number(w.ratio);
   if (w.path != CrowdPath::together) name += "-" + to_string(w.path);
   if (w.path == CrowdPath::oblique) name += "-" + short_number(w.angle);
   return free ? name + "-free" : name;
@@ -179,11 +237,20 @@ CrowdConfiguration read_configuration(const SceneTable& t) {
   const Wanted w = read_wanted(t);
   CrowdConfiguration c;
   std::vector<double> deepest = depth_shares(w.arrangement, w.shallow);
+  for (const Vec3& d : directions_of(w.arrangement))
+    c.partners.push_back({w.partner.value_or(PartnerKind::solid), w.ratio, d, w.smooth});
+  if (w.arrangement == Arrangement::scattered)
+    for (const ScatteredNeighbour& n : scattered_neighbours(w.scatter)) {
+      c.partners.push_back(n.partner);
+      deepest.push_back(n.share);
+    }
   for (double& h : deepest) h *= w.overlap;
-  for (const Vec3& d : directions_of(w.arrangement)) c.partners.push_back({w.partner, w.ratio, d});
   c.stages = stages_of(w, deepest);
   c.centre_free = t.choice<Centre>("centre", Centre::fixed) == Centre::free;
   c.held_out = t.flag("held_out", false);
+  c.turning = t.flag("turning", false);
+  if (c.turning && w.path != CrowdPath::together && w.path != CrowdPath::sequential && w.path != CrowdPath::unload)
+    t.mistake("turning", "neighbours that slide or roll are led: leave it out");
   c.name = t.text("name", default_name(w, c.centre_free));
   if (c.name.empty()) t.mistake("name", "must not be empty");
   return c;

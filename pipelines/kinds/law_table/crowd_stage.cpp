@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "common/core/parallel_tasks.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "microsim/shell_packing.h"
@@ -13,7 +14,6 @@
 #include "pipelines/kinds/law_table/crowd_plan.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/kinds/law_table/kept_crowd.h"
-#include "pipelines/run/parallel_tasks.h"
 
 namespace softgrain {
 

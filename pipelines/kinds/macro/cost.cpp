@@ -56,8 +56,8 @@ std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, do
 
 /// Core seconds of a whole test, from as much of it as is done in a moment; 0 where nothing is. `test`: compress() or
 /// its like.
-template <class State>
-double try_test(const MacroSpec& spec, State& state, void (*test)(State&, const MacroSpec&, const RunControl<State>&)) {
+template <class State, class Test>
+double try_test(const MacroSpec& spec, State& state, const Test& test) {
   constexpr double kBudget = 0.4;
   double share = 0.0;
   RunControl<State> control{.seconds = kBudget};
@@ -79,7 +79,7 @@ double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLa
   CompressionState state;
   state.macro = make_law_system(spec, packing, law.laws, solid_fraction > 0.0 ? solid_fraction : 1.0);
   state.curve = begin_curve(spec, packing, state.macro, law.name, 0);
-  return try_test(spec, state, compress);
+  return try_test(spec, state, [](auto&... all) { compress(all...); });
 }
 
 double try_cells(const MacroSpec& spec, const MacroPacking& packing) {
@@ -118,6 +118,7 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
   spec.bodies = std::min(spec.bodies, kTrialBodies);
   const double larger = static_cast<double>(setup.spec.bodies) / static_cast<double>(spec.bodies);
   const auto samples = static_cast<double>(setup.samples);
+  const auto runs = static_cast<double>(setup.samples + std::min(setup.samples, setup.noise_samples));
   MacroPacking packing;
   try {
     const double preparation = core_seconds_of([&] { packing = make_packing(spec, 1, 0); });
@@ -125,12 +126,12 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
     if (!setup.given && !content.prepared) out.spend("preparation", samples * std::pow(larger, 1.33) * preparation);
     if (spec.cells) out.spend("law runs", samples * larger * try_cells(spec, packing));
     for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction))
-      out.spend("law runs", samples * larger * try_law(spec, packing, law, content.solid_fraction));
+      out.spend("law runs", runs * larger * try_law(spec, packing, law, content.solid_fraction));
   } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
   }
   const double grains = content.bodies + content.soft * content.grains_per_soft;
   for (const Twin twin : setup.twins)
-    out.spend("twins", samples * grains * content.grain_pass_seconds * twin_passes(setup.spec, twin));
+    out.spend("twins", runs * grains * content.grain_pass_seconds * twin_passes(setup.spec, twin));
 }
 
 }  // namespace softgrain

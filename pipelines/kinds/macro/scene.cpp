@@ -256,6 +256,12 @@ std::string assumed_text(const MacroSetup& setup) {
   return "the law does not say all of the grains' material; of solid grains this is taken: " + all;
 }
 
+namespace {
+
+constexpr std::int64_t kFewestDraws = 8;
+
+}  // namespace
+
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   MacroSetup setup = base;
   read_bodies(macro, setup.spec);
@@ -266,6 +272,13 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
       TangentialSlope::secant;
   setup.samples = macro.count("samples", 1, 10000, setup.samples);
   read_given(macro, setup);
+  setup.bands = macro.count("bands", 0, 100000, setup.bands);
+  if (setup.bands > 0 && setup.bands < kFewestDraws)
+    macro.mistake("bands", fmt::format("{} draws say nothing of a 95 % band: 0 (none), or at least {}", setup.bands,
+                                       kFewestDraws));
+  setup.band_estimator = macro.choice<BandEstimator>("band_estimator", setup.band_estimator);
+  setup.law_increments = macro.count("law_increments", 1, 1000, setup.law_increments);
+  setup.noise_samples = macro.count("noise_samples", 0, 10000, setup.noise_samples);
   setup.twins = read_twins(macro, setup.twins);
   read_twin_motion(macro, spec.twin);
   return setup;

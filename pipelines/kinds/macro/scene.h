@@ -13,12 +13,26 @@
 
 namespace softgrain {
 
+/// How the band of a law is found from its draws.
+enum class BandEstimator {
+  components,  ///< runs along the few combinations of parameters that change what the law says; every draw from those
+  draws        ///< a run for every draw: the reference
+};
+
+template <>
+inline constexpr auto words<BandEstimator> = word_list<BandEstimator>({{BandEstimator::components, "components"},
+                                                                       {BandEstimator::draws, "draws"}});
+
 struct MacroSetup {
   MacroSpec spec;
   std::int64_t samples = 1;
   std::vector<Twin> twins{Twin::shelled};  ///< resolved beside every sample
   std::optional<MacroPacking> given{};     ///< that every test starts from, in place of prepared ones
   std::int64_t kept_states = 0;            ///< of the first sample of every engine, for pictures
+  std::int64_t bands = 0;                  ///< draws of the law that error bars come from; 0: no error bars
+  BandEstimator band_estimator = BandEstimator::components;
+  std::int64_t law_increments = 1;         ///< of runs with laws, for one of a twin
+  std::int64_t noise_samples = 0;          ///< that every engine runs a second time: see slightly_changed()
   std::vector<std::string> assumed{};      ///< "nu = 0.3": of grains, where the law does not say them
 };
 

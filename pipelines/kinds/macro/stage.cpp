@@ -7,16 +7,17 @@
 #include <iterator>
 #include <optional>
 
+#include "common/core/parallel_tasks.h"
 #include "common/io/progress.h"
 #include "common/state/system_io.h"
 #include "macrosim/cell_test.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
 #include "macrosim/macro_snapshot.h"
+#include "macrosim/twin_places.h"
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
-#include "pipelines/run/parallel_tasks.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {
@@ -61,6 +62,7 @@ struct Engine {
   const NamedLaws* laws = nullptr;  ///< null: a twin, or cells
   Twin twin = Twin::shelled;
   bool cells = false;
+  std::vector<PlacedLaw> placed{};  ///< laws that are asked at the places of the twin
 };
 
 Snapshot name_state(Snapshot s, const MacroCurve& c, const std::string& runs) {
@@ -84,6 +86,7 @@ MacroSystem make_system(const Stage& stage, std::int64_t sample, const Engine& e
 /// Of systems with contacts.
 struct ContactRun {
   const MacroSpec& spec;
+  PointRecord also;
   using State = CompressionState;
 
   static void write(const h5::Group& g, const State& s) { write_progress(g, s); }
@@ -91,7 +94,7 @@ struct ContactRun {
   static Snapshot picture(const State& s, const MacroPacking& packing, const std::string& runs) {
     return named_state(s.macro, packing, s.curve, runs);
   }
-  void go(State& s, const RunControl<State>& control) const { compress(s, spec, control); }
+  void go(State& s, const RunControl<State>& control) const { compress(s, spec, control, also); }
 };
 
 /// Of cells of fines.
@@ -153,12 +156,50 @@ RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& 
   return {state.curve, states.take()};
 }
 
+/// Where laws stand beside a shelled twin: what they say at its places.
+PointRecord places_record(const Stage& stage, const MacroPacking& packing, const Engine& engine) {
+  if (engine.placed.empty()) return {};
+  return [&](const MacroSystem& twin, MacroCurve& curve) {
+    record_places(stage.runs.setup.spec, packing, stage.inner_solid_fraction, engine.placed, twin, curve);
+  };
+}
+
+/// A law run relaxes in a moment: where its increments are coarse, the way is.
+MacroSpec spec_for(const Stage& stage, const Engine& engine) {
+  MacroSpec spec = stage.runs.setup.spec;
+  if (engine.laws == nullptr) return spec;
+  const std::int64_t times = stage.runs.setup.law_increments;
+  spec.increments_per_step *= times;
+  for (MacroStage& s : spec.stages) s.increments_per_step *= times;
+  return spec;
+}
+
+std::string task_name(const Stage& stage, std::int64_t sample, const Engine& engine) {
+  const std::string law = engine.laws != nullptr && !engine.laws->tag.empty() ? "-" + engine.laws->tag : "";
+  return stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
+}
+
+/// Of the first samples of a scene the test is run again with strains that differ in their twelfth digit: what comes
+/// out differently is what paths of grains make of it.
+void run_again(const Stage& stage, std::int64_t sample, const Engine& engine, MacroCurve& curve, Progress& progress) {
+  if (sample >= stage.runs.setup.noise_samples || engine.cells) return;
+  const MacroSpec spec = slightly_changed(spec_for(stage, engine));
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
+  CompressionState state;
+  state.macro = make_system(stage, sample, engine);
+  state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
+  const MacroCurve again =
+      run_task(stage, ContactRun{spec, {}}, state, task_name(stage, sample, engine) + "-again", progress).curve;
+  if (!again.usable || again.strain.size() != curve.strain.size()) return;
+  curve.more[kAgainAxial] = again.stress_axial;
+  curve.more[kAgainLateral] = again.stress_lateral;
+}
+
 RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
   const NamedLaws* const laws = engine.laws;
-  const MacroSpec& spec = stage.runs.setup.spec;
+  const MacroSpec spec = spec_for(stage, engine);
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
-  const std::string law = laws != nullptr && !laws->tag.empty() ? "-" + laws->tag : "";
-  const std::string task = stage.runs.name + "-" + engine.name + law + "-" + std::to_string(sample);
+  const std::string task = task_name(stage, sample, engine);
   if (engine.cells) {
     CellTestState state = begin_cell_test(spec, packing, engine.name, sample);
     return run_task(stage, CellRun{spec}, state, task, progress);
@@ -167,11 +208,12 @@ RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine
   state.macro = make_system(stage, sample, engine);
   state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
   if (laws != nullptr) state.curve.law = laws->identity;
-  RunOutcome out = run_task(stage, ContactRun{spec}, state, task, progress);
+  RunOutcome out = run_task(stage, ContactRun{spec, places_record(stage, packing, engine)}, state, task, progress);
   if (laws != nullptr && laws->note && out.curve.usable) {
     const std::string note = laws->note(state.macro.system);
     out.curve.note += (out.curve.note.empty() || note.empty() ? "" : "; ") + note;
   }
+  run_again(stage, sample, engine, out.curve, progress);
   return out;
 }
 
@@ -189,10 +231,12 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
               const RunContext& context, std::vector<RunOutcome>& runs) {
   const std::int64_t samples = stage.runs.setup.samples;
   const auto tasks = static_cast<std::int64_t>(engines.size()) * samples;
+  const std::int64_t again = std::min(stage.runs.setup.noise_samples, samples);
   if (tasks == 0) return;
   const std::size_t first = runs.size();
   runs.resize(first + static_cast<std::size_t>(tasks));
-  Progress progress(stage.runs.name + title, static_cast<double>(tasks), context.quiet());
+  Progress progress(stage.runs.name + title,
+                    static_cast<double>(tasks + static_cast<std::int64_t>(engines.size()) * again), context.quiet());
   over_samples(tasks, [&](std::int64_t k) {
     const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
     runs[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine, progress);
@@ -285,6 +329,22 @@ std::vector<MacroPacking> make_macro_packings(const MacroSetup& setup, const Run
   return packings;
 }
 
+std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const std::string& title,
+                                 const Run& run) {
+  MacroSetup setup = runs.setup;
+  setup.kept_states = 0;
+  setup.noise_samples = 0;
+  const MacroRuns once{setup, runs.packings, runs.contents, runs.seed, runs.name};
+  const Stage stage{once, run.store, mean_solid_fraction(runs.contents)};
+  std::vector<Engine> engines;
+  for (const NamedLaws& l : laws) engines.push_back({l.name, &l});
+  std::vector<RunOutcome> outcomes;
+  run_kind(stage, engines, title, run.context, outcomes);
+  std::vector<MacroCurve> curves;
+  for (RunOutcome& o : outcomes) curves.push_back(std::move(o.curve));
+  return curves;
+}
+
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const Run& run,
                                     const std::string& states_file, std::vector<RunOutcome> before) {
   const Stage stage{runs, run.store, mean_solid_fraction(runs.contents)};
@@ -292,7 +352,10 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
   std::vector<Engine> twins;
   if (runs.setup.spec.cells) with_laws.push_back({"law", nullptr, {}, true});
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
-  for (const Twin twin : runs.setup.twins) twins.push_back({to_string(twin), nullptr, twin});
+  std::vector<PlacedLaw> placed;
+  for (const NamedLaws& l : laws) placed.push_back({l.name, l.laws});
+  for (const Twin twin : runs.setup.twins)
+    twins.push_back({to_string(twin), nullptr, twin, false, twin == Twin::shelled ? placed : std::vector<PlacedLaw>{}});
   std::vector<RunOutcome> outcomes = std::move(before);
   run_kind(stage, with_laws, " with laws", run.context, outcomes);
   run_kind(stage, twins, ": resolved twins", run.context, outcomes);

@@ -59,6 +59,10 @@ struct RunOutcome {
 Snapshot named_state(const MacroSystem& macro, const MacroPacking& packing, const MacroCurve& curve,
                      const std::string& runs);
 
+/// Curves of these laws alone, on all samples, law by law: no pictures, nothing twice.
+std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const std::string& title,
+                                 const Run& run);
+
 /// Every law, then every twin, each on all samples; where the setup says cells, these as engine "law"; goes on from
 /// checkpoints of recorded points. States that are kept for pictures go to DIR/`states_file`. `before`: runs of another
 /// engine, whose curves and states come first.

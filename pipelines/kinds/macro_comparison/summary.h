@@ -14,6 +14,7 @@ inline std::optional<TwinErrors> known(const TwinErrors& e) { return e.axial.n >
 
 void fields(auto&& visit, const TwinErrors& e) {
   visit("stress_error", known(e.axial));
+  visit("stress_error_of_mean", known(e.axial_of_mean));
   visit("end_stress_ratio", known(e.axial_end));
   visit("deviator_error", known(e.deviator));
   visit("lateral_ratio_difference", known(e.lateral_ratio));
@@ -23,6 +24,16 @@ void fields(auto&& visit, const TwinErrors& e) {
   visit("force_distance", known(e.force_distance));
   visit("speedup_seconds", e.speedup_seconds);
   visit("speedup_contact_evaluations", e.speedup_evaluations);
+}
+
+inline std::optional<PlacesScore> known(const PlacesScore& p) {
+  return p.solid.n > 0 ? std::optional(p) : std::nullopt;
+}
+
+void fields(auto&& visit, const PlacesScore& p) {
+  visit("solid", known(p.solid));
+  visit("wall", known(p.wall));
+  visit("soft", known(p.soft));
 }
 
 void fields(auto&& visit, const EngineScore& s) {
@@ -36,6 +47,8 @@ void fields(auto&& visit, const EngineScore& s) {
   visit("force_variation", known(s.force_variation));
   visit("contact_evaluations", s.contact_evaluations);
   visit("seconds", s.seconds);
+  visit("noise", known(s.noise));
+  visit("forces_at_twin_places", known(s.places));
   visit("against_shelled", known(s.shelled));
   visit("against_free", known(s.free));
 }

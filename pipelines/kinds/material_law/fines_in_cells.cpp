@@ -5,11 +5,11 @@
 
 #include "calibrate/state_curves.h"
 #include "common/core/error.h"
+#include "common/core/parallel_tasks.h"
 #include "common/io/interrupt.h"
 #include "macrosim/cell_matter/cell_packing.h"
 #include "macrosim/preparation.h"
 #include "pipelines/compare/stage_results.h"
-#include "pipelines/run/parallel_tasks.h"
 
 namespace softgrain {
 

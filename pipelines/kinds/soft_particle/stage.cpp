@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "common/core/parallel_tasks.h"
 #include "common/core/stopwatch.h"
 #include "common/data/fields.h"
 #include "common/io/interrupt.h"
@@ -16,7 +17,6 @@
 #include "microsim/shell_packing.h"
 #include "microsim/soft_experiment.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
-#include "pipelines/run/parallel_tasks.h"
 
 namespace softgrain {
 

@@ -1,4 +1,4 @@
-#include "pipelines/run/parallel_tasks.h"
+#include "common/core/parallel_tasks.h"
 
 #include <algorithm>
 #include <atomic>

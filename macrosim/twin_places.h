@@ -1,0 +1,42 @@
+// Laws at the places of a resolved twin: what they say where the twin has its bodies, apart from where a run of their
+// own would have taken them. A law that is right pushes there as hard as the twin does.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/data/macro_result.h"
+#include "macrosim/macro_system.h"
+
+namespace softgrain {
+
+/// Sums of the normal forces on soft particles [N], by who pushes.
+struct SoftForces {
+  double solid = 0.0;
+  double wall = 0.0;
+  double soft = 0.0;
+};
+
+/// Of a law run or of a twin, whole bodies against each other.
+SoftForces soft_forces(const MacroSystem& macro, const MacroPacking& packing);
+
+/// The packing with every body where the shelled twin has it, in the twin's box.
+MacroPacking packing_of_twin(const MacroSystem& twin, const MacroPacking& packing);
+
+/// A law and the name of the engine that runs with it.
+struct PlacedLaw {
+  std::string name;
+  SoftLaws laws;
+};
+
+/// Adds a point to the columns places_NAME_{solid,wall,soft} of the curve, for the twin (NAME: its engine) and for
+/// every law: no springs, no friction, forces of one instant.
+void record_places(const MacroSpec& spec, const MacroPacking& packing, double inner_solid_fraction,
+                   const std::vector<PlacedLaw>& laws, const MacroSystem& twin, MacroCurve& curve);
+
+/// Name of such a column.
+std::string places_column(const std::string& engine, const char* partner);
+inline constexpr std::array kPlacesPartners{"solid", "wall", "soft"};
+
+}  // namespace softgrain

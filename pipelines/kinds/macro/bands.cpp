@@ -1,0 +1,247 @@
+#include "pipelines/kinds/macro/bands.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/effect_components.h"
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
+#include "pipelines/compare/compare.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr double kFarAlong = 1.5;  ///< standard deviations: where a component is tried; 95 % of draws are within 2
+constexpr std::size_t kMostComponents = 4;
+constexpr double kShareHeld = 0.95;  ///< of the scatter of forces
+
+/// Runs of a band on one sample: as a change of the law goes, so does the stress. Two runs at +-kFarAlong of a
+/// component give its slope and its bend.
+struct Bend {
+  double slope = 0.0;
+  double bend = 0.0;
+
+  Bend(double stress, double below, double above)
+      : slope((above - below) / (2.0 * kFarAlong)),
+        bend((above + below - 2.0 * stress) / (2.0 * kFarAlong * kFarAlong)) {}
+  [[nodiscard]] double at(double s) const { return s * (slope + bend * s); }
+};
+
+bool like(const MacroCurve& variant, const MacroCurve& curve, BandOf of) {
+  return variant.usable && banded_stress(variant, of).size() == banded_stress(curve, of).size();
+}
+
+/// The runs that one law needs, and what to make of them.
+class DrawnBand {
+ public:
+  DrawnBand(const LawDraws& draws, const MacroSetup& setup) : draws_(draws), setup_(setup) {
+    record_.engine = draws.law.name;
+    record_.estimator = setup.band_estimator;
+    record_.draws = static_cast<std::int64_t>(draws.draws.size());
+    record_.origin = draws.origin;
+    record_.discrepancy = draws.discrepancy;
+    record_.discrepancy_origin = draws.discrepancy_origin;
+    if (setup.band_estimator == BandEstimator::draws) {
+      for (const std::vector<double>& numbers : draws.draws) variants_.push_back(draws.with(numbers, 1.0));
+    } else {
+      std::vector<std::vector<double>> effects;
+      for (const std::vector<double>& numbers : draws.draws) effects.push_back(draws.effects(numbers));
+      components_ = effect_components(draws.draws, effects, kMostComponents, kShareHeld);
+      record_.components = static_cast<std::int64_t>(components_.direction.size());
+      record_.explained = components_.explained;
+      for (const std::vector<double>& direction : components_.direction)
+        for (const double s : {-kFarAlong, kFarAlong}) variants_.push_back(draws.with(along(direction, s), 1.0));
+    }
+    for (const double s : {-kFarAlong, kFarAlong})
+      variants_.push_back(draws.with(draws.numbers, std::exp(s * draws.discrepancy)));
+    record_.runs = static_cast<std::int64_t>(variants_.size());
+  }
+
+  [[nodiscard]] const std::vector<NamedLaws>& variants() const { return variants_; }
+  [[nodiscard]] const BandRecord& record() const { return record_; }
+
+  /// `ran`: the variants on the sample of this curve, in their order.
+  void add(const std::vector<const MacroCurve*>& ran, double noise, MacroCurve& curve) {
+    record_.noise = noise;
+    for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
+      if (!std::all_of(ran.begin(), ran.end(), [&](const MacroCurve* c) { return like(*c, curve, of); })) {
+        curve.note += (curve.note.empty() ? "" : "; ") +
+                      std::string("no band: with some draw of the law the test ended early");
+        return;
+      }
+      const std::vector<double>& stress = banded_stress(curve, of);
+      std::vector<MacroBand> parts{law_part(ran, stress, of), discrepancy_part(ran, stress, of)};
+      set_band(curve, of, BandPart::law, parts[0]);
+      set_band(curve, of, BandPart::discrepancy, parts[1]);
+      if (noise > 0.0) {
+        parts.push_back(noise_part(stress, noise));
+        set_band(curve, of, BandPart::noise, parts[2]);
+      }
+      set_band(curve, of, BandPart::all, together(stress, parts));
+    }
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> along(const std::vector<double>& direction, double s) const {
+    std::vector<double> numbers = draws_.numbers;
+    for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] += s * direction[k];
+    return numbers;
+  }
+
+  /// Stress of every draw at point k.
+  [[nodiscard]] std::vector<double> drawn(const std::vector<const MacroCurve*>& ran, double stress, std::size_t k,
+                                          BandOf of) const {
+    const auto at = [&](std::size_t variant) { return banded_stress(*ran[variant], of)[k]; };
+    std::vector<double> out;
+    if (setup_.band_estimator == BandEstimator::draws) {
+      for (std::size_t r = 0; r < draws_.draws.size(); ++r) out.push_back(at(r));
+      return out;
+    }
+    std::vector<Bend> bends;
+    for (std::size_t c = 0; c < components_.direction.size(); ++c)
+      bends.emplace_back(stress, at(2 * c), at(2 * c + 1));
+    for (const std::vector<double>& scores : components_.scores) {
+      double value = stress;
+      for (std::size_t c = 0; c < bends.size(); ++c) value += bends[c].at(scores[c]);
+      out.push_back(value);
+    }
+    return out;
+  }
+
+  [[nodiscard]] MacroBand law_part(const std::vector<const MacroCurve*>& ran, const std::vector<double>& stress,
+                                   BandOf of) const {
+    MacroBand band;
+    for (std::size_t k = 0; k < stress.size(); ++k) {
+      const std::vector<double> values = drawn(ran, stress[k], k, of);
+      band.low.push_back(std::min(stress[k], quantile(values, 0.025)));
+      band.high.push_back(std::max(stress[k], quantile(values, 0.975)));
+    }
+    return band;
+  }
+  [[nodiscard]] static MacroBand discrepancy_part(const std::vector<const MacroCurve*>& ran,
+                                                  const std::vector<double>& stress, BandOf of) {
+    MacroBand band;
+    for (std::size_t k = 0; k < stress.size(); ++k) {
+      const Bend bend(stress[k], banded_stress(*ran[ran.size() - 2], of)[k], banded_stress(*ran.back(), of)[k]);
+      const auto [low, high] = std::minmax(bend.at(-kNormal95), bend.at(kNormal95));
+      band.low.push_back(stress[k] + std::min(low, 0.0));
+      band.high.push_back(stress[k] + std::max(high, 0.0));
+    }
+    return band;
+  }
+  [[nodiscard]] static MacroBand noise_part(const std::vector<double>& stress, double noise) {
+    MacroBand band;
+    for (const double s : stress) {
+      band.low.push_back(s - kNormal95 * noise * std::abs(s));
+      band.high.push_back(s + kNormal95 * noise * std::abs(s));
+    }
+    return band;
+  }
+
+  const LawDraws& draws_;
+  const MacroSetup& setup_;
+  EffectComponents components_;
+  std::vector<NamedLaws> variants_;
+  BandRecord record_;
+};
+
+/// Of the samples of an engine that were run twice; 0 where none was.
+double noise_of(const std::vector<MacroCurve>& curves, const std::string& engine) {
+  std::vector<double> squares;
+  for (const MacroCurve& c : curves) {
+    const auto again = c.more.find(kAgainAxial);
+    if (c.engine != engine || again == c.more.end()) continue;
+    double apart = 0.0;
+    double all = 0.0;
+    for (std::size_t k = 0; k < c.stress_axial.size(); ++k) {
+      apart += std::pow(again->second[k] - c.stress_axial[k], 2);
+      all += std::pow(c.stress_axial[k], 2);
+    }
+    if (all > 0.0) squares.push_back(0.5 * apart / all);
+  }
+  return squares.empty() ? 0.0 : std::sqrt(mean_error(squares).mean);
+}
+
+double students(std::size_t samples) {
+  return samples > 1 ? gsl_cdf_tdist_Pinv(0.975, static_cast<double>(samples - 1)) : kNaN;
+}
+
+}  // namespace
+
+std::vector<LawDraws> draws_for(const MacroSetup& setup, const LawSources& sources, const std::vector<NamedLaws>& laws,
+                                double contents_fraction) {
+  std::vector<LawDraws> out;
+  if (setup.bands > 0)
+    for (const NamedLaws& law : laws) out.push_back(law_draws(sources, law, setup.spec, contents_fraction, setup.bands));
+  return out;
+}
+
+std::vector<BandRecord> add_bands(const MacroRuns& runs, const std::vector<LawDraws>& laws, const Run& run,
+                                  std::vector<MacroCurve>& curves) {
+  std::vector<BandRecord> records;
+  for (const LawDraws& draws : laws) {
+    DrawnBand band(draws, runs.setup);
+    const std::vector<MacroCurve> ran = run_laws(runs, band.variants(), ": bands, " + draws.law.name, run);
+    const double noise = noise_of(curves, draws.law.name);
+    for (MacroCurve& c : curves) {
+      if (c.engine != draws.law.name || !c.usable) continue;
+      std::vector<const MacroCurve*> own;
+      for (const MacroCurve& v : ran)
+        if (v.sample == c.sample) own.push_back(&v);
+      band.add(own, noise, c);
+    }
+    records.push_back(band.record());
+  }
+  return records;
+}
+
+std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
+  std::vector<BandedEnd> out;
+  std::vector<std::string> seen;
+  for (const MacroCurve& first : curves) {
+    if (std::find(seen.begin(), seen.end(), first.engine) != seen.end()) continue;
+    seen.push_back(first.engine);
+    for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
+      BandedEnd end{of, first.engine};
+      std::vector<double> stress;
+      double low[2] = {0.0, 0.0};
+      double high[2] = {0.0, 0.0};
+      for (const MacroCurve& c : curves_of(curves, first.engine)) {
+        const auto law = band_of(c, of, BandPart::law);
+        const auto off = band_of(c, of, BandPart::discrepancy);
+        if (!c.usable || !law || !off) continue;
+        const double own = banded_stress(c, of).back();
+        stress.push_back(own);
+        end.strain = c.strain.back();
+        low[0] += own - law->low.back(), high[0] += law->high.back() - own;
+        low[1] += own - off->low.back(), high[1] += off->high.back() - own;
+      }
+      if (stress.empty()) continue;
+      const auto n = static_cast<double>(stress.size());
+      const MeanError mean = mean_error(stress);
+      end.stress = mean.mean;
+      end.law = 0.5 * (low[0] + high[0]) / n;
+      end.discrepancy = 0.5 * (low[1] + high[1]) / n;
+      end.samples = students(stress.size()) * mean.error;
+      const double spread = std::isfinite(end.samples) ? end.samples : 0.0;
+      end.low = end.stress - std::hypot(low[0] / n, low[1] / n, spread);
+      end.high = end.stress + std::hypot(high[0] / n, high[1] / n, spread);
+      out.push_back(end);
+    }
+  }
+  return out;
+}
+
+std::string banded_text(const BandedEnd& e) {
+  const auto share = [&](double half) { return e.stress > 0.0 ? 100.0 * half / e.stress : kNaN; };
+  return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, 95 % {:.4g} to {:.4g} (law {:.2g} %, discrepancy {:.2g} %, "
+                     "samples {})",
+                     e.engine, to_string(e.of), e.strain, e.stress, e.low, e.high, share(e.law), share(e.discrepancy),
+                     std::isfinite(e.samples) ? fmt::format("{:.2g} %", share(e.samples)) : "unknown: one alone");
+}
+
+}  // namespace softgrain

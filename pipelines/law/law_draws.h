@@ -1,0 +1,37 @@
+// Draws of a law, as its data leave it open, and what it may be off besides: what error bars of a macro run come from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/law/named_laws.h"
+
+namespace softgrain {
+
+/// A law that can be drawn: its numbers, those of every draw, and the law of any numbers.
+struct LawDraws {
+  NamedLaws law;                           ///< as it is
+  std::vector<double> numbers;             ///< of it; those that are positive as logarithms
+  std::vector<std::vector<double>> draws;  ///< likewise
+  std::string origin;                      ///< of the draws, for people
+  /// Standard deviation of the logarithm of all forces that the form of the law is off by, besides its draws: root mean
+  /// square of ln(law/mean) at the end of configurations that the fit did not see, the noise of the means taken off.
+  /// 0: not known.
+  double discrepancy = 0.0;
+  std::string discrepancy_origin;
+
+  /// What it says at some states, for numbers of its own: logarithms of forces, bounded below.
+  std::function<std::vector<double>(const std::vector<double>&)> effects;
+  /// The law of other numbers, all forces times `factor`.
+  std::function<NamedLaws(const std::vector<double>&, double factor)> with;
+};
+
+/// `count` draws of a law of these sources; a law table gives the refits that it keeps, a card its covariance. Throws
+/// BadInput: the law keeps none, or not so many; cells.
+LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,
+                   std::int64_t count);
+
+/// See LawDraws::discrepancy.
+double form_discrepancy(const CrowdLaw& law);
+
+}  // namespace softgrain
