@@ -58,7 +58,7 @@ std::vector<std::vector<double>> normal_draws(const std::vector<double>& mean, c
       !std::all_of(covariance.begin(), covariance.end(), [](double c) { return std::isfinite(c); }))
     throw BadInput("the covariance of the parameters is not known");
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> c(covariance.data(), n,
-                                                                                                  n);
+                                                                                                   n);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(c);
   constexpr double kRounding = 1e-9;  // of the largest eigenvalue: below zero by no more than that is zero
   if (axes.eigenvalues().minCoeff() < -kRounding * axes.eigenvalues().maxCoeff())

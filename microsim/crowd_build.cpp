@@ -234,12 +234,18 @@ class Builder {
   }
   [[nodiscard]] Vec3 at(const CrowdPartner& p) const { return neighbour_place(e_.spec, p, p.direction, 0.0); }
 
-  /// Goes where it is led: without a mass. Where it may turn, it does so with the inertia of what it holds.
-  [[nodiscard]] NewBody<3> led_sphere(const CrowdPartner& p, double fraction, std::int32_t material) const {
-    NewBody<3> body = solid_sphere(at(p), p.ratio * e_.spec.shell_radius, e_.spec.density * fraction, material);
-    body.mass = 0.0;
-    if (!e_.configuration.turning) body.inertia = 0.0;
+  /// Goes where it is led: without a mass.
+  [[nodiscard]] NewBody<3> led_sphere(const CrowdPartner& p, std::int32_t material) const {
+    NewBody<3> body;
+    body.x = at(p);
+    body.r = p.ratio * e_.spec.shell_radius;
+    body.material = material;
     return body;
+  }
+  /// 1 / moment of inertia of a solid neighbour, where it may turn.
+  [[nodiscard]] double turning(const CrowdPartner& p) const {
+    if (!e_.configuration.turning) return 0.0;
+    return 1.0 / solid_sphere({}, p.ratio * e_.spec.shell_radius, e_.spec.density, kSolid).inertia;
   }
   Slot first_shell() {
     Slot grains = e_.centre_bodies;
@@ -257,12 +263,13 @@ class Builder {
   }
   void solids() {
     each(PartnerKind::solid, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      n.body = add_grain(e_.system.particles, led_sphere(p, 1.0, kSolid));
+      n.body = add_grain(e_.system.particles, led_sphere(p, kSolid));
+      e_.system.particles.inverse_inertia[static_cast<std::size_t>(n.body)] = turning(p);
     });
   }
   void soft_shells() {
-    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t k) {
-      n.body = add_shell(e_.system.particles, led_sphere(p, solid_fraction(*others_[k], fraction_), kWall));
+    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
+      n.body = add_shell(e_.system.particles, led_sphere(p, kWall));
     });
   }
   void planes() {

@@ -60,7 +60,7 @@ struct CrowdConfiguration {
   std::vector<CrowdStage> stages;
   bool centre_free = false;  ///< the shell moves and turns with the forces of its grains; else it is held
   bool held_out = false;     ///< not for the fit: the law has to predict it
-  bool turning = false;      ///< neighbours that are spheres turn with the forces on them; they go where they are led
+  bool turning = false;      ///< solid neighbours turn with the forces on them; they go where they are led
 };
 
 /// One relaxed state.

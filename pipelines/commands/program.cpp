@@ -147,6 +147,8 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
   }
   if (command.function == command_macrosim || command.function == command_check)
+    app.add_option("--bands", o.bands, "Error bars from so many draws of the law; default as the scene says (none)")
+        ->check(CLI::Range(8, 100000));
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
 }

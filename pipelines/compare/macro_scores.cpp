@@ -9,6 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/data/macro_band.h"
 #include "macrosim/twin_places.h"
 #include "pipelines/compare/compare.h"
 
@@ -161,6 +162,27 @@ double visits(const MacroCurve& c) {
   return (crowd ? 2.0 : 1.0) * static_cast<double>(c.cost.contact_evaluations);
 }
 
+double band_width(const MacroCurve& c) {
+  const auto band = band_of(c, BandOf::axial, BandPart::all);
+  return band ? 0.5 * ratio(band->high.back() - band->low.back(), c.stress_axial.back()) : kNaN;
+}
+
+/// Share of the twin's points that lie in the band of the law, from where it bears something; or the last one alone.
+double covered(const MacroCurve& c, const MacroCurve& twin, bool end) {
+  constexpr double kBears = 0.05;
+  const auto band = band_of(c, BandOf::axial, BandPart::all);
+  if (!band || twin.stress_axial.size() != band->low.size()) return kNaN;
+  double points = 0.0;
+  double inside = 0.0;
+  for (std::size_t k = end ? twin.stress_axial.size() - 1 : 0; k < twin.stress_axial.size(); ++k) {
+    const double stress = twin.stress_axial[k];
+    if (stress < kBears * twin.stress_axial.back()) continue;
+    points += 1.0;
+    inside += stress >= band->low[k] && stress <= band->high[k] ? 1.0 : 0.0;
+  }
+  return ratio(inside, points);
+}
+
 TwinErrors errors_against(const Pairs& pairs) {
   using C = const MacroCurve&;
   TwinErrors e;
@@ -204,6 +226,10 @@ EngineScore score_of(const std::vector<MacroCurve>& curves, const std::string& e
   s.force_variation = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).second; });
   s.contact_evaluations = mean_of(mine, visits).mean;
   s.noise = mean_of(mine, own_noise);
+  s.band_width = mean_of(mine, band_width);
+  const Pairs with_twins = pair_up(mine, usable_of(curves, to_string(Twin::shelled)));
+  s.coverage = mean_of(with_twins, [](C c, C t) { return covered(c, t, false); });
+  s.coverage_end = mean_of(with_twins, [](C c, C t) { return covered(c, t, true); });
   const auto at_places = [&](const char* partner) {
     const bool law = !s.twin();
     return law ? mean_of(usable_of(curves, to_string(Twin::shelled)),
@@ -274,8 +300,20 @@ std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves) {
 
 ScoreTable score_table(const std::vector<EngineScore>& scores) {
   ScoreTable table;
-  table.header = {"engine",         "samples",         "axial stress [Pa]",   "lateral/axial", "coordination", "fabric",
-                  "mean force [N]", "force variation", "contact evaluations", "seconds",       "noise"};
+  table.header = {"engine",
+                  "samples",
+                  "axial stress [Pa]",
+                  "lateral/axial",
+                  "coordination",
+                  "fabric",
+                  "mean force [N]",
+                  "force variation",
+                  "contact evaluations",
+                  "seconds",
+                  "noise",
+                  "half band / stress",
+                  "twin in band, points",
+                  "twin in band, end"};
   for (const char* partner : kPlacesPartners)
     table.header.push_back(fmt::format("at the twin's places: force on {}, law/twin", partner));
   for (const auto& [ignored, twin] : words<Twin>)
@@ -290,7 +328,9 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
       row.push_back(cell(*m));
     row.push_back(cell(s.contact_evaluations));
     row.push_back(cell(s.seconds));
-    for (const MeanError* m : {&s.noise, &s.places.solid, &s.places.wall, &s.places.soft}) row.push_back(cell(*m, 3));
+    for (const MeanError* m :
+         {&s.noise, &s.band_width, &s.coverage, &s.coverage_end, &s.places.solid, &s.places.wall, &s.places.soft})
+      row.push_back(cell(*m, 3));
     add_cells(s.shelled, row);
     add_cells(s.free, row);
     table.rows.push_back(std::move(row));

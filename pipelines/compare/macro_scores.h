@@ -40,6 +40,9 @@ struct EngineScore {
   /// digit, over sqrt(2): what paths alone make of one run. Empty: not run.
   MeanError noise;
   PlacesScore places;
+  MeanError band_width;  ///< of the axial stress at the end: half of its 95 % band over it; empty: no bands
+  MeanError coverage;    ///< share of the points of the shelled twin, from 5 % of its last axial stress on, in the band
+  MeanError coverage_end;            ///< share of the samples whose last point is
   MeanError axial;                   ///< stress at the end [Pa]
   MeanError lateral_ratio;           ///< lateral over axial stress at the end
   MeanError coordination;            ///< of bodies at the end

@@ -84,13 +84,15 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   read_replicates(table, sources.table_file);
   const std::size_t kept = replicate_count(table, form);
   if (kept == 0)
-    throw BadInput(fmt::format("bands: {} keeps no refits of its {} law: the .h5 beside it holds them; \"softgrain "
-                               "calibrate crowd.h5\" makes both from the measurements",
-                               sources.table_file, to_string(form)));
+    throw BadInput(
+        fmt::format("bands: {} keeps no refits of its {} law: the .h5 beside it holds them; \"softgrain "
+                    "calibrate crowd.h5\" makes both from the measurements",
+                    sources.table_file, to_string(form)));
   if (static_cast<std::size_t>(count) > kept)
-    throw BadInput(fmt::format("bands = {}: {} keeps {} refits of its {} law; allowed: at most {}, or more refits by "
-                               "\"softgrain calibrate crowd.h5 --set replicates=...\"",
-                               count, sources.table_file, kept, to_string(form), kept));
+    throw BadInput(
+        fmt::format("bands = {}: {} keeps {} refits of its {} law; allowed: at most {}, or more refits by "
+                    "\"softgrain calibrate crowd.h5 --set replicates=...\"",
+                    count, sources.table_file, kept, to_string(form), kept));
   std::string ignored;
   const LawTableEntry entry = law_entry(sources, fraction, ignored);
   const CrowdLaw best = drawn_law_of(entry, form);
@@ -124,14 +126,19 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   return out;
 }
 
-// Of cards: for each kind of pair the normal law's a, b, delta and those of both tangential ones, as in kLawParameterNames;
-// a as logarithms.
+// Of cards: for each kind of pair the normal law's a, b, delta and those of both tangential ones, as in
+// kLawParameterNames; a as logarithms.
 constexpr std::size_t kPairNumbers = kLawParameterNames.size();
 constexpr std::array<bool, kPairNumbers> kPairLogarithm{true, false, false, true, false, true, false};
 
 std::vector<double> pair_numbers(const PairLaw& p) {
-  return {p.normal.a.value, p.normal.b.value, p.normal.delta.value, p.tangential_initial.a.value,
-          p.tangential_initial.b.value, p.tangential_secant.a.value, p.tangential_secant.b.value};
+  return {p.normal.a.value,
+          p.normal.b.value,
+          p.normal.delta.value,
+          p.tangential_initial.a.value,
+          p.tangential_initial.b.value,
+          p.tangential_secant.a.value,
+          p.tangential_secant.b.value};
 }
 
 void set_part(ThresholdPowerLaw& part, double a, double b, double delta) {
@@ -161,9 +168,8 @@ LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers,
 std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count, std::uint64_t stream) {
   std::vector<double> mean = pair_numbers(p);
   std::vector<double> covariance = p.covariance;
-  if (covariance.size() != kPairNumbers * kPairNumbers || std::all_of(covariance.begin(), covariance.end(), [](double c) {
-        return c == 0.0;
-      }))
+  if (covariance.size() != kPairNumbers * kPairNumbers ||
+      std::all_of(covariance.begin(), covariance.end(), [](double c) { return c == 0.0; }))
     throw BadInput("bands: the law card has no covariance of its " + to_string(p.kind) +
                    " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
   for (std::size_t j = 0; j < kPairNumbers; ++j) {

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "common/data/macro_band.h"
 #include "pipelines/report/html.h"
 
 namespace softgrain::report {
@@ -59,6 +60,21 @@ std::string law_paragraph(const std::vector<MacroCurve>& curves) {
   return text.empty() ? "" : paragraph(text + ".");
 }
 
+namespace {
+
+/// The error bars of the curve, of stresses that have them.
+void add_band(const MacroCurve& c, Stress member, double unit, Series& s) {
+  for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
+    if (&(c.*member) != &banded_stress(c, of)) continue;
+    const auto band = band_of(c, of, BandPart::all);
+    if (!band) continue;
+    for (const double v : band->low) s.band_low.push_back(v / unit);
+    for (const double v : band->high) s.band_high.push_back(v / unit);
+  }
+}
+
+}  // namespace
+
 void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member, double unit) {
   std::set<std::string> named;
   for (const MacroCurve& c : curves) {
@@ -70,6 +86,7 @@ void add_curves(Plot& plot, const std::vector<MacroCurve>& curves, Stress member
     s.style = engine_style(c.engine);
     if (!c.usable) s.style.opacity = 0.4;
     s.group = engine_name(c.engine);
+    add_band(c, member, unit, s);
     plot.add(std::move(s));
   }
 }

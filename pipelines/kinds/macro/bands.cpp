@@ -69,8 +69,8 @@ class DrawnBand {
     record_.noise = noise;
     for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
       if (!std::all_of(ran.begin(), ran.end(), [&](const MacroCurve* c) { return like(*c, curve, of); })) {
-        curve.note += (curve.note.empty() ? "" : "; ") +
-                      std::string("no band: with some draw of the law the test ended early");
+        curve.note +=
+            (curve.note.empty() ? "" : "; ") + std::string("no band: with some draw of the law the test ended early");
         return;
       }
       const std::vector<double>& stress = banded_stress(curve, of);
@@ -102,8 +102,7 @@ class DrawnBand {
       return out;
     }
     std::vector<Bend> bends;
-    for (std::size_t c = 0; c < components_.direction.size(); ++c)
-      bends.emplace_back(stress, at(2 * c), at(2 * c + 1));
+    for (std::size_t c = 0; c < components_.direction.size(); ++c) bends.emplace_back(stress, at(2 * c), at(2 * c + 1));
     for (const std::vector<double>& scores : components_.scores) {
       double value = stress;
       for (std::size_t c = 0; c < bends.size(); ++c) value += bends[c].at(scores[c]);
@@ -127,7 +126,7 @@ class DrawnBand {
     MacroBand band;
     for (std::size_t k = 0; k < stress.size(); ++k) {
       const Bend bend(stress[k], banded_stress(*ran[ran.size() - 2], of)[k], banded_stress(*ran.back(), of)[k]);
-      const auto [low, high] = std::minmax(bend.at(-kNormal95), bend.at(kNormal95));
+      const auto [low, high] = std::minmax({bend.at(-kNormal95), bend.at(kNormal95)});
       band.low.push_back(stress[k] + std::min(low, 0.0));
       band.high.push_back(stress[k] + std::max(high, 0.0));
     }
@@ -176,7 +175,8 @@ std::vector<LawDraws> draws_for(const MacroSetup& setup, const LawSources& sourc
                                 double contents_fraction) {
   std::vector<LawDraws> out;
   if (setup.bands > 0)
-    for (const NamedLaws& law : laws) out.push_back(law_draws(sources, law, setup.spec, contents_fraction, setup.bands));
+    for (const NamedLaws& law : laws)
+      out.push_back(law_draws(sources, law, setup.spec, contents_fraction, setup.bands));
   return out;
 }
 
@@ -228,7 +228,7 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
       end.discrepancy = 0.5 * (low[1] + high[1]) / n;
       end.samples = students(stress.size()) * mean.error;
       const double spread = std::isfinite(end.samples) ? end.samples : 0.0;
-      end.low = end.stress - std::hypot(low[0] / n, low[1] / n, spread);
+      end.low = std::max(0.0, end.stress - std::hypot(low[0] / n, low[1] / n, spread));
       end.high = end.stress + std::hypot(high[0] / n, high[1] / n, spread);
       out.push_back(end);
     }
@@ -238,10 +238,28 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
 
 std::string banded_text(const BandedEnd& e) {
   const auto share = [&](double half) { return e.stress > 0.0 ? 100.0 * half / e.stress : kNaN; };
-  return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, 95 % {:.4g} to {:.4g} (law {:.2g} %, discrepancy {:.2g} %, "
-                     "samples {})",
-                     e.engine, to_string(e.of), e.strain, e.stress, e.low, e.high, share(e.law), share(e.discrepancy),
-                     std::isfinite(e.samples) ? fmt::format("{:.2g} %", share(e.samples)) : "unknown: one alone");
+  return fmt::format(
+      "{}: {} stress at strain {:.4g}: {:.4g} Pa, 95 % {:.4g} to {:.4g} (law {:.2g} %, discrepancy {:.2g} %, "
+      "samples {})",
+      e.engine, to_string(e.of), e.strain, e.stress, e.low, e.high, share(e.law), share(e.discrepancy),
+      std::isfinite(e.samples) ? fmt::format("{:.2g} %", share(e.samples)) : "unknown: one alone");
+}
+
+std::string bands_text(const std::vector<BandRecord>& bands, const std::vector<BandedEnd>& ends) {
+  std::string text;
+  for (const BandedEnd& e : ends) text += banded_text(e) + "\n";
+  for (const BandRecord& b : bands) {
+    const std::string way = b.components > 0 ? fmt::format(
+                                                   "{} runs per sample along {} components that hold {:.0f} % of its "
+                                                   "scatter",
+                                                   b.runs, b.components, 100.0 * b.explained)
+                                             : fmt::format("{} runs per sample", b.runs);
+    const std::string off = b.discrepancy > 0.0
+                                ? fmt::format("{:.2g} %, from {}", 100.0 * b.discrepancy, b.discrepancy_origin)
+                                : b.discrepancy_origin;
+    text += fmt::format("bands of {}: {}, by {}; discrepancy: {}\n", b.engine, b.origin, way, off);
+  }
+  return text;
 }
 
 }  // namespace softgrain

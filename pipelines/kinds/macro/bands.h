@@ -52,4 +52,7 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves);
 /// "law: axial stress at strain 0.2: 1234 Pa, 95 % 1100 to 1380 (law 4 %, discrepancy 8 %, samples 5 %)".
 std::string banded_text(const BandedEnd& end);
 
+/// All of them, and what they came from.
+std::string bands_text(const std::vector<BandRecord>& bands, const std::vector<BandedEnd>& ends);
+
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/results.h"
@@ -121,8 +122,9 @@ ExitStatus write_only(const MacroScene& scene, const NamedLaws& law, const std::
 }
 
 std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::optional<LammpsEngine>& lammps,
-                                      const NamedLaws& law, const std::vector<ShellPacking>& contents, const Run& run) {
-  if (!lammps) return run_macro_stage(scene.setup, {law}, contents, run);
+                                      const NamedLaws& law, const std::vector<ShellPacking>& contents, const Run& run,
+                                      const std::vector<LawDraws>& draws, std::vector<BandRecord>& bands) {
+  if (!lammps) return run_macro_stage(scene.setup, {law}, contents, run, draws, bands);
   auto packings = prepare_packings(scene.setup, run, kInitialFile);
   save_if_prepared(scene, packings, run);
   const LammpsRuns runs = lammps_runs(scene, law, contents, run.provenance);
@@ -135,8 +137,22 @@ std::vector<MacroCurve> curves_of_run(const MacroScene& scene, const std::option
   return curves;
 }
 
+/// Of the law, for its bands.
+std::vector<LawDraws> draws_of(const MacroScene& scene, const NamedLaws& law,
+                               const std::vector<ShellPacking>& contents) {
+  return draws_for(scene.setup, scene.law, {law}, contents.empty() ? 0.0 : mean_solid_fraction(contents));
+}
+
+/// Before any work: that there is something to draw from.
+void require_draws(const MacroScene& scene, bool lammps) {
+  if (lammps) throw BadInput("bands: runs in LAMMPS have none; leave --engine lammps out, or bands");
+  if (scene.law.cells) throw BadInput("bands: the card of a cell law keeps no refits; leave the key out");
+  (void)draws_of(scene, scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
+}
+
 ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
-  const MacroScene macro = read_macro_scene(scene, options.law);
+  MacroScene macro = read_macro_scene(scene, options.law);
+  if (options.bands > 0) macro.setup.bands = options.bands;
   if (macro.law_file.empty())
     scene.root().reject(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
@@ -144,6 +160,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
   if (macro.law.cells && lammps) throw BadInput("--engine lammps: LAMMPS knows no cells; leave it out");
+  if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   const Run run(scene, options, "macrosim", macro.seed,
                 {macro.law.files, macro.law.text + sizes_text(macro.setup.spec)});
   const auto contents =
@@ -152,14 +169,18 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   if (!macro.law.cells) law = law_of(macro, contents);
   if (lammps && lammps->write_only) return write_only(macro, *law, contents, run);
   std::vector<MacroCurve> curves;
+  std::vector<BandRecord> bands;
   run.context.guard([&] {
-    curves = law ? curves_of_run(macro, lammps, *law, contents, run) : run_macro_stage(macro.setup, {}, {}, run);
+    curves = law ? curves_of_run(macro, lammps, *law, contents, run, draws_of(macro, *law, contents), bands)
+                 : run_macro_stage(macro.setup, {}, {}, run, {}, bands);
   });
   const LawIdentity identity = law ? law->identity : curves.front().law;
 
   const bool usable = all_carry_stress(curves) &&
                       std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; });
   MacroRunSummary summary = summarise(macro, identity, curves, usable);
+  summary.bands = bands;
+  summary.band_ends = banded_ends(curves);
   summary.head.files = {
       {"macro", run.path("macro.h5")}, {"initial", run.path("macro_initial.h5")}, {"report", run.path("report.html")}};
   summary.head.sizes = summaries_of(drawn_sizes(macro.setup, run.seed));
@@ -167,7 +188,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
     summary.engine = engine_use(*lammps, lammps_directory(run.context, 0));
     add_directories(macro.setup.samples, run.context, summary);
   }
-  return run.finish(json_of(summary), people_text(identity, curves));
+  return run.finish(json_of(summary), people_text(identity, curves) + bands_text(bands, summary.band_ends));
 }
 
 }  // namespace

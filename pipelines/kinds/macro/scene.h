@@ -31,9 +31,9 @@ struct MacroSetup {
   std::int64_t kept_states = 0;            ///< of the first sample of every engine, for pictures
   std::int64_t bands = 0;                  ///< draws of the law that error bars come from; 0: no error bars
   BandEstimator band_estimator = BandEstimator::components;
-  std::int64_t law_increments = 1;         ///< of runs with laws, for one of a twin
-  std::int64_t noise_samples = 0;          ///< that every engine runs a second time: see slightly_changed()
-  std::vector<std::string> assumed{};      ///< "nu = 0.3": of grains, where the law does not say them
+  std::int64_t law_increments = 1;     ///< of runs with laws, for one of a twin
+  std::int64_t noise_samples = 0;      ///< that every engine runs a second time: see slightly_changed()
+  std::vector<std::string> assumed{};  ///< "nu = 0.3": of grains, where the law does not say them
 };
 
 [[nodiscard]] inline bool has_twin(const MacroSetup& setup, Twin twin) {

@@ -16,6 +16,7 @@
 #include "macrosim/macro_snapshot.h"
 #include "macrosim/twin_places.h"
 #include "microsim/shell_packing.h"
+#include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/result_cache.h"
@@ -370,9 +371,12 @@ std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<Nam
 }
 
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const std::vector<NamedLaws>& laws,
-                                        const std::vector<ShellPacking>& contents, const Run& run) {
+                                        const std::vector<ShellPacking>& contents, const Run& run,
+                                        const std::vector<LawDraws>& draws, std::vector<BandRecord>& records) {
   const auto packings = make_macro_packings(setup, run, "macro_initial.h5");
-  auto curves = run_engines({setup, packings, contents, run.seed, "macro"}, laws, run, "states_macro.h5");
+  const MacroRuns runs{setup, packings, contents, run.seed, "macro"};
+  auto curves = run_engines(runs, laws, run, "states_macro.h5");
+  records = add_bands(runs, draws, run, curves);
   save_macro(curves, run.path("macro.h5"), run.provenance);
   return curves;
 }

@@ -69,9 +69,14 @@ std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedL
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const Run& run,
                                     const std::string& states_file, std::vector<RunOutcome> before = {});
 
+struct LawDraws;
+struct BandRecord;
+
 /// Runs all samples with the laws (none with cells) and the twins asked for, filled with `contents`; saves
-/// DIR/macro.h5, DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5.
+/// DIR/macro.h5, DIR/macro_initial.h5 (the common starting states) and DIR/states_macro.h5. Laws with `draws` get
+/// bands, which `records` tell of.
 std::vector<MacroCurve> run_macro_stage(const MacroSetup& setup, const std::vector<NamedLaws>& laws,
-                                        const std::vector<ShellPacking>& contents, const Run& run);
+                                        const std::vector<ShellPacking>& contents, const Run& run,
+                                        const std::vector<LawDraws>& draws, std::vector<BandRecord>& records);
 
 }  // namespace softgrain

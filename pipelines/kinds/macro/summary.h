@@ -1,6 +1,7 @@
 // What a macro scene came to: summary.json of its run, which the report reads back.
 #pragma once
 
+#include "pipelines/kinds/macro/bands.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {
@@ -16,11 +17,38 @@ void fields(auto&& visit, Of<RunLaw> auto& s) {
   visit("file", s.file);
 }
 
+void fields(auto&& visit, Of<BandRecord> auto& b) {
+  visit("engine", b.engine);
+  visit("estimator", b.estimator);
+  visit("draws", b.draws);
+  visit("components", b.components);
+  visit("runs", b.runs);
+  visit("explained", b.explained);
+  visit("origin", b.origin);
+  visit("discrepancy", b.discrepancy);
+  visit("discrepancy_origin", b.discrepancy_origin);
+  visit("noise", b.noise);
+}
+
+void fields(auto&& visit, Of<BandedEnd> auto& e) {
+  visit("of", e.of);
+  visit("engine", e.engine);
+  visit("strain", e.strain);
+  visit("stress", e.stress);
+  visit("low", e.low);
+  visit("high", e.high);
+  visit("law", e.law);
+  visit("discrepancy", e.discrepancy);
+  visit("samples", e.samples);
+}
+
 struct MacroRunSummary {
   SummaryHead head;
   std::optional<RunLaw> law;
   MacroSummary runs;
   std::optional<EngineUse> engine;
+  std::vector<BandRecord> bands{};  ///< of laws that have error bars
+  std::vector<BandedEnd> band_ends{};
 };
 
 void fields(auto&& visit, Of<MacroRunSummary> auto& s) {
@@ -28,6 +56,8 @@ void fields(auto&& visit, Of<MacroRunSummary> auto& s) {
   visit("law", s.law, kLeftOut);
   fields(visit, s.runs);
   visit("engine", s.engine, kLeftOut);
+  visit("bands", s.bands);
+  visit("band_ends", s.band_ends);
 }
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/io/text_file.h"
+#include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro_comparison/results.h"
 #include "pipelines/kinds/macro_comparison/summary.h"
@@ -23,6 +24,7 @@ struct SceneResult {
   std::vector<SceneFacts> facts;
   std::vector<EngineScore> scores;
   std::vector<NamedLaws> laws;
+  std::vector<BandRecord> bands;
   std::vector<std::string> remarks;
   bool usable = true;
 };
@@ -40,12 +42,13 @@ void remark_spread(SceneResult& r) {
 
 SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,
                       const std::vector<ShellPacking>& contents, const Run& run) {
-  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, true};
+  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, {}, true};
   const auto packings = make_macro_packings(scene.setup, run, "macro_initial_" + scene.name + ".h5");
   for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
   r.laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
-  const auto curves = run_engines({scene.setup, packings, contents, run.seed, scene.name}, r.laws, run,
-                                  "states_macro_" + scene.name + ".h5");
+  const MacroRuns runs{scene.setup, packings, contents, run.seed, scene.name};
+  auto curves = run_engines(runs, r.laws, run, "states_macro_" + scene.name + ".h5");
+  r.bands = add_bands(runs, draws_for(scene.setup, setup.laws, r.laws, mean_solid_fraction(contents)), run, curves);
   save_macro(curves, run.path(r.file), run.provenance);
   r.scores = score_engines(curves);
   if (!all_carry_stress(curves)) {
@@ -68,6 +71,7 @@ SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& 
 ComparedScene summary_of(const SceneResult& r) {
   ComparedScene out{r.name, {}, r.spec.test, r.spec.construction, r.spec.soft_share, r.file, r.facts, r.scores};
   for (const NamedLaws& l : r.laws) out.laws.push_back(l.identity);
+  out.bands = r.bands;
   return out;
 }
 
@@ -152,6 +156,9 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
   for (const ComparisonScene& s : setup.scenes) sizes += sizes_text(s.setup.spec);
   const Run run(scene, options, "run", setup.seed, {setup.laws.files, setup.laws.text + sizes});
   const auto contents = make_contents(setup.spec, setup.contents, run.seed);
+  for (const ComparisonScene& s : setup.scenes)  // before any run
+    (void)draws_for(s.setup, setup.laws, laws_for(setup.laws, s.setup.spec, mean_solid_fraction(contents)),
+                    mean_solid_fraction(contents));
   std::vector<SceneResult> results;
   run.context.guard([&] {
     for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));

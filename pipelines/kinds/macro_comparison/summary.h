@@ -2,6 +2,7 @@
 #pragma once
 
 #include "macrosim/constructed_packing.h"
+#include "pipelines/kinds/macro/summary.h"
 #include "macrosim/macro_spec.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/results/summary.h"
@@ -48,6 +49,9 @@ void fields(auto&& visit, const EngineScore& s) {
   visit("contact_evaluations", s.contact_evaluations);
   visit("seconds", s.seconds);
   visit("noise", known(s.noise));
+  visit("band_width", known(s.band_width));
+  visit("coverage", known(s.coverage));
+  visit("coverage_at_end", known(s.coverage_end));
   visit("forces_at_twin_places", known(s.places));
   visit("against_shelled", known(s.shelled));
   visit("against_free", known(s.free));
@@ -77,6 +81,7 @@ struct ComparedScene {
   std::string file;  ///< of its curves
   std::vector<SceneFacts> samples;
   std::vector<EngineScore> engines;
+  std::vector<BandRecord> bands{};
 };
 
 void fields(auto&& visit, Of<ComparedScene> auto& s) {
@@ -88,6 +93,7 @@ void fields(auto&& visit, Of<ComparedScene> auto& s) {
   visit("file", s.file);
   visit("samples", s.samples);
   visit("engines", s.engines);
+  visit("bands", s.bands);
 }
 
 /// comparison.json.

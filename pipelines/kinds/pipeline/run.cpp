@@ -7,8 +7,10 @@
 
 #include "calibrate/threshold_fit.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/macro/summary.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/law/law_json.h"
@@ -32,6 +34,7 @@ struct PipelineResult {
   MeasureResult measured;
   LawCard card;
   std::vector<MacroCurve> curves;
+  std::vector<BandRecord> bands;
   std::optional<Comparison> comparison;
   std::vector<std::string> remarks;
   bool usable = true;
@@ -56,7 +59,10 @@ bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResul
   std::string why;
   try {
     const NamedLaws law = pair_law_of(result.card, setup.macro->spec, "law");
-    result.curves = run_macro_stage(*setup.macro, {law}, result.measured.packings, run);
+    LawSources sources;
+    sources.card = result.card;
+    result.curves = run_macro_stage(*setup.macro, {law}, result.measured.packings, run,
+                                    draws_for(*setup.macro, sources, {law}, 0.0), result.bands);
     return true;
   } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();
@@ -92,6 +98,8 @@ struct PipelineSummary {
   std::map<std::string, PairLawSummary> laws;
   MeasuredSummary measured;
   MacroSummary macro;
+  std::vector<BandRecord> bands;
+  std::vector<BandedEnd> band_ends;
 };
 
 void fields(auto&& visit, Of<PipelineSummary> auto& s) {
@@ -99,6 +107,8 @@ void fields(auto&& visit, Of<PipelineSummary> auto& s) {
   visit("laws", s.laws);
   fields(visit, s.measured);
   fields(visit, s.macro);
+  visit("bands", s.bands);
+  visit("band_ends", s.band_ends);
 }
 
 PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& run) {
@@ -106,6 +116,8 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
+  s.bands = r.bands;
+  s.band_ends = banded_ends(r.curves);
   s.head.sizes = summaries_of(shell_sizes(r.measured.data.spec, r.measured.data.packings));
   if (setup.macro)
     for (const SizesSummary& sizes : summaries_of(drawn_sizes(*setup.macro, run.seed))) s.head.sizes.push_back(sizes);
@@ -147,7 +159,8 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   result.usable = result.measured.enough_left;
   fit(setup, run, result);
   run_macro(setup, run, result);
-  return run.finish(json_of(summarise(setup, result, run)), people_text(result));
+  return run.finish(json_of(summarise(setup, result, run)),
+                    people_text(result) + bands_text(result.bands, banded_ends(result.curves)));
 }
 
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
