@@ -162,6 +162,7 @@ AnyLaw read_crowd_law(Reader& r) {
   law.partner.log_weight = r.curve("log_ratio", "log_weight");
   law.partner.exponent = r.curve("exponent_log_ratio", "exponent");
   law.partner.common_exponent = r.positive("common_exponent");
+  if (r.has("plane_weight")) law.partner.plane_weight = r.positive("plane_weight");
   law.modulus = r.positive("modulus");
   law.friction = r.not_negative("friction");
   law.kt_ratio = r.not_negative("kt_ratio");

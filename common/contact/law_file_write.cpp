@@ -93,6 +93,7 @@ void write(std::string& out, const std::string& name, const SoftCrowd<kCrowd, kU
   w.values("exponent_log_ratio", law.partner.exponent.points());
   w.values("exponent", law.partner.exponent.values());
   w.value("common_exponent", law.partner.common_exponent);
+  if (law.partner.plane_weight != 1.0) w.value("plane_weight", law.partner.plane_weight);
   w.value("modulus", law.modulus);
   w.value("friction", law.friction);
   w.value("kt_ratio", law.kt_ratio);

@@ -6,6 +6,7 @@
 
 #include "calibrate/bootstrap.h"
 #include "common/contact/crowd_from_table.h"
+#include "common/core/error.h"
 #include "common/data/crowd_replicates.h"
 #include "pipelines/law/law_values.h"
 
@@ -200,6 +201,8 @@ LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, c
 }  // namespace
 
 CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const std::vector<double>& deltas) {
+  if (q.arrangement == Arrangement::scattered)
+    throw BadInput("--arrangement scattered: neighbours that are drawn are for measurements; ask for another arrangement");
   CrowdAnswer out;
   out.entry = entry_of(table, q, out.remark);
   out.form = q.form.value_or(out.entry.best);

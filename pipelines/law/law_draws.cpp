@@ -222,8 +222,7 @@ LawDraws card_draws(const LawSources& sources, const NamedLaws& named, const Mac
 double form_discrepancy(const CrowdLaw& law) {
   std::vector<double> squares;
   for (const ConfigurationError& e : law.errors)
-    if (e.use == CrowdUse::predicted && e.end_ratio > 0.0)
-      squares.push_back(std::pow(std::log(e.end_ratio), 2) - e.noise * e.noise);
+    if (e.use == CrowdUse::predicted) squares.push_back(e.error * e.error - e.noise * e.noise);
   if (squares.empty()) return std::isfinite(law.error_cross) ? law.error_cross : 0.0;
   return std::sqrt(std::max(mean_error(squares).mean, 0.0));
 }

@@ -15,8 +15,8 @@ struct LawDraws {
   std::vector<std::vector<double>> draws;  ///< likewise
   std::string origin;                      ///< of the draws, for people
   /// Standard deviation of the logarithm of all forces that the form of the law is off by, besides its draws: root mean
-  /// square of ln(law/mean) at the end of configurations that the fit did not see, the noise of the means taken off.
-  /// 0: not known.
+  /// square of its errors on configurations that the fit did not see (leaving one out, where there are none), the noise
+  /// of their means taken off. 0: not known.
   double discrepancy = 0.0;
   std::string discrepancy_origin;
 

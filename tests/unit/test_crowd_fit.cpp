@@ -363,12 +363,14 @@ TEST(CrowdFit, RefitsWithoutAMinimumAreCountedAndLeftOut) {
 
 TEST(CrowdFit, ARefitThatStalledIsNoRefit) {
   FormFit fit;
-  fit.planes.end = fit.solid.end = FitEnd::converged;
+  fit.partners.push_back({PartnerKind::solid, {1.0}, {}, 3});
+  LeastSquaresFit& solid = fit.partners.front().fit;
+  fit.planes.end = solid.end = FitEnd::converged;
   EXPECT_EQ(fit.trouble(), "");
-  fit.solid.rank_deficient = true;  // a weight that is not determined says so by its error
+  solid.rank_deficient = true;  // a weight that is not determined says so by its error
   EXPECT_EQ(fit.trouble(), "");
-  fit.solid.end = FitEnd::stalled;
-  fit.solid.message = "stalled: far";
+  solid.end = FitEnd::stalled;
+  solid.message = "stalled: far";
   EXPECT_EQ(fit.trouble(), "solid neighbours: stalled: far");
   fit.planes.rank_deficient = true;
   EXPECT_EQ(fit.trouble().substr(0, 6), "planes");

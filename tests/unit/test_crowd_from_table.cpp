@@ -252,5 +252,39 @@ TEST(TableLawOfAScene, ForcesScaleWithE) {
   EXPECT_FALSE(one.contacts.particle_sum.empty());
 }
 
+/// A wall that is less rough than grains counts less: between planes without friction and those with that of the
+/// grains.
+TEST(CrowdFromTable, WallsCountByTheirFriction) {
+  LawTableEntry entry = law_entry();
+  entry.spec.friction = 0.3;
+  const auto plane = [&](double wall_friction) {
+    CrowdChoices choices;
+    choices.modulus = 1.0;
+    choices.wall_friction = wall_friction;
+    return std::get<Directional>(make_crowd_laws(entry, choices).soft_plane).partner.at(0.0);
+  };
+  EXPECT_EQ(plane(0.0).a, 1.0) << "not measured: like any plane";
+  for (CrowdLaw& law : entry.laws) {
+    PartnerRow row;
+    row.kind = PartnerKind::plane;
+    row.ratio = 0.0;
+    row.weight.value = 0.64;
+    row.exponent.value = 1.2;
+    law.partners.push_back(row);
+  }
+  EXPECT_EQ(plane(-1.0).a, 1.0);
+  EXPECT_NEAR(plane(0.0).a, 0.64, 1e-12);
+  EXPECT_NEAR(plane(0.0).b, 1.2, 1e-12);
+  EXPECT_NEAR(plane(0.15).a, 0.8, 1e-12);
+  EXPECT_NEAR(plane(0.15).b, 1.1, 1e-12);
+  EXPECT_EQ(plane(0.3).a, 1.0);
+  EXPECT_EQ(plane(0.9).b, 1.0);
+  CrowdChoices choices;
+  choices.modulus = 1.0;
+  choices.wall_friction = 0.0;
+  EXPECT_EQ(std::get<Directional>(make_crowd_laws(entry, choices).soft_solid).partner.at(0.0).a, 1.0)
+      << "shells do not";
+}
+
 }  // namespace
 }  // namespace softgrain

@@ -36,6 +36,7 @@ std::vector<LawFileEntry> every_law() {
   SoftCrowd<Crowd::directional, true, true> rolling;
   rolling.form = crowd.form;
   rolling.partner = crowd.partner;
+  rolling.partner.plane_weight = 0.8;
   rolling.modulus = 5e5;
   rolling.retreat = 1.2;
   rolling.rolling = 0.005;

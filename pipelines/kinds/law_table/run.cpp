@@ -27,7 +27,7 @@ CrowdSetup setup_of(const LawTableVariant& variant, const CrowdSetup& base) {
   std::erase_if(setup.configurations, [&](const CrowdConfiguration& c) {
     const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
                                      [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
-    return c.held_out || c.centre_free || softs >= setup.packings_max;
+    return c.held_out || softs >= setup.packings_max;
   });
   return setup;
 }

@@ -1,0 +1,91 @@
+// Error bars of macro runs through the program: both estimators, parts, what cannot be had, stopping.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/data/macro_band.h"
+#include "common/io/text_file.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace softgrain {
+namespace {
+
+using test::run_the_program;
+using test::TemporaryDirectory;
+
+const std::string kTable = std::string(SOFTGRAIN_SOURCE_DIR) + "/results/law_table/law_table.toml";
+
+class MacroBands : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_text_atomic(directory_.file("scene.toml"), R"(kind = "macro"
+law = ")" + kTable + R"("
+[macro]
+bodies = 20
+construction = "voids"
+soft_share = 0.3
+strain = 0.12
+steps = 3
+increments_per_step = 2
+resolved = false
+)");
+  }
+  auto run(const std::string& name, const std::string& more) {
+    return run_the_program("macrosim '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file(name) +
+                           "' " + more);
+  }
+  MacroCurve curve(const std::string& name) { return load_macro(directory_.file(name) + "/macro.h5").at(0); }
+  static MacroBand band(const MacroCurve& c, BandPart part) { return band_of(c, BandOf::axial, part).value(); }
+
+  TemporaryDirectory directory_;
+};
+
+double width(const MacroBand& b) { return b.high.back() - b.low.back(); }
+
+/// Ten runs in place of a run for every draw; the parts add up, and the curve itself is not touched.
+TEST_F(MacroBands, AFewRunsGiveTheBandOfAllDraws) {
+  ASSERT_EQ(run("none", "").status, 0);
+  ASSERT_EQ(run("few", "--bands 32").status, 0);
+  ASSERT_EQ(run("all", "--bands 32 --set macro.band_estimator=draws").status, 0);
+  const MacroCurve few = curve("few");
+  EXPECT_EQ(few.stress_axial, curve("none").stress_axial);
+  EXPECT_FALSE(band_of(curve("none"), BandOf::axial, BandPart::all));
+  const double by_few = width(band(few, BandPart::law));
+  const double by_all = width(band(curve("all"), BandPart::law));
+  EXPECT_GT(by_few, 0.4 * by_all);
+  EXPECT_LT(by_few, 2.5 * by_all);
+  const double stress = few.stress_axial.back();
+  const MacroBand law = band(few, BandPart::law);
+  const MacroBand off = band(few, BandPart::discrepancy);
+  const MacroBand all = band(few, BandPart::all);
+  EXPECT_GT(width(off), 0.02 * stress);
+  EXPECT_NEAR(all.high.back() - stress, std::hypot(law.high.back() - stress, off.high.back() - stress), 1e-9 * stress);
+  EXPECT_LT(all.low.back(), stress);
+  EXPECT_FALSE(band_of(few, BandOf::axial, BandPart::noise)) << "nothing was run twice";
+}
+
+TEST_F(MacroBands, BitsDoNotDependOnThreads) {
+  ASSERT_EQ(run("one", "--bands 12 --threads 1 --set macro.noise_samples=1").status, 0);
+  ASSERT_EQ(run("three", "--bands 12 --threads 3 --set macro.noise_samples=1").status, 0);
+  for (const BandPart part : {BandPart::law, BandPart::discrepancy, BandPart::noise, BandPart::all}) {
+    EXPECT_EQ(band(curve("one"), part).low, band(curve("three"), part).low) << to_string(part);
+    EXPECT_EQ(band(curve("one"), part).high, band(curve("three"), part).high) << to_string(part);
+  }
+}
+
+TEST_F(MacroBands, WhatCannotBeDrawnIsRefusedBeforeAnyWork) {
+  const auto refused = [&](const std::string& more, const std::string& says) {
+    const auto r = run("refused", more);
+    EXPECT_EQ(r.status, 2) << more;
+    EXPECT_NE(r.output.find(says), std::string::npos) << r.output;
+  };
+  refused("--bands 5000", "refits of its");
+  refused("--set macro.bands=3", "say nothing of a 95 % band");
+  // A table beside which there is no .h5.
+  write_text_atomic(directory_.file("alone.toml"), read_text(kTable));
+  refused("--bands 16 --law '" + directory_.file("alone.toml") + "'", "keeps no refits");
+}
+
+}  // namespace
+}  // namespace softgrain

@@ -1,0 +1,117 @@
+// Error bars of macro curves: parts in quadrature, the mean over samples, what of a twin lies inside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/data/macro_band.h"
+#include "pipelines/compare/macro_scores.h"
+#include "pipelines/kinds/macro/bands.h"
+
+namespace softgrain {
+namespace {
+
+MacroCurve curve(const std::string& engine, std::int64_t sample, std::vector<double> stress) {
+  MacroCurve c;
+  c.engine = engine;
+  c.sample = sample;
+  c.stress_axial = std::move(stress);
+  for (std::size_t k = 0; k < c.stress_axial.size(); ++k) c.strain.push_back(0.1 * static_cast<double>(k));
+  c.stress_lateral = c.stress_axial;
+  return c;
+}
+
+/// Half-widths as shares of the stress.
+void give_bands(MacroCurve& c, double law, double discrepancy) {
+  const auto about = [&](double half) {
+    MacroBand band;
+    for (const double s : c.stress_axial) {
+      band.low.push_back(s * (1.0 - half));
+      band.high.push_back(s * (1.0 + half));
+    }
+    return band;
+  };
+  for (const BandOf of : {BandOf::axial, BandOf::lateral}) {
+    set_band(c, of, BandPart::law, about(law));
+    set_band(c, of, BandPart::discrepancy, about(discrepancy));
+    set_band(c, of, BandPart::all, together(c.stress_axial, {about(law), about(discrepancy)}));
+  }
+}
+
+TEST(MacroBand, PartsAddInQuadratureOnEitherSide) {
+  const std::vector<double> stress{0.0, 10.0};
+  const MacroBand a{{0.0, 7.0}, {0.0, 12.0}};
+  const MacroBand b{{0.0, 6.0}, {1.0, 10.0}};
+  const MacroBand all = together(stress, {a, b});
+  EXPECT_EQ(all.low[1], 5.0);
+  EXPECT_EQ(all.high[1], 12.0);
+  EXPECT_EQ(all.high[0], 1.0);
+  EXPECT_EQ(together(stress, {{{0.0, -20.0}, {0.0, 10.0}}}).low[1], 0.0) << "compression of grains has no other sign";
+}
+
+TEST(MacroBand, TheMeanOverSamplesHasTheIntervalOfStudent) {
+  std::vector<MacroCurve> curves{curve("law", 0, {0.0, 90.0}), curve("law", 1, {0.0, 110.0}),
+                                 curve("shelled", 0, {0.0, 100.0})};
+  EXPECT_TRUE(banded_ends(curves).empty()) << "no bands";
+  for (int k = 0; k < 2; ++k) give_bands(curves[static_cast<std::size_t>(k)], 0.03, 0.04);
+  const auto ends = banded_ends(curves);
+  ASSERT_EQ(ends.size(), 2U) << "axial and lateral";
+  EXPECT_EQ(ends[0].stress, 100.0);
+  EXPECT_NEAR(ends[0].law, 3.0, 1e-12);
+  EXPECT_NEAR(ends[0].discrepancy, 4.0, 1e-12);
+  EXPECT_NEAR(ends[0].samples, 12.7062 * 10.0, 1e-2) << "t of one degree of freedom, standard error 10";
+  EXPECT_NEAR(ends[0].high, 100.0 + std::hypot(3.0, 4.0, 127.062), 1e-2);
+  EXPECT_EQ(ends[0].low, 0.0);
+  curves.erase(curves.begin());
+  EXPECT_TRUE(std::isnan(banded_ends(curves)[0].samples));
+  EXPECT_NE(banded_text(banded_ends(curves)[0]).find("unknown: one alone"), std::string::npos);
+}
+
+TEST(MacroBand, ScoresSayWhatOfTheTwinLiesInside) {
+  MacroCurve law = curve("law", 0, {0.0, 100.0, 200.0, 300.0});
+  give_bands(law, 0.03, 0.04);  // together 5 %
+  // The first point bears less than 5 % of the last, the second lies outside, the end inside.
+  const MacroCurve twin = curve("shelled", 0, {1.0, 110.0, 205.0, 290.0});
+  const auto scores = score_engines({law, twin});
+  EXPECT_NEAR(scores[0].coverage.mean, 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(scores[0].coverage_end.mean, 1.0);
+  EXPECT_NEAR(scores[0].band_width.mean, 0.05, 1e-12);
+  EXPECT_EQ(scores[1].coverage.n, 0U) << "a twin has no band";
+}
+
+TEST(MacroBand, ScoresKnowNoisePlacesAndTheErrorOfTheMean) {
+  std::vector<MacroCurve> curves;
+  for (std::int64_t k = 0; k < 4; ++k) {
+    const double off = k % 2 == 0 ? 1.2 : 0.8;  // samples cancel in the mean
+    curves.push_back(curve("directional", k, {0.0, 100.0 * off, 200.0 * off}));
+    curves.push_back(curve("shelled", k, {0.0, 100.0, 200.0}));
+  }
+  curves[0].more[kAgainAxial] = {0.0, 1.1 * 120.0, 1.1 * 240.0};
+  curves[0].law.form = Crowd::directional;
+  curves[0].cost.contact_evaluations = 50;
+  for (MacroCurve& c : curves) {
+    if (c.engine != "shelled") continue;
+    c.more["places_shelled_solid"] = {0.0, 10.0, 30.0};
+    c.more["places_directional_solid"] = {0.0, 14.0, 34.0};
+  }
+  const EngineScore s = score_engines(curves)[0];
+  EXPECT_NEAR(s.shelled.axial.mean, 0.2, 1e-12);
+  EXPECT_NEAR(s.shelled.axial_of_mean.mean, 0.0, 1e-12);
+  EXPECT_GT(s.shelled.axial_of_mean.error, 0.0);
+  EXPECT_NEAR(s.noise.mean, 0.1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(s.places.solid.mean, 1.2, 1e-12);
+  EXPECT_EQ(s.places.wall.n, 0U);
+  EXPECT_NEAR(s.contact_evaluations, 2.0 * 50.0 / 4.0, 1e-12) << "a crowd law visits a contact twice";
+}
+
+TEST(MacroBand, WhatAFormIsOffByComesFromWhatItHasNotSeen) {
+  CrowdLaw law;
+  law.error_cross = 0.2;
+  EXPECT_EQ(form_discrepancy(law), 0.2) << "nothing was held out";
+  law.errors = {{"fitted", CrowdUse::fitted, 0.5, 1.0, 0.0},
+                {"a", CrowdUse::predicted, 0.10, 1.0, 0.06},
+                {"b", CrowdUse::predicted, 0.05, 1.0, 0.03}};
+  EXPECT_NEAR(form_discrepancy(law), std::sqrt(0.5 * (0.08 * 0.08 + 0.04 * 0.04)), 1e-12);
+}
+
+}  // namespace
+}  // namespace softgrain
