@@ -177,6 +177,32 @@ std::string identity_text(const LawIdentity& law) {
                      told(law.poisson_ratio), told(law.friction), law.youngs_modulus, law.hash);
 }
 
+namespace {
+
+constexpr const char* kDrawnAxial = "drawn_axial";
+
+void write_drawn(const h5::Group& group, const MacroCurve& curve) {
+  if (curve.drawn_axial.empty()) return;
+  std::vector<double> all;
+  for (const std::vector<double>& draw : curve.drawn_axial) all.insert(all.end(), draw.begin(), draw.end());
+  group.write(kDrawnAxial, std::span<const double>(all), {curve.drawn_axial.size(), curve.drawn_axial.front().size()});
+  group.attribute_of(kDrawnAxial, "unit", "Pa");
+}
+
+void read_drawn(const h5::Group& group, MacroCurve& curve, std::size_t points) {
+  if (!group.has(kDrawnAxial)) return;
+  const h5::Shape shape = group.shape(kDrawnAxial);
+  if (shape.size() != 2 || shape[1] != points)
+    throw FileTrouble(fmt::format("data set '{}' is not one of {} points per draw", kDrawnAxial, points));
+  const std::vector<double> all = group.doubles(kDrawnAxial);
+  for (std::size_t r = 0; r < shape[0]; ++r) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * points);
+    curve.drawn_axial.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(points));
+  }
+}
+
+}  // namespace
+
 void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("engine", curve.engine);
   group.attribute("test", to_string(curve.test));
@@ -198,6 +224,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
   write_if_any(group, curve, kBodyForces);
+  write_drawn(group, curve);
   if (curve.more.empty()) return;
   const h5::Group more = group.create("more");
   for (const auto& [name, values] : curve.more) more.write(name, std::span<const double>(values));
@@ -235,6 +262,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
             fmt::format("data set 'more/{}' has {} values for {} points", name, curve.more[name].size(), points));
     }
   }
+  read_drawn(group, curve, points);
   if (group.has(kBodyForces.name)) read_column(group, curve, kBodyForces, group.doubles(kBodyForces.name).size());
   return curve;
 }

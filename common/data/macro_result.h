@@ -159,6 +159,7 @@ struct MacroCurve {
   std::vector<double> strain_y;
   std::vector<double> strain_z;
   std::map<std::string, std::vector<double>> more;  ///< per point, by name: what one kind of scene alone records
+  std::vector<std::vector<double>> drawn_axial;  ///< per draw of the law, then per point: stress_axial with that draw
   bool usable = true;
   std::string note;
   Cost cost;

@@ -17,6 +17,7 @@ void ContactVirial<D>::find_across(const System<D>& s) {
     if (!across.places.empty()) across_.push_back(std::move(across));
   }
   loads_.resize(most);
+  rolls_.resize(most);
   touches_.resize(most);
   build_ = s.contacts.build;
 }
@@ -32,7 +33,11 @@ Vec<D> ContactVirial<D>::of(System<D>& s) {
   for (const Across& a : across_) {
     const PairRange range{0, static_cast<std::int32_t>(a.places.size()), a.places.data()};
     block_loop<D>(s, s.contacts.sections[a.section], range,
-                  {.dt = 0.0, .history = History::none, .loads = loads_.data(), .touches = touches_.data()});
+                  {.dt = 0.0,
+                   .history = History::none,
+                   .loads = loads_.data(),
+                   .rolls = rolls_.data(),
+                   .touches = touches_.data()});
     for (std::size_t n = 0; n < a.places.size(); ++n) {
       if (touches_[n] == 0) continue;
       const Vec<D> shift = s.cell.image_shift(s.contacts.image[static_cast<std::size_t>(a.places[n])]);

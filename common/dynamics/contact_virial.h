@@ -29,6 +29,7 @@ class ContactVirial {
   std::uint64_t build_ = 0;
   std::vector<Across> across_;
   std::vector<ContactLoad> loads_;
+  std::vector<ContactRoll> rolls_;
   std::vector<std::uint8_t> touches_;
 };
 

@@ -401,9 +401,10 @@ void require_files(const LawOptions& o, std::size_t most) {
 
 ExitStatus command_law(const LawOptions& options) {
   if (options.action == LawAction::none)
-    throw BadInput("law: give show, eval or export and a law (see softgrain law --help)");
+    throw BadInput("law: give show, eval, export or plan and a law (see softgrain law --help)");
   require_files(options, options.action == LawAction::show ? 2 : 1);
   if (options.action == LawAction::show) return show(options);
+  if (options.action == LawAction::plan) return plan_next(options);
   return options.action == LawAction::eval ? eval(options) : export_law(options);
 }
 

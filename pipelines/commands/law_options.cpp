@@ -78,6 +78,18 @@ void add_export(CLI::App& app, LawOptions& o) {
       ->option_text("D");
 }
 
+void add_plan(CLI::App& app, LawOptions& o) {
+  app.add_option("--for", o.target, "Macro scene with bands, which is run; or the directory of such a run")
+      ->option_text("SCENE|RUN");
+  app.add_option("--measure", o.measure, "Law-table scene: its [[configuration]]s are what could be measured")
+      ->option_text("TABLE.toml");
+  app.add_option("--packings", o.packings, "Packings that are added at a time; default 8")->option_text("N");
+  app.add_option("--narrow", o.narrow, "Wanted: what packings leave open over what they do now; default 0.5")
+      ->option_text("SHARE");
+  app.add_option("--out", o.out, "Directory of the run of --for SCENE; default results/plan_SCENE")->option_text("DIR");
+  add_choice<Crowd>(app, "--form", o.form, "Form of the law; default the best that the run has error bars of");
+}
+
 /// Names of the options that stand on the command line.
 std::vector<std::string> given_options(const CLI::App& app) {
   std::vector<std::string> names;
@@ -115,6 +127,11 @@ void add_law_command(CLI::App& app, LawOptions& options) {
   add_law_choices(*converted, options);
   add_neighbours(*converted, options);
   add_export(*converted, options);
+  CLI::App* plan = add(LawAction::plan,
+                       "What to measure next: which neighbours, overlap and packings would narrow "
+                       "the error bars of a macro scene most per second");
+  add_files(*plan, options, "law table or run directory, with its refits (.h5)");
+  add_plan(*plan, options);
 }
 
 }  // namespace softgrain

@@ -1,4 +1,4 @@
-// Command line of softgrain law: show, eval and export.
+// Command line of softgrain law: show, eval, export and plan.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,14 @@ class App;
 
 namespace softgrain {
 
-enum class LawAction { none, show, eval, export_law };
+enum class LawAction { none, show, eval, export_law, plan };
 
 template <>
 inline constexpr auto words<LawAction> = word_list<LawAction>({{LawAction::none, "none"},
                                                                {LawAction::show, "show"},
                                                                {LawAction::eval, "eval"},
-                                                               {LawAction::export_law, "export"}});
+                                                               {LawAction::export_law, "export"},
+                                                               {LawAction::plan, "plan"}});
 
 enum class LawFormat { lammps_table, csv, json };
 
@@ -59,11 +60,20 @@ struct LawOptions {
   std::int64_t rows = 1001;
   double delta_max = -1.0;  ///< negative: the end of the range
 
+  std::string target;          ///< --for of plan: macro scene, or a run of one
+  std::string measure;         ///< --measure: law-table scene with the configurations that could be measured
+  std::int64_t packings = 8;   ///< --packings: added at a time
+  double narrow = 0.5;         ///< --narrow: wanted width over what it is
+  std::string command_line{};  ///< as given, for provenance
+
   std::vector<std::string> given;  ///< names of the options on the command line, for those that do not go together
 };
 
 /// Adds `law` with its sub-commands to the program's command line.
 void add_law_command(CLI::App& app, LawOptions& options);
+
+/// What to measure next, see pipelines/kinds/law_table/law_plan.h. Throws Error.
+ExitStatus plan_next(const LawOptions& options);
 
 /// Does what was asked. Throws Error.
 ExitStatus command_law(const LawOptions& options);

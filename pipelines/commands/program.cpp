@@ -146,11 +146,12 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
         ->transform(whole_number("--ranks", 1, kMostRanks));
     app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
   }
-  if (command.function == command_macrosim || command.function == command_check)
+  if (command.function == command_macrosim || command.function == command_check) {
     app.add_option("--bands", o.bands, "Error bars from so many draws of the law; default as the scene says (none)")
         ->check(CLI::Range(8, 100000));
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
         ->option_text("LAW.toml");
+  }
 }
 
 /// Counted here and not by the parser, so that an unknown option is named before what follows it.
@@ -202,6 +203,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   // A file that may not grow beyond a limit is trouble with a file, to be told as such, not a reason to be killed.
   std::signal(SIGXFSZ, SIG_IGN);
   end_at_once_on_signals();
+  law.command_line = options.command_line;
   if (law.action) return command_law(law);
   if (chosen == nullptr) {
     std::fputs(app.help().c_str(), stderr);

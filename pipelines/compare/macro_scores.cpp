@@ -99,42 +99,40 @@ MeanError mean_of(const Pairs& pairs, const std::function<double(const MacroCurv
   return finite_mean(values);
 }
 
-/// Mean axial stresses of the curves but one; empty where they do not have the same points.
-std::vector<double> mean_axial(const Curves& curves, std::size_t without) {
-  std::vector<double> sum;
-  double count = 0.0;
-  for (std::size_t k = 0; k < curves.size(); ++k) {
-    if (k == without) continue;
-    const std::vector<double>& stress = curves[k]->stress_axial;
-    if (stress.size() != curves.front()->strain.size()) return {};
-    sum.resize(stress.size(), 0.0);
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += stress[i];
-    count += 1.0;
+/// Mean axial stresses; empty where the curves do not have the same points.
+std::vector<double> mean_axial(const Curves& curves) {
+  std::vector<double> mean(curves.front()->strain.size(), 0.0);
+  for (const MacroCurve* c : curves) {
+    if (c->stress_axial.size() != mean.size()) return {};
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += c->stress_axial[i] / static_cast<double>(curves.size());
   }
-  for (double& x : sum) x /= count;
-  return sum;
+  return mean;
 }
 
-/// Relative L2 difference of mean curves. Jackknife: n - 1 over n times the sum of squares about the mean of the values
-/// without one sample each.
+/// Relative L2 difference of mean curves; its error is that of curves that differ by the standard error of the mean of
+/// the paired differences, point by point: what means of equal expectation come to.
 MeanError difference_of_means(const Pairs& pairs) {
+  MeanError out{0, kNaN, kNaN, kNaN};
+  if (pairs.empty()) return out;
   Curves mine;
   Curves twins;
   for (const auto& [c, t] : pairs) mine.push_back(c), twins.push_back(t);
-  const auto value = [&](std::size_t without) {
-    const std::vector<double> a = mean_axial(mine, without);
-    const std::vector<double> b = mean_axial(twins, without);
-    return a.empty() || b.empty() ? kNaN : difference(abscissa_of(*mine.front()), a, abscissa_of(*twins.front()), b);
-  };
-  MeanError out{0, kNaN, kNaN, kNaN};
-  if (pairs.empty() || !std::isfinite(value(pairs.size()))) return out;
-  out = {pairs.size(), value(pairs.size()), kNaN, kNaN};
-  if (pairs.size() < 3) return out;
-  std::vector<double> values;
-  for (std::size_t k = 0; k < pairs.size(); ++k) values.push_back(value(k));
-  const MeanError spread = mean_error(values);
-  out.error = spread.deviation *
-              std::sqrt(std::pow(static_cast<double>(values.size()) - 1.0, 2) / static_cast<double>(values.size()));
+  const std::vector<double> a = mean_axial(mine);
+  std::vector<double> b = mean_axial(twins);
+  if (a.empty() || a.size() != b.size()) return out;
+  const std::vector<double> x = abscissa_of(*twins.front());
+  const double value = difference(abscissa_of(*mine.front()), a, x, b);
+  if (!std::isfinite(value)) return out;
+  out.n = pairs.size();
+  out.mean = value;
+  if (pairs.size() < 2) return out;
+  std::vector<double> off = b;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    std::vector<double> apart;
+    for (const auto& [c, t] : pairs) apart.push_back(c->stress_axial[i] - t->stress_axial[i]);
+    off[i] += mean_error(apart).error;
+  }
+  out.error = difference(x, off, x, b);
   return out;
 }
 
@@ -312,10 +310,10 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
                   "seconds",
                   "noise",
                   "half band / stress",
-                  "twin in band, points",
-                  "twin in band, end"};
+                  "points of the twin in band",
+                  "end of the twin in band"};
   for (const char* partner : kPlacesPartners)
-    table.header.push_back(fmt::format("at the twin's places: force on {}, law/twin", partner));
+    table.header.push_back(fmt::format("force on {} at the twin's places: law/twin", partner));
   for (const auto& [ignored, twin] : words<Twin>)
     for (const char* what : {"stress error", "stress error of the mean", "end stress ratio", "deviator error",
                              "lateral/axial difference", "coordination difference", "fabric difference",

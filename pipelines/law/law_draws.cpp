@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "calibrate/effect_components.h"
 #include "common/contact/crowd_from_table.h"
@@ -108,6 +109,15 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   out.discrepancy = form_discrepancy(best);
   out.discrepancy_origin = "configurations that the fit did not see";
   const LogForces log_forces(crowd_probes(best));
+  out.crowd_forces = [=](const std::vector<double>& numbers, const std::vector<PressedNeighbours>& states) {
+    const CrowdModel model = crowd_model(law_of_numbers(best, numbers, 1.0));
+    std::vector<double> sums;
+    for (const PressedNeighbours& s : states) {
+      const std::vector<double> forces = softgrain::crowd_forces(model, s.partners, s.overlap);
+      sums.push_back(std::accumulate(forces.begin(), forces.end(), 0.0));
+    }
+    return sums;
+  };
   out.effects = [=](const std::vector<double>& numbers) {
     return log_forces(crowd_probes(law_of_numbers(best, numbers, 1.0)));
   };

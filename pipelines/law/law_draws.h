@@ -1,12 +1,19 @@
 // Draws of a law, as its data leave it open, and what it may be off besides: what error bars of a macro run come from.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "pipelines/law/named_laws.h"
 
 namespace softgrain {
+
+/// Neighbours of one soft particle, pressed in by these overlaps [Rs].
+struct PressedNeighbours {
+  std::vector<CrowdPartner> partners;
+  std::vector<double> overlap;
+};
 
 /// A law that can be drawn: its numbers, those of every draw, and the law of any numbers.
 struct LawDraws {
@@ -20,6 +27,8 @@ struct LawDraws {
   double discrepancy = 0.0;
   std::string discrepancy_origin;
 
+  /// Of tables: sums of the forces on the neighbours over E Rs^2 in these states, for numbers of its own.
+  std::function<std::vector<double>(const std::vector<double>&, const std::vector<PressedNeighbours>&)> crowd_forces;
   /// What it says at some states, for numbers of its own: logarithms of forces, bounded below.
   std::function<std::vector<double>(const std::vector<double>&)> effects;
   /// The law of other numbers, all forces times `factor`.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/contact/crowd_from_table.h"
 #include "common/dynamics/contact_virial.h"
 #include "common/dynamics/contact_watch.h"
 #include "common/dynamics/force_pass.h"
@@ -66,6 +67,24 @@ TEST_F(PeriodicTwin, VirialOfForcesIsThatOfContacts) {
   const Vec3 by_forces = ContactVirial<3>().of(macro.system);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(by_forces[k], by_contacts[k], 1e-11 * by_contacts[k]);
   EXPECT_GT(by_contacts[2], 1.2 * by_contacts[0]);
+}
+
+/// Laws with rolling resistance put down one thing more of each contact.
+TEST_F(PeriodicTwin, VirialOfForcesIsThatOfContactsWhereSoftParticlesResistRolling) {
+  const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
+  ASSERT_TRUE(main_entry(table).rolls());
+  CrowdChoices choices;
+  choices.modulus = spec_.youngs_modulus;
+  const CrowdLaws laws = make_crowd_laws(main_entry(table), choices);
+  MacroSystem macro =
+      make_law_system(spec_, packing_, {laws.soft_solid, laws.solid_soft, laws.soft_plane, laws.soft_soft}, 1.0);
+  strain_box(macro.system, macro.box, {{0.10, 0.12, 0.14}});
+  force_pass(macro.system, 0.0, History::none);
+  const Vec3 size = box_high(macro.system, macro.box);
+  const Vec3 by_contacts = contact_stress(macro.system, macro.box) * (size[0] * size[1] * size[2]);
+  const Vec3 by_forces = ContactVirial<3>().of(macro.system);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(by_forces[k], by_contacts[k], 1e-11 * by_contacts[k]);
+  EXPECT_GT(by_contacts[2], 0.0);
 }
 
 /// No face is a place of its own: contents, shells and all forces are those of the scene elsewhere in the cell.

@@ -1,8 +1,11 @@
 // Error bars of macro runs through the program: both estimators, parts, what cannot be had, stopping.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "common/core/statistics.h"
 #include "common/data/macro_band.h"
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
@@ -23,8 +26,6 @@ class MacroBands : public testing::Test {
 law = ")" + kTable + R"("
 [macro]
 bodies = 20
-construction = "voids"
-soft_share = 0.3
 strain = 0.12
 steps = 3
 increments_per_step = 2
@@ -62,7 +63,36 @@ TEST_F(MacroBands, AFewRunsGiveTheBandOfAllDraws) {
   EXPECT_GT(width(off), 0.02 * stress);
   EXPECT_NEAR(all.high.back() - stress, std::hypot(law.high.back() - stress, off.high.back() - stress), 1e-9 * stress);
   EXPECT_LT(all.low.back(), stress);
+  ASSERT_EQ(few.drawn_axial.size(), 32U);
+  std::vector<double> ends;
+  for (const std::vector<double>& draw : few.drawn_axial) ends.push_back(draw.back());
+  EXPECT_EQ(std::max(stress, quantile(ends, 0.975)), law.high.back()) << "the draws are in the file";
   EXPECT_FALSE(band_of(few, BandOf::axial, BandPart::noise)) << "nothing was run twice";
+}
+
+/// The plan names configurations of the scene, is cheaper than packings of all alike, and does what it says.
+TEST_F(MacroBands, APlanSaysWhatToMeasureNext) {
+  ASSERT_EQ(run("planned", "--bands 32").status, 0);
+  const std::string plan = "law plan '" + kTable + "' --measure '" + SOFTGRAIN_SOURCE_DIR +
+                           "/pipelines/law_table.toml' --for '" + directory_.file("planned") + "' ";
+  const auto by_run = run_the_program(plan + "--json");
+  ASSERT_EQ(by_run.status, 0) << by_run.output;
+  const auto told = nlohmann::json::parse(by_run.output);
+  EXPECT_EQ(told["draws"], 32);
+  EXPECT_EQ(told["curves"], 1);
+  EXPECT_GT(told["law_part"].get<double>(), 0.01);
+  EXPECT_GT(told["candidates"].size(), 60U);
+  ASSERT_FALSE(told["plan"].empty());
+  double share = 1.0;
+  for (const auto& step : told["plan"]) {
+    EXPECT_LT(step["share"].get<double>(), share);
+    share = step["share"].get<double>();
+    EXPECT_EQ(step["packings"].get<int>() % 8, 0);
+  }
+  EXPECT_LT(share, 0.9);
+  EXPECT_GT(told["core_seconds_alike"].get<double>(), told["core_seconds"].get<double>());
+  const std::string text = run_the_program(plan).output;
+  EXPECT_NE(text.find("plan, one after the other"), std::string::npos) << text;
 }
 
 TEST_F(MacroBands, BitsDoNotDependOnThreads) {

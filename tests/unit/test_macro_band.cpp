@@ -96,7 +96,7 @@ TEST(MacroBand, ScoresKnowNoisePlacesAndTheErrorOfTheMean) {
   const EngineScore s = score_engines(curves)[0];
   EXPECT_NEAR(s.shelled.axial.mean, 0.2, 1e-12);
   EXPECT_NEAR(s.shelled.axial_of_mean.mean, 0.0, 1e-12);
-  EXPECT_GT(s.shelled.axial_of_mean.error, 0.0);
+  EXPECT_NEAR(s.shelled.axial_of_mean.error, 0.2 / std::sqrt(3.0), 1e-12) << "of four differences of 0.2";
   EXPECT_NEAR(s.noise.mean, 0.1 / std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(s.places.solid.mean, 1.2, 1e-12);
   EXPECT_EQ(s.places.wall.n, 0U);

@@ -112,13 +112,6 @@ double passes_of(const CrowdConfiguration& c, const CrowdSetup& setup) {
   return per_time * (moving + points * rest) + points * kPolish;
 }
 
-/// Core seconds of all configurations with one packing each.
-double seconds_per_packing(const CrowdSetup& setup, double pass_seconds) {
-  double passes = 0.0;
-  for (const CrowdConfiguration& c : setup.configurations) passes += (1.0 + softs_of(c)) * passes_of(c, setup);
-  return passes * pass_seconds;
-}
-
 /// Packings that a configuration takes in the mean until its target is met, those of the pilot included: forces at
 /// the largest overlap scatter by about a fifth between packings.
 double expected_packings(const CrowdSetup& setup) {
@@ -159,13 +152,19 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
   return trial;
 }
 
+double seconds_per_packing(const CrowdConfiguration& configuration, const CrowdSetup& setup, double pass_seconds) {
+  return (1.0 + softs_of(configuration)) * passes_of(configuration, setup) * pass_seconds;
+}
+
 void spend_on_packings(const CrowdSetup& setup, const MeasureTrial& trial, double times, Findings& out) {
   out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.packings_max));
 }
 
 void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
                     Findings& out) {
-  out.spend(part, times * expected_packings(setup) * seconds_per_packing(setup, trial.pass_seconds));
+  double seconds = 0.0;  // of all configurations with one packing each
+  for (const CrowdConfiguration& c : setup.configurations) seconds += seconds_per_packing(c, setup, trial.pass_seconds);
+  out.spend(part, times * expected_packings(setup) * seconds);
 }
 
 }  // namespace softgrain

@@ -74,7 +74,9 @@ class DrawnBand {
         return;
       }
       const std::vector<double>& stress = banded_stress(curve, of);
-      std::vector<MacroBand> parts{law_part(ran, stress, of), discrepancy_part(ran, stress, of)};
+      const std::vector<std::vector<double>> draws = drawn(ran, stress, of);
+      if (of == BandOf::axial) curve.drawn_axial = draws;
+      std::vector<MacroBand> parts{law_part(draws, stress), discrepancy_part(ran, stress, of)};
       set_band(curve, of, BandPart::law, parts[0]);
       set_band(curve, of, BandPart::discrepancy, parts[1]);
       if (noise > 0.0) {
@@ -92,30 +94,29 @@ class DrawnBand {
     return numbers;
   }
 
-  /// Stress of every draw at point k.
-  [[nodiscard]] std::vector<double> drawn(const std::vector<const MacroCurve*>& ran, double stress, std::size_t k,
-                                          BandOf of) const {
-    const auto at = [&](std::size_t variant) { return banded_stress(*ran[variant], of)[k]; };
-    std::vector<double> out;
+  /// Stress of every draw at every point.
+  [[nodiscard]] std::vector<std::vector<double>> drawn(const std::vector<const MacroCurve*>& ran,
+                                                       const std::vector<double>& stress, BandOf of) const {
+    std::vector<std::vector<double>> out;
     if (setup_.band_estimator == BandEstimator::draws) {
-      for (std::size_t r = 0; r < draws_.draws.size(); ++r) out.push_back(at(r));
+      for (std::size_t r = 0; r < draws_.draws.size(); ++r) out.push_back(banded_stress(*ran[r], of));
       return out;
     }
-    std::vector<Bend> bends;
-    for (std::size_t c = 0; c < components_.direction.size(); ++c) bends.emplace_back(stress, at(2 * c), at(2 * c + 1));
-    for (const std::vector<double>& scores : components_.scores) {
-      double value = stress;
-      for (std::size_t c = 0; c < bends.size(); ++c) value += bends[c].at(scores[c]);
-      out.push_back(value);
-    }
+    out.assign(components_.scores.size(), stress);
+    for (std::size_t c = 0; c < components_.direction.size(); ++c)
+      for (std::size_t k = 0; k < stress.size(); ++k) {
+        const Bend bend(stress[k], banded_stress(*ran[2 * c], of)[k], banded_stress(*ran[2 * c + 1], of)[k]);
+        for (std::size_t r = 0; r < out.size(); ++r) out[r][k] += bend.at(components_.scores[r][c]);
+      }
     return out;
   }
 
-  [[nodiscard]] MacroBand law_part(const std::vector<const MacroCurve*>& ran, const std::vector<double>& stress,
-                                   BandOf of) const {
+  [[nodiscard]] static MacroBand law_part(const std::vector<std::vector<double>>& draws,
+                                          const std::vector<double>& stress) {
     MacroBand band;
     for (std::size_t k = 0; k < stress.size(); ++k) {
-      const std::vector<double> values = drawn(ran, stress[k], k, of);
+      std::vector<double> values;
+      for (const std::vector<double>& draw : draws) values.push_back(draw[k]);
       band.low.push_back(std::min(stress[k], quantile(values, 0.025)));
       band.high.push_back(std::max(stress[k], quantile(values, 0.975)));
     }

@@ -77,6 +77,17 @@ class MacroCurve:
         return self.columns[name]
 
 
+def _columns(group):
+    """Data sets by name; those of a group inside come as "group/name"."""
+    columns = {}
+    for name in group:
+        if isinstance(group[name], h5py.Group):
+            columns.update({f"{name}/{k}": v for k, v in _columns(group[name]).items()})
+        else:
+            columns[name] = group[name][()]
+    return columns
+
+
 def read_macro(path):
     """macro.h5 or macro_SCENE.h5: a list of curves."""
     with h5py.File(path, "r") as file:
@@ -86,7 +97,7 @@ def read_macro(path):
             group = file["curves"][name]
             curves.append(MacroCurve(text_attribute(group, "engine"), int(group.attrs["sample"]),
                                      text_attribute(group, "test"), bool(group.attrs["usable"]),
-                                     {k: group[k][()] for k in group}))
+                                     _columns(group)))
         return curves
 
 

@@ -1,0 +1,129 @@
+// softgrain law plan: the run that it is for, and the plan for people and programs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "common/data/macro_result.h"
+#include "common/io/interrupt.h"
+#include "common/io/text_file.h"
+#include "pipelines/commands/law_options.h"
+#include "pipelines/kinds/kinds.h"
+#include "pipelines/kinds/law_table/law_plan.h"
+#include "pipelines/kinds/law_table/scene.h"
+#include "pipelines/kinds/macro/scene.h"
+#include "pipelines/law/law_file.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Files of a run with macro curves: macro.h5, or one per scene of a comparison.
+std::vector<std::string> curve_files(const std::string& directory) {
+  std::vector<std::string> out;
+  for (const fs::directory_entry& e : fs::directory_iterator(directory)) {
+    const std::string name = e.path().filename().string();
+    const bool curves = name == "macro.h5" || (name.starts_with("macro_") && !name.starts_with("macro_initial"));
+    if (curves && e.path().extension() == ".h5") out.push_back(e.path().string());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<MacroCurve> curves_in(const std::string& directory) {
+  const std::vector<std::string> files = curve_files(directory);
+  if (files.empty()) throw BadInput("law plan: " + directory + " holds no macro.h5 or macro_SCENE.h5: no macro run");
+  std::vector<MacroCurve> out;
+  for (const std::string& file : files)
+    for (MacroCurve& c : load_macro(file)) out.push_back(std::move(c));
+  return out;
+}
+
+/// Runs the scene, or goes on with a run of it that was left; the directory.
+std::string run_of(const LawOptions& o, const std::string& law) {
+  const Scene scene = Scene::load(o.target);
+  const SceneKind& kind = kind_of(scene);
+  CommonOptions options;
+  options.inputs = {o.target};
+  options.out = o.out.empty() ? "results/plan_" + fs::path(o.target).stem().string() : o.out;
+  options.quiet = true;
+  options.command_line = o.command_line;
+  if (kind.takes_law) options.law = law;
+  constexpr std::int64_t kDraws = 60;
+  if (kind.takes_law && read_macro_scene(scene, law).setup.bands == 0) options.bands = kDraws;
+  options.resume = fs::exists(options.out + "/log.txt");
+  install_interrupt_handler();
+  if (const ExitStatus status = kind.run(scene, options); status != ExitStatus::good)
+    throw NotUsable("law plan: the run of " + o.target + " is not usable; see " + options.out);
+  return options.out;
+}
+
+json json_of(const LawPlan& plan, const std::string& law, const std::string& run) {
+  json out{{"command", "law plan"},
+           {"status", "good"},
+           {"file", law},
+           {"run", run},
+           {"engine", plan.engine},
+           {"curves", plan.curves},
+           {"draws", plan.draws},
+           {"law_part", plan.law_part},
+           {"discrepancy", plan.discrepancy},
+           {"packings_at_a_time", plan.block},
+           {"share", plan.share},
+           {"core_seconds", plan.seconds},
+           {"core_seconds_alike", std::isfinite(plan.even_seconds) ? json(plan.even_seconds) : json(nullptr)},
+           {"candidates", json::array()},
+           {"plan", json::array()},
+           {"remarks", plan.remarks}};
+  for (const PlanCandidate& c : plan.candidates)
+    out["candidates"].push_back({{"configuration", c.configuration},
+                                 {"overlap", c.overlap},
+                                 {"scatter", c.scatter},
+                                 {"measured", c.measured},
+                                 {"core_seconds_per_packing", c.seconds},
+                                 {"share", c.share}});
+  for (const PlanStep& s : plan.steps)
+    out["plan"].push_back({{"configuration", plan.candidates[s.candidate].configuration},
+                           {"overlap", plan.candidates[s.candidate].overlap},
+                           {"packings", s.packings},
+                           {"core_seconds", s.seconds},
+                           {"share", s.share}});
+  return out;
+}
+
+void require_plan_options(const LawOptions& o) {
+  if (o.target.empty())
+    throw BadInput("law plan: give --for SCENE, a macro scene with bands, or the directory of its run");
+  if (o.measure.empty())
+    throw BadInput("law plan: give --measure TABLE.toml, a law-table scene with what could be measured");
+  if (o.packings < 1 || o.packings > 100000)
+    throw BadInput(fmt::format("law plan: --packings {}: must be from 1 to 100000", o.packings));
+  if (!(o.narrow > 0.0) || !(o.narrow < 1.0))
+    throw BadInput(fmt::format("law plan: --narrow {}: must be above 0 and below 1", o.narrow));
+}
+
+}  // namespace
+
+ExitStatus plan_next(const LawOptions& o) {
+  require_plan_options(o);
+  const law::LawFile file = law::load_law_file(o.files.front());
+  if (!file.table)
+    throw BadInput("law plan: " + file.path +
+                   " is no law table: it has no configurations of several neighbours to plan with");
+  const Scene table_scene = Scene::load(o.measure);
+  const LawTableSetup candidates = read_law_table(table_scene);
+  const std::string run = fs::is_directory(o.target) ? o.target : run_of(o, file.path);
+  const LawPlan plan =
+      plan_law(*file.table, file.path, candidates.crowd, curves_in(run), {o.packings, o.narrow, o.form});
+  write_standard_output(o.json
+                            ? json_of(plan, file.path, run).dump(2, ' ', false, json::error_handler_t::replace) + "\n"
+                            : plan_text(plan));
+  return ExitStatus::good;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,63 @@
+// What to measure next of a law table: which configuration, pressed in how deep and on how many packings, would narrow
+// the error bars of a macro scene most per second.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/crowd_law.h"
+#include "common/data/macro_result.h"
+#include "pipelines/kinds/law_table/crowd_scene.h"
+
+namespace softgrain {
+
+/// A configuration of a scene up to an overlap.
+struct PlanCandidate {
+  std::string configuration;
+  double overlap = 0.0;   ///< largest of its neighbours [Rs]
+  double scatter = 0.0;   ///< of the force between packings, a share of it
+  bool measured = false;  ///< its scatter is that of the table; else the median of those there
+  double seconds = 0.0;   ///< of one core, with one packing
+  double share = 1.0;     ///< width of the band's law part over what it is, after one block of packings more
+};
+
+/// Packings of one candidate, in all blocks of the plan.
+struct PlanStep {
+  std::size_t candidate = 0;
+  std::int64_t packings = 0;
+  double seconds = 0.0;  ///< of one core
+  double share = 1.0;    ///< after this step and those before
+};
+
+struct LawPlan {
+  std::string engine;      ///< whose curves they are
+  std::size_t curves = 0;  ///< with draws
+  std::size_t draws = 0;
+  double law_part = 0.0;     ///< standard deviation of the axial stress over its root mean square, of all curves
+  double discrepancy = 0.0;  ///< of the form of law; no number of packings lessens it
+  std::int64_t block = 0;
+  std::vector<PlanCandidate> candidates;  ///< what helps most per second first
+  std::vector<PlanStep> steps;
+  double share = 1.0;         ///< of the law part, after the plan
+  double seconds = 0.0;       ///< of one core, all steps
+  double even_seconds = 0.0;  ///< the same share by packings of all configurations alike; NaN: not to be had so
+  std::vector<std::string> remarks;
+};
+
+struct LawPlanWish {
+  std::int64_t block = 8;  ///< packings that are added at a time
+  double share = 0.5;      ///< wanted: law part of the band over what it is
+  WantedForm form{};       ///< empty: that which the table prefers, of those that have draws
+};
+
+/// Forces of draws and predictions of draws are taken as jointly normal (calibrate/next_measurements.h); a
+/// configuration tells the logarithm of the force on its neighbours at the overlap, off by the scatter of packings.
+/// `curves`: of runs with bands by this table. Throws BadInput: none has draws of one of its laws, or of more than the
+/// table keeps.
+LawPlan plan_law(const LawTable& table, const std::string& table_file, const CrowdSetup& candidates,
+                 const std::vector<MacroCurve>& curves, const LawPlanWish& wish);
+
+/// For people.
+std::string plan_text(const LawPlan& plan);
+
+}  // namespace softgrain
