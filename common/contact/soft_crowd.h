@@ -33,7 +33,11 @@ struct LostVolumeTable {
 
 /// F = sum over the soft bodies of the pair of E R^2 dnu/dx p(S)/S B, kt = kt_ratio kn, |Ft| <= mu F, no dashpots
 /// (quasi-static). kUnloading: a contact that retreats from its deepest overlap x_max feels x_max - s (x_max - x)
-/// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. kRolling: bodies that turn
+/// instead of x (s = retreat >= 1) and comes back the same way; off, it costs nothing. The tangential spring keeps its
+/// force while its stiffness grows and its length while that falls, so that it gives back no more than it took: pressed
+/// on after a slide, a soft particle feels the drag that it felt before (results/shear_and_rolling), where a spring of
+/// the new stiffness would pull up to fifteen times as hard. With kUnloading the memory is the largest overlap, and the
+/// spring takes the new stiffness as it is. kRolling: bodies that turn
 /// against each other across the normal by the angle theta feel the moment E R^2 R12 rolling theta, at most
 /// rolling_friction F R, R the harmonic mean of both radii (R of the soft body alone against a plane and solids) and
 /// R12 as in the law of Hertz; the contact then goes R12 theta over the surface. A spring of one stiffness under a
@@ -43,9 +47,10 @@ struct SoftCrowd {
   static constexpr LawTraits traits{.dimension = 3,
                                     .needs_velocity = true,
                                     .has_tangential = true,
-                                    .has_memory = kUnloading,
+                                    .has_memory = true,
                                     .has_rolling = kRolling,
                                     .needs_particle_pass = kCrowd != Crowd::pair,
+                                    .memory_in_sums = kUnloading,
                                     .is_fitted = true,
                                     .is_crowd = true};
 
@@ -113,7 +118,15 @@ struct SoftCrowd {
     const Mask<T> held = stiffness > 0.0 && out.elastic_force > 0.0;
     if (!any(held)) return out;
     const ContactResponse<D, T> loose = out;
-    coulomb_spring<false>(s, stiffness, T(0.0), T(friction * out.elastic_force), out);
+    const T limit = friction * out.elastic_force;
+    if constexpr (kUnloading) {
+      coulomb_spring<false>(s, stiffness, T(0.0), limit, out);
+    } else {
+      ContactState<D, T> shortened = s;
+      shortened.spring *= choose<T>(s.memory > 0.0 && stiffness > s.memory, s.memory / stiffness, T(1.0));
+      coulomb_spring<false>(shortened, stiffness, T(0.0), limit, out);
+      out.memory = stiffness;
+    }
     return any(!held) ? select(held, out, loose) : out;
   }
 

@@ -421,9 +421,9 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
 /// The first half of the particle pass: what every contact takes from its bodies.
 template <class Law, Geometry kGeometry, bool kPeriodic>
 class Shares
-    : Gatherer<3, LawTraits{.has_memory = Law::traits.has_memory, .is_crowd = true}, kGeometry, kPeriodic, false> {
+    : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic, false> {
   using Base =
-      Gatherer<3, LawTraits{.has_memory = Law::traits.has_memory, .is_crowd = true}, kGeometry, kPeriodic, false>;
+      Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic, false>;
   using Base::block_, Base::list_, Base::u;
 
  public:

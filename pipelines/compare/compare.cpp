@@ -10,6 +10,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/data/macro_band.h"
 
 namespace softgrain {
 namespace {
@@ -87,6 +88,9 @@ SampleComparison compare_sample(const MacroCurve& candidate, const MacroCurve& r
   s.lateral_end_ratio = ratio(lateral_c, lateral_r);
   s.lateral_stress_ratio_candidate = ratio(lateral_c, axial_c);
   s.lateral_stress_ratio_reference = ratio(lateral_r, axial_r);
+  s.in_band = share_in_band(candidate, reference, false);
+  s.end_in_band = share_in_band(candidate, reference, true);
+  s.band_width = end_band_width(candidate);
   s.candidate_cost = candidate.cost;
   s.reference_cost = reference.cost;
   return s;
@@ -160,6 +164,9 @@ void add_means(Comparison& result) {
   result.axial_end_ratio = mean_of(result.samples, &SampleComparison::axial_end_ratio);
   result.lateral_stress_ratio_candidate = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_candidate);
   result.lateral_stress_ratio_reference = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_reference);
+  result.in_band = mean_of(result.samples, &SampleComparison::in_band);
+  result.end_in_band = mean_of(result.samples, &SampleComparison::end_in_band);
+  result.band_width = mean_of(result.samples, &SampleComparison::band_width);
 }
 
 }  // namespace
@@ -169,6 +176,30 @@ std::vector<double> abscissa_of(const MacroCurve& c) {
   std::vector<double> points(c.strain.size());
   std::iota(points.begin(), points.end(), 0.0);
   return points;
+}
+
+double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, bool end) {
+  constexpr double kBears = 0.05;
+  const auto band = band_of(candidate, BandOf::axial, BandPart::all);
+  if (!band || reference.stress_axial.empty()) return kNaN;
+  const std::vector<double> x = abscissa_of(candidate);
+  const std::vector<double> x_r = abscissa_of(reference);
+  const double bears = kBears * *std::max_element(reference.stress_axial.begin(), reference.stress_axial.end());
+  std::vector<double> inside;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (x[k] < x_r.front() || x[k] > x_r.back()) continue;
+    const double stress = interpolate_linear(x_r, reference.stress_axial, x[k]);
+    if (stress < bears) continue;
+    inside.push_back(stress >= band->low[k] && stress <= band->high[k] ? 1.0 : 0.0);
+  }
+  if (inside.empty()) return kNaN;
+  return end ? inside.back() : mean_error(inside).mean;
+}
+
+double end_band_width(const MacroCurve& c) {
+  const auto band = band_of(c, BandOf::axial, BandPart::all);
+  return band && c.stress_axial.back() != 0.0 ? 0.5 * (band->high.back() - band->low.back()) / c.stress_axial.back()
+                                              : kNaN;
 }
 
 double interpolate_linear(const std::vector<double>& x, const std::vector<double>& y, double at) {

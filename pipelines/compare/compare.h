@@ -43,6 +43,9 @@ struct SampleComparison {
   double lateral_end_ratio = 0.0;
   double lateral_stress_ratio_candidate = 0.0;  ///< lateral over axial stress at the end of the common range
   double lateral_stress_ratio_reference = 0.0;
+  double in_band = 0.0;      ///< share of the reference's axial stresses in the candidate's 95 % band; NaN: it has none
+  double end_in_band = 0.0;  ///< 1 or 0: the last of them; NaN likewise
+  double band_width = 0.0;   ///< half of it over the stress, at the candidate's end; NaN likewise
   Cost candidate_cost;
   Cost reference_cost;
 };
@@ -57,6 +60,9 @@ struct Comparison {
   MeanError axial_end_ratio;
   MeanError lateral_stress_ratio_candidate;
   MeanError lateral_stress_ratio_reference;
+  MeanError in_band;  ///< of no sample: the candidate has no error bars
+  MeanError end_in_band;
+  MeanError band_width;
   double speedup_seconds = 0.0;  ///< reference over candidate, summed over samples; NaN when not recorded
   double speedup_contact_evaluations = 0.0;
 };
@@ -64,6 +70,14 @@ struct Comparison {
 /// Pairs the curves by test and sample. Curves marked unusable, or without a partner, are left out and named.
 /// Throws BadInput when nothing remains to compare, or when one side holds the same test and sample twice.
 Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference);
+
+/// Share of the reference's axial stresses that lie in the 95 % band of the candidate, at the candidate's points where
+/// both have values and the reference bears 5 % of its largest or more; `end`: the last of these points alone. NaN: the
+/// candidate has no band, or there are no such points.
+double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, bool end);
+
+/// Half the width of the band over the axial stress, at the end; NaN without band.
+double end_band_width(const MacroCurve& curve);
 
 /// The curves of one engine.
 std::vector<MacroCurve> curves_of(const std::vector<MacroCurve>& curves, const std::string& engine);

@@ -43,6 +43,10 @@ json to_json(const MacroPart& part) {
           {"lateral_stress_ratio",
            {{"candidate", to_json(c.lateral_stress_ratio_candidate)},
             {"reference", to_json(c.lateral_stress_ratio_reference)}}},
+          {"band",
+           {{"half_width", to_json(c.band_width)},
+            {"reference_inside", to_json(c.in_band)},
+            {"reference_end_inside", to_json(c.end_in_band)}}},
           {"speedup_seconds", number(c.speedup_seconds)},
           {"speedup_contact_evaluations", number(c.speedup_contact_evaluations)},
           {"left_out", c.left_out},
@@ -137,6 +141,11 @@ std::string text_of(const MacroPart& part) {
   out += fmt::format("  lateral over axial stress at the end    {} against {}\n",
                      with_error(c.lateral_stress_ratio_candidate.mean, c.lateral_stress_ratio_candidate.error),
                      with_error(c.lateral_stress_ratio_reference.mean, c.lateral_stress_ratio_reference.error));
+  if (c.band_width.n > 0)
+    out += fmt::format(
+        "  95 % band of the candidate              +-{} at the end; {} of the reference's points inside, {} of "
+        "its ends\n",
+        percent(c.band_width), percent(c.in_band), percent(c.end_in_band));
   out += fmt::format("  speed-up                                {} in seconds, {} in contact evaluations\n",
                      factor(c.speedup_seconds), factor(c.speedup_contact_evaluations));
   for (const std::string& reason : c.left_out) out += "  left out: " + reason + "\n";

@@ -160,27 +160,6 @@ double visits(const MacroCurve& c) {
   return (crowd ? 2.0 : 1.0) * static_cast<double>(c.cost.contact_evaluations);
 }
 
-double band_width(const MacroCurve& c) {
-  const auto band = band_of(c, BandOf::axial, BandPart::all);
-  return band ? 0.5 * ratio(band->high.back() - band->low.back(), c.stress_axial.back()) : kNaN;
-}
-
-/// Share of the twin's points that lie in the band of the law, from where it bears something; or the last one alone.
-double covered(const MacroCurve& c, const MacroCurve& twin, bool end) {
-  constexpr double kBears = 0.05;
-  const auto band = band_of(c, BandOf::axial, BandPart::all);
-  if (!band || twin.stress_axial.size() != band->low.size()) return kNaN;
-  double points = 0.0;
-  double inside = 0.0;
-  for (std::size_t k = end ? twin.stress_axial.size() - 1 : 0; k < twin.stress_axial.size(); ++k) {
-    const double stress = twin.stress_axial[k];
-    if (stress < kBears * twin.stress_axial.back()) continue;
-    points += 1.0;
-    inside += stress >= band->low[k] && stress <= band->high[k] ? 1.0 : 0.0;
-  }
-  return ratio(inside, points);
-}
-
 TwinErrors errors_against(const Pairs& pairs) {
   using C = const MacroCurve&;
   TwinErrors e;
@@ -224,10 +203,10 @@ EngineScore score_of(const std::vector<MacroCurve>& curves, const std::string& e
   s.force_variation = mean_of(mine, [](C c) { return mean_and_variation(c.body_forces).second; });
   s.contact_evaluations = mean_of(mine, visits).mean;
   s.noise = mean_of(mine, own_noise);
-  s.band_width = mean_of(mine, band_width);
+  s.band_width = mean_of(mine, end_band_width);
   const Pairs with_twins = pair_up(mine, usable_of(curves, to_string(Twin::shelled)));
-  s.coverage = mean_of(with_twins, [](C c, C t) { return covered(c, t, false); });
-  s.coverage_end = mean_of(with_twins, [](C c, C t) { return covered(c, t, true); });
+  s.coverage = mean_of(with_twins, [](C c, C t) { return share_in_band(c, t, false); });
+  s.coverage_end = mean_of(with_twins, [](C c, C t) { return share_in_band(c, t, true); });
   const auto at_places = [&](const char* partner) {
     const bool law = !s.twin();
     return law ? mean_of(usable_of(curves, to_string(Twin::shelled)),

@@ -39,9 +39,9 @@ void time_law(benchmark::State& state, const AnyLaw& law) {
 /// A threshold so low that every overlap of the packing carries force: all laws look at the same contacts.
 constexpr double kThreshold = 1e-6;
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling>
 AnyLaw crowd_law(bool solid_partner) {
-  SoftCrowd<kCrowd, kUnloading> law;
+  SoftCrowd<kCrowd, kUnloading, kRolling> law;
   law.form.pressure = {0.6, 2.2, kThreshold};
   law.form.coupling = {0.6, 0.5, 0.1};
   law.partner.log_weight = MonotoneCurve({-1.4, 0.0, 1.4}, {-0.5, -0.4, -0.3});
@@ -51,6 +51,8 @@ AnyLaw crowd_law(bool solid_partner) {
   law.friction = 0.3;
   law.kt_ratio = 0.3;
   law.retreat = 1.5;
+  law.rolling = 0.005;
+  law.rolling_friction = 0.05;
   law.j_is_soft = !solid_partner;
   return law;
 }
@@ -68,16 +70,19 @@ void SoftLawPublished(benchmark::State& state) {
   time_law(state, law);
 }
 
-template <Crowd kCrowd, bool kUnloading>
+template <Crowd kCrowd, bool kUnloading, bool kRolling = false>
 void SoftLawCrowd(benchmark::State& state, bool solid_partner) {
-  time_law(state, crowd_law<kCrowd, kUnloading>(solid_partner));
+  time_law(state, crowd_law<kCrowd, kUnloading, kRolling>(solid_partner));
 }
 
 constexpr auto kPair = SoftLawCrowd<Crowd::pair, false>;
 constexpr auto kPairBack = SoftLawCrowd<Crowd::pair, true>;
 constexpr auto kBag = SoftLawCrowd<Crowd::bag, false>;
+constexpr auto kBagRolling = SoftLawCrowd<Crowd::bag, false, true>;
 constexpr auto kBagBack = SoftLawCrowd<Crowd::bag, true>;
 constexpr auto kDirectional = SoftLawCrowd<Crowd::directional, false>;
+constexpr auto kDirectionalRolling = SoftLawCrowd<Crowd::directional, false, true>;
+constexpr auto kDirectionalAll = SoftLawCrowd<Crowd::directional, true, true>;
 constexpr auto kDirectionalBack = SoftLawCrowd<Crowd::directional, true>;
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): how Google Benchmark registers
@@ -91,9 +96,13 @@ SOFT_BENCHMARK(kPair, pair_solid, true);
 SOFT_BENCHMARK(kPairBack, pair_unloading, false);
 SOFT_BENCHMARK(kBag, bag, false);
 SOFT_BENCHMARK(kBag, bag_solid, true);
+SOFT_BENCHMARK(kBagRolling, bag_rolling, false);
 SOFT_BENCHMARK(kBagBack, bag_unloading, false);
 SOFT_BENCHMARK(kDirectional, directional, false);
 SOFT_BENCHMARK(kDirectional, directional_solid, true);
+SOFT_BENCHMARK(kDirectionalRolling, directional_rolling, false);
+SOFT_BENCHMARK(kDirectionalRolling, directional_rolling_solid, true);
+SOFT_BENCHMARK(kDirectionalAll, directional_unloading_rolling, false);
 SOFT_BENCHMARK(kDirectionalBack, directional_unloading, false);
 SOFT_BENCHMARK(kDirectionalBack, directional_unloading_solid, true);
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)

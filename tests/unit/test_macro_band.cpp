@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/data/macro_band.h"
+#include "pipelines/compare/compare.h"
 #include "pipelines/compare/macro_scores.h"
 #include "pipelines/kinds/macro/bands.h"
 
@@ -76,6 +77,18 @@ TEST(MacroBand, ScoresSayWhatOfTheTwinLiesInside) {
   EXPECT_EQ(scores[0].coverage_end.mean, 1.0);
   EXPECT_NEAR(scores[0].band_width.mean, 0.05, 1e-12);
   EXPECT_EQ(scores[1].coverage.n, 0U) << "a twin has no band";
+  const Comparison compared = compare_curves({law}, {twin});
+  EXPECT_NEAR(compared.in_band.mean, 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(compared.end_in_band.mean, 1.0);
+  EXPECT_NEAR(compared.band_width.mean, 0.05, 1e-12);
+  EXPECT_EQ(compare_curves({twin}, {law}).in_band.n, 0U);
+  // A twin of other points is taken between them.
+  MacroCurve finer = curve("shelled", 0, {0.0, 0.0, 0.0});
+  finer.strain = {0.0, 0.25, 0.3};
+  finer.stress_axial = {0.0, 250.0, 300.0};
+  EXPECT_EQ(share_in_band(law, finer, false), 1.0);
+  finer.stress_axial = {0.0, 250.0, 340.0};
+  EXPECT_EQ(share_in_band(law, finer, true), 0.0);
 }
 
 TEST(MacroBand, ScoresKnowNoisePlacesAndTheErrorOfTheMean) {

@@ -110,6 +110,14 @@ double twin_passes(const MacroSpec& spec, Twin twin) {
   return moves ? moving_passes(spec) + 0.3 * relaxing_passes(spec, twin) : relaxing_passes(spec, twin);
 }
 
+/// Runs that the band of a law takes on a sample, at most: two along each of a few components and two for what its form
+/// is off by, or one per draw (bands.cpp).
+double band_runs(const MacroSetup& setup) {
+  if (setup.bands == 0) return 0.0;
+  constexpr double kMostAlongComponents = 10.0;
+  return setup.band_estimator == BandEstimator::draws ? static_cast<double>(setup.bands + 2) : kMostAlongComponents;
+}
+
 }  // namespace
 
 void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const LawSources* laws, Findings& out) {
@@ -125,8 +133,12 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
     // Passes of a preparation grow like N^0.33: 1,500, 2,600, 4,500, 6,000 of 60, 250, 1,000, 4,000 bodies.
     if (!setup.given && !content.prepared) out.spend("preparation", samples * std::pow(larger, 1.33) * preparation);
     if (spec.cells) out.spend("law runs", samples * larger * try_cells(spec, packing));
-    for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction))
-      out.spend("law runs", runs * larger * try_law(spec, packing, law, content.solid_fraction));
+    for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction)) {
+      const double run =
+          larger * static_cast<double>(setup.law_increments) * try_law(spec, packing, law, content.solid_fraction);
+      out.spend("law runs", runs * run);
+      if (setup.bands > 0) out.spend("bands", samples * band_runs(setup) * run);
+    }
   } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
   }
   const double grains = content.bodies + content.soft * content.grains_per_soft;
