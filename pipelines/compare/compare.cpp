@@ -185,10 +185,12 @@ double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, b
   const std::vector<double> x = abscissa_of(candidate);
   const std::vector<double> x_r = abscissa_of(reference);
   const double bears = kBears * *std::max_element(reference.stress_axial.begin(), reference.stress_axial.end());
+  const double rounding = 1e-9 * (x_r.back() - x_r.front());
   std::vector<double> inside;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    if (x[k] < x_r.front() || x[k] > x_r.back()) continue;
-    const double stress = interpolate_linear(x_r, reference.stress_axial, x[k]);
+    const double at = std::clamp(x[k], x_r.front(), x_r.back());
+    if (std::abs(at - x[k]) > rounding) continue;
+    const double stress = interpolate_linear(x_r, reference.stress_axial, at);
     if (stress < bears) continue;
     inside.push_back(stress >= band->low[k] && stress <= band->high[k] ? 1.0 : 0.0);
   }

@@ -29,6 +29,7 @@ LostVolumeTable table(bool soft) {
   t.log_weight = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {-0.9, -0.5, -0.1});
   if (!soft) t.exponent = MonotoneCurve({std::log(0.25), 0.0, std::log(4.0)}, {1.3, 1.2, 1.1});
   t.common_exponent = 1.25;
+  t.plane_weight = 1.2;
   return t;
 }
 

@@ -75,8 +75,8 @@ System3 crowded(const CrowdLaws& laws) {
   s.materials = {{"soft", 2500.0, 5e5, 0.3, false}, {"solid", 2500.0, 5e5, 0.3, false}};
   s.laws = LawSet(2);
   s.laws.set(0, 0, laws.soft_soft);
-  s.laws.set(0, 1, laws.soft_solid);
-  s.laws.set(1, 0, laws.solid_soft);
+  s.laws.set(0, 1, laws.soft_solid, true);
+  s.laws.set(1, 0, laws.solid_soft, true);
   const auto ball = [&](Vec3 x, double r, std::int32_t material) {
     NewBody<3> b = test_sphere<3>(x, r, 2500.0);
     b.material = material;
@@ -112,7 +112,7 @@ CycleWork lead_around(const CrowdLaws& laws, std::uint64_t seed) {
     const double inside = std::sin(std::numbers::pi * t);
     for (std::size_t k = 0; k < 6; ++k)
       for (std::size_t n = 0; n < 4; ++n)
-        q[k] += 0.03 * amplitude[k][n] * inside * std::sin(2.0 * std::numbers::pi * (n + 1.0) * t);
+        q[k] += 0.03 * amplitude[k][n] * inside * std::sin(2.0 * std::numbers::pi * static_cast<double>(n + 1) * t);
     const double deep = 0.2 * inside;  // against all neighbours, from out of touch
     q[0] += 0.6 * deep - 0.05, q[1] -= 0.3 * deep, q[2] += 0.15 - 1.6 * deep;
     return q;
@@ -126,7 +126,8 @@ CycleWork lead_around(const CrowdLaws& laws, std::uint64_t seed) {
     const Vec3 step{{now[0] - last[0], now[1] - last[1], now[2] - last[2]}};
     const Vec3 turn{{now[3] - last[3], now[4] - last[4], now[5] - last[5]}};
     for (int d = 0; d < 3; ++d) s.particles.sphere[0].x[d] = now[static_cast<std::size_t>(d)];
-    set_velocity(s.particles, 0, step, turn);
+    s.particles.velocity[0] = step;
+    s.particles.spin[0] = turn;
     force_pass(s, 1.0, History::advance);
     const Vec3 new_force(s.particles.force[0]);
     const Vec3 new_torque(s.particles.torque[0]);
@@ -154,7 +155,8 @@ TEST(Passivity, NoCycleOfPressingSlidingRollingAndLettingGoGainsEnergy) {
       }
 }
 
-/// Pressed lightly, slid within the friction limit, pressed on, slid back, let go: a spring of the stiffness of the moment gains.
+/// Pressed lightly, slid within the friction limit, pressed on, slid back, let go: a spring of the stiffness of the
+/// moment gains.
 TEST(Passivity, WhatIsPressedOnAfterASlideGivesNothingForNothing) {
   const LawTable table = load_law_table(SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml");
   CrowdChoices choices;
@@ -174,7 +176,7 @@ TEST(Passivity, WhatIsPressedOnAfterASlideGivesNothingForNothing) {
       const Vec3 step = by * (1.0 / kSteps);
       at += step;
       for (int d = 0; d < 3; ++d) s.particles.sphere[0].x[d] = at[d];
-      set_velocity(s.particles, 0, step, {});
+      s.particles.velocity[0] = step;
       force_pass(s, 1.0, History::advance);
       const Vec3 now(s.particles.force[0]);
       const double done = -0.5 * dot(force + now, step);

@@ -8,6 +8,7 @@
 #include "common/core/statistics.h"
 #include "common/data/macro_band.h"
 #include "common/io/text_file.h"
+#include "pipelines/compare/compare.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -115,6 +116,37 @@ TEST_F(MacroBands, WhatCannotBeDrawnIsRefusedBeforeAnyWork) {
   // A table beside which there is no .h5.
   write_text_atomic(directory_.file("alone.toml"), read_text(kTable));
   refused("--bands 16 --law '" + directory_.file("alone.toml") + "'", "keeps no refits");
+}
+
+/// 40 twins that no choice was made on: what of them lies in the error bars of the shipped table.
+TEST(SlowCoverage, ErrorBarsHoldOverTwinsThatNoLawHasSeen) {
+  const TemporaryDirectory directory;
+  const std::string out = directory.file("coverage");
+  const auto done = run_the_program("run '" + std::string(SOFTGRAIN_SOURCE_DIR) +
+                                    "/tests/robustness/coverage.toml' --quiet --out '" + out + "'");
+  ASSERT_EQ(done.status, 0) << done.output;
+  const auto told = nlohmann::json::parse(read_text(out + "/comparison.json"));
+  for (const Crowd form : {Crowd::bag, Crowd::directional}) {
+    double ends = 0.0;
+    double inside = 0.0;
+    std::size_t twins = 0;
+    for (const auto& scene : told["scenes"]) {
+      const std::string file = out + "/macro_" + scene["name"].get<std::string>() + ".h5";
+      const auto curves = load_macro(file);
+      for (const MacroCurve& twin : curves_of(curves, "shelled"))
+        for (const MacroCurve& law : curves_of(curves, to_string(form)))
+          if (law.sample == twin.sample) {
+            ends += share_in_band(law, twin, true);
+            inside += share_in_band(law, twin, false);
+            ++twins;
+          }
+    }
+    ASSERT_EQ(twins, 40U);
+    RecordProperty(to_string(form) + "_ends", std::to_string(ends / 40.0));
+    RecordProperty(to_string(form) + "_points", std::to_string(inside / 40.0));
+    EXPECT_GE(ends / 40.0, 0.85) << to_string(form);
+    EXPECT_GE(inside / 40.0, 0.85) << to_string(form);
+  }
 }
 
 }  // namespace
