@@ -15,6 +15,31 @@ void add_forces(const SoftForces& f, const std::string& engine, MacroCurve& curv
     curve.more[places_column(engine, kPlacesPartners[k])].push_back(values[k]);
 }
 
+/// As MacroCurve::places has it.
+std::vector<double> row_of(const MacroPacking& p) {
+  std::vector<double> row;
+  const auto add = [&](const Vec3& x) {
+    for (int a = 0; a < 3; ++a) row.push_back(x[a]);
+  };
+  add(p.low);
+  add(p.high);
+  for (const MacroBody& b : p.bodies) add(b.x);
+  return row;
+}
+
+MacroPacking packing_at(const std::vector<double>& row, const MacroPacking& packing) {
+  MacroPacking out = packing;
+  auto next = row.begin();
+  const auto take = [&](Vec3& x) {
+    for (int a = 0; a < 3; ++a) x[a] = *next++;
+  };
+  take(out.low);
+  take(out.high);
+  for (MacroBody& b : out.bodies) take(b.x);
+  out.springs.clear();
+  return out;
+}
+
 }  // namespace
 
 SoftForces soft_forces(const MacroSystem& macro, const MacroPacking& packing) {
@@ -47,14 +72,20 @@ MacroPacking packing_of_twin(const MacroSystem& twin, const MacroPacking& packin
   return out;
 }
 
-void record_places(const MacroSpec& spec, const MacroPacking& packing, double inner_solid_fraction,
-                   const std::vector<PlacedLaw>& laws, const MacroSystem& twin, MacroCurve& curve) {
+void record_places(const MacroSystem& twin, const MacroPacking& packing, MacroCurve& curve) {
   add_forces(soft_forces(twin, packing), curve.engine, curve);
-  const MacroPacking places = packing_of_twin(twin, packing);
-  for (const PlacedLaw& law : laws) {
-    MacroSystem macro = make_law_system(spec, places, law.laws, inner_solid_fraction);
-    rebuild_neighbours(macro.system);
-    add_forces(soft_forces(macro, places), law.name, curve);
+  curve.places.push_back(row_of(packing_of_twin(twin, packing)));
+}
+
+void place_laws(const MacroSpec& spec, const MacroPacking& packing, double inner_solid_fraction,
+                const std::vector<PlacedLaw>& laws, MacroCurve& curve) {
+  for (const std::vector<double>& row : curve.places) {
+    const MacroPacking places = packing_at(row, packing);
+    for (const PlacedLaw& law : laws) {
+      MacroSystem macro = make_law_system(spec, places, law.laws, inner_solid_fraction);
+      rebuild_neighbours(macro.system);
+      add_forces(soft_forces(macro, places), law.name, curve);
+    }
   }
 }
 

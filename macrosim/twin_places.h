@@ -30,10 +30,14 @@ struct PlacedLaw {
   SoftLaws laws;
 };
 
-/// Adds a point to the columns places_NAME_{solid,wall,soft} of the curve, for the twin (NAME: its engine) and for
-/// every law: no springs, no friction, forces of one instant.
-void record_places(const MacroSpec& spec, const MacroPacking& packing, double inner_solid_fraction,
-                   const std::vector<PlacedLaw>& laws, const MacroSystem& twin, MacroCurve& curve);
+/// Adds a point to the columns places_NAME_{solid,wall,soft} of the curve of a shelled twin (NAME: its engine), and
+/// where its bodies are to `places`.
+void record_places(const MacroSystem& twin, const MacroPacking& packing, MacroCurve& curve);
+
+/// The columns of every law (NAME: its name), at the places that the curve of a twin keeps: no springs, no friction,
+/// forces of one instant.
+void place_laws(const MacroSpec& spec, const MacroPacking& packing, double inner_solid_fraction,
+                const std::vector<PlacedLaw>& laws, MacroCurve& curve);
 
 /// Name of such a column.
 std::string places_column(const std::string& engine, const char* partner);

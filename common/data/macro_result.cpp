@@ -180,25 +180,33 @@ std::string identity_text(const LawIdentity& law) {
 namespace {
 
 constexpr const char* kDrawnAxial = "drawn_axial";
+constexpr const char* kPlaces = "places";
 
-void write_drawn(const h5::Group& group, const MacroCurve& curve) {
-  if (curve.drawn_axial.empty()) return;
+/// Rows of equal length; none: no data set.
+void write_rows(const h5::Group& group, const char* name, const char* unit,
+                const std::vector<std::vector<double>>& rows) {
+  if (rows.empty()) return;
   std::vector<double> all;
-  for (const std::vector<double>& draw : curve.drawn_axial) all.insert(all.end(), draw.begin(), draw.end());
-  group.write(kDrawnAxial, std::span<const double>(all), {curve.drawn_axial.size(), curve.drawn_axial.front().size()});
-  group.attribute_of(kDrawnAxial, "unit", "Pa");
+  for (const std::vector<double>& row : rows) all.insert(all.end(), row.begin(), row.end());
+  group.write(name, std::span<const double>(all), {rows.size(), rows.front().size()});
+  group.attribute_of(name, "unit", unit);
 }
 
-void read_drawn(const h5::Group& group, MacroCurve& curve, std::size_t points) {
-  if (!group.has(kDrawnAxial)) return;
-  const h5::Shape shape = group.shape(kDrawnAxial);
-  if (shape.size() != 2 || shape[1] != points)
-    throw FileTrouble(fmt::format("data set '{}' is not one of {} points per draw", kDrawnAxial, points));
-  const std::vector<double> all = group.doubles(kDrawnAxial);
+/// `wanted`: rows and columns; 0: any number.
+std::vector<std::vector<double>> read_rows(const h5::Group& group, const char* name,
+                                           const std::array<std::size_t, 2>& wanted) {
+  std::vector<std::vector<double>> rows;
+  if (!group.has(name)) return rows;
+  const h5::Shape shape = group.shape(name);
+  const auto fits = [&](std::size_t k) { return wanted[k] == 0 || shape[k] == wanted[k]; };
+  if (shape.size() != 2 || !fits(0) || !fits(1))
+    throw FileTrouble(fmt::format("data set '{}' has another shape than the curve that it belongs to", name));
+  const std::vector<double> all = group.doubles(name);
   for (std::size_t r = 0; r < shape[0]; ++r) {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * points);
-    curve.drawn_axial.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(points));
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(r * shape[1]);
+    rows.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(shape[1]));
   }
+  return rows;
 }
 
 }  // namespace
@@ -224,7 +232,8 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   for (const Column& c : kColumns) write_quantity(group, curve, c);
   for (const Column& c : kOptionalColumns) write_if_any(group, curve, c);
   write_if_any(group, curve, kBodyForces);
-  write_drawn(group, curve);
+  write_rows(group, kDrawnAxial, "Pa", curve.drawn_axial);
+  write_rows(group, kPlaces, "m", curve.places);
   if (curve.more.empty()) return;
   const h5::Group more = group.create("more");
   for (const auto& [name, values] : curve.more) more.write(name, std::span<const double>(values));
@@ -262,7 +271,8 @@ MacroCurve read_macro_curve(const h5::Group& group) {
             fmt::format("data set 'more/{}' has {} values for {} points", name, curve.more[name].size(), points));
     }
   }
-  read_drawn(group, curve, points);
+  curve.drawn_axial = read_rows(group, kDrawnAxial, {0, points});
+  curve.places = read_rows(group, kPlaces, {points, place_numbers(curve.bodies)});
   if (group.has(kBodyForces.name)) read_column(group, curve, kBodyForces, group.doubles(kBodyForces.name).size());
   return curve;
 }

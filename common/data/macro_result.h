@@ -160,6 +160,8 @@ struct MacroCurve {
   std::vector<double> strain_z;
   std::map<std::string, std::vector<double>> more;  ///< per point, by name: what one kind of scene alone records
   std::vector<std::vector<double>> drawn_axial;  ///< per draw of the law, then per point: stress_axial with that draw
+  /// Of shelled twins per point: low and high corner of the box, then where every body is, x, y, z in turn [m].
+  std::vector<std::vector<double>> places;
   bool usable = true;
   std::string note;
   Cost cost;
@@ -167,6 +169,9 @@ struct MacroCurve {
 
   [[nodiscard]] std::optional<Twin> twin() const { return from_word<Twin>(engine); }  ///< empty: made by a law
 };
+
+/// Numbers of a row of `places`.
+constexpr std::size_t place_numbers(std::int64_t bodies) { return 6 + 3 * static_cast<std::size_t>(bodies); }
 
 /// Columns of `more`: the stresses of the same test run a second time, with strains that differ in the twelfth digit.
 inline constexpr const char* kAgainAxial = "again_stress_axial";

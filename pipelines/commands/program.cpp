@@ -116,10 +116,16 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--law-cache", o.law_cache,
                    "Keeps finished measurements of law tables here and takes from here what is known already")
         ->option_text("DIR");
-  if (command.function == command_run || command.function == command_macrosim)
+  if (command.function == command_run || command.function == command_macrosim) {
     app.add_option("--packing-cache", o.packing_cache,
                    "Keeps prepared packings of macro scenes here and takes from here what is known already")
         ->option_text("DIR");
+    app.add_option(
+           "--twin-cache", o.twin_cache,
+           "Keeps resolved twins of macro scenes here, whatever law they stand beside, and takes from here what "
+           "is known already")
+        ->option_text("DIR");
+  }
   if (command.function == command_compare)
     app.add_flag("--different", o.different,
                  "Compares runs that differ in bodies, materials, tests or packings too, and lists in what");
@@ -215,7 +221,7 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     if (options.out.empty()) options.out = observables + "_run";
   }
   if (!options.out.empty()) require_writable_directory(options.out);
-  for (const std::string& cache : {options.law_cache, options.packing_cache})
+  for (const std::string& cache : {options.law_cache, options.packing_cache, options.twin_cache})
     if (!cache.empty()) require_writable_directory(cache);
   if (chosen->saves) install_interrupt_handler();
   const ExitStatus status = chosen->function(options);

@@ -42,6 +42,7 @@ struct CommonOptions {
   std::string modulus;                             ///< --modulus "0.5 MPa" of them
   std::string law_cache;                           ///< --law-cache DIR; empty: nothing is kept between runs
   std::string packing_cache;                       ///< --packing-cache DIR; empty: nothing is kept between runs
+  std::string twin_cache;                          ///< --twin-cache DIR; empty: nothing is kept between runs
   bool different = false;                          ///< --different (compare)
   std::string to;                                  ///< --to vtp, lammps-dump or csv (export)
   std::string command_line;                        ///< as given, for provenance
@@ -81,6 +82,8 @@ class RunContext {
   [[nodiscard]] const std::string& law_cache() const { return options_.law_cache; }
   /// The same of prepared packings.
   [[nodiscard]] const std::string& packing_cache() const { return options_.packing_cache; }
+  /// The same of resolved twins.
+  [[nodiscard]] const std::string& twin_cache() const { return options_.twin_cache; }
   /// Seed from --seed, else from the scene (`scene_seed`).
   [[nodiscard]] std::uint64_t seed(std::uint64_t scene_seed) const {
     return options_.seed_given ? options_.seed : scene_seed;

@@ -279,9 +279,9 @@ TEST(Macro, LawsAreAskedAtThePlacesOfTheTwin) {
   CompressionState twin;
   twin.macro = make_shelled_system(spec, packing, two_contents(), 3, 0);
   twin.curve = begin_curve(spec, packing, twin.macro, "shelled", 0);
-  compress(twin, spec, {}, [&](const MacroSystem& macro, MacroCurve& curve) {
-    record_places(spec, packing, 0.7, {{"pair", laws}}, macro, curve);
-  });
+  compress(twin, spec, {}, [&](const MacroSystem& macro, MacroCurve& curve) { record_places(macro, packing, curve); });
+  ASSERT_EQ(twin.curve.places.size(), twin.curve.strain.size());
+  place_laws(spec, packing, 0.7, {{"pair", laws}}, twin.curve);
   for (const char* partner : kPlacesPartners)
     for (const char* engine : {"shelled", "pair"})
       EXPECT_EQ(twin.curve.more.at(places_column(engine, partner)).size(), twin.curve.strain.size()) << partner;

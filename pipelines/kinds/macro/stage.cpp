@@ -18,6 +18,7 @@
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/macro/twin_cache.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/run/result_cache.h"
 
@@ -54,7 +55,7 @@ void over_samples(std::int64_t samples, const std::function<void(std::int64_t)>&
 /// What the tasks share.
 struct Stage {
   const MacroRuns& runs;
-  const TaskStore& store;
+  const Run& run;
   double inner_solid_fraction;
 };
 
@@ -63,7 +64,6 @@ struct Engine {
   const NamedLaws* laws = nullptr;  ///< null: a twin, or cells
   Twin twin = Twin::shelled;
   bool cells = false;
-  std::vector<PlacedLaw> placed{};  ///< laws that are asked at the places of the twin
 };
 
 Snapshot name_state(Snapshot s, const MacroCurve& c, const std::string& runs) {
@@ -129,18 +129,18 @@ RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& 
   using State = typename Kind::State;
   const auto points = recorded_points(kind.spec);
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(state.curve.sample)];
-  KeptStates states(stage.store, task, points, state.curve.sample == 0 ? stage.runs.setup.kept_states : 0);
+  KeptStates states(stage.run.store, task, points, state.curve.sample == 0 ? stage.runs.setup.kept_states : 0);
   const LawIdentity law = state.curve.law;
-  stage.store.load(task, [&](const h5::Group& g) { kind.read(g, state); });
+  stage.run.store.load(task, [&](const h5::Group& g) { kind.read(g, state); });
   state.curve.law = law;
   TaskProgress mine(progress);
   mine.reach(static_cast<double>(state.curve.strain.size()) / static_cast<double>(points));
   MacroCurve recorded = state.curve;
-  RunControl<State> control{.seconds = stage.store.seconds()};
+  RunControl<State> control{.seconds = stage.run.store.seconds()};
   control.save = [&](const State& s) {
     const auto point = static_cast<std::int64_t>(s.curve.strain.size()) - 1;
     if (s.increments == 0 && states.wants(point)) states.add(kind.picture(s, packing, stage.runs.name), point);
-    stage.store.save(task, [&](const h5::Group& g) { kind.write(g, s); });
+    stage.run.store.save(task, [&](const h5::Group& g) { kind.write(g, s); });
     recorded = s.curve;
   };
   control.progress = [&](const State&, double share) { mine.reach(share); };
@@ -157,12 +157,10 @@ RunOutcome run_task(const Stage& stage, const Kind& kind, typename Kind::State& 
   return {state.curve, states.take()};
 }
 
-/// Where laws stand beside a shelled twin: what they say at its places.
-PointRecord places_record(const Stage& stage, const MacroPacking& packing, const Engine& engine) {
-  if (engine.placed.empty()) return {};
-  return [&](const MacroSystem& twin, MacroCurve& curve) {
-    record_places(stage.runs.setup.spec, packing, stage.inner_solid_fraction, engine.placed, twin, curve);
-  };
+/// Laws are asked at the places of a shelled twin.
+PointRecord places_record(const MacroPacking& packing, const Engine& engine) {
+  if (engine.laws != nullptr || engine.twin != Twin::shelled) return {};
+  return [&](const MacroSystem& twin, MacroCurve& curve) { record_places(twin, packing, curve); };
 }
 
 /// A law run relaxes in a moment: where its increments are coarse, the way is.
@@ -196,25 +194,40 @@ void run_again(const Stage& stage, std::int64_t sample, const Engine& engine, Ma
   curve.more[kAgainLateral] = again.stress_lateral;
 }
 
-RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
+RunOutcome run_contacts(const Stage& stage, std::int64_t sample, const Engine& engine, const MacroSpec& spec,
+                        CompressionState& state, Progress& progress) {
   const NamedLaws* const laws = engine.laws;
-  const MacroSpec spec = spec_for(stage, engine);
   const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
-  const std::string task = task_name(stage, sample, engine);
-  if (engine.cells) {
-    CellTestState state = begin_cell_test(spec, packing, engine.name, sample);
-    return run_task(stage, CellRun{spec}, state, task, progress);
-  }
-  CompressionState state;
-  state.macro = make_system(stage, sample, engine);
   state.curve = begin_curve(spec, packing, state.macro, engine.name, sample);
   if (laws != nullptr) state.curve.law = laws->identity;
-  RunOutcome out = run_task(stage, ContactRun{spec, places_record(stage, packing, engine)}, state, task, progress);
+  RunOutcome out = run_task(stage, ContactRun{spec, places_record(packing, engine)}, state,
+                            task_name(stage, sample, engine), progress);
   if (laws != nullptr && laws->note && out.curve.usable) {
     const std::string note = laws->note(state.macro.system);
     out.curve.note += (out.curve.note.empty() || note.empty() ? "" : "; ") + note;
   }
   run_again(stage, sample, engine, out.curve, progress);
+  return out;
+}
+
+RunOutcome run_one(const Stage& stage, std::int64_t sample, const Engine& engine, Progress& progress) {
+  const MacroSpec spec = spec_for(stage, engine);
+  const MacroPacking& packing = stage.runs.packings[static_cast<std::size_t>(sample)];
+  if (engine.cells) {
+    CellTestState state = begin_cell_test(spec, packing, engine.name, sample);
+    return run_task(stage, CellRun{spec}, state, task_name(stage, sample, engine), progress);
+  }
+  CompressionState state;
+  state.macro = make_system(stage, sample, engine);
+  const auto go = [&] { return run_contacts(stage, sample, engine, spec, state, progress); };
+  if (engine.laws != nullptr) return go();
+  bool ran = false;
+  RunOutcome out = kept_twin(
+      twin_key(spec, stage.runs.setup, packing, state.macro, engine.name, sample, stage.runs.name), stage.run, [&] {
+        ran = true;
+        return go();
+      });
+  if (!ran) TaskProgress(progress).reach(1.0);
   return out;
 }
 
@@ -242,6 +255,16 @@ void run_kind(const Stage& stage, const std::vector<Engine>& engines, const std:
     const Engine& engine = engines[static_cast<std::size_t>(k / samples)];
     runs[first + static_cast<std::size_t>(k)] = run_one(stage, k % samples, engine, progress);
   });
+}
+
+/// What laws say at the places of shelled twins.
+void ask_laws(const Stage& stage, const std::vector<NamedLaws>& laws, std::vector<RunOutcome>& outcomes) {
+  std::vector<PlacedLaw> placed;
+  for (const NamedLaws& l : laws) placed.push_back({l.name, l.laws});
+  for (RunOutcome& o : outcomes)
+    if (o.curve.twin() == Twin::shelled)
+      place_laws(stage.runs.setup.spec, stage.runs.packings[static_cast<std::size_t>(o.curve.sample)],
+                 stage.inner_solid_fraction, placed, o.curve);
 }
 
 }  // namespace
@@ -336,7 +359,7 @@ std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedL
   setup.kept_states = 0;
   setup.noise_samples = 0;
   const MacroRuns once{setup, runs.packings, runs.contents, runs.seed, runs.name};
-  const Stage stage{once, run.store, mean_solid_fraction(runs.contents)};
+  const Stage stage{once, run, mean_solid_fraction(runs.contents)};
   std::vector<Engine> engines;
   for (const NamedLaws& l : laws) engines.push_back({l.name, &l});
   std::vector<RunOutcome> outcomes;
@@ -348,18 +371,16 @@ std::vector<MacroCurve> run_laws(const MacroRuns& runs, const std::vector<NamedL
 
 std::vector<MacroCurve> run_engines(const MacroRuns& runs, const std::vector<NamedLaws>& laws, const Run& run,
                                     const std::string& states_file, std::vector<RunOutcome> before) {
-  const Stage stage{runs, run.store, mean_solid_fraction(runs.contents)};
+  const Stage stage{runs, run, mean_solid_fraction(runs.contents)};
   std::vector<Engine> with_laws;
   std::vector<Engine> twins;
   if (runs.setup.spec.cells) with_laws.push_back({"law", nullptr, {}, true});
   for (const NamedLaws& l : laws) with_laws.push_back({l.name, &l});
-  std::vector<PlacedLaw> placed;
-  for (const NamedLaws& l : laws) placed.push_back({l.name, l.laws});
-  for (const Twin twin : runs.setup.twins)
-    twins.push_back({to_string(twin), nullptr, twin, false, twin == Twin::shelled ? placed : std::vector<PlacedLaw>{}});
+  for (const Twin twin : runs.setup.twins) twins.push_back({to_string(twin), nullptr, twin});
   std::vector<RunOutcome> outcomes = std::move(before);
   run_kind(stage, with_laws, " with laws", run.context, outcomes);
   run_kind(stage, twins, ": resolved twins", run.context, outcomes);
+  ask_laws(stage, laws, outcomes);
   std::vector<MacroCurve> curves;
   std::vector<Snapshot> states;
   for (RunOutcome& o : outcomes) {
