@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tables.md of this folder from a run of study.toml: python3 results/shear_and_rolling/collect.py RUN (needs h5py)"""
+"""Tables of this folder (needs h5py): python3 results/shear_and_rolling/collect.py RUN writes tables.md of a run of study.toml,
+collect.py --depths RUN writes depths.md of a run of pipelines/law_table.toml."""
 import pathlib
 import sys
 
@@ -78,7 +79,51 @@ def line(name, s, before):
             f"{t:+.3f} ± {te:.3f} | {m:+.3f} ± {me:.3f} |")
 
 
+def paired(state, before):
+    """Normal forces, and drags net of what was there before, of the packings that have both."""
+    count = min(len(state["T"]), len(before["T"]))
+    return np.array(state["N"][:count]), np.array(state["T"][:count]) - np.array(before["T"][:count])
+
+
+def drag_at(moves, before, slide):
+    """T/N, linear between recorded slides."""
+    last = (0.0, 0.0, 0.0)
+    for s in moves:
+        normal, drag = paired(s, before)
+        now = (s["slide"], *share(drag, normal))
+        if now[0] >= slide:
+            part = (slide - last[0]) / (now[0] - last[0])
+            return [a + part * (b - a) for a, b in zip(last[1:], now[1:])]
+        last = now
+    return last[1:]
+
+
+SLIDES = (np.pi / 180.0, 0.04, 0.08, 0.16, 0.3, 0.6)
+
+
+def depths(run):
+    """Drag of a slide over how deep the neighbour is pressed in."""
+    slides = " | ".join(f"{s:.3g}" for s in SLIDES)
+    lines = [f"| neighbour | h/Rs | packings | N/(E Rs²) | T/N at {slides} | kt h/N | kt √(h Rs)/N | N at the end |", "|" + "---|" * (len(SLIDES) + 7)]
+    for name, states in load(run / "crowd.h5").items():
+        moves = [s for s in states if s["slide"]]
+        if not moves or not name.endswith("slide"):
+            continue
+        before = next(s for s in reversed(states) if not s["slide"])
+        h = before["overlap"]
+        along = [drag_at(moves, before, s) for s in SLIDES]
+        stiffness, error = (x / SLIDES[0] for x in along[0])
+        lines.append(f"| {name.rsplit('-', 2)[0]} | {h:.2f} | {len(before['N'])} | {np.mean(before['N']):.5f} | "
+                     + " | ".join(f"{t:.3f} ± {e:.3f}" for t, e in along)
+                     + f" | {stiffness * h:.2f} ± {error * h:.2f} | {stiffness * h**0.5:.2f} ± {error * h**0.5:.2f} | "
+                     + f"{np.mean(moves[-1]['N']) / np.mean(before['N']):.2f} |")
+    (HERE / "depths.md").write_text("\n".join(lines) + "\n")
+
+
 def main():
+    if sys.argv[1] == "--depths":
+        depths(pathlib.Path(sys.argv[2]))
+        return
     lines = ["| path | h/Rs | slid | rolled | N/(E Rs²) | ± | T/N | M/(N Rs) |", "|" + "---|" * 8]
     for name, states in load(pathlib.Path(sys.argv[1]) / "crowd.h5").items():
         moves = [s for s in states if s["slide"] or s["roll"]]
