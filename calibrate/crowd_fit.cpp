@@ -143,7 +143,8 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
   int counts[2] = {0, 0};
   for (const CrowdStates& c : states) {
     if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
-    ConfigurationError e{c.configuration->name, c.use, crowd_error(fit.model, c), end_ratio(fit.model, c), noise(c)};
+    ConfigurationError e{c.configuration->name,   c.use,    crowd_error(fit.model, c),
+                         end_ratio(fit.model, c), noise(c), loading_states(c).back()->packings};
     if (c.use != CrowdUse::repeated && law.form != Crowd::pair && !c.for_crowds) e.use = CrowdUse::apart;
     law.errors.push_back(e);
     if (e.use == CrowdUse::repeated || e.use == CrowdUse::apart) continue;

@@ -44,9 +44,10 @@ using WantedForm = std::optional<Crowd>;
 struct ConfigurationError {
   std::string name;
   CrowdUse use = CrowdUse::fitted;
-  double error = 0.0;      ///< root mean square of (law - mean) over that of the mean, all recorded states
-  double end_ratio = 0.0;  ///< law over mean at the largest overlap, sums over the neighbours
-  double noise = 0.0;      ///< root mean square standard error of the mean over that of the mean
+  double error = 0.0;         ///< root mean square of (law - mean) over that of the mean, all recorded states
+  double end_ratio = 0.0;     ///< law over mean at the largest overlap, sums over the neighbours
+  double noise = 0.0;         ///< root mean square standard error of the mean over that of the mean
+  std::int64_t packings = 0;  ///< in its last loading state; 0: not recorded, as many as the entry has
 };
 
 /// One form of law with its parameters.

@@ -74,6 +74,7 @@ void write_law(Out out, const CrowdLaw& law) {
     fmt::format_to(out, "\n[[entry.law.error]]\nconfiguration = {}\nuse = {}\n", quoted(e.name),
                    quoted(to_string(e.use)));
     fmt::format_to(out, "error = {}\nend_ratio = {}\nnoise = {}\n", real(e.error), real(e.end_ratio), real(e.noise));
+    if (e.packings > 0) fmt::format_to(out, "packings = {}\n", e.packings);
   }
 }
 
@@ -150,7 +151,7 @@ CrowdLaw read_law(const SceneTable& t) {
   for (const SceneTable& e : t.tables("error"))
     law.errors.push_back({e.text("configuration"), e.choice<CrowdUse>("use"),
                           e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
-                          e.number("noise", Unit::none, Range::not_negative())});
+                          e.number("noise", Unit::none, Range::not_negative()), e.count("packings", 0, 1000000, 0)});
   for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft}) {
     const auto rows = law.rows(kind);
     for (std::size_t k = 1; k < rows.size(); ++k)

@@ -44,6 +44,7 @@ void expect_same(const ConfigurationError& a, const ConfigurationError& b) {
   EXPECT_EQ(a.error, b.error);
   EXPECT_EQ(a.end_ratio, b.end_ratio);
   EXPECT_EQ(a.noise, b.noise);
+  EXPECT_EQ(a.packings, b.packings);
 }
 
 void expect_same(const CrowdLaw& a, const CrowdLaw& b) {

@@ -59,6 +59,16 @@ TEST(CrowdSetup, ReadsConfigurations) {
   EXPECT_EQ(stages[2].overlap, (std::vector<double>{0.2, 0.2}));
 }
 
+TEST(CrowdSetup, PackingsOfOneConfiguration) {
+  const CrowdSetup setup = read(with("overlap = 0.3\n", "overlap = 0.3\npackings = 7\n"));
+  EXPECT_EQ(setup.least_packings(setup.configurations[0]), 7);
+  EXPECT_EQ(setup.most_packings(setup.configurations[0]), 7);
+  EXPECT_EQ(setup.least_packings(setup.configurations[1]), 2);
+  EXPECT_EQ(setup.most_packings(setup.configurations[1]), 3);
+  EXPECT_EQ(setup.pool(), 7);
+  expect_refused("overlap = 0.3\n", "overlap = 0.3\npackings = 1\n", {"packings", "2"});
+}
+
 TEST(CrowdSetup, PathsAndDepths) {
   const CrowdSetup s = read(with("path = \"unload\"", "path = \"sequential\""));
   ASSERT_EQ(s.configurations[1].stages.size(), 2U);

@@ -1,6 +1,7 @@
 // The measuring stage with a level whose soft particles hold soft particles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -106,6 +107,20 @@ TEST_F(CrowdStage, PackingsAreAddedUntilTheTargetIsMet) {
   EXPECT_EQ(data.runs.size(), 3U);
   EXPECT_EQ(crowd_remarks(data, setup_.target).size(), 1U);
   EXPECT_TRUE(crowd_remarks(data, 0.9).empty());
+}
+
+TEST_F(CrowdStage, AConfigurationHasAsManyPackingsAsItSays) {
+  setup_.configurations.resize(2);
+  setup_.target = 0.9;
+  setup_.packings[setup_.configurations[1].name] = 5;
+  const CrowdMeasurements data = measure(nullptr);
+  EXPECT_EQ(contents_.size(), 5U) << "more than packings_max, and each another one";
+  const auto runs = [&](std::int64_t configuration) {
+    return std::count_if(data.runs.begin(), data.runs.end(),
+                         [&](const CrowdRun& r) { return r.configuration == configuration; });
+  };
+  EXPECT_EQ(runs(0), 2);
+  EXPECT_EQ(runs(1), 5);
 }
 
 /// One packing whose grains are thrown out of their shell ends nothing but its own runs.

@@ -15,6 +15,7 @@ void check_law_table(const Scene& scene, Findings& out) {
   for (const LawTableVariant& v : setup.variants) {
     CrowdSetup of_variant = setup.crowd;
     of_variant.packings_min = of_variant.packings_max = v.packings;
+    of_variant.packings.clear();
     spend_on_packings(of_variant, trial, 1.0, out);
     spend_on_crowd(of_variant, trial, 1.0, "variants", out);
     out.lines += fmt::format("  the same on {} packings with beta = {}, {} trials per grain\n", v.packings, v.spec.beta,

@@ -114,10 +114,10 @@ double passes_of(const CrowdConfiguration& c, const CrowdSetup& setup) {
 
 /// Packings that a configuration takes in the mean until its target is met, those of the pilot included: forces at
 /// the largest overlap scatter by about a fifth between packings.
-double expected_packings(const CrowdSetup& setup) {
+double expected_packings(const CrowdSetup& setup, const CrowdConfiguration& c) {
   constexpr double kScatter = 0.2;
   const double needed = std::pow(kScatter / setup.target, 2);
-  return std::clamp(needed, static_cast<double>(setup.packings_min), static_cast<double>(setup.packings_max));
+  return std::clamp(needed, static_cast<double>(setup.least_packings(c)), static_cast<double>(setup.most_packings(c)));
 }
 
 }  // namespace
@@ -127,19 +127,24 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
   std::int64_t increments = 0;
   std::int64_t stages = 0;
   double softs = 0.0;
+  std::int64_t least = 0;
+  std::int64_t most = 0;
   for (const CrowdConfiguration& c : setup.configurations) {
+    least += setup.least_packings(c);
+    most += setup.most_packings(c);
     increments += increments_of(c, setup.options);
     stages += static_cast<std::int64_t>(c.stages.size());
     softs = std::max(softs, softs_of(c));
   }
   out.facts["configurations"] = configurations;
-  out.facts["runs_min"] = configurations * setup.packings_min;
-  out.facts["runs_max"] = configurations * setup.packings_max;
+  out.facts["runs_min"] = least;
+  out.facts["runs_max"] = most;
   out.facts["points_per_packing"] = stages * setup.points;
   out.facts["relaxations_per_packing"] = increments;
-  out.lines +=
-      fmt::format("  {} configurations on {} to {} packings: {} to {} runs\n", configurations, setup.packings_min,
-                  setup.packings_max, configurations * setup.packings_min, configurations * setup.packings_max);
+  const std::string own =
+      setup.packings.empty() ? "" : fmt::format(" ({} on as many as they say)", setup.packings.size());
+  out.lines += fmt::format("  {} configurations on {} to {} packings{}: {} to {} runs\n", configurations,
+                           setup.packings_min, setup.packings_max, own, least, most);
   out.lines +=
       fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
   const MeasureTrial trial = try_one(setup, out);
@@ -157,14 +162,15 @@ double seconds_per_packing(const CrowdConfiguration& configuration, const CrowdS
 }
 
 void spend_on_packings(const CrowdSetup& setup, const MeasureTrial& trial, double times, Findings& out) {
-  out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.packings_max));
+  out.spend("packings", times * trial.packing_seconds * static_cast<double>(setup.pool()));
 }
 
 void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double times, const std::string& part,
                     Findings& out) {
-  double seconds = 0.0;  // of all configurations with one packing each
-  for (const CrowdConfiguration& c : setup.configurations) seconds += seconds_per_packing(c, setup, trial.pass_seconds);
-  out.spend(part, times * expected_packings(setup) * seconds);
+  double seconds = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations)
+    seconds += expected_packings(setup, c) * seconds_per_packing(c, setup, trial.pass_seconds);
+  out.spend(part, times * seconds);
 }
 
 }  // namespace softgrain

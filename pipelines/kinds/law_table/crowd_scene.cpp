@@ -278,6 +278,7 @@ CrowdSetup read_crowd_setup(const SceneTable& root) {
     const CrowdConfiguration& c = setup.configurations.back();
     if (setup.options.relaxation == Relaxation::damped && c.stages.back().roll != 0.0)
       t.mistake("path", "\"roll\" needs motion: relaxation = \"slow-dynamics\"");
+    if (t.has("packings")) setup.packings[c.name] = t.count("packings", 2, 100000, 0);
     if (root.table_or_empty("crowd").sound()) require_packings(t, c, setup.packings_max);
     for (std::size_t k = 0; k + 1 < setup.configurations.size(); ++k)
       if (setup.configurations[k].name == c.name)

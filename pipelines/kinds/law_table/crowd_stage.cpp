@@ -152,9 +152,9 @@ void require_enough(const CrowdConfiguration& c, std::size_t left, std::size_t t
 }
 
 std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const Run& run) {
-  std::vector<ShellPacking> pool(static_cast<std::size_t>(setup.packings_max));
+  std::vector<ShellPacking> pool(static_cast<std::size_t>(setup.pool()));
   Progress progress("packing", static_cast<double>(pool.size()), run.context.quiet());
-  parallel_tasks(setup.packings_max, [&](std::int64_t k) {
+  parallel_tasks(setup.pool(), [&](std::int64_t k) {
     if (interrupt_requested()) throw Interrupted("stopped by a signal while packing");
     pool[static_cast<std::size_t>(k)] = generate_shell_packing(setup.spec, run.seed, static_cast<std::uint64_t>(k));
     progress.advance();
@@ -214,11 +214,9 @@ class Pilot {
 class Batches {
  public:
   Batches(const CrowdSetup& setup, const std::vector<CrowdPlan>& plans)
-      : setup_(setup),
-        plans_(plans),
-        runs_(setup.configurations.size()),
-        tried_(setup.configurations.size(), 0),
-        wanted_(setup.configurations.size(), setup.packings_min) {}
+      : setup_(setup), plans_(plans), runs_(setup.configurations.size()), tried_(setup.configurations.size(), 0) {
+    for (const CrowdConfiguration& c : setup.configurations) wanted_.push_back(setup.least_packings(c));
+  }
 
   [[nodiscard]] std::vector<CrowdTask> next() const {
     std::vector<CrowdTask> tasks;
@@ -232,7 +230,7 @@ class Batches {
     tried_ = wanted_;
     for (std::size_t c = 0; c < runs_.size(); ++c)
       if (!met(mean_end_force(setup_.configurations[c], runs_[c]), setup_.target))
-        wanted_[c] = std::min(setup_.packings_max, tried_[c] + kBatch);
+        wanted_[c] = std::min(setup_.most_packings(setup_.configurations[c]), tried_[c] + kBatch);
   }
   void require_enough_left(const CrowdRunner& runner) const {
     for (std::size_t c = 0; c < runs_.size(); ++c)

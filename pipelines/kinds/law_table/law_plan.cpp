@@ -76,10 +76,10 @@ double deviation(const std::vector<std::vector<double>>& rows) {
 /// What the table knows of a configuration.
 class KnownErrors {
  public:
-  KnownErrors(const CrowdLaw& law, int packings) : law_(law), root_(std::sqrt(static_cast<double>(packings))) {
+  KnownErrors(const CrowdLaw& law, int packings) : law_(law), packings_(packings) {
     std::vector<double> scatters;
     for (const ConfigurationError& e : law.errors)
-      if (e.noise > 0.0) scatters.push_back(root_ * e.noise);
+      if (e.noise > 0.0) scatters.push_back(scatter_of(e));
     usual_ = scatters.empty() ? 0.2 : quantile(scatters, 0.5);
   }
   [[nodiscard]] const ConfigurationError* find(const std::string& name) const {
@@ -88,12 +88,17 @@ class KnownErrors {
     return nullptr;
   }
   [[nodiscard]] double scatter(const ConfigurationError* known) const {
-    return known != nullptr && known->noise > 0.0 ? root_ * known->noise : usual_;
+    return known != nullptr && known->noise > 0.0 ? scatter_of(*known) : usual_;
   }
 
  private:
+  /// Of single packings.
+  [[nodiscard]] double scatter_of(const ConfigurationError& e) const {
+    return std::sqrt(static_cast<double>(e.packings > 0 ? e.packings : packings_)) * e.noise;
+  }
+
   const CrowdLaw& law_;
-  double root_;
+  std::int64_t packings_;
   double usual_ = 0.0;
 };
 

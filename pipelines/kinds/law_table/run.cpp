@@ -24,6 +24,7 @@ CrowdSetup setup_of(const LawTableVariant& variant, const CrowdSetup& base) {
   CrowdSetup setup = base;
   setup.spec = variant.spec;
   setup.packings_min = setup.packings_max = variant.packings;
+  setup.packings.clear();
   std::erase_if(setup.configurations, [&](const CrowdConfiguration& c) {
     const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
                                      [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
