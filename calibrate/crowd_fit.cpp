@@ -85,7 +85,7 @@ class Filler {
       const bool own = serves(c, fit_.model.crowd) && c.all_of(row.kind) && first.smooth == smooth;
       if (!own || table_ratio(first) != row.ratio) continue;
       for (const CrowdState* s : loading_states(c))
-        for (std::size_t k = 0; k < s->overlap.size(); ++k)
+        for (std::size_t k = 0; k < c.configuration->touching(); ++k)
           row.overlap_max = std::max(
               row.overlap_max, s->overlap[k] / (smooth ? 1.0 : std::min(1.0, c.configuration->partners[k].ratio)));
       row.error = std::max(row.error, crowd_error(fit_.model, c));

@@ -65,7 +65,7 @@ std::vector<WeighedState> weighed_states(const StateSelection& selection, double
   std::vector<WeighedState> out;
   for (const CrowdStates* c : selection) {
     const double floor = 0.1 * discrepancy * c->largest_force();
-    const double share = 1.0 / std::sqrt(static_cast<double>(c->configuration->partners.size()));
+    const double share = 1.0 / std::sqrt(static_cast<double>(c->configuration->touching()));
     for (const CrowdState* s : loading_states(*c)) {
       WeighedState& w = out.emplace_back(WeighedState{&c->configuration->partners, s});
       for (std::size_t k = 0; k < s->mean.size(); ++k) {
@@ -160,7 +160,8 @@ namespace {
 std::vector<double> ratios_of(const StateSelection& selection) {
   std::set<double> out;
   for (const CrowdStates* c : selection)
-    for (const CrowdPartner& p : c->configuration->partners) out.insert(table_ratio(p));
+    for (const CrowdPartner& p : c->configuration->partners)
+      if (p.on < 0) out.insert(table_ratio(p));
   return {out.begin(), out.end()};
 }
 

@@ -33,6 +33,7 @@ double against_roll(const CrowdPoint& point, const CrowdConfiguration& configura
 void average(const CrowdMeasurements& data, std::size_t configuration, const std::vector<double>& weight,
              CrowdStates& out) {
   const std::size_t neighbours = out.configuration->partners.size();
+  const std::size_t touching = out.configuration->touching();
   std::vector<Sums> sums;
   for (const CrowdRun& run : data.runs) {
     if (run.configuration != static_cast<std::int64_t>(configuration)) continue;
@@ -64,6 +65,7 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
     if (state.packings == 0) continue;
     for (std::size_t j = 0; j < neighbours; ++j) {
       state.overlap.push_back(sums[k].overlap[j].mean());
+      if (j >= touching) continue;
       state.mean.push_back(sums[k].force[j].mean());
       state.error.push_back(sums[k].force[j].statistics().error_or_zero());
     }
@@ -89,8 +91,8 @@ bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
   for (std::size_t k = 0; k < a.partners.size(); ++k) {
     const CrowdPartner& p = a.partners[k];
     const CrowdPartner& q = b.partners[k];
-    if (p.kind != q.kind || p.ratio != q.ratio || p.smooth != q.smooth || norm(p.direction - q.direction) > kSame ||
-        std::abs(x[k] / deep_x - y[k] / deep_y) > kSame)
+    if (p.kind != q.kind || p.ratio != q.ratio || p.smooth != q.smooth || p.on != q.on ||
+        norm(p.direction - q.direction) > kSame || std::abs(x[k] / deep_x - y[k] / deep_y) > kSame)
       return false;
   }
   return true;
@@ -154,7 +156,7 @@ void assign_uses(std::vector<CrowdStates>& all) {
 
 bool CrowdStates::all_of(PartnerKind kind) const {
   return std::all_of(configuration->partners.begin(), configuration->partners.end(),
-                     [kind](const CrowdPartner& p) { return p.kind == kind; });
+                     [kind](const CrowdPartner& p) { return p.kind == kind || p.on >= 0; });
 }
 
 double CrowdStates::largest_force() const {

@@ -11,8 +11,8 @@ namespace softgrain {
 
 /// One recorded state of a configuration, averaged over packings. Forces over E Rs^2.
 struct CrowdState {
-  std::vector<double> overlap;  ///< h/Rs per neighbour
-  std::vector<double> mean;     ///< normal force per neighbour
+  std::vector<double> overlap;  ///< h/Rs per neighbour, planes around soft ones included
+  std::vector<double> mean;     ///< normal force per neighbour of the centre
   std::vector<double> error;    ///< its standard error
   double tangential = 0.0;      ///< what holds the first neighbour back on its slide
   double slide = 0.0;           ///< of the first neighbour [Rs]

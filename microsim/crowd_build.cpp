@@ -19,7 +19,7 @@ constexpr std::int32_t kSolid = 2;           ///< solid spheres as neighbours
 constexpr std::int32_t kWall = 3;            ///< planes and shells: neither meets the other, both meet grains
 constexpr std::int32_t kPlane = 4;
 constexpr std::int32_t kSmoothPlane = 5;
-constexpr std::int32_t kFirstOther = 6;
+constexpr std::int32_t kFirstOther = 6;  ///< behind those of all soft neighbours: planes that press each
 
 std::int32_t inner_of(std::int32_t grain) { return grain + kInner - kGrain; }
 
@@ -81,13 +81,19 @@ class ContentLaws {
 
 std::int32_t other_material(std::size_t soft) { return kFirstOther + 2 * static_cast<std::int32_t>(soft); }
 
+std::int32_t press_material(std::size_t soft, std::size_t softs) {
+  return other_material(softs) + static_cast<std::int32_t>(soft);
+}
+
+std::int32_t count_materials(std::size_t softs) { return press_material(softs, softs); }
+
 LawSet crowd_laws(const CrowdExperiment& e, double restitution, std::size_t softs, const InnerLaws* inner) {
   const Material& grain = e.system.materials[kGrain];
   const auto law = [&](double friction) {
     return hertz_law(HertzCoefficients::of(grain, grain, friction, restitution), false);
   };
   const AnyLaw hertz = law(e.spec.friction);
-  ContentLaws table(other_material(softs), hertz, inner);
+  ContentLaws table(count_materials(softs), hertz, inner);
   table.contents(kGrain, kGrain);
   table.content_with(kGrain, kSolid);
   for (const std::int32_t wall : {kWall, kPlane}) table.content_with_plane(kGrain, wall);
@@ -99,13 +105,14 @@ LawSet crowd_laws(const CrowdExperiment& e, double restitution, std::size_t soft
     table.contents(other, other);
     table.contents(kGrain, other);
     table.content_with_plane(other, kWall);
+    table.content_with_plane(other, press_material(k, softs));
   }
   return table.laws();
 }
 
 std::vector<Material> crowd_materials(const SoftParticleSpec& spec, std::size_t softs) {
   std::vector<Material> materials;
-  for (std::int32_t m = 0; m < other_material(softs); ++m)
+  for (std::int32_t m = 0; m < count_materials(softs); ++m)
     materials.push_back(
         {"material " + std::to_string(m), spec.density, spec.youngs_modulus, spec.poisson_ratio, false});
   return materials;
@@ -190,11 +197,12 @@ double solid_fraction(const SoftContent& content, double inner_fraction) {
   return sum;
 }
 
-/// A free shell has the mass of its content.
-NewBody<3> centre_shell(const SoftParticleSpec& spec, bool free, double fraction) {
-  if (free) return solid_sphere({}, spec.shell_radius, spec.density * fraction, kWall);
+/// A free shell has the mass of its content, one that is held or led has none.
+NewBody<3> shell_of(const SoftParticleSpec& spec, const Vec3& x, double radius, bool free, double fraction) {
+  if (free) return solid_sphere(x, radius, spec.density * fraction, kWall);
   NewBody<3> shell;
-  shell.r = spec.shell_radius;
+  shell.x = x;
+  shell.r = radius;
   shell.material = kWall;
   return shell;
 }
@@ -218,8 +226,8 @@ class Builder {
     add_inner_grains(e_.system, e_.spec, centre, place, shell + 1 + softs);
     soft_contents(shell + 1);
     solids();
-    add_shell(e_.system.particles,
-              centre_shell(e_.spec, e_.configuration.centre_free, solid_fraction(centre, fraction_)));
+    add_shell(e_.system.particles, shell_of(e_.spec, {}, e_.spec.shell_radius, e_.configuration.centre_free,
+                                            solid_fraction(centre, fraction_)));
     soft_shells();
     add_inner_shells(e_.system, e_.spec, centre, place);
     planes();
@@ -232,15 +240,25 @@ class Builder {
     for (std::size_t k = 0; k < e_.neighbours.size(); ++k)
       if (e_.configuration.partners[k].kind == kind) work(e_.configuration.partners[k], e_.neighbours[k], found++);
   }
-  [[nodiscard]] Vec3 at(const CrowdPartner& p) const { return neighbour_place(e_.spec, p, p.direction, 0.0); }
+  [[nodiscard]] Vec3 at(const CrowdPartner& p) const {
+    if (p.on < 0) return neighbour_place(e_.spec, p, p.direction, 0.0);
+    const CrowdPartner& on = e_.configuration.partners[static_cast<std::size_t>(p.on)];
+    return at(on) + p.direction * (on.ratio * e_.spec.shell_radius);
+  }
 
   /// Goes where it is led: without a mass.
-  [[nodiscard]] NewBody<3> led_sphere(const CrowdPartner& p, std::int32_t material) const {
+  [[nodiscard]] NewBody<3> led_solid(const CrowdPartner& p) const {
     NewBody<3> body;
     body.x = at(p);
     body.r = p.ratio * e_.spec.shell_radius;
-    body.material = material;
+    body.material = kSolid;
     return body;
+  }
+  /// Which of the soft neighbours partner k is.
+  [[nodiscard]] std::size_t soft_number(std::int32_t k) const {
+    const auto& partners = e_.configuration.partners;
+    return static_cast<std::size_t>(std::count_if(partners.begin(), partners.begin() + k,
+                                                  [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; }));
   }
   /// 1 / moment of inertia of a solid neighbour, where it may turn.
   [[nodiscard]] double turning(const CrowdPartner& p) const {
@@ -263,20 +281,22 @@ class Builder {
   }
   void solids() {
     each(PartnerKind::solid, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      n.body = add_grain(e_.system.particles, led_sphere(p, kSolid));
+      n.body = add_grain(e_.system.particles, led_solid(p));
       e_.system.particles.inverse_inertia[static_cast<std::size_t>(n.body)] = turning(p);
     });
   }
   void soft_shells() {
-    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
-      n.body = add_shell(e_.system.particles, led_sphere(p, kWall));
+    each(PartnerKind::soft, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t k) {
+      const bool free = e_.configuration.pressed(static_cast<std::size_t>(&n - e_.neighbours.data()));
+      n.body = add_shell(e_.system.particles, shell_of(e_.spec, at(p), p.ratio * e_.spec.shell_radius, free,
+                                                       solid_fraction(*others_[k], fraction_)));
     });
   }
   void planes() {
     each(PartnerKind::plane, [&](const CrowdPartner& p, CrowdExperiment::Neighbour& n, std::size_t) {
       NewBody<3> plane;
       plane.x = at(p);
-      plane.material = p.smooth ? kSmoothPlane : kPlane;
+      plane.material = p.on >= 0 ? press_material(soft_number(p.on), others_.size()) : p.smooth ? kSmoothPlane : kPlane;
       n.body = add_plane(e_.system.particles, plane, -p.direction);
     });
   }

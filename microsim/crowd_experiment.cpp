@@ -25,23 +25,35 @@ std::vector<std::int32_t> owners(const CrowdExperiment& e) {
   return owner;
 }
 
-/// Force on each neighbour from the content of the centre [N], and its moment about the contact point [N m].
+/// Force on each neighbour from the content that it touches [N], and its moment about the contact point [N m].
 struct Load {
   Vec3 force{};
   Vec3 moment{};
 };
 
+/// Over Rs.
+double touched_radius(const CrowdExperiment& e, std::size_t k) {
+  const std::int32_t on = e.configuration.partners[k].on;
+  return on < 0 ? 1.0 : e.configuration.partners[at(on)].ratio;
+}
+
+/// A grain or an inner soft particle of the centre or of a soft neighbour.
+bool is_content(const CrowdExperiment& e, Slot i) {
+  return i < e.centre_bodies || std::any_of(e.neighbours.begin(), e.neighbours.end(),
+                                            [i](const auto& n) { return n.begin <= i && i < n.end; });
+}
+
 std::vector<Load> neighbour_loads(const CrowdExperiment& e, const std::vector<ContactRecord<3>>& records) {
   const std::vector<std::int32_t> owner = owners(e);
   std::vector<Vec3> touch;
   for (std::size_t k = 0; k < e.neighbours.size(); ++k)
-    touch.push_back(e.system.particles.sphere[at(e.centre_shell)].x +
-                    e.direction(k) * ((1.0 - 0.5 * e.overlap[k]) * e.spec.shell_radius));
+    touch.push_back(e.system.particles.sphere[at(e.touched_shell(k))].x +
+                    e.direction(k) * ((touched_radius(e, k) - 0.5 * e.overlap[k]) * e.spec.shell_radius));
   std::vector<Load> loads(e.neighbours.size());
   for (const ContactRecord<3>& c : records) {
-    if (c.i >= e.centre_bodies) continue;
+    if (!is_content(e, c.i)) continue;
     const std::int32_t k = owner[static_cast<std::size_t>(c.j)];
-    if (k < 0) continue;
+    if (k < 0 || e.configuration.partners[at(k)].on != owner[static_cast<std::size_t>(c.i)]) continue;
     const Vec3 force = c.normal * c.normal_force + c.tangential_force;
     loads[at(k)].force -= force;
     loads[at(k)].moment -= cross(c.point - touch[at(k)], force);
@@ -52,11 +64,10 @@ std::vector<Load> neighbour_loads(const CrowdExperiment& e, const std::vector<Co
 /// h/Rs of neighbour k, towards the shell where it is now.
 double present_overlap(const CrowdExperiment& e, std::size_t k) {
   const auto& p = e.system.particles;
-  const Vec3 apart =
-      p.sphere[static_cast<std::size_t>(e.neighbours[k].body)].x - p.sphere[static_cast<std::size_t>(e.centre_shell)].x;
+  const Vec3 apart = p.sphere[at(e.neighbours[k].body)].x - p.sphere[at(e.touched_shell(k))].x;
   const CrowdPartner& partner = e.configuration.partners[k];
   const double distance = partner.kind == PartnerKind::plane ? dot(apart, e.direction(k)) : norm(apart);
-  return 1.0 + partner.ratio - distance / e.spec.shell_radius;
+  return touched_radius(e, k) + partner.ratio - distance / e.spec.shell_radius;
 }
 
 /// The first neighbour, a plane, to its direction and its foot there.
@@ -85,12 +96,18 @@ Vec3 CrowdExperiment::direction(std::size_t k) const {
   return p.direction * std::cos(angle) + slide_direction(p.direction) * std::sin(angle);
 }
 
+Slot CrowdExperiment::touched_shell(std::size_t k) const {
+  const std::int32_t on = configuration.partners[k].on;
+  return on < 0 ? centre_shell : neighbours[at(on)].body;
+}
+
 void CrowdExperiment::set_damping(bool on) { take_laws(system, on ? damped : undamped); }
 
 std::vector<Vec3> CrowdExperiment::prescribe(const CrowdTarget& to) {
   std::vector<Vec3> moves(static_cast<std::size_t>(system.particles.size()));
   const CrowdTarget from = now();
   std::vector<Vec3> before(neighbours.size());
+  std::vector<Vec3> moved(neighbours.size());
   for (std::size_t k = 0; k < neighbours.size(); ++k) before[k] = direction(k);
   overlap = to.overlap;
   slide = to.slide;
@@ -105,6 +122,9 @@ std::vector<Vec3> CrowdExperiment::prescribe(const CrowdTarget& to) {
     } else if (k == 0 && (slide != from.slide || roll != from.roll)) {
       move = neighbour_place(spec, p, direction(0), overlap[0]) - neighbour_place(spec, p, before[0], from.overlap[0]);
     }
+    if (p.on >= 0) move += moved[at(p.on)];
+    moved[k] = move;
+    if (configuration.pressed(k)) continue;
     for (Slot i = neighbours[k].begin; i < neighbours[k].end; ++i) moves[static_cast<std::size_t>(i)] = move;
     moves[static_cast<std::size_t>(neighbours[k].body)] = move;
   }

@@ -102,8 +102,12 @@ struct CrowdExperiment {
   /// is made anew.
   void set_damping(bool on);
 
+  /// Where what neighbour k touches has its centre now: the shell of the middle, or that of a soft neighbour.
+  [[nodiscard]] Slot touched_shell(std::size_t k) const;
+
   /// How every body has to move for this position [m]; from now on it is what is prescribed. A plane that rolls is put
-  /// there at once: what it is made of stands still where it touches.
+  /// there at once: what it is made of stands still where it touches. Soft neighbours with planes around them go where
+  /// those press them.
   [[nodiscard]] std::vector<Vec3> prescribe(const CrowdTarget& to);
 
   /// Moves every neighbour there in one stroke; springs follow. Never while rolling.
@@ -115,7 +119,7 @@ struct CrowdExperiment {
   [[nodiscard]] CrowdPoint observe() const;
 };
 
-/// Where a neighbour sits for an overlap and a direction [m]; of planes a point of them.
+/// Where a neighbour of the centre sits for an overlap and a direction [m]; of planes a point of them.
 Vec3 neighbour_place(const SoftParticleSpec& spec, const CrowdPartner& partner, const Vec3& direction, double overlap);
 
 /// All neighbours touch and none overlaps. `others`: content of the soft neighbours in their order. `laws` are needed

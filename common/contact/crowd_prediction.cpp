@@ -25,12 +25,19 @@ double volume_of(const CrowdModel& model, const CrowdSum<3>& sum) {
   return model.crowd == Crowd::bag ? sum.volume : model.form.equivalent_volume(sum);
 }
 
+/// Of the centre (`on` < 0), or of the planes around soft neighbour `on`, whose radius is `radius` Rs.
 CrowdSum<3> sum_of(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
-                   const std::vector<double>& overlap) {
+                   const std::vector<double>& overlap, std::int32_t on = -1, double radius = 1.0) {
   CrowdSum<3> sum;
   for (std::size_t k = 0; k < partners.size(); ++k)
-    sum.add(lost_to(model, partners[k], overlap[k]).nu, partners[k].direction);
+    if (partners[k].on == on) sum.add(lost_to(model, partners[k], overlap[k] / radius).nu, partners[k].direction);
   return sum;
+}
+
+/// Over E R^2, of a contact of a body whose sum is closed.
+double felt_force(const CrowdModel& model, const CrowdSum<3>& sum, const LostVolume<double>& nu,
+                  const Vec3& direction) {
+  return nu.slope * sum.gain * (model.crowd == Crowd::bag ? sum.volume : model.form.felt(sum, nu.nu, direction));
 }
 
 /// Of one contact of a body that has no other.
@@ -38,11 +45,20 @@ double alone(const CrowdModel& model, const LostVolume<double>& nu) {
   return nu.nu > 0.0 ? nu.slope * model.form.pressure.at(nu.nu).p : 0.0;
 }
 
-/// What a soft neighbour adds: it sees the particle in the middle as a soft one of radius 1/ratio.
-double other_side(const CrowdModel& model, const CrowdPartner& p, double overlap) {
+/// What soft neighbour k adds: it sees the particle in the middle as a soft one of radius 1/ratio.
+double other_side(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
+                  const std::vector<double>& overlap, std::size_t k) {
+  const CrowdPartner& p = partners[k];
   if (p.kind != PartnerKind::soft) return 0.0;
-  const CrowdPartner back{PartnerKind::soft, 1.0 / p.ratio, {}};
-  return p.ratio * p.ratio * alone(model, lost_to(model, back, overlap / p.ratio));
+  const CrowdPartner back{PartnerKind::soft, 1.0 / p.ratio, -p.direction};
+  const LostVolume nu = lost_to(model, back, overlap[k] / p.ratio);
+  if (!(nu.nu > 0.0)) return 0.0;
+  CrowdSum<3> sum = sum_of(model, partners, overlap, static_cast<std::int32_t>(k), p.ratio);
+  const double area = p.ratio * p.ratio;
+  if (model.crowd == Crowd::pair || sum.volume == 0.0) return area * alone(model, nu);
+  sum.add(nu.nu, back.direction);
+  sum.close(model.form.pressure, volume_of(model, sum));
+  return area * felt_force(model, sum, nu, back.direction);
 }
 
 }  // namespace
@@ -52,15 +68,11 @@ std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<Crow
   CrowdSum<3> sum = sum_of(model, partners, overlap);
   if (model.crowd != Crowd::pair) sum.close(model.form.pressure, volume_of(model, sum));
   std::vector<double> force;
-  for (std::size_t k = 0; k < partners.size(); ++k) {
+  for (std::size_t k = 0; k < CrowdConfiguration::touching_of(partners); ++k) {
     const LostVolume nu = lost_to(model, partners[k], overlap[k]);
-    double own = 0.0;
-    if (model.crowd == Crowd::pair)
-      own = alone(model, nu);
-    else
-      own = nu.slope * sum.gain *
-            (model.crowd == Crowd::bag ? sum.volume : model.form.felt(sum, nu.nu, partners[k].direction));
-    force.push_back(own + other_side(model, partners[k], overlap[k]));
+    const double own =
+        model.crowd == Crowd::pair ? alone(model, nu) : felt_force(model, sum, nu, partners[k].direction);
+    force.push_back(own + other_side(model, partners, overlap, k));
   }
   return force;
 }

@@ -18,7 +18,8 @@ struct CrowdModel {
   PairConstants smooth{1.0, 1.0};  ///< w and m of a plane without friction
 };
 
-/// Forces on the neighbours over E Rs^2 at these overlaps [Rs]. Soft neighbours have this one contact only.
+/// Forces on the neighbours of the centre over E Rs^2 at these overlaps [Rs]. Soft neighbours have this contact and
+/// those with the planes that press them.
 std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
                                  const std::vector<double>& overlap);
 

@@ -2,6 +2,7 @@
 // after the other), "runs" (one row each; "points", and "neighbours" with one row per point and neighbour, likewise).
 #include "common/data/crowd_measurements.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/data/fields.h"
@@ -41,6 +42,7 @@ void write_partners(const h5::Group& group, const std::vector<CrowdConfiguration
   g.attribute("kinds", "0 plane, 1 solid, 2 soft");
   write_column(g, "kind", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.kind); });
   write_column(g, "smooth", "1", all, [](const auto& p) { return static_cast<std::int64_t>(p.smooth); });
+  write_column(g, "on", "1", all, [](const auto& p) { return std::int64_t{p.on} + 1; });  // 0: the centre
   write_records(g, all);
 }
 
@@ -50,6 +52,8 @@ std::vector<CrowdPartner> read_partners(const h5::Group& group) {
   read_integers(g, "kind", all,
                 [](auto& p, auto v) { p.kind = static_cast<PartnerKind>(below(v, 3, "kind of a neighbour")); });
   if (g.has("smooth")) read_integers(g, "smooth", all, [](auto& p, auto v) { p.smooth = v != 0; });
+  if (g.has("on"))
+    read_integers(g, "on", all, [](auto& p, auto v) { p.on = static_cast<std::int32_t>(below(v, 1000, "on")) - 1; });
   read_records(g, all);
   for (const CrowdPartner& p : all) {
     constexpr double kUnit = 1e-6;
@@ -104,6 +108,21 @@ void write_configurations(const h5::Group& root, const std::vector<CrowdConfigur
   write_stages(g, all);
 }
 
+/// Planes around soft neighbours stand behind all neighbours of the centre.
+void require_presses(const CrowdConfiguration& c) {
+  const std::size_t touching = c.touching();
+  for (std::size_t k = 0; k < c.partners.size(); ++k) {
+    const CrowdPartner& p = c.partners[k];
+    const bool fits = k < touching ? p.on < 0
+                                   : p.on >= 0 && static_cast<std::size_t>(p.on) < touching &&
+                                         c.partners[static_cast<std::size_t>(p.on)].kind == PartnerKind::soft &&
+                                         p.kind == PartnerKind::plane;
+    if (touching == 0 || !fits)
+      throw FileTrouble("configuration '" + c.name + "': neighbour " + std::to_string(k) +
+                        " presses on what is not there");
+  }
+}
+
 std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
   const h5::Group g = root.open("configurations");
   std::vector<CrowdConfiguration> all(column_length(g, "centre_free"));
@@ -123,6 +142,7 @@ std::vector<CrowdConfiguration> read_configurations(const h5::Group& root) {
       throw FileTrouble("configuration '" + c.name + "' has no neighbours, or no stages");
     for (const CrowdStage& s : c.stages)
       if (s.overlap.size() != c.partners.size()) throw FileTrouble("a stage has another number of overlaps");
+    require_presses(c);
   }
   return all;
 }
@@ -206,6 +226,16 @@ void require_consistent(const CrowdMeasurements& data) {
 }
 
 }  // namespace
+
+std::size_t CrowdConfiguration::touching_of(const std::vector<CrowdPartner>& partners) {
+  const auto first = std::find_if(partners.begin(), partners.end(), [](const CrowdPartner& p) { return p.on >= 0; });
+  return static_cast<std::size_t>(first - partners.begin());
+}
+
+bool CrowdConfiguration::pressed(std::size_t k) const {
+  return std::any_of(partners.begin(), partners.end(),
+                     [k](const CrowdPartner& p) { return p.on == static_cast<std::int32_t>(k); });
+}
 
 void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs) {
   write_records(group, runs);

@@ -19,12 +19,15 @@ template <>
 inline constexpr auto words<PartnerKind> =
     word_list<PartnerKind>({{PartnerKind::plane, "plane"}, {PartnerKind::solid, "solid"}, {PartnerKind::soft, "soft"}});
 
-/// One neighbour; it is moved towards the centre and never by forces.
+/// One neighbour. It is moved towards the centre and never by forces, but for a soft one that planes press on all
+/// sides: those are led, and its shell moves and turns with the forces of its grains.
 struct CrowdPartner {
   PartnerKind kind = PartnerKind::plane;
-  double ratio = 0.0;   ///< its radius over Rs; 0 for planes (infinite)
-  Vec3 direction{};     ///< unit vector from the centre of the soft particle to the neighbour
-  bool smooth = false;  ///< a plane without friction; else mu is that of the grains
+  double ratio = 0.0;    ///< its radius over Rs; 0 for planes (infinite)
+  Vec3 direction{};      ///< unit vector from the centre of the soft particle to the neighbour
+  bool smooth = false;   ///< a plane without friction; else mu is that of the grains
+  std::int32_t on = -1;  ///< < 0: touches the centre; else a plane around the soft neighbour of this number, direction
+                         ///< and overlap [Rs] counted from that one's centre
 };
 
 enum class CrowdMove {
@@ -55,12 +58,18 @@ struct CrowdStage {
 
 /// A measurement set: neighbours and path.
 struct CrowdConfiguration {
-  std::string name;  ///< unique in the file, e.g. "cube-plane"
-  std::vector<CrowdPartner> partners;
+  std::string name;                    ///< unique in the file, e.g. "cube-plane"
+  std::vector<CrowdPartner> partners;  ///< those of the centre first, then planes around its soft neighbours
   std::vector<CrowdStage> stages;
   bool centre_free = false;  ///< the shell moves and turns with the forces of its grains; else it is held
   bool held_out = false;     ///< not for the fit: the law has to predict it
   bool turning = false;      ///< solid neighbours turn with the forces on them; they go where they are led
+
+  /// Neighbours that touch the centre, all before the others.
+  [[nodiscard]] std::size_t touching() const { return touching_of(partners); }
+  static std::size_t touching_of(const std::vector<CrowdPartner>& partners);
+  /// Whether planes press neighbour k from its other sides.
+  [[nodiscard]] bool pressed(std::size_t k) const;
 };
 
 /// One relaxed state.

@@ -262,6 +262,43 @@ TEST(CrowdExperiment, ForceOnAFreeShellVanishesAndOverlapsFollowIt) {
   EXPECT_LT(norm(sum), 1e-4 * total);  // nothing but the neighbours holds it
 }
 
+/// Two soft neighbours, five planes around each: those and the centre hold it, nothing else.
+TEST(CrowdExperiment, APressedSoftNeighbourRestsBetweenItsPlanesAndTheCentre) {
+  const SoftParticleSpec spec = coarse_spec();
+  CrowdConfiguration c = crowd_of(PartnerKind::soft, 0.8, directions_of(Arrangement::opposite), 0.2);
+  c.centre_free = true;
+  for (std::int32_t k = 0; k < 2; ++k) {
+    const Vec3 away = c.partners[at(k)].direction;
+    for (const Vec3& n :
+         {away, Vec3{{0.0, 1.0, 0.0}}, Vec3{{0.0, -1.0, 0.0}}, Vec3{{0.0, 0.0, 1.0}}, Vec3{{0.0, 0.0, -1.0}}}) {
+      c.partners.push_back({PartnerKind::plane, 0.0, n, false, k});
+      c.stages[0].overlap.push_back(0.12);
+    }
+  }
+  CrowdOptions options = damped_options();
+  options.tolerance = 1e-5;
+  const SoftContent first = content_of(spec, 5);
+  const SoftContent second = content_of(spec, 6);
+  CrowdExperiment e = make_crowd(spec, c, content_of(spec, 4), {&first, &second});
+  const CrowdPoint p = run_crowd(e, {{1.0}}, options).points[0];
+  ASSERT_TRUE(p.converged);
+  const auto load = [&](std::size_t k) { return c.partners[k].direction * p.normal[k] + p.tangential[k]; };
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec3 place = e.system.particles.sphere[at(e.neighbours[k].body)].x * (1.0 / spec.shell_radius);
+    EXPECT_NEAR(p.overlap[k], 1.8 - norm(place - p.centre), 1e-12);
+    EXPECT_GT(std::abs(norm(place) - 1.6), 1e-4) << "not led";
+    Vec3 planes{};
+    for (std::size_t n = 2 + 5 * k; n < 7 + 5 * k; ++n) {
+      EXPECT_NEAR(p.overlap[n], 0.12 + dot(place - c.partners[k].direction * 1.6, c.partners[n].direction), 1e-12);
+      EXPECT_GT(p.normal[n], 0.0);
+      planes += load(n);
+    }
+    EXPECT_GT(p.normal[k], 0.0);
+    EXPECT_LT(norm(load(k) - planes), 1e-4 * p.normal[k]);
+  }
+  EXPECT_LT(norm(load(0) + load(1)), 1e-4 * p.normal[0]);  // the centre has no other neighbour
+}
+
 SoftContent mirrored(SoftContent content) {
   for (Vec3& x : content.grains.position) x[0] = -x[0];
   return content;

@@ -197,6 +197,39 @@ TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
   EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
 }
 
+/// A soft particle among five planes and a soft one, which has five planes too: either may stand in the middle.
+TEST(CrowdFit, WhatTwoPressedSoftParticlesFeelIsTheSameFromEitherSide) {
+  constexpr double kRatio = 2.0;
+  constexpr double kContact = 0.3;
+  const std::vector<Vec3> around{Vec3{{-1.0, 0.0, 0.0}}, Vec3{{0.0, 1.0, 0.0}}, Vec3{{0.0, -1.0, 0.0}},
+                                 Vec3{{0.0, 0.0, 1.0}}, Vec3{{0.0, 0.0, -1.0}}};
+  const auto seen_from = [&](double other, double own_depth, double other_depth, Crowd form) {
+    std::vector<CrowdPartner> partners{{PartnerKind::soft, other, {{1.0, 0.0, 0.0}}}};
+    std::vector<double> overlap{kContact * (other > 1.0 ? 1.0 : other)};
+    for (const Vec3& n : around) {
+      partners.push_back({PartnerKind::plane, 0.0, n});
+      overlap.push_back(own_depth);
+    }
+    for (const Vec3& n : around) {
+      partners.push_back({PartnerKind::plane, 0.0, -n, false, 0});
+      overlap.push_back(other_depth * other);
+    }
+    const std::vector<double> force = crowd_forces(known(form), partners, overlap);
+    EXPECT_EQ(force.size(), 6U);
+    return force;
+  };
+  for (const Crowd form : {Crowd::pair, Crowd::bag, Crowd::directional}) {
+    const double small = seen_from(kRatio, 0.15, 0.1, form)[0];
+    const double large = seen_from(1.0 / kRatio, 0.1, 0.15, form)[0];
+    EXPECT_NEAR(small, kRatio * kRatio * large, 1e-12 * small);
+    const double not_pressed = seen_from(kRatio, 0.15, 0.0, form)[0];
+    if (form == Crowd::pair)
+      EXPECT_EQ(small, not_pressed) << "it knows of one contact alone";
+    else
+      EXPECT_GT(small, 1.1 * not_pressed);
+  }
+}
+
 /// Crowds around free shells: laws of crowds are fitted to them alone, the pair law to one neighbour of a held one.
 TEST(CrowdFit, WhereShellsWereFreeHeldOnesServeThePairLawAlone) {
   CrowdModel crowd = known(Crowd::directional);

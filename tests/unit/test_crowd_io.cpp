@@ -66,6 +66,7 @@ void expect_equal(const CrowdConfiguration& a, const CrowdConfiguration& b) {
     EXPECT_EQ(a.partners[k].kind, b.partners[k].kind);
     EXPECT_EQ(a.partners[k].ratio, b.partners[k].ratio);
     EXPECT_EQ(a.partners[k].direction, b.partners[k].direction);
+    EXPECT_EQ(a.partners[k].on, b.partners[k].on);
   }
   ASSERT_EQ(a.stages.size(), b.stages.size());
   for (std::size_t k = 0; k < a.stages.size(); ++k) {
@@ -73,6 +74,28 @@ void expect_equal(const CrowdConfiguration& a, const CrowdConfiguration& b) {
     EXPECT_EQ(a.stages[k].overlap, b.stages[k].overlap);
     EXPECT_EQ(a.stages[k].slide, b.stages[k].slide);
   }
+}
+
+/// The soft neighbour has a plane behind it.
+CrowdMeasurements with_press(std::int32_t on) {
+  CrowdMeasurements data = sample();
+  CrowdConfiguration& c = data.configurations[1];
+  c.partners.push_back({PartnerKind::plane, 0.0, {{0.0, 1.0, 0.0}}, false, on});
+  for (CrowdStage& s : c.stages) s.overlap.push_back(0.1);
+  data.runs.resize(1);
+  return data;
+}
+
+TEST(CrowdIo, PlanesAroundSoftNeighboursComeBack) {
+  const std::string path = temporary("pressed.h5");
+  const CrowdMeasurements out = with_press(0);
+  save_crowd(out, path);
+  expect_equal(load_crowd(path).configurations[1], out.configurations[1]);
+  for (const std::int32_t wrong : {1, 2, 7}) {  // a solid one, itself, nothing
+    save_crowd(with_press(wrong), path);
+    EXPECT_THROW((void)load_crowd(path), FileTrouble) << wrong;
+  }
+  fs::remove(path);
 }
 
 TEST(CrowdIo, RoundTripIsExact) {

@@ -82,6 +82,35 @@ TEST(CrowdSetup, PathsAndDepths) {
   EXPECT_EQ(f.configurations[1].name, "opposite-plane-slide-free");
 }
 
+TEST(CrowdSetup, PlanesAroundSoftNeighboursPressFromTheSidesWhereTheCentreIsNot) {
+  const std::string opposite = "arrangement = \"opposite\"\npartner = \"plane\"";
+  const std::string soft =
+      "arrangement = \"opposite\"\npartner = \"soft\"\nratio = 2.0\npressed = 0.1\ncentre = \"free\"";
+  const CrowdConfiguration c = read(with(opposite, soft)).configurations[1];
+  EXPECT_EQ(c.name, "opposite-soft-2-unload-free-pressed");
+  ASSERT_EQ(c.partners.size(), 12U);
+  EXPECT_EQ(c.touching(), 2U);
+  EXPECT_TRUE(c.pressed(0) && c.pressed(1) && !c.pressed(2));
+  for (std::size_t k = 0; k < 2; ++k) {
+    Vec3 all = -c.partners[k].direction;
+    for (std::size_t n = 2 + 5 * k; n < 7 + 5 * k; ++n) {
+      EXPECT_EQ(c.partners[n].kind, PartnerKind::plane);
+      EXPECT_EQ(c.partners[n].on, static_cast<std::int32_t>(k));
+      EXPECT_GE(dot(c.partners[n].direction, c.partners[k].direction), -1e-12) << "on the side of the centre";
+      EXPECT_EQ(c.stages[0].overlap[n], 0.2) << "over Rs of the centre";
+      EXPECT_EQ(c.stages[1].overlap[n], 0.0);
+      all += c.partners[n].direction;
+    }
+    EXPECT_LT(norm(all), 1e-12) << "with the centre they come from all sides";
+  }
+  expect_refused("overlap = 0.3", "overlap = 0.3\npressed = 0.1\ncentre = \"free\"",
+                 {"pressed", "no neighbour is soft"});
+  expect_refused("ratio = 1.0", "ratio = 1.0\npressed = 0.1", {"pressed", "centre = \"free\""});
+  expect_refused("ratio = 1.0", "ratio = 1.0\npressed = 0.1\ncentre = \"free\"\npath = \"slide\"",
+                 {"pressed", "leave it out"});
+  expect_refused("ratio = 1.0", "ratio = 1.0\npressed = 1.0\ncentre = \"free\"", {"pressed", "below 1"});
+}
+
 TEST(CrowdSetup, RefusesWhatMakesNoSense) {
   expect_refused("\"opposite\"", "\"oposite\"", {"scene.toml:20", "arrangement", "opposite"});
   expect_refused("partner = \"plane\"", "partner = \"wall\"", {"scene.toml:17", "partner"});

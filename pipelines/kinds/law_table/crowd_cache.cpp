@@ -26,7 +26,7 @@ std::string text_of(const CrowdConfiguration& c) {
   std::string text = fmt::format("centre {}{}\n", c.centre_free ? "free" : "held", c.turning ? ", turning" : "");
   for (const CrowdPartner& p : c.partners)
     text += (p.smooth ? "smooth " : "") + to_string(p.kind) + exact(p.ratio) + exact(p.direction[0]) +
-            exact(p.direction[1]) + exact(p.direction[2]) + "\n";
+            exact(p.direction[1]) + exact(p.direction[2]) + (p.on >= 0 ? fmt::format(" on {}", p.on) : "") + "\n";
   for (const CrowdStage& s : c.stages) {
     text += "stage" + exact(s.slide) + (s.roll != 0.0 ? " roll" + exact(s.roll) : "");
     for (const double h : s.overlap) text += exact(h);

@@ -43,7 +43,7 @@ void warn_of_configurations(const CrowdSetup& setup, Findings& out) {
       }))
     out.warn("no configuration with one plane: nothing fixes the pressure, and there will be no law");
   if (!any([](const CrowdConfiguration& c) {
-        return c.partners.size() > 2 && c.partners.front().kind == PartnerKind::plane && !c.held_out;
+        return c.touching() > 2 && c.partners.front().kind == PartnerKind::plane && !c.held_out;
       }))
     out.warn("no configuration with three planes or more: the coupling of neighbours is not determined");
   if (!any(partner(PartnerKind::solid))) out.warn("no solid neighbours: macro scenes cannot use such a table");

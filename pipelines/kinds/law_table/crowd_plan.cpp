@@ -15,13 +15,13 @@ std::vector<double> overlaps_before(const CrowdConfiguration& c, std::size_t sta
   return stage > 0 ? c.stages[stage - 1].overlap : std::vector<double>(c.partners.size(), 0.0);
 }
 
-/// Mean force on the neighbours that the stage moves.
+/// Mean force on the neighbours of the centre that the stage moves.
 double moved_force(const CrowdConfiguration& c, const CrowdPoint& point) {
   const auto stage = static_cast<std::size_t>(point.stage);
   const std::vector<double> before = overlaps_before(c, stage);
   double sum = 0.0;
   double count = 0.0;
-  for (std::size_t k = 0; k < before.size(); ++k) {
+  for (std::size_t k = 0; k < c.touching(); ++k) {
     if (before[k] == c.stages[stage].overlap[k]) continue;
     sum += point.normal[k];
     count += 1.0;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "common/data/slide_direction.h"
 #include "microsim/crowd_arrangements.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 
@@ -233,6 +234,32 @@ std::string default_name(const Wanted& w, bool free) {
   return free ? name + "-free" : name;
 }
 
+/// Five planes around each soft neighbour, on the sides where the centre is not, `depth` of its radius deep at the end.
+void press_soft_neighbours(CrowdConfiguration& c, double depth) {
+  const std::size_t touching = c.partners.size();
+  for (std::size_t k = 0; k < touching; ++k) {
+    const CrowdPartner on = c.partners[k];
+    if (on.kind != PartnerKind::soft) continue;
+    const Vec3 across = slide_direction(on.direction);
+    const Vec3 third = cross(on.direction, across);
+    for (const Vec3& n : {on.direction, across, -across, third, -third}) {
+      c.partners.push_back({PartnerKind::plane, 0.0, n, false, static_cast<std::int32_t>(k)});
+      for (CrowdStage& s : c.stages) s.overlap.push_back(s.move == CrowdMove::unload ? 0.0 : depth * on.ratio);
+    }
+  }
+}
+
+void read_press(const SceneTable& t, CrowdPath path, CrowdConfiguration& c) {
+  if (!t.has("pressed")) return;
+  const double depth = t.number("pressed", Unit::none, kShare);
+  if (std::none_of(c.partners.begin(), c.partners.end(), [](const auto& p) { return p.kind == PartnerKind::soft; }))
+    t.mistake("pressed", "no neighbour is soft: there is nothing that the planes could press");
+  if (!c.centre_free) t.mistake("pressed", "only around a free shell: centre = \"free\"");
+  if (path != CrowdPath::together && path != CrowdPath::unload)
+    t.mistake("pressed", "neighbours that slide, roll or come one after the other are led: leave it out");
+  press_soft_neighbours(c, depth);
+}
+
 CrowdConfiguration read_configuration(const SceneTable& t) {
   const Wanted w = read_wanted(t);
   CrowdConfiguration c;
@@ -251,7 +278,8 @@ CrowdConfiguration read_configuration(const SceneTable& t) {
   c.turning = t.flag("turning", false);
   if (c.turning && w.path != CrowdPath::together && w.path != CrowdPath::sequential && w.path != CrowdPath::unload)
     t.mistake("turning", "neighbours that slide or roll are led: leave it out");
-  c.name = t.text("name", default_name(w, c.centre_free));
+  read_press(t, w.path, c);
+  c.name = t.text("name", default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));
   if (c.name.empty()) t.mistake("name", "must not be empty");
   return c;
 }

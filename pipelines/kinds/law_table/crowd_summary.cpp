@@ -23,7 +23,11 @@ std::int64_t last_loading(const CrowdConfiguration& c) {
   return last;
 }
 
-double mean_of(const std::vector<double>& values) { return values.empty() ? 0.0 : mean_error(values).mean; }
+/// Over the neighbours of the centre.
+double mean_force(const CrowdConfiguration& c, const CrowdPoint& p) {
+  const auto end = p.normal.begin() + static_cast<std::ptrdiff_t>(std::min(c.touching(), p.normal.size()));
+  return end == p.normal.begin() ? 0.0 : mean_error({p.normal.begin(), end}).mean;
+}
 
 /// The last recorded point of a stage; nullptr when there is none.
 const CrowdPoint* last_of(const CrowdRun& run, std::int64_t stage) {
@@ -53,7 +57,7 @@ double deepest(const CrowdPoint& p) {
 }
 
 /// The first recorded overlap of the first stage where the mean force exceeds 1e-3 of that at its end.
-double onset(const std::vector<CrowdRun>& runs) {
+double onset(const CrowdConfiguration& c, const std::vector<CrowdRun>& runs) {
   if (runs.empty()) return 0.0;
   std::vector<double> overlap;
   std::vector<double> force;
@@ -61,7 +65,7 @@ double onset(const std::vector<CrowdRun>& runs) {
     overlap.push_back(deepest(runs[0].points[k]));
     force.push_back(0.0);
     for (const CrowdRun& r : runs)
-      if (k < r.points.size()) force.back() += mean_of(r.points[k].normal);
+      if (k < r.points.size()) force.back() += mean_force(c, r.points[k]);
   }
   for (std::size_t k = 0; k < force.size(); ++k)
     if (force[k] > 1e-3 * force.back()) return overlap[k];
@@ -99,13 +103,13 @@ json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>
   const Convergence points = convergence(runs);
   json out = cost_json(cost_of(runs));
   out["name"] = c.name;
-  out["neighbours"] = c.partners.size();
+  out["neighbours"] = c.touching();
   out["held_out"] = c.held_out;
   out["packings"] = force.runs;
   out["force"] = force.mean;
   out["force_standard_error"] = force.standard_error;
   out["target_met"] = met(force, target);
-  out["onset"] = onset(runs);
+  out["onset"] = onset(c, runs);
   out["points"] = points.points;
   out["converged_share"] =
       points.points > 0 ? static_cast<double>(points.converged) / static_cast<double>(points.points) : 0.0;
@@ -118,7 +122,7 @@ MeanForce mean_end_force(const CrowdConfiguration& configuration, const std::vec
   std::vector<double> values;
   for (const CrowdRun& run : runs)
     if (const CrowdPoint* p = last_of(run, last_loading(configuration)); p != nullptr)
-      values.push_back(mean_of(p->normal));
+      values.push_back(mean_force(configuration, *p));
   return statistics(values);
 }
 
@@ -169,7 +173,7 @@ std::string crowd_text(const CrowdMeasurements& data) {
     const std::vector<CrowdRun> runs = runs_of(data, k);
     const MeanForce f = mean_end_force(c, runs);
     text += fmt::format("  {:<28} {:>3} packings  onset {:.3f}  F/(E Rs^2) {:.5f} +- {:.5f}{}\n", c.name, f.runs,
-                        onset(runs), f.mean, f.standard_error, c.held_out ? "  (held out)" : "");
+                        onset(c, runs), f.mean, f.standard_error, c.held_out ? "  (held out)" : "");
   }
   return text;
 }

@@ -104,7 +104,7 @@ class KnownErrors {
 
 bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
   const auto same = [](const CrowdPartner& x, const CrowdPartner& y) {
-    return x.kind == y.kind && x.ratio == y.ratio && x.smooth == y.smooth && x.direction == y.direction;
+    return x.kind == y.kind && x.ratio == y.ratio && x.smooth == y.smooth && x.direction == y.direction && x.on == y.on;
   };
   return a.centre_free == b.centre_free && a.stages.front().overlap == b.stages.front().overlap &&
          std::equal(a.partners.begin(), a.partners.end(), b.partners.begin(), b.partners.end(), same);
