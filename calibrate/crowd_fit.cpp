@@ -138,7 +138,7 @@ double noise(const CrowdStates& c) {
   return all > 0.0 ? std::sqrt(error / all) : 0.0;
 }
 
-void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& states) {
+void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& states, double discrepancy) {
   double sums[2] = {0.0, 0.0};
   int counts[2] = {0, 0};
   for (const CrowdStates& c : states) {
@@ -146,6 +146,7 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
     ConfigurationError e{c.configuration->name,   c.use,    crowd_error(fit.model, c),
                          end_ratio(fit.model, c), noise(c), loading_states(c).back()->packings};
     if (c.use != CrowdUse::repeated && law.form != Crowd::pair && !c.for_crowds) e.use = CrowdUse::apart;
+    if (e.use == CrowdUse::predicted) e.offset = form_offset(fit.model, c, discrepancy);
     law.errors.push_back(e);
     if (e.use == CrowdUse::repeated || e.use == CrowdUse::apart) continue;
     const bool out = c.use == CrowdUse::predicted;
@@ -232,7 +233,7 @@ FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>
   law.replicates = replicate_rows(law, fit, refits.columns);
   out.draws = refits.draws;
   set_status(law, fit, states);
-  judge(law, fit, states);
+  judge(law, fit, states, options.discrepancy);
   law.error_cross = cross_validate(fit, states, options.discrepancy);
   law.criterion = criterion(fit, states, options.discrepancy);
   return out;

@@ -128,6 +128,19 @@ double crowd_error(const CrowdModel& model, const CrowdStates& states) {
   return all > 0.0 ? std::sqrt(miss / all) : 0.0;
 }
 
+FormOffset form_offset(const CrowdModel& model, const CrowdStates& states, double discrepancy) {
+  const CrowdPressure law = model.form.pressure;
+  const auto set = [law](CrowdModel& tried, std::span<const double> p) {
+    tried.form.pressure.a = law.a * std::exp(p[0]);
+    tried.form.pressure.delta = p[1];
+  };
+  constexpr double kFar = 3.0;
+  constexpr double kDeepest = 0.5;
+  const LeastSquaresFit fit =
+      fit_model(model, {&states}, discrepancy, {0.0, law.delta}, {{-kFar, kFar}, {0.0, kDeepest}}, false, set);
+  return {fit.parameters[0], fit.parameters[1] - law.delta};
+}
+
 LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, double discrepancy, bool thorough) {
   const CrowdPressure& p = model.form.pressure;
   const CrowdCoupling& m = model.form.coupling;

@@ -46,13 +46,14 @@ Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& 
   return out;
 }
 
-/// d force/d overlap of the first neighbour over E Rs.
-double normal_stiffness(const CrowdModel& model, const CrowdConfiguration& c, std::vector<double> overlap) {
+/// d force/d overlap of the first neighbour over its force, times Rs.
+double relative_stiffness(const CrowdModel& model, const CrowdConfiguration& c, std::vector<double> overlap) {
   constexpr double kStep = 1e-5;
+  const double force = crowd_forces(model, c.partners, overlap)[0];
   overlap[0] += kStep;
   const double up = crowd_forces(model, c.partners, overlap)[0];
   overlap[0] -= 2.0 * kStep;
-  return (up - crowd_forces(model, c.partners, overlap)[0]) / (2.0 * kStep);
+  return force > 0.0 ? (up - crowd_forces(model, c.partners, overlap)[0]) / (2.0 * kStep * force) : 0.0;
 }
 
 /// The stiffness is the secant at 1 degree of rotation, ht = pi Rs/180, as in the law card.
@@ -108,9 +109,9 @@ bool slide_result(const CrowdStates& c, const CrowdModel& model, SlideResult& ou
   const auto [before, along] = Way(c, &CrowdState::slide);
   if (along.empty()) return false;
   for (const CrowdState* s : along) out.friction = std::max(out.friction, drag(*s, *before));
-  const double kn = normal_stiffness(model, *c.configuration, before->overlap);
+  const double kn = relative_stiffness(model, *c.configuration, before->overlap);
   if (!(kn > 0.0) || !(out.friction > 0.0)) return false;
-  out.kt_ratio = std::max(drag_at(along, *before, kSecantSlide), 0.0) * before->mean[0] / kSecantSlide / kn;
+  out.kt_ratio = std::max(drag_at(along, *before, kSecantSlide), 0.0) / kSecantSlide / kn;
   return true;
 }
 
@@ -150,36 +151,26 @@ bool roll_result(const CrowdStates& c, RollResult& out) {
   return out.stiffness > 0.0 && out.friction > 0.0;
 }
 
-/// Every configuration of one kind of neighbour that slides or rolls.
-SideValues::Slides slides(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind) {
-  SideValues::Slides out;
-  for (const CrowdStates& c : states) {
-    if (c.states.empty() || c.configuration->held_out || !c.all_of(kind)) continue;
-    SlideResult slide;
-    if (slides_once(*c.configuration) && slide_result(c, model, slide)) {
-      out.kt_ratio.push_back(slide.kt_ratio);
-      out.friction.push_back(slide.friction);
-    }
-    RollResult roll;
-    if (!roll_result(c, roll)) continue;
-    out.rolling.push_back(roll.stiffness);
-    out.rolling_friction.push_back(roll.friction);
-  }
-  return out;
-}
-
-/// States of the retreat that follows the deepest one, every neighbour going back.
+/// States of the first retreat, every neighbour going back from where the loading before it ended.
 std::vector<const CrowdState*> retreat_states(const CrowdStates& c, const CrowdState*& deepest) {
   std::vector<const CrowdState*> out;
   for (const CrowdState& s : c.states) {
-    if (deepest == nullptr || s.overlap[0] >= deepest->overlap[0]) {
-      if (!out.empty()) break;  // reloaded
-      deepest = &s;
-    } else if (c.configuration->stages[static_cast<std::size_t>(s.stage)].move == CrowdMove::unload) {
+    const CrowdMove move = c.configuration->stages[static_cast<std::size_t>(s.stage)].move;
+    if (move == CrowdMove::unload)
       out.push_back(&s);
-    }
+    else if (move != CrowdMove::load || !out.empty())
+      break;
+    else
+      deepest = &s;
   }
+  if (deepest == nullptr) out.clear();
   return out;
+}
+
+double sum_of(const std::vector<double>& forces) {
+  double sum = 0.0;
+  for (const double f : forces) sum += f;
+  return sum;
 }
 
 /// s that best gives back a retreat, relative to the law at the deepest state; not above 5. False when there is no
@@ -187,9 +178,9 @@ std::vector<const CrowdState*> retreat_states(const CrowdStates& c, const CrowdS
 bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
   const CrowdState* deepest = nullptr;
   const std::vector<const CrowdState*> states = retreat_states(c, deepest);
-  if (states.size() < 3 || !(deepest->mean[0] > 0.0)) return false;
+  if (states.size() < 3 || !(sum_of(deepest->mean) > 0.0)) return false;
   const auto& partners = c.configuration->partners;
-  const double end = crowd_forces(model, partners, deepest->overlap)[0];
+  const double end = sum_of(crowd_forces(model, partners, deepest->overlap));
   if (!(end > 0.0)) return false;
   LeastSquaresProblem problem;
   problem.residuals = states.size();
@@ -199,7 +190,7 @@ bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
       std::vector<double> felt = deepest->overlap;
       for (std::size_t j = 0; j < felt.size(); ++j)
         felt[j] = std::max(felt[j] - p[0] * (felt[j] - states[k]->overlap[j]), 0.0);
-      r[k] = crowd_forces(model, partners, felt)[0] / end - states[k]->mean[0] / deepest->mean[0];
+      r[k] = sum_of(crowd_forces(model, partners, felt)) / end - sum_of(states[k]->mean) / sum_of(deepest->mean);
     }
     return true;
   };
@@ -210,13 +201,21 @@ bool retreat_result(const CrowdStates& c, const CrowdModel& model, double& s) {
   return fit.end == FitEnd::converged;
 }
 
-/// s of every configuration of planes that unloads.
-std::vector<double> retreats(const std::vector<CrowdStates>& states, const CrowdModel& model) {
-  std::vector<double> out;
+/// Every configuration of one kind of neighbour that slides, rolls or unloads.
+SideValues::Slides slides(const std::vector<CrowdStates>& states, const CrowdModel& model, PartnerKind kind) {
+  SideValues::Slides out;
   for (const CrowdStates& c : states) {
-    double s = 1.0;
-    if (c.states.empty() || c.configuration->held_out || !c.all_of(PartnerKind::plane)) continue;
-    if (retreat_result(c, model, s)) out.push_back(s);
+    if (c.states.empty() || c.configuration->held_out || !c.all_of(kind)) continue;
+    SlideResult slide;
+    if (slides_once(*c.configuration) && slide_result(c, model, slide)) {
+      out.kt_ratio.push_back(slide.kt_ratio);
+      out.friction.push_back(slide.friction);
+    }
+    if (RollResult roll; roll_result(c, roll)) {
+      out.rolling.push_back(roll.stiffness);
+      out.rolling_friction.push_back(roll.friction);
+    }
+    if (double s = 1.0; retreat_result(c, model, s)) out.retreat.push_back(s);
   }
   return out;
 }
@@ -225,7 +224,7 @@ std::vector<double> retreats(const std::vector<CrowdStates>& states, const Crowd
 
 SideValues side_values(const std::vector<CrowdStates>& states, const CrowdModel& model) {
   return {slides(states, model, PartnerKind::plane), slides(states, model, PartnerKind::solid),
-          slides(states, model, PartnerKind::soft), retreats(states, model)};
+          slides(states, model, PartnerKind::soft)};
 }
 
 void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn, std::uint64_t seed,
@@ -254,11 +253,16 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
   roll(&SideValues::plane, entry.slide_plane);
   roll(&SideValues::solid, entry.slide_solid);
   roll(&SideValues::soft, entry.slide_soft);
-  entry.retreat_measured = !measured.retreat.empty();
-  entry.retreat = measured.retreat.empty()
-                      ? guessed(1.0)
-                      : estimate_of(
-                            measured, drawn, seed, [](const SideValues& v) -> const auto& { return v.retreat; });
+  const auto retreat = [&](SideValues::Slides SideValues::*kind, Estimate& s) {
+    if ((measured.*kind).retreat.empty()) return false;
+    s = estimate_of(
+        measured, drawn, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).retreat; });
+    return true;
+  };
+  entry.retreat = guessed(1.0);
+  entry.retreat_measured = retreat(&SideValues::plane, entry.retreat);
+  entry.slide_solid.retreats = retreat(&SideValues::solid, entry.slide_solid.retreat);
+  entry.slide_soft.retreats = retreat(&SideValues::soft, entry.slide_soft.retreat);
 }
 
 }  // namespace softgrain

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/core/statistics.h"
 #include "common/data/slide_direction.h"
@@ -75,31 +76,49 @@ void average(const CrowdMeasurements& data, std::size_t configuration, const std
   std::erase_if(out.states, [](const CrowdState& s) { return s.packings < 2; });
 }
 
+/// Stages before the first slide, roll or retreat of all; a path that slides from the start counts its first one.
+std::span<const CrowdStage> loading_of(const CrowdConfiguration& c) {
+  const auto end =
+      std::find_if(c.stages.begin() + 1, c.stages.end(), [](const CrowdStage& s) { return s.move != CrowdMove::load; });
+  return {c.stages.begin(), end};
+}
+
 double deepest(const CrowdConfiguration& c) {
-  const std::vector<double>& overlap = c.stages.front().overlap;
+  const std::vector<double>& overlap = loading_of(c).back().overlap;
   return *std::max_element(overlap.begin(), overlap.end());
+}
+
+/// Overlaps of the same neighbours in the same proportion.
+bool same_way(const std::vector<double>& x, double deep_x, const std::vector<double>& y, double deep_y) {
+  constexpr double kSame = 1e-9;
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                    [&](double a, double b) { return std::abs(a / deep_x - b / deep_y) <= kSame; });
 }
 
 /// Whether two configurations begin by pressing the same neighbours in the same way, however deep.
 bool same_loading(const CrowdConfiguration& a, const CrowdConfiguration& b) {
   constexpr double kSame = 1e-9;
   if (a.partners.size() != b.partners.size()) return false;
-  const std::vector<double>& x = a.stages.front().overlap;
-  const std::vector<double>& y = b.stages.front().overlap;
-  const double deep_x = deepest(a);
-  const double deep_y = deepest(b);
+  const auto x = loading_of(a);
+  const auto y = loading_of(b);
+  if (!std::equal(x.begin(), x.end(), y.begin(), y.end(), [&](const CrowdStage& s, const CrowdStage& t) {
+        return same_way(s.overlap, deepest(a), t.overlap, deepest(b));
+      }))
+    return false;
   for (std::size_t k = 0; k < a.partners.size(); ++k) {
     const CrowdPartner& p = a.partners[k];
     const CrowdPartner& q = b.partners[k];
     if (p.kind != q.kind || p.ratio != q.ratio || p.smooth != q.smooth || p.on != q.on ||
-        norm(p.direction - q.direction) > kSame || std::abs(x[k] / deep_x - y[k] / deep_y) > kSame)
+        norm(p.direction - q.direction) > kSame)
       return false;
   }
   return true;
 }
 
 /// Held out as a loading, not only as a path that goes on from it.
-bool holds_out(const CrowdStates& c) { return c.configuration->held_out && c.configuration->stages.size() == 1; }
+bool holds_out(const CrowdStates& c) {
+  return c.configuration->held_out && loading_of(*c.configuration).size() == c.configuration->stages.size();
+}
 
 /// One loading: of its configurations the deepest is used, the others repeat it. `free`: shells that are free count.
 void assign_use(const std::vector<CrowdStates*>& group, bool free) {

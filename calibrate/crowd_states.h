@@ -35,11 +35,11 @@ struct CrowdStates {
 };
 
 /// Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
-/// ratios of their overlaps) only the deepest is fitted, or none when plain loading is held out. Bodies of a scene are
-/// never held: where there are kEnoughFree loadings of planes around a free shell, laws of crowds are fitted to free
-/// shells alone, and the pair law, which has but one neighbour, to held ones; else all laws to held ones.
-/// `weight[p]` says how often packing p counts (a bootstrap replicate); empty: once each. States with fewer than two
-/// converged packings are left out.
+/// ratios of their overlaps, stage by stage up to the first slide, roll or retreat) only the deepest is fitted, or none
+/// when plain loading is held out. Bodies of a scene are never held: where there are kEnoughFree loadings of planes
+/// around a free shell, laws of crowds are fitted to free shells alone, and the pair law, which has but one neighbour,
+/// to held ones; else all laws to held ones. `weight[p]` says how often packing p counts (a bootstrap replicate);
+/// empty: once each. States with fewer than two converged packings are left out.
 inline constexpr int kEnoughFree = 4;
 std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std::vector<double>& weight = {});
 

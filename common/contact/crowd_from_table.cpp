@@ -38,10 +38,10 @@ CrowdLaws laws_of(const LawTableEntry& entry, const CrowdModel& model, const Cro
   law.form = model.form;
   law.partner = model.solid;
   law.modulus = choices.modulus;
-  law.retreat = entry.retreat.value;
   const auto slides = [&](const SlideLaw& slide) {
     law.friction = choices.friction >= 0.0 ? choices.friction : slide.friction.value;
     law.kt_ratio = slide.kt_ratio.value;
+    law.retreat = entry.retreat_of(slide).value;
     law.rolling = slide.rolling.value;
     law.rolling_friction = slide.rolling_friction.value;
   };

@@ -116,6 +116,8 @@ LawTableEntry interpolate(const LawTable& table, double x) {
         along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).rolling; });
     (out.*slide).rolling_friction =
         along.estimate([=](const LawTableEntry& e) -> const Estimate& { return (e.*slide).rolling_friction; });
+    (out.*slide).retreat =
+        along.estimate([=](const LawTableEntry& e) -> const Estimate& { return e.retreat_of(e.*slide); });
   }
   out.retreat = along.estimate([](const LawTableEntry& e) -> const Estimate& { return e.retreat; });
   for (const LawTableEntry& e : table.entries) {  // what one entry does not know is not known between them
@@ -123,6 +125,7 @@ LawTableEntry interpolate(const LawTable& table, double x) {
     for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
       (out.*slide).measured = (out.*slide).measured && (e.*slide).measured;
       (out.*slide).rolls = (out.*slide).rolls && (e.*slide).rolls;
+      (out.*slide).retreats = (out.*slide).retreats || (e.*slide).retreats;
     }
   }
   out.volume_max = along.value([](const LawTableEntry& e) { return e.volume_max; });
@@ -216,6 +219,8 @@ std::string numbers_of(const LawTableEntry& entry, Crowd form) {
     for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
       text += fmt::format(" {:a} {:a}", (entry.*slide).rolling.value, (entry.*slide).rolling_friction.value);
   text += fmt::format(" {:a}", entry.retreat.value);
+  for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft})
+    if ((entry.*slide).retreats) text += fmt::format(" {:a}", (entry.*slide).retreat.value);
   for (const PartnerRow& row : law.partners)
     text += fmt::format(" {:a} {:a} {:a}", row.ratio, row.weight.value, row.exponent.value);
   return text;

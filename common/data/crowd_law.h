@@ -40,14 +40,21 @@ inline constexpr auto words<CrowdUse> = word_list<CrowdUse>({{CrowdUse::fitted, 
 /// What somebody may ask for: a form, or (empty) the best of an entry.
 using WantedForm = std::optional<Crowd>;
 
+/// What would put a law right on one configuration: all forces times exp(force), its threshold delta higher by `onset`.
+struct FormOffset {
+  double force = 0.0;
+  double onset = 0.0;
+};
+
 /// How well a law gives back one configuration.
 struct ConfigurationError {
   std::string name;
   CrowdUse use = CrowdUse::fitted;
-  double error = 0.0;         ///< root mean square of (law - mean) over that of the mean, all recorded states
-  double end_ratio = 0.0;     ///< law over mean at the largest overlap, sums over the neighbours
-  double noise = 0.0;         ///< root mean square standard error of the mean over that of the mean
-  std::int64_t packings = 0;  ///< in its last loading state; 0: not recorded, as many as the entry has
+  double error = 0.0;                  ///< root mean square of (law - mean) over that of the mean, all recorded states
+  double end_ratio = 0.0;              ///< law over mean at the largest overlap, sums over the neighbours
+  double noise = 0.0;                  ///< root mean square standard error of the mean over that of the mean
+  std::int64_t packings = 0;           ///< in its last loading state; 0: not recorded, as many as the entry has
+  std::optional<FormOffset> offset{};  ///< of what the fit has not seen
 };
 
 /// One form of law with its parameters.
@@ -98,6 +105,9 @@ struct SlideLaw {
   Estimate rolling{};
   Estimate rolling_friction{};
   bool rolls = false;  ///< measured; else it rolls freely
+  /// And s of its unloading branch.
+  Estimate retreat{};
+  bool retreats = false;  ///< measured; else that of planes stands in, LawTableEntry::retreat
 };
 
 /// All laws of one kind of packing.
@@ -115,12 +125,17 @@ struct LawTableEntry {
   SlideLaw slide_plane;
   SlideLaw slide_solid;
   SlideLaw slide_soft;
-  Estimate retreat;  ///< s of the unloading branch
+  Estimate retreat;  ///< s of the unloading branch of planes
   bool retreat_measured = true;
   std::vector<CrowdLaw> laws;
   Crowd best = Crowd::pair;  ///< the form that cross-validation prefers among good ones; what is held out has no say
 
   [[nodiscard]] const CrowdLaw* find(Crowd form) const;
+
+  /// s of the unloading branch of one kind of neighbour.
+  [[nodiscard]] const Estimate& retreat_of(const SlideLaw& slide) const {
+    return slide.retreats ? slide.retreat : retreat;
+  }
 
   /// Whether rolling was measured, of any kind of neighbour.
   [[nodiscard]] bool rolls() const { return slide_plane.rolls || slide_solid.rolls || slide_soft.rolls; }

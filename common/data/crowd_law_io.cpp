@@ -75,6 +75,10 @@ void write_law(Out out, const CrowdLaw& law) {
                    quoted(to_string(e.use)));
     fmt::format_to(out, "error = {}\nend_ratio = {}\nnoise = {}\n", real(e.error), real(e.end_ratio), real(e.noise));
     if (e.packings > 0) fmt::format_to(out, "packings = {}\n", e.packings);
+    if (e.offset)
+      fmt::format_to(out,
+                     "off = {{ force = {}, onset = {} }}  # ln of a factor, and delta, that would put the law right\n",
+                     real(e.offset->force), real(e.offset->onset));
   }
 }
 
@@ -91,7 +95,7 @@ void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "overlap_max = {}  # and overlap with a plane, h/Rs\n", real(e.overlap_max));
   fmt::format_to(out, "grain_overlap_max = {}  # of grains over the smaller radius in that range\n",
                  real(e.grain_overlap_max));
-  fmt::format_to(out, "retreat = {}  # s of the unloading branch\n", estimate_text(e.retreat));
+  fmt::format_to(out, "retreat = {}  # s of the unloading branch of planes\n", estimate_text(e.retreat));
   fmt::format_to(out, "retreat_measured = {}\n", e.retreat_measured);
   for (const SlideName& slide : kSlides) {
     const SlideLaw& law = e.*slide.law;
@@ -103,6 +107,7 @@ void write_entry(Out out, const LawTableEntry& e) {
       fmt::format_to(out,
                      "rolling = {}  # moment over E R^2 R12 per angle\nrolling_friction = {}  # largest over F R\n",
                      estimate_text(law.rolling), estimate_text(law.rolling_friction));
+    if (law.retreats) fmt::format_to(out, "retreat = {}  # s of the unloading branch\n", estimate_text(law.retreat));
   }
   fmt::format_to(out, "\n[entry.measurement]\n{}", spec_text(e.spec));
   for (const CrowdLaw& law : e.laws) write_law(out, law);
@@ -132,6 +137,13 @@ PartnerRow read_partner(const SceneTable& t) {
   return row;
 }
 
+std::optional<FormOffset> read_offset(const SceneTable& t) {
+  if (!t.has("off")) return {};
+  const SceneTable off = t.table("off");
+  return FormOffset{off.number("force", Unit::none, Range::closed(-10.0, 10.0)),
+                    off.number("onset", Unit::none, Range::closed(-1.0, 1.0))};
+}
+
 CrowdLaw read_law(const SceneTable& t) {
   CrowdLaw law;
   law.form = t.choice<Crowd>("form");
@@ -151,7 +163,8 @@ CrowdLaw read_law(const SceneTable& t) {
   for (const SceneTable& e : t.tables("error"))
     law.errors.push_back({e.text("configuration"), e.choice<CrowdUse>("use"),
                           e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
-                          e.number("noise", Unit::none, Range::not_negative()), e.count("packings", 0, 1000000, 0)});
+                          e.number("noise", Unit::none, Range::not_negative()), e.count("packings", 0, 1000000, 0),
+                          read_offset(e)});
   for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft}) {
     const auto rows = law.rows(kind);
     for (std::size_t k = 1; k < rows.size(); ++k)
@@ -180,6 +193,10 @@ LawTableEntry read_entry(const SceneTable& t) {
     (e.*slide.law).friction = read_estimate_text(of_kind.table("friction"), Range::closed(0.0, kLargestShare));
     // Where it is not said: what stands in for a measurement has no error.
     (e.*slide.law).measured = of_kind.flag("measured", std::isfinite((e.*slide.law).friction.standard_error));
+    if (of_kind.has("retreat")) {
+      (e.*slide.law).retreat = read_estimate_text(of_kind.table("retreat"), Range::closed(1.0, kLargestShare));
+      (e.*slide.law).retreats = true;
+    }
     if (!of_kind.has("rolling") && !of_kind.has("rolling_friction")) continue;
     (e.*slide.law).rolling = read_estimate_text(of_kind.table("rolling"), Range::closed(0.0, kLargestShare));
     (e.*slide.law).rolling_friction =

@@ -30,7 +30,11 @@ std::string slides_text(const LawTableEntry& entry) {
 
 std::string unloading_text(const LawTableEntry& entry) {
   if (!entry.retreat_measured) return "unloading was not measured";
-  return fmt::format("unloading is {:.2f} times as steep as loading", entry.retreat.value);
+  std::string text = fmt::format("unloading is {:.2f} times as steep as loading", entry.retreat.value);
+  if (entry.slide_solid.retreats)
+    text += fmt::format(", {:.2f} against solid spheres", entry.slide_solid.retreat.value);
+  if (entry.slide_soft.retreats) text += fmt::format(", {:.2f} among soft particles", entry.slide_soft.retreat.value);
+  return text;
 }
 
 std::string pair_law_remark() {

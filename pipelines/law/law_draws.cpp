@@ -1,6 +1,7 @@
 #include "pipelines/law/law_draws.h"
 
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -48,11 +49,10 @@ std::vector<double> with_logarithms(std::vector<double> numbers) {
   return numbers;
 }
 
-CrowdLaw law_of_numbers(const CrowdLaw& law, std::vector<double> numbers, double factor) {
+CrowdLaw law_of_numbers(const CrowdLaw& law, std::vector<double> numbers) {
   constexpr double kLeastExponent = 1.01;
   for (std::size_t k = 0; k < numbers.size(); ++k)
     if (is_logarithm(k)) numbers[k] = std::exp(numbers[k]);
-  numbers[0] *= factor;
   numbers[1] = std::max(numbers[1], kLeastExponent);
   numbers[2] = std::max(numbers[2], 0.0);
   return with_numbers(law, numbers);
@@ -110,7 +110,7 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   out.discrepancy_origin = "configurations that the fit did not see";
   const LogForces log_forces(crowd_probes(best));
   out.crowd_forces = [=](const std::vector<double>& numbers, const std::vector<PressedNeighbours>& states) {
-    const CrowdModel model = crowd_model(law_of_numbers(best, numbers, 1.0));
+    const CrowdModel model = crowd_model(law_of_numbers(best, numbers));
     std::vector<double> sums;
     for (const PressedNeighbours& s : states) {
       const std::vector<double> forces = softgrain::crowd_forces(model, s.partners, s.overlap);
@@ -119,13 +119,19 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
     return sums;
   };
   out.effects = [=](const std::vector<double>& numbers) {
-    return log_forces(crowd_probes(law_of_numbers(best, numbers, 1.0)));
+    return log_forces(crowd_probes(law_of_numbers(best, numbers)));
   };
-  out.with = [=](const std::vector<double>& numbers, double factor) {
+  for (const FormOffset& o : form_offsets(best)) {
+    std::vector<double> direction(out.numbers.size(), 0.0);
+    direction[0] = o.force;
+    direction[2] = o.onset;
+    out.off.push_back(std::move(direction));
+  }
+  out.with = [=](const std::vector<double>& numbers) {
     LawSources one = sources;
     LawTableEntry changed = entry;
     for (CrowdLaw& law : changed.laws)
-      if (law.form == form) law = law_of_numbers(best, numbers, factor);
+      if (law.form == form) law = law_of_numbers(best, numbers);
     one.table = LawTable{};
     one.table->entries = {changed};
     one.solid_fraction = changed.solid_fraction;
@@ -158,7 +164,7 @@ void set_part(ThresholdPowerLaw& part, double a, double b, double delta) {
   part.c.value = -a * std::pow(delta, b);
 }
 
-LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers, double factor) {
+LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers) {
   LawCard out = card;
   for (std::size_t k = 0; k < out.pairs.size(); ++k) {
     PairLaw& p = out.pairs[k];
@@ -167,9 +173,9 @@ LawCard card_of_numbers(const LawCard& card, const std::vector<double>& numbers,
     for (std::size_t j = 0; j < n.size(); ++j)
       if (kPairLogarithm[j]) n[j] = std::exp(n[j]);
     const double delta = std::max(n[2], 0.0);
-    set_part(p.normal, factor * n[0], std::max(n[1], 1.01), delta);
-    if (p.has_tangential_initial) set_part(p.tangential_initial, factor * n[3], n[4], delta);
-    if (p.has_tangential_secant) set_part(p.tangential_secant, factor * n[5], n[6], delta);
+    set_part(p.normal, n[0], std::max(n[1], 1.01), delta);
+    if (p.has_tangential_initial) set_part(p.tangential_initial, n[3], n[4], delta);
+    if (p.has_tangential_secant) set_part(p.tangential_secant, n[5], n[6], delta);
   }
   return out;
 }
@@ -217,10 +223,10 @@ LawDraws card_draws(const LawSources& sources, const NamedLaws& named, const Mac
   out.discrepancy_origin = "not known: a law card has no configurations that its fit did not see";
   const LogForces log_forces(card_probes(card));
   out.effects = [=](const std::vector<double>& numbers) {
-    return log_forces(card_probes(card_of_numbers(card, numbers, 1.0)));
+    return log_forces(card_probes(card_of_numbers(card, numbers)));
   };
-  out.with = [=, beyond = sources.beyond](const std::vector<double>& numbers, double factor) {
-    NamedLaws law = pair_law_of(card_of_numbers(card, numbers, factor), spec, named.name, beyond);
+  out.with = [=, beyond = sources.beyond](const std::vector<double>& numbers) {
+    NamedLaws law = pair_law_of(card_of_numbers(card, numbers), spec, named.name, beyond);
     law.tag = law.identity.hash;
     return law;
   };
@@ -235,6 +241,30 @@ double form_discrepancy(const CrowdLaw& law) {
     if (e.use == CrowdUse::predicted) squares.push_back(e.error * e.error - e.noise * e.noise);
   if (squares.empty()) return std::isfinite(law.error_cross) ? law.error_cross : 0.0;
   return std::sqrt(std::max(mean_error(squares).mean, 0.0));
+}
+
+std::vector<FormOffset> form_offsets(const CrowdLaw& law) {
+  double forces = 0.0, onsets = 0.0, both = 0.0, count = 0.0;
+  for (const ConfigurationError& e : law.errors) {
+    if (e.use != CrowdUse::predicted || !e.offset) continue;
+    forces += e.offset->force * e.offset->force - e.noise * e.noise;
+    onsets += e.offset->onset * e.offset->onset;
+    both += e.offset->force * e.offset->onset;
+    count += 1.0;
+  }
+  if (count == 0.0) {
+    const double all = form_discrepancy(law);
+    return all > 0.0 ? std::vector<FormOffset>{{all, 0.0}} : std::vector<FormOffset>{};
+  }
+  Eigen::Matrix2d moments;
+  moments << std::max(forces, 0.0), both, both, onsets;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(moments / count);
+  std::vector<FormOffset> out;
+  for (const int k : {1, 0}) {  // the longer one first
+    const double length = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
+    if (length > 0.0) out.push_back({length * axes.eigenvectors()(0, k), length * axes.eigenvectors()(1, k)});
+  }
+  return out;
 }
 
 LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroSpec& spec, double contents_fraction,

@@ -26,13 +26,16 @@ struct LawDraws {
   /// of their means taken off. 0: not known.
   double discrepancy = 0.0;
   std::string discrepancy_origin;
+  /// Independent ways in which the form may be off, changes of `numbers` by one standard deviation: of all forces and
+  /// of the onset, as they would have put the law right on what the fit did not see. Empty: not known.
+  std::vector<std::vector<double>> off;
 
   /// Of tables: sums of the forces on the neighbours over E Rs^2 in these states, for numbers of its own.
   std::function<std::vector<double>(const std::vector<double>&, const std::vector<PressedNeighbours>&)> crowd_forces;
   /// What it says at some states, for numbers of its own: logarithms of forces, bounded below.
   std::function<std::vector<double>(const std::vector<double>&)> effects;
-  /// The law of other numbers, all forces times `factor`.
-  std::function<NamedLaws(const std::vector<double>&, double factor)> with;
+  /// The law of other numbers.
+  std::function<NamedLaws(const std::vector<double>&)> with;
 };
 
 /// `count` draws of a law of these sources; a law table gives the refits that it keeps, a card its covariance. Throws
@@ -42,5 +45,10 @@ LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroS
 
 /// See LawDraws::discrepancy.
 double form_discrepancy(const CrowdLaw& law);
+
+/// Principal axes of the second moments (ln of the factor, delta) over configurations that the fit has not seen, the
+/// noise of their means taken off the first, each as long as its root mean square; of a table that does not say them
+/// form_discrepancy() along the first. Nothing where that is 0.
+std::vector<FormOffset> form_offsets(const CrowdLaw& law);
 
 }  // namespace softgrain

@@ -59,6 +59,7 @@ json slide_json(const SlideLaw& slide) {
     put(out, "rolling", slide.rolling);
     put(out, "rolling_friction", slide.rolling_friction);
   }
+  if (slide.retreats) put(out, "retreat", slide.retreat);
   return out;
 }
 

@@ -96,18 +96,26 @@ std::string plot_of(const LawTableEntry& e, bool utf8) {
   return draw(plot) + "  line: six planes (cube), as far as was measured; dots: one plane\n";
 }
 
+std::string unloading_of(const LawTableEntry& e) {
+  if (!e.retreat_measured) return "not measured";
+  std::string text = with_error(e.retreat) + " times as steep";
+  if (e.slide_solid.retreats) text += ", " + with_error(e.slide_solid.retreat) + " against solid spheres";
+  if (e.slide_soft.retreats) text += ", " + with_error(e.slide_soft.retreat) + " among soft particles";
+  return text;
+}
+
 std::string entry_text(const LawTableEntry& e, bool main, bool utf8) {
   std::string text = wrapped(
       fmt::format("solid fraction {:.4f} +- {:.4f}{}: {} packings, {}", e.solid_fraction, e.solid_fraction_error,
                   main ? " (main: taken unless another is named)" : "", e.packings, e.relaxation),
       4);
   text += wrapped("  " + spec_text_for_people(e.spec), 4);
-  text += wrapped(
-      fmt::format("  valid up to an equivalent volume of {} and h/Rs = {} with a plane, where grains overlap "
-                  "by up to {} of the smaller radius; beyond: {}; unloading {}",
-                  number(e.volume_max, 3), number(e.overlap_max, 3), number(e.grain_overlap_max, 2),
-                  to_string(e.beyond), e.retreat_measured ? with_error(e.retreat) + " times as steep" : "not measured"),
-      4);
+  text +=
+      wrapped(fmt::format("  valid up to an equivalent volume of {} and h/Rs = {} with a plane, where grains overlap "
+                          "by up to {} of the smaller radius; beyond: {}; unloading {}",
+                          number(e.volume_max, 3), number(e.overlap_max, 3), number(e.grain_overlap_max, 2),
+                          to_string(e.beyond), unloading_of(e)),
+              4);
   text += statuses_text(e) + parameters_text(e);
   if (const CrowdLaw* best = e.find(e.best)) text += partners_text(*best);
   return text + slides_table(e) + plot_of(e, utf8);

@@ -195,6 +195,87 @@ TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
       (crowd_forces(model, {plane}, {0.25 + 1e-5})[0] - crowd_forces(model, {plane}, {0.25 - 1e-5})[0]) / 2e-5;
   EXPECT_NEAR(entry.slide_plane.kt_ratio.value, 0.06 / kn, 1e-3 * 0.06 / kn);
   EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
+  EXPECT_EQ(entry.retreat_of(entry.slide_solid).value, entry.retreat.value) << "and come back like them";
+}
+
+/// A path that shears begins like a plain loading and is another one; that of a slide is the same.
+TEST(CrowdFit, APathThatGoesOnLoadingIsALoadingOfItsOwn) {
+  auto list = arrangements();
+  CrowdConfiguration sheared = list[4];
+  sheared.name = "sheared";
+  sheared.stages.push_back({CrowdMove::load, {0.24, 0.24, 0.14, 0.14, 0.14, 0.14}});
+  CrowdConfiguration shallow = sheared;
+  shallow.name = "half of it";
+  for (CrowdStage& s : shallow.stages)
+    for (double& h : s.overlap) h *= 0.5;
+  list.push_back(sheared);
+  list.push_back(shallow);
+  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.17, CrowdMove::slide));
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
+  const std::vector<CrowdStates> states = average_states(data);
+  EXPECT_EQ(states[4].use, CrowdUse::fitted);
+  EXPECT_EQ(states[10].use, CrowdUse::fitted);
+  EXPECT_EQ(states[11].use, CrowdUse::repeated);
+  EXPECT_EQ(states[12].use, CrowdUse::repeated);
+  list[10].held_out = true;
+  const CrowdMeasurements out = crowd_measurements(known(Crowd::bag), list, {});
+  EXPECT_EQ(average_states(out)[10].use, CrowdUse::predicted);
+  EXPECT_EQ(average_states(out)[4].use, CrowdUse::fitted);
+}
+
+/// A law that is too hard by a factor and begins too early on a loading: what would put it right is found.
+TEST(CrowdFit, WhatPutsALawRightIsAFactorAndAnOnset) {
+  const CrowdModel truth = known(Crowd::directional);
+  CrowdModel law = truth;
+  law.form.pressure.a *= std::exp(0.2);
+  law.form.pressure.delta -= 0.015;
+  const CrowdMeasurements data = crowd_measurements(truth, arrangements(), {});
+  const std::vector<CrowdStates> states = average_states(data);
+  const FormOffset off = form_offset(law, states[4], 0.05);
+  EXPECT_NEAR(off.force, -0.2, 1e-4);
+  EXPECT_NEAR(off.onset, 0.015, 1e-5);
+}
+
+TEST(CrowdFit, EveryKindOfNeighbourComesBackInItsOwnWay) {
+  const CrowdModel model = known(Crowd::directional);
+  auto list = arrangements();
+  const std::size_t first = list.size();
+  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18, CrowdMove::unload));
+  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::solid, 2.0, 0.3, CrowdMove::unload));
+  list.push_back(crowd_configuration(Arrangement::opposite, PartnerKind::soft, 1.0, 0.35, CrowdMove::unload));
+  CrowdMeasurements data = crowd_measurements(model, list, {});
+  const double steep[] = {1.2, 1.4, 1.7};
+  for (std::size_t k = 0; k < 3; ++k) {
+    CrowdOptionsKnown o;
+    o.retreat = steep[k];
+    const CrowdMeasurements own = crowd_measurements(model, list, o);
+    for (std::size_t r = 0; r < data.runs.size(); ++r)
+      if (own.runs[r].configuration == static_cast<std::int64_t>(first + k)) data.runs[r] = own.runs[r];
+  }
+  const LawTableEntry entry = fit_crowd_laws(data, quick());
+  EXPECT_NEAR(entry.retreat.value, 1.2, 1e-3);
+  EXPECT_NEAR(entry.retreat_of(entry.slide_plane).value, 1.2, 1e-3);
+  ASSERT_TRUE(entry.slide_solid.retreats && entry.slide_soft.retreats);
+  EXPECT_NEAR(entry.slide_solid.retreat.value, 1.4, 1e-3);
+  EXPECT_NEAR(entry.retreat_of(entry.slide_soft).value, 1.7, 1e-3);
+}
+
+/// A soft neighbour that gives way: the law is far off its force, and kt/kn is still over the stiffness it has.
+TEST(CrowdFit, TheStiffnessAgainstASlideIsOverThatOfTheForceThatWasMeasured) {
+  const CrowdModel model = known(Crowd::directional);
+  auto list = arrangements();
+  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.17, CrowdMove::slide));
+  CrowdOptionsKnown o;
+  o.kt = 0.06;
+  CrowdMeasurements data = crowd_measurements(model, list, o);
+  const double full = fit_crowd_laws(data, quick()).slide_plane.kt_ratio.value;
+  for (CrowdRun& run : data.runs)
+    if (run.configuration == static_cast<std::int64_t>(list.size()) - 1)
+      for (CrowdPoint& p : run.points) {
+        for (double& f : p.normal) f *= 0.5;
+        for (Vec3& t : p.tangential) t *= 0.5;
+      }
+  EXPECT_NEAR(fit_crowd_laws(data, quick()).slide_plane.kt_ratio.value, full, 1e-6 * full);
 }
 
 /// A soft particle among five planes and a soft one, which has five planes too: either may stand in the middle.

@@ -58,6 +58,21 @@ TEST(CrowdFromTable, FormAndUnloadingChooseTheTypeOfTheLaw) {
   EXPECT_EQ((std::get<SoftCrowd<Crowd::bag, true>>(law(Crowd::bag, true)).retreat), entry.retreat.value);
 }
 
+TEST(CrowdFromTable, EveryKindOfNeighbourComesBackInItsOwnWay) {
+  LawTableEntry entry = law_entry();
+  entry.slide_solid.retreat.value = 1.25;
+  entry.slide_solid.retreats = true;
+  CrowdChoices choices;
+  choices.form = Crowd::bag;
+  choices.unloading = true;
+  const CrowdLaws laws = make_crowd_laws(entry, choices);
+  const auto retreat = [](const AnyLaw& law) { return std::get<SoftCrowd<Crowd::bag, true>>(law).retreat; };
+  EXPECT_EQ(retreat(laws.soft_plane), entry.retreat.value);
+  EXPECT_EQ(retreat(laws.soft_solid), 1.25);
+  EXPECT_EQ(retreat(laws.solid_soft), 1.25);
+  EXPECT_EQ(retreat(laws.soft_soft), entry.retreat.value);
+}
+
 /// What was not measured to roll rolls freely under a law whose others do not.
 TEST(CrowdFromTable, RollingComesWhereItWasMeasuredAndIsAsked) {
   LawTableEntry entry = law_entry();

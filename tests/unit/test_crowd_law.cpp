@@ -96,6 +96,10 @@ void expect_same(const LawTableEntry& a, const LawTableEntry& b) {
     expect_same((a.*slide).rolling_friction, (b.*slide).rolling_friction);
   }
   expect_same(a.retreat, b.retreat);
+  for (const auto slide : {&LawTableEntry::slide_plane, &LawTableEntry::slide_solid, &LawTableEntry::slide_soft}) {
+    EXPECT_EQ((a.*slide).retreats, (b.*slide).retreats);
+    expect_same((a.*slide).retreat, (b.*slide).retreat);
+  }
   EXPECT_EQ(a.best, b.best);
   ASSERT_EQ(a.laws.size(), b.laws.size());
   for (std::size_t k = 0; k < a.laws.size(); ++k) expect_same(a.laws[k], b.laws[k]);
@@ -136,6 +140,8 @@ TEST_F(CrowdLawIo, RoundTripIsExact) {
   table.entries[1].slide_solid.rolling = {0.01 / 3.0, 1e-3, 0.001, 0.005};
   table.entries[1].slide_solid.rolling_friction = {0.1 / 3.0, 1e-2, 0.01, 0.05};
   table.entries[1].slide_solid.rolls = true;
+  table.entries[1].slide_soft.retreat = {5.0 / 3.0, 0.1, 1.4, 1.9};
+  table.entries[1].slide_soft.retreats = true;
   table.entries[0].laws[1].status = LawStatus::underdetermined;
   table.entries[0].laws[1].reason = "planes: \"3 of 6\" \\ more";
   table.entries[0].laws[1].criterion = HUGE_VAL;
@@ -220,6 +226,20 @@ TEST_F(CrowdLawIo, TheFileOfAnotherTableIsRefused) {
   } catch (const BadInput& e) {
     EXPECT_NE(std::string(e.what()).find("law_table.h5: this file belongs to another law"), std::string::npos);
   }
+}
+
+/// A kind of neighbour that was not unloaded comes back as planes do, between entries too.
+TEST(LawTableEntryAt, TheUnloadingBranchOfAKindStandsBesideThatOfPlanes) {
+  LawTable table{1, {law_entry(0.7), law_entry(0.75)}};
+  table.entries[1].slide_soft.retreat = table.entries[1].retreat;
+  table.entries[1].slide_soft.retreat.value = 1.9;
+  table.entries[1].slide_soft.retreats = true;
+  std::string remark;
+  const LawTableEntry at = entry_at(table, 0.725, RangePolicy::reject, remark);
+  EXPECT_GT(at.retreat_of(at.slide_soft).value, table.entries[0].retreat.value + 0.1);
+  EXPECT_LT(at.retreat_of(at.slide_soft).value, 1.8);
+  EXPECT_DOUBLE_EQ(at.retreat_of(at.slide_solid).value, at.retreat.value);
+  EXPECT_NE(numbers_of(table.entries[1], Crowd::bag), numbers_of(law_entry(0.75), Crowd::bag));
 }
 
 /// What one entry does not know is not known between entries.

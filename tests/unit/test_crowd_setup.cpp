@@ -111,6 +111,20 @@ TEST(CrowdSetup, PlanesAroundSoftNeighboursPressFromTheSidesWhereTheCentreIsNot)
   expect_refused("ratio = 1.0", "ratio = 1.0\npressed = 1.0\ncentre = \"free\"", {"pressed", "below 1"});
 }
 
+TEST(CrowdSetup, AShearPressesAlongTheFirstNeighbourAndLetsOffAcrossIt) {
+  const CrowdSetup s = read(with("arrangement = \"one\"", "arrangement = \"cube\"\npath = \"shear\"\nshear = 0.5"));
+  const std::vector<CrowdStage>& stages = s.configurations[0].stages;
+  ASSERT_EQ(stages.size(), 2U);
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(stages[k / 6].move, CrowdMove::load);
+    EXPECT_DOUBLE_EQ(stages[0].overlap[k], 0.2);
+    EXPECT_DOUBLE_EQ(stages[1].overlap[k], k < 2 ? 0.3 : 0.15);
+  }
+  EXPECT_EQ(s.configurations[0].name, "cube-plane-shear");
+  expect_refused("overlap = 0.3", "overlap = 0.3\nshear = 0.5", {"scene.toml:19", "path = \"shear\""});
+  expect_refused("overlap = 0.3", "overlap = 0.3\npath = \"shear\"\nshear = 1.5", {"scene.toml:20", "at most 1"});
+}
+
 TEST(CrowdSetup, RefusesWhatMakesNoSense) {
   expect_refused("\"opposite\"", "\"oposite\"", {"scene.toml:20", "arrangement", "opposite"});
   expect_refused("partner = \"plane\"", "partner = \"wall\"", {"scene.toml:17", "partner"});

@@ -126,5 +126,27 @@ TEST(MacroBand, WhatAFormIsOffByComesFromWhatItHasNotSeen) {
   EXPECT_NEAR(form_discrepancy(law), std::sqrt(0.5 * (0.08 * 0.08 + 0.04 * 0.04)), 1e-12);
 }
 
+TEST(MacroBand, WaysInWhichAFormIsOffHaveTheMomentsOfWhatItHasNotSeen) {
+  CrowdLaw law;
+  law.errors = {{"a", CrowdUse::predicted, 0.10, 1.0, 0.06}};
+  ASSERT_EQ(form_offsets(law).size(), 1U) << "an earlier table does not say them";
+  EXPECT_NEAR(form_offsets(law)[0].force, 0.08, 1e-12);
+  EXPECT_EQ(form_offsets(law)[0].onset, 0.0);
+  law.errors = {{"a", CrowdUse::predicted, 0.1, 1.0, 0.03, 10, FormOffset{0.2, -0.010}},
+                {"b", CrowdUse::predicted, 0.1, 1.0, 0.04, 10, FormOffset{-0.1, 0.020}},
+                {"seen", CrowdUse::fitted, 0.1, 1.0, 0.0, 10, FormOffset{9.0, 9.0}}};
+  const std::vector<FormOffset> ways = form_offsets(law);
+  ASSERT_EQ(ways.size(), 2U);
+  double forces = 0.0, onsets = 0.0, both = 0.0;
+  for (const FormOffset& w : ways) {
+    forces += w.force * w.force;
+    onsets += w.onset * w.onset;
+    both += w.force * w.onset;
+  }
+  EXPECT_NEAR(forces, 0.5 * (0.04 - 0.0009 + 0.01 - 0.0016), 1e-12);
+  EXPECT_NEAR(onsets, 0.5 * (1e-4 + 4e-4), 1e-12);
+  EXPECT_NEAR(both, 0.5 * (-0.002 - 0.002), 1e-12);
+}
+
 }  // namespace
 }  // namespace softgrain

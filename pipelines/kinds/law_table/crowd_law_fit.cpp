@@ -42,6 +42,7 @@ nlohmann::json slide_json(const SlideLaw& s) {
     out["rolling"] = estimate_json(s.rolling);
     out["rolling_friction"] = estimate_json(s.rolling_friction);
   }
+  if (s.retreats) out["retreat"] = estimate_json(s.retreat);
   return out;
 }
 

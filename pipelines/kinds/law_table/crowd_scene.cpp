@@ -56,6 +56,7 @@ enum class CrowdPath {
   back_and_forth,  ///< slides, back past where it began, and forth again
   oblique,         ///< pressed and slid at once, at an angle to the normal
   slide_press,     ///< half of the way in, a slide, the rest of the way
+  shear,           ///< all in, then some further and others back, as those of a packing that is sheared
   roll
 };
 enum class Centre { fixed, free };
@@ -77,6 +78,7 @@ inline constexpr auto words<CrowdPath> = word_list<CrowdPath>({{CrowdPath::toget
                                                                {CrowdPath::back_and_forth, "back-and-forth"},
                                                                {CrowdPath::oblique, "oblique"},
                                                                {CrowdPath::slide_press, "slide-press"},
+                                                               {CrowdPath::shear, "shear"},
                                                                {CrowdPath::roll, "roll"}});
 template <>
 inline constexpr auto words<Partners> = word_list<Partners>(
@@ -98,6 +100,7 @@ struct Wanted {
   CrowdPath path = CrowdPath::together;
   double slide = 0.0;  ///< or roll [Rs]
   double angle = 0.0;  ///< of an oblique path to the normal [degree]
+  double shear = 0.0;  ///< of overlaps
 };
 
 bool slides(CrowdPath path) {
@@ -114,6 +117,10 @@ void read_way(const SceneTable& t, Wanted& w) {
     w.slide = t.number("roll", Unit::none, Range{0.0, 1.0, true, false}, 0.1);
   else if (t.has("roll"))
     t.mistake("roll", "only a path that rolls has it: path = \"roll\"");
+  if (w.path == CrowdPath::shear)
+    w.shear = t.number("shear", Unit::none, Range{0.0, 1.0, true, false}, 0.3);
+  else if (t.has("shear"))
+    t.mistake("shear", "only a path of that name has it: path = \"shear\"");
   if (w.path == CrowdPath::oblique)
     w.angle = t.number("angle", Unit::none, Range::closed(0.0, 85.0), 45.0);
   else if (t.has("angle"))
@@ -180,7 +187,22 @@ Wanted read_wanted(const SceneTable& t) {
   return w;
 }
 
-std::vector<CrowdStage> stages_of(const Wanted& w, const std::vector<double>& deepest) {
+/// All neighbours so deep, then those along the first one by 1 + s times, those across it by 1 - s/2 times (Legendre's
+/// P2 of the cosine between): overlaps of bodies that a homogeneous shear at constant volume moves.
+std::vector<CrowdStage> sheared(const std::vector<CrowdPartner>& partners, const std::vector<double>& deepest,
+                                double s) {
+  std::vector<double> before = deepest;
+  std::vector<double> after = deepest;
+  for (std::size_t k = 0; k < deepest.size(); ++k) {
+    const double c = dot(partners[k].direction, partners[0].direction);
+    before[k] /= 1.0 + s;
+    after[k] = before[k] * (1.0 + s * 0.5 * (3.0 * c * c - 1.0));
+  }
+  return {{CrowdMove::load, before}, {CrowdMove::load, after}};
+}
+
+std::vector<CrowdStage> stages_of(const Wanted& w, const std::vector<CrowdPartner>& partners,
+                                  const std::vector<double>& deepest) {
   const std::vector<double> apart(deepest.size(), 0.0);
   const CrowdStage load{CrowdMove::load, deepest};
   switch (w.path) {
@@ -204,6 +226,8 @@ std::vector<CrowdStage> stages_of(const Wanted& w, const std::vector<double>& de
     }
     case CrowdPath::roll:
       return {load, {CrowdMove::roll, deepest, 0.0, w.slide}};
+    case CrowdPath::shear:
+      return sheared(partners, deepest, w.shear);
     case CrowdPath::sequential:
       break;
   }
@@ -255,7 +279,7 @@ void read_press(const SceneTable& t, CrowdPath path, CrowdConfiguration& c) {
   if (std::none_of(c.partners.begin(), c.partners.end(), [](const auto& p) { return p.kind == PartnerKind::soft; }))
     t.mistake("pressed", "no neighbour is soft: there is nothing that the planes could press");
   if (!c.centre_free) t.mistake("pressed", "only around a free shell: centre = \"free\"");
-  if (path != CrowdPath::together && path != CrowdPath::unload)
+  if (path != CrowdPath::together && path != CrowdPath::unload && path != CrowdPath::shear)
     t.mistake("pressed", "neighbours that slide, roll or come one after the other are led: leave it out");
   press_soft_neighbours(c, depth);
 }
@@ -272,11 +296,12 @@ CrowdConfiguration read_configuration(const SceneTable& t) {
       deepest.push_back(n.share);
     }
   for (double& h : deepest) h *= w.overlap;
-  c.stages = stages_of(w, deepest);
+  c.stages = stages_of(w, c.partners, deepest);
   c.centre_free = t.choice<Centre>("centre", Centre::fixed) == Centre::free;
   c.held_out = t.flag("held_out", false);
   c.turning = t.flag("turning", false);
-  if (c.turning && w.path != CrowdPath::together && w.path != CrowdPath::sequential && w.path != CrowdPath::unload)
+  if (c.turning && w.path != CrowdPath::together && w.path != CrowdPath::sequential && w.path != CrowdPath::unload &&
+      w.path != CrowdPath::shear)
     t.mistake("turning", "neighbours that slide or roll are led: leave it out");
   read_press(t, w.path, c);
   c.name = t.text("name", default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));

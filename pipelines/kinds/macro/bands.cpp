@@ -46,18 +46,17 @@ class DrawnBand {
     record_.discrepancy = draws.discrepancy;
     record_.discrepancy_origin = draws.discrepancy_origin;
     if (setup.band_estimator == BandEstimator::draws) {
-      for (const std::vector<double>& numbers : draws.draws) variants_.push_back(draws.with(numbers, 1.0));
+      for (const std::vector<double>& numbers : draws.draws) variants_.push_back(draws.with(numbers));
     } else {
       std::vector<std::vector<double>> effects;
       for (const std::vector<double>& numbers : draws.draws) effects.push_back(draws.effects(numbers));
       components_ = effect_components(draws.draws, effects, kMostComponents, kShareHeld);
       record_.components = static_cast<std::int64_t>(components_.direction.size());
       record_.explained = components_.explained;
-      for (const std::vector<double>& direction : components_.direction)
-        for (const double s : {-kFarAlong, kFarAlong}) variants_.push_back(draws.with(along(direction, s), 1.0));
+      add_variants(components_.direction);
     }
-    for (const double s : {-kFarAlong, kFarAlong})
-      variants_.push_back(draws.with(draws.numbers, std::exp(s * draws.discrepancy)));
+    first_off_ = variants_.size();
+    add_variants(draws.off);
     record_.runs = static_cast<std::int64_t>(variants_.size());
   }
 
@@ -88,6 +87,10 @@ class DrawnBand {
   }
 
  private:
+  void add_variants(const std::vector<std::vector<double>>& directions) {
+    for (const std::vector<double>& direction : directions)
+      for (const double s : {-kFarAlong, kFarAlong}) variants_.push_back(draws_.with(along(direction, s)));
+  }
   [[nodiscard]] std::vector<double> along(const std::vector<double>& direction, double s) const {
     std::vector<double> numbers = draws_.numbers;
     for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] += s * direction[k];
@@ -122,16 +125,20 @@ class DrawnBand {
     }
     return band;
   }
-  [[nodiscard]] static MacroBand discrepancy_part(const std::vector<const MacroCurve*>& ran,
-                                                  const std::vector<double>& stress, BandOf of) {
-    MacroBand band;
-    for (std::size_t k = 0; k < stress.size(); ++k) {
-      const Bend bend(stress[k], banded_stress(*ran[ran.size() - 2], of)[k], banded_stress(*ran.back(), of)[k]);
-      const auto [low, high] = std::minmax({bend.at(-kNormal95), bend.at(kNormal95)});
-      band.low.push_back(stress[k] + std::min(low, 0.0));
-      band.high.push_back(stress[k] + std::max(high, 0.0));
+  /// Ways in which the form may be off are independent of each other.
+  [[nodiscard]] MacroBand discrepancy_part(const std::vector<const MacroCurve*>& ran, const std::vector<double>& stress,
+                                           BandOf of) const {
+    std::vector<MacroBand> ways;
+    for (std::size_t v = first_off_; v < ran.size(); v += 2) {
+      MacroBand& band = ways.emplace_back();
+      for (std::size_t k = 0; k < stress.size(); ++k) {
+        const Bend bend(stress[k], banded_stress(*ran[v], of)[k], banded_stress(*ran[v + 1], of)[k]);
+        const auto [low, high] = std::minmax({bend.at(-kNormal95), bend.at(kNormal95)});
+        band.low.push_back(stress[k] + std::min(low, 0.0));
+        band.high.push_back(stress[k] + std::max(high, 0.0));
+      }
     }
-    return band;
+    return together(stress, ways);
   }
   [[nodiscard]] static MacroBand noise_part(const std::vector<double>& stress, double noise) {
     MacroBand band;
@@ -146,6 +153,7 @@ class DrawnBand {
   const MacroSetup& setup_;
   EffectComponents components_;
   std::vector<NamedLaws> variants_;
+  std::size_t first_off_ = 0;  ///< variants from here on: of the form
   BandRecord record_;
 };
 
