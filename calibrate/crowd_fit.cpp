@@ -305,10 +305,10 @@ LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOption
   std::vector<FittedLaw> laws;
   for (const Word<Crowd>& form : words<Crowd>) laws.push_back(make_law(data, states, form.value, options));
   // What the data do not determine is not preferred, however well it follows them.
-  const auto rank = [](const FittedLaw& f) {
+  const auto rank = [&](const FittedLaw& f) {
     const CrowdLaw& law = f.law;
-    return std::tuple{law.status != LawStatus::good, std::isnan(law.error_cross) ? HUGE_VAL : law.error_cross,
-                      law.parameters};
+    return std::tuple{options.best && law.form != *options.best, law.status != LawStatus::good,
+                      std::isnan(law.error_cross) ? HUGE_VAL : law.error_cross, law.parameters};
   };
   const auto best = std::min_element(laws.begin(), laws.end(),
                                      [&](const FittedLaw& a, const FittedLaw& b) { return rank(a) < rank(b); });

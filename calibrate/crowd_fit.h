@@ -14,13 +14,14 @@ struct CrowdFitOptions {
   int min_packings = 4;
   int replicates = 40;  ///< bootstrap over packings; 0: intervals from the covariance alone
   std::uint64_t seed = 1;
+  WantedForm best{};  ///< the form to prefer; empty: the one that predicts fitted loadings best when each is left out
   double largest_error = 0.5;  ///< on what was held out, and leaving one out: beyond, a law is called inaccurate
 };
 
-/// All three forms for the packings of `data`, best one named: the one that predicts fitted loadings best when each is
-/// left out. Planes fix pressure and coupling; solid spheres, then
-/// soft neighbours, their constants w and m at each ratio that was measured. Configurations marked as held out are
-/// predicted. Throws BadInput when there is no configuration with one plane, or too few packings.
+/// All three forms for the packings of `data`, best one named: the one that is asked for, or predicts fitted loadings
+/// best when each is left out. Planes fix pressure and coupling; solid spheres, then soft neighbours, their constants w
+/// and m at each ratio that was measured. Configurations marked as held out are predicted. Throws BadInput when there
+/// is no configuration with one plane, or too few packings.
 LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOptions& options = {});
 
 }  // namespace softgrain

@@ -37,7 +37,7 @@ def plain(command):
     for word in words[1:]:
         if skip:
             skip = False
-        elif word in ("--out", "--law-cache"):
+        elif word in ("--out", "--law-cache", "--packing-cache", "--twin-cache"):
             skip = True
         elif word not in ("--quiet", "--resume"):
             out.append(word)

@@ -128,7 +128,8 @@ struct LawTableEntry {
   Estimate retreat;  ///< s of the unloading branch of planes
   bool retreat_measured = true;
   std::vector<CrowdLaw> laws;
-  Crowd best = Crowd::pair;  ///< the form that cross-validation prefers among good ones; what is held out has no say
+  Crowd best = Crowd::pair;  ///< the form that was asked for, or that cross-validation prefers among good ones; what is
+                             ///< held out has no say
 
   [[nodiscard]] const CrowdLaw* find(Crowd form) const;
 

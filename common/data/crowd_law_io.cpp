@@ -86,7 +86,7 @@ void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "\n[[entry]]\nsolid_fraction = {}\nsolid_fraction_error = {}\npackings = {}\n",
                  real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
   if (e.main) fmt::format_to(out, "main = true  # the packing that the table was made for\n");
-  fmt::format_to(out, "relaxation = {}\nbest = {}  # by cross-validation\n", quoted(e.relaxation),
+  fmt::format_to(out, "relaxation = {}\nbest = {}  # taken where no form is named\n", quoted(e.relaxation),
                  quoted(to_string(e.best)));
   fmt::format_to(out, "volume_max = {}  # validity: equivalent volume S\n", real(e.volume_max));
   fmt::format_to(out,

@@ -1,7 +1,6 @@
 #include "pipelines/law/law_draws.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -244,26 +243,12 @@ double form_discrepancy(const CrowdLaw& law) {
 }
 
 std::vector<FormOffset> form_offsets(const CrowdLaw& law) {
-  double forces = 0.0, onsets = 0.0, both = 0.0, count = 0.0;
-  for (const ConfigurationError& e : law.errors) {
-    if (e.use != CrowdUse::predicted || !e.offset) continue;
-    forces += e.offset->force * e.offset->force - e.noise * e.noise;
-    onsets += e.offset->onset * e.offset->onset;
-    both += e.offset->force * e.offset->onset;
-    count += 1.0;
-  }
-  if (count == 0.0) {
-    const double all = form_discrepancy(law);
-    return all > 0.0 ? std::vector<FormOffset>{{all, 0.0}} : std::vector<FormOffset>{};
-  }
-  Eigen::Matrix2d moments;
-  moments << std::max(forces, 0.0), both, both, onsets;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(moments / count);
+  std::vector<double> onsets;
+  for (const ConfigurationError& e : law.errors)
+    if (e.use == CrowdUse::predicted && e.offset) onsets.push_back(e.offset->onset * e.offset->onset);
   std::vector<FormOffset> out;
-  for (const int k : {1, 0}) {  // the longer one first
-    const double length = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
-    if (length > 0.0) out.push_back({length * axes.eigenvectors()(0, k), length * axes.eigenvectors()(1, k)});
-  }
+  if (const double force = form_discrepancy(law); force > 0.0) out.push_back({force, 0.0});
+  if (const double onset = std::sqrt(mean_error(onsets).mean); onset > 0.0) out.push_back({0.0, onset});
   return out;
 }
 

@@ -46,9 +46,9 @@ LawDraws law_draws(const LawSources& sources, const NamedLaws& law, const MacroS
 /// See LawDraws::discrepancy.
 double form_discrepancy(const CrowdLaw& law);
 
-/// Principal axes of the second moments (ln of the factor, delta) over configurations that the fit has not seen, the
-/// noise of their means taken off the first, each as long as its root mean square; of a table that does not say them
-/// form_discrepancy() along the first. Nothing where that is 0.
+/// Of all forces by form_discrepancy(), which holds how forces are shared among neighbours too, and of the onset by the
+/// root mean square of what would put the law right on configurations that the fit has not seen, where the table says
+/// it.
 std::vector<FormOffset> form_offsets(const CrowdLaw& law);
 
 }  // namespace softgrain

@@ -64,6 +64,9 @@ TEST(CrowdFit, RecoversAKnownLawWithinItsErrors) {
   options.replicates = 30;  // errors of neighbours come from them
   const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, arrangements(), o), options);
   EXPECT_EQ(entry.best, Crowd::directional);
+  options.best = Crowd::bag;
+  options.replicates = 0;
+  EXPECT_EQ(fit_crowd_laws(crowd_measurements(model, arrangements(), o), options).best, Crowd::bag) << "asked for";
   const CrowdLaw& law = *entry.find(Crowd::directional);
   EXPECT_EQ(law.status, LawStatus::good) << law.reason;
   EXPECT_EQ(law.parameters, 6);

@@ -45,6 +45,10 @@ void expect_same(const ConfigurationError& a, const ConfigurationError& b) {
   EXPECT_EQ(a.end_ratio, b.end_ratio);
   EXPECT_EQ(a.noise, b.noise);
   EXPECT_EQ(a.packings, b.packings);
+  ASSERT_EQ(a.offset.has_value(), b.offset.has_value());
+  if (!a.offset) return;
+  EXPECT_EQ(a.offset->force, b.offset->force);
+  EXPECT_EQ(a.offset->onset, b.offset->onset);
 }
 
 void expect_same(const CrowdLaw& a, const CrowdLaw& b) {
@@ -145,6 +149,7 @@ TEST_F(CrowdLawIo, RoundTripIsExact) {
   table.entries[0].laws[1].status = LawStatus::underdetermined;
   table.entries[0].laws[1].reason = "planes: \"3 of 6\" \\ more";
   table.entries[0].laws[1].criterion = HUGE_VAL;
+  table.entries[0].laws[1].errors[0].offset = FormOffset{-0.1 / 3.0, 0.01 / 3.0};
   table.entries[1].laws[2].partners.pop_back();
   table.entries[1].laws[2].errors.clear();
   table.entries[1].laws[2].error_held_out = std::nan("");

@@ -88,6 +88,7 @@ CrowdFitOptions read_crowd_fit(const SceneTable& t) {
   o.discrepancy = t.number("discrepancy", Unit::none, Range{0.0, 1.0, true, false}, o.discrepancy);
   o.replicates = static_cast<int>(t.count("replicates", 0, 100000, o.replicates));
   o.min_packings = static_cast<int>(t.count("min_packings", 2, 100000, o.min_packings));
+  if (t.has("best")) o.best = t.choice<Crowd>("best");
   o.largest_error = t.number("largest_error", Unit::none, Range::positive(), o.largest_error);
   return o;
 }

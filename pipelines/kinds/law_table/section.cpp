@@ -136,7 +136,7 @@ std::string parameter_table(const LawTableEntry& entry) {
 
 std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeasurements>& crowd) {
   std::string body = paragraph(fmt::format(
-      "Solid fraction {:.4f} ± {:.4f}, {} packings. Best by cross-validation: the {} law. Measured up to h/Rs = {:.2f} "
+      "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = {:.2f} "
       "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Sliding, "
       "{}; {}.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, to_string(entry.best), entry.overlap_max,

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/io/text_file.h"
+#include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro_comparison/results.h"
@@ -40,6 +42,26 @@ void remark_spread(SceneResult& r) {
                       r.name, s.shelled.axial_end.mean));
 }
 
+/// What runs say of themselves: each that cannot be used, one line for all others of an engine.
+void remark_notes(const std::vector<MacroCurve>& curves, SceneResult& r) {
+  std::vector<std::string> seen;
+  for (const MacroCurve& c : curves) {
+    r.usable = r.usable && c.usable;
+    if (c.note.empty()) continue;
+    if (!c.usable) {
+      r.remarks.push_back(fmt::format("{}, {}, sample {} (not usable): {}", r.name, c.engine, c.sample, c.note));
+      continue;
+    }
+    if (std::find(seen.begin(), seen.end(), c.engine) != seen.end()) continue;
+    seen.push_back(c.engine);
+    const std::vector<MacroCurve> all = curves_of(curves, c.engine);
+    const auto noted = std::count_if(all.begin(), all.end(), [](const MacroCurve& o) { return !o.note.empty(); });
+    r.remarks.push_back(all.size() == 1 ? fmt::format("{}, {}, sample {}: {}", r.name, c.engine, c.sample, c.note)
+                                        : fmt::format("{}, {}, {} of {} samples; sample {}: {}", r.name, c.engine,
+                                                      noted, all.size(), c.sample, c.note));
+  }
+}
+
 SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,
                       const std::vector<ShellPacking>& contents, const Run& run) {
   SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, {}, true};
@@ -58,12 +80,7 @@ SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& 
         ": a run with a law, or a shelled twin, carries no stress at its end: what is relative to it is "
         "undefined");
   }
-  for (const MacroCurve& c : curves) {
-    r.usable = r.usable && c.usable;
-    if (!c.note.empty())
-      r.remarks.push_back(fmt::format("{}, {}, sample {}{}: {}", scene.name, c.engine, c.sample,
-                                      c.usable ? "" : " (not usable)", c.note));
-  }
+  remark_notes(curves, r);
   remark_spread(r);
   return r;
 }
