@@ -40,8 +40,8 @@ std::string unloading_text(const LawTableEntry& entry) {
 std::string pair_law_remark() {
   return fmt::format(
       "the pair law was measured with one contact; with two to twelve neighbours around a soft particle forces were "
-      "measured to be {:g} to {:g} times as large, near the onset of force {:g} times",
-      kPairLawMissesLeast, kPairLawMissesMost, kPairLawMissesAtOnset);
+      "measured to be {:g} to {:g} times as large, among soft particles up to {:g} times",
+      kPairLawMissesLeast, kPairLawMissesMost, kPairLawMissesAmongSoft);
 }
 
 bool use_pair_law(const std::vector<MacroCurve>& curves) {

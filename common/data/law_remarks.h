@@ -16,11 +16,11 @@ std::string slides_text(const LawTableEntry& entry);
 /// "unloading is 1.16 times as steep as loading", or that it was not measured.
 std::string unloading_text(const LawTableEntry& entry);
 
-/// What a pair law misses: force of a soft particle with several neighbours over that of its pair law, from two planes
-/// at 60 degrees to twelve planes, as measured for results/law_table.
-inline constexpr double kPairLawMissesLeast = 1.5;
+/// What a pair law misses: force of a soft particle with several neighbours over that of its pair law, from two opposite
+/// planes to twelve small spheres, and among soft particles, as measured for results/law_table.
+inline constexpr double kPairLawMissesLeast = 2.2;
 inline constexpr double kPairLawMissesMost = 12.0;
-inline constexpr double kPairLawMissesAtOnset = 39.0;
+inline constexpr double kPairLawMissesAmongSoft = 43.0;
 std::string pair_law_remark();
 
 /// Whether curves were made with a law of single contacts.

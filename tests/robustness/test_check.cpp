@@ -73,7 +73,7 @@ TEST_F(Check, AMacroSceneOpensItsLaw) {
 
 TEST_F(Check, TheLawOfTheCommandLineReplacesThatOfTheScene) {
   const json table = scene_facts(macro("absent.toml", "strain = 0.1\n"), "--law '" + kTable + "'");
-  EXPECT_EQ(table["law"]["form"], "directional");
+  EXPECT_EQ(table["law"]["form"], "bag");
   EXPECT_FALSE(warned(table, "take a law table"));
   EXPECT_GT(table["law_volume"]["measured"].get<double>(), 0.1);
   write_text_atomic(directory_.file("scene.toml"), macro("absent.toml", ""));
