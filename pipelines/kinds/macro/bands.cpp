@@ -19,15 +19,19 @@ constexpr double kFarAlong = 1.5;  ///< standard deviations: where a component i
 constexpr std::size_t kMostComponents = 4;
 constexpr double kShareHeld = 0.95;  ///< of the scatter of forces
 
+constexpr double kOneWay = 2.0;  ///< standard deviations within which a change of the law moves the stress one way
+
 /// Runs of a band on one sample: as a change of the law goes, so does the stress. Two runs at +-kFarAlong of a
-/// component give its slope and its bend.
+/// component give its slope and its bend. Paths of packings jump now and then, so that one of three runs has slipped at
+/// some point and the others have not: hence the bound of the bend.
 struct Bend {
   double slope = 0.0;
   double bend = 0.0;
 
   Bend(double stress, double below, double above)
       : slope((above - below) / (2.0 * kFarAlong)),
-        bend((above + below - 2.0 * stress) / (2.0 * kFarAlong * kFarAlong)) {}
+        bend(std::clamp((above + below - 2.0 * stress) / (2.0 * kFarAlong * kFarAlong),
+                        -std::abs(slope) / (2.0 * kOneWay), std::abs(slope) / (2.0 * kOneWay))) {}
   [[nodiscard]] double at(double s) const { return s * (slope + bend * s); }
 };
 
