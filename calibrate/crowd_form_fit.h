@@ -23,10 +23,10 @@ double crowd_error(const CrowdModel& model, const CrowdStates& states);
 /// States of a configuration in which every overlap has only grown so far: a law without memory speaks of these.
 std::vector<const CrowdState*> loading_states(const CrowdStates& states);
 
-/// Parameters of the planes: ln a, b, delta and the coupling that the form has.
 /// What would put a law right on one configuration, by least squares over its loading states.
 FormOffset form_offset(const CrowdModel& model, const CrowdStates& states, double discrepancy);
 
+/// Parameters of the planes: ln a, b, delta and the coupling that the form has.
 LeastSquaresFit fit_planes(CrowdModel& model, const StateSelection& selection, double discrepancy, bool thorough);
 
 /// Weights per ratio and one exponent of solid or soft neighbours; `ratios` ascending (soft: of |ln ratio|).

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 
 #include "calibrate/bootstrap.h"
@@ -167,11 +168,7 @@ std::vector<const CrowdState*> retreat_states(const CrowdStates& c, const CrowdS
   return out;
 }
 
-double sum_of(const std::vector<double>& forces) {
-  double sum = 0.0;
-  for (const double f : forces) sum += f;
-  return sum;
-}
+double sum_of(const std::vector<double>& forces) { return std::accumulate(forces.begin(), forces.end(), 0.0); }
 
 /// s that best gives back a retreat, relative to the law at the deepest state; not above 5. False when there is no
 /// retreat, or its fit did not come to a minimum.

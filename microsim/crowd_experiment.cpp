@@ -37,12 +37,6 @@ double touched_radius(const CrowdExperiment& e, std::size_t k) {
   return on < 0 ? 1.0 : e.configuration.partners[at(on)].ratio;
 }
 
-/// A grain or an inner soft particle of the centre or of a soft neighbour.
-bool is_content(const CrowdExperiment& e, Slot i) {
-  return i < e.centre_bodies || std::any_of(e.neighbours.begin(), e.neighbours.end(),
-                                            [i](const auto& n) { return n.begin <= i && i < n.end; });
-}
-
 std::vector<Load> neighbour_loads(const CrowdExperiment& e, const std::vector<ContactRecord<3>>& records) {
   const std::vector<std::int32_t> owner = owners(e);
   std::vector<Vec3> touch;
@@ -51,9 +45,10 @@ std::vector<Load> neighbour_loads(const CrowdExperiment& e, const std::vector<Co
                     e.direction(k) * ((touched_radius(e, k) - 0.5 * e.overlap[k]) * e.spec.shell_radius));
   std::vector<Load> loads(e.neighbours.size());
   for (const ContactRecord<3>& c : records) {
-    if (!is_content(e, c.i)) continue;
     const std::int32_t k = owner[static_cast<std::size_t>(c.j)];
-    if (k < 0 || e.configuration.partners[at(k)].on != owner[static_cast<std::size_t>(c.i)]) continue;
+    const std::int32_t inside = owner[static_cast<std::size_t>(c.i)];  // of content: first of the two, see slots
+    const bool content = inside < 0 ? c.i < e.centre_bodies : c.i < e.neighbours[at(inside)].end;
+    if (!content || k < 0 || e.configuration.partners[at(k)].on != inside) continue;
     const Vec3 force = c.normal * c.normal_force + c.tangential_force;
     loads[at(k)].force -= force;
     loads[at(k)].moment -= cross(c.point - touch[at(k)], force);

@@ -118,7 +118,8 @@ TEST_F(MacroBands, WhatCannotBeDrawnIsRefusedBeforeAnyWork) {
   refused("--bands 16 --law '" + directory_.file("alone.toml") + "'", "keeps no refits");
 }
 
-/// 40 twins of other seeds, sizes, shares and tests than those of results/macro_vs_resolved: what of them lies in the error bars of the shipped table.
+/// 40 twins of other seeds, sizes, shares and tests than those of results/macro_vs_resolved: what of them lies in the
+/// error bars of the shipped table.
 TEST(SlowCoverage, ErrorBarsHoldOverTwinsThatNoLawHasSeen) {
   const TemporaryDirectory directory;
   const std::string out = directory.file("coverage");
@@ -144,11 +145,11 @@ TEST(SlowCoverage, ErrorBarsHoldOverTwinsThatNoLawHasSeen) {
     ASSERT_EQ(twins, 40U);
     RecordProperty(to_string(form) + "_ends", std::to_string(ends / 40.0));
     RecordProperty(to_string(form) + "_points", std::to_string(inside / 40.0));
-    // Measured: bag, the form that the table takes, 98 % of points and of ends; directional 81 and 85 %, which is
-    // less than it should be and said on results/macro_vs_resolved.
-    const bool taken = form == Crowd::bag;
-    EXPECT_GE(ends / 40.0, taken ? 0.92 : 0.80) << to_string(form);
-    EXPECT_GE(inside / 40.0, taken ? 0.92 : 0.75) << to_string(form);
+    // Measured: bag, the form that the table takes, 98 % of points and of ends; directional 81 and 85 %: its error bars
+    // are too narrow, which this says until they are not (results/macro_vs_resolved).
+    const double least = form == Crowd::bag ? 0.92 : 0.85;
+    EXPECT_GE(ends / 40.0, least) << to_string(form);
+    EXPECT_GE(inside / 40.0, least) << to_string(form);
   }
 }
 

@@ -4,52 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/crowd_fit.h"
 #include "calibrate/crowd_form_fit.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
-#include "tests/support/synthetic_crowd.h"
+#include "tests/support/known_crowd.h"
 
 namespace softgrain {
 namespace {
 
+using synthetic::arrangements;
 using synthetic::crowd_configuration;
 using synthetic::crowd_measurements;
 using synthetic::CrowdOptionsKnown;
-
-CrowdModel known(Crowd crowd) {
-  CrowdModel model;
-  model.crowd = crowd;
-  model.form.pressure = {0.62, 2.7, 0.07};
-  if (crowd == Crowd::directional) model.form.coupling = {0.65, 0.55, 0.15};
-  set_partners(model, PartnerKind::solid, {0.5, 2.0}, {std::log(0.7), std::log(0.85)}, 1.1);
-  set_partners(model, PartnerKind::soft, {1.0, 2.0}, {std::log(0.4), std::log(0.5)}, 1.25);
-  return model;
-}
-
-std::vector<CrowdConfiguration> arrangements() {
-  std::vector<CrowdConfiguration> list{crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
-                                       crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25),
-                                       crowd_configuration(Arrangement::orthogonal, PartnerKind::plane, 0.0, 0.25),
-                                       crowd_configuration(Arrangement::tetrahedron, PartnerKind::plane, 0.0, 0.2),
-                                       crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18),
-                                       crowd_configuration(Arrangement::icosahedron, PartnerKind::plane, 0.0, 0.13),
-                                       crowd_configuration(Arrangement::one, PartnerKind::solid, 0.5, 0.35),
-                                       crowd_configuration(Arrangement::one, PartnerKind::solid, 2.0, 0.3),
-                                       crowd_configuration(Arrangement::one, PartnerKind::soft, 1.0, 0.35),
-                                       crowd_configuration(Arrangement::opposite, PartnerKind::soft, 2.0, 0.35)};
-  list[5].held_out = true;
-  return list;
-}
-
-CrowdFitOptions quick(double discrepancy = 0.01) {
-  CrowdFitOptions o;
-  o.discrepancy = discrepancy;
-  o.replicates = 0;
-  return o;
-}
+using synthetic::known;
+using synthetic::quick;
 
 void expect_within(const Estimate& e, double value, const std::string& what) {
   EXPECT_GT(e.standard_error, 0.0) << what;
@@ -127,28 +97,6 @@ TEST(CrowdFit, DataOfABagGiveTheBag) {
   EXPECT_GT(entry.find(Crowd::pair)->error_cross, 0.3);
 }
 
-/// The same loading of the same packings is no new data: it is fitted once, and not at all when it is held out.
-TEST(CrowdFit, ALoadingIsUsedOnce) {
-  std::vector<CrowdConfiguration> list{
-      crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
-      crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload),
-      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.15, CrowdMove::slide),
-      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2),
-      crowd_configuration(Arrangement::one, PartnerKind::solid, 1.0, 0.3),
-      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2)};
-  list[3].held_out = true;
-  list[5].centre_free = true;
-  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
-  const auto states = average_states(data);
-  const CrowdUse expected[] = {CrowdUse::fitted,    CrowdUse::repeated, CrowdUse::repeated,
-                               CrowdUse::predicted, CrowdUse::fitted,   CrowdUse::repeated};
-  for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(states[k].use, expected[k]) << k;
-  list[3].held_out = false;
-  const CrowdMeasurements all = crowd_measurements(known(Crowd::bag), list, {});
-  EXPECT_EQ(average_states(all)[2].use, CrowdUse::repeated);
-  EXPECT_EQ(average_states(all)[3].use, CrowdUse::fitted) << "the deepest of its loading";
-}
-
 TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
   CrowdOptionsKnown o;
   o.noise = 0.05;
@@ -181,51 +129,6 @@ TEST(CrowdFit, HeldOutConfigurationsDoNotMatter) {
   EXPECT_TRUE(std::isinf(a.slide_plane.friction.standard_error)) << "held-out slides teach nothing";
 }
 
-TEST(CrowdFit, SlidesAndRetreatsGiveTheirNumbers) {
-  const CrowdModel model = known(Crowd::directional);
-  auto list = arrangements();
-  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload));
-  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
-  CrowdOptionsKnown o;
-  o.retreat = 1.6;
-  o.kt = 0.06;
-  o.limit = 0.21;
-  const LawTableEntry entry = fit_crowd_laws(crowd_measurements(model, list, o), quick());
-  EXPECT_NEAR(entry.retreat.value, 1.6, 1e-3);
-  EXPECT_NEAR(entry.slide_plane.friction.value, 0.21, 1e-9);
-  const CrowdPartner plane{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}};
-  const double kn =
-      (crowd_forces(model, {plane}, {0.25 + 1e-5})[0] - crowd_forces(model, {plane}, {0.25 - 1e-5})[0]) / 2e-5;
-  EXPECT_NEAR(entry.slide_plane.kt_ratio.value, 0.06 / kn, 1e-3 * 0.06 / kn);
-  EXPECT_EQ(entry.slide_solid.friction.value, entry.slide_plane.friction.value) << "solid spheres slide like planes";
-  EXPECT_EQ(entry.retreat_of(entry.slide_solid).value, entry.retreat.value) << "and come back like them";
-}
-
-/// A path that shears begins like a plain loading and is another one; that of a slide is the same.
-TEST(CrowdFit, APathThatGoesOnLoadingIsALoadingOfItsOwn) {
-  auto list = arrangements();
-  CrowdConfiguration sheared = list[4];
-  sheared.name = "sheared";
-  sheared.stages.push_back({CrowdMove::load, {0.24, 0.24, 0.14, 0.14, 0.14, 0.14}});
-  CrowdConfiguration shallow = sheared;
-  shallow.name = "half of it";
-  for (CrowdStage& s : shallow.stages)
-    for (double& h : s.overlap) h *= 0.5;
-  list.push_back(sheared);
-  list.push_back(shallow);
-  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.17, CrowdMove::slide));
-  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
-  const std::vector<CrowdStates> states = average_states(data);
-  EXPECT_EQ(states[4].use, CrowdUse::fitted);
-  EXPECT_EQ(states[10].use, CrowdUse::fitted);
-  EXPECT_EQ(states[11].use, CrowdUse::repeated);
-  EXPECT_EQ(states[12].use, CrowdUse::repeated);
-  list[10].held_out = true;
-  const CrowdMeasurements out = crowd_measurements(known(Crowd::bag), list, {});
-  EXPECT_EQ(average_states(out)[10].use, CrowdUse::predicted);
-  EXPECT_EQ(average_states(out)[4].use, CrowdUse::fitted);
-}
-
 /// A law that is too hard by a factor and begins too early on a loading: what would put it right is found.
 TEST(CrowdFit, WhatPutsALawRightIsAFactorAndAnOnset) {
   const CrowdModel truth = known(Crowd::directional);
@@ -237,48 +140,6 @@ TEST(CrowdFit, WhatPutsALawRightIsAFactorAndAnOnset) {
   const FormOffset off = form_offset(law, states[4], 0.05);
   EXPECT_NEAR(off.force, -0.2, 1e-4);
   EXPECT_NEAR(off.onset, 0.015, 1e-5);
-}
-
-TEST(CrowdFit, EveryKindOfNeighbourComesBackInItsOwnWay) {
-  const CrowdModel model = known(Crowd::directional);
-  auto list = arrangements();
-  const std::size_t first = list.size();
-  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.18, CrowdMove::unload));
-  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::solid, 2.0, 0.3, CrowdMove::unload));
-  list.push_back(crowd_configuration(Arrangement::opposite, PartnerKind::soft, 1.0, 0.35, CrowdMove::unload));
-  CrowdMeasurements data = crowd_measurements(model, list, {});
-  const double steep[] = {1.2, 1.4, 1.7};
-  for (std::size_t k = 0; k < 3; ++k) {
-    CrowdOptionsKnown o;
-    o.retreat = steep[k];
-    const CrowdMeasurements own = crowd_measurements(model, list, o);
-    for (std::size_t r = 0; r < data.runs.size(); ++r)
-      if (own.runs[r].configuration == static_cast<std::int64_t>(first + k)) data.runs[r] = own.runs[r];
-  }
-  const LawTableEntry entry = fit_crowd_laws(data, quick());
-  EXPECT_NEAR(entry.retreat.value, 1.2, 1e-3);
-  EXPECT_NEAR(entry.retreat_of(entry.slide_plane).value, 1.2, 1e-3);
-  ASSERT_TRUE(entry.slide_solid.retreats && entry.slide_soft.retreats);
-  EXPECT_NEAR(entry.slide_solid.retreat.value, 1.4, 1e-3);
-  EXPECT_NEAR(entry.retreat_of(entry.slide_soft).value, 1.7, 1e-3);
-}
-
-/// A soft neighbour that gives way: the law is far off its force, and kt/kn is still over the stiffness it has.
-TEST(CrowdFit, TheStiffnessAgainstASlideIsOverThatOfTheForceThatWasMeasured) {
-  const CrowdModel model = known(Crowd::directional);
-  auto list = arrangements();
-  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.17, CrowdMove::slide));
-  CrowdOptionsKnown o;
-  o.kt = 0.06;
-  CrowdMeasurements data = crowd_measurements(model, list, o);
-  const double full = fit_crowd_laws(data, quick()).slide_plane.kt_ratio.value;
-  for (CrowdRun& run : data.runs)
-    if (run.configuration == static_cast<std::int64_t>(list.size()) - 1)
-      for (CrowdPoint& p : run.points) {
-        for (double& f : p.normal) f *= 0.5;
-        for (Vec3& t : p.tangential) t *= 0.5;
-      }
-  EXPECT_NEAR(fit_crowd_laws(data, quick()).slide_plane.kt_ratio.value, full, 1e-6 * full);
 }
 
 /// A soft particle among five planes and a soft one, which has five planes too: either may stand in the middle.
@@ -366,95 +227,6 @@ TEST(CrowdFit, WhereShellsWereFreeHeldOnesServeThePairLawAlone) {
       EXPECT_EQ(e.use, CrowdUse::fitted);
     }
   }
-}
-
-TEST(CrowdFit, RollsGiveStiffnessAndLimit) {
-  auto list = arrangements();
-  for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::soft})
-    list.push_back(
-        crowd_configuration(Arrangement::cube, kind, kind == PartnerKind::plane ? 0.0 : 2.0, 0.25, CrowdMove::roll));
-  CrowdOptionsKnown o;
-  o.rolling = 0.005;
-  o.points = 40;
-  const auto fitted = [&](double friction) {
-    o.rolling_friction = friction;
-    return fit_crowd_laws(crowd_measurements(known(Crowd::directional), list, o), quick());
-  };
-  LawTableEntry entry = fitted(10.0);  // never reached
-  EXPECT_TRUE(entry.slide_plane.rolls);
-  EXPECT_NEAR(entry.slide_plane.rolling.value, 0.005, 1e-9);
-  // Of unequal soft particles by the harmonic mean of both radii, 4/3 Rs.
-  EXPECT_NEAR(entry.slide_soft.rolling.value, 0.005 * 9.0 / 16.0, 1e-9);
-  entry = fitted(0.001);  // reached early
-  EXPECT_NEAR(entry.slide_plane.rolling_friction.value, 0.001, 1e-9);
-  EXPECT_NEAR(entry.slide_soft.rolling_friction.value, 0.001 * 0.75, 1e-9);
-  EXPECT_FALSE(entry.slide_solid.rolls) << "nothing rolled on solid spheres";
-  EXPECT_FALSE(entry.slide_plane.measured) << "nor did anything slide";
-}
-
-/// What was slid back, pressed on or came at an angle is not what the definitions speak of.
-TEST(CrowdFit, OtherPathsGiveNoFrictionLimit) {
-  auto list = arrangements();
-  CrowdConfiguration back = crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide);
-  back.stages.push_back({CrowdMove::slide, back.stages[0].overlap, 0.2});
-  list.push_back(back);
-  CrowdConfiguration oblique = crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3);
-  oblique.name = "oblique";
-  oblique.stages = {{CrowdMove::oblique, {0.3}, 0.2}};
-  list.push_back(oblique);
-  CrowdMeasurements data = crowd_measurements(known(Crowd::directional), list, {});
-  const auto states = average_states(data);
-  EXPECT_EQ(states.back().use, CrowdUse::repeated) << "no loading";
-  EXPECT_TRUE(loading_states(states.back()).empty());
-  const LawTableEntry entry = fit_crowd_laws(data, quick());
-  EXPECT_FALSE(entry.slide_plane.measured);
-}
-
-/// Errors of one configuration are those of its packings; of two that differ, the difference is in them too.
-TEST(CrowdFit, ErrorsOfSlidesAndRetreatsAreThoseOfPackingsAndConfigurations) {
-  const CrowdModel model = known(Crowd::bag);
-  auto list = arrangements();
-  list.resize(5);
-  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload));
-  list.push_back(crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
-  CrowdOptionsKnown o;
-  o.noise = 0.1;
-  o.retreat = 1.6;
-  o.kt = 0.06;
-  CrowdFitOptions options = quick();
-  options.replicates = 40;
-  const LawTableEntry one = fit_crowd_laws(crowd_measurements(model, list, o), options);
-  const auto expect_interval = [](const Estimate& e, const char* what) {
-    EXPECT_GT(e.standard_error, 1e-4 * e.value) << what;
-    EXPECT_LT(e.standard_error, 0.5 * e.value) << what;
-    EXPECT_LT(e.low, e.value) << what;
-    EXPECT_GT(e.high, e.value) << what;
-    EXPECT_GT(e.high - e.low, 2.0 * e.standard_error) << what;
-    EXPECT_LT(e.high - e.low, 6.0 * e.standard_error) << what;
-  };
-  expect_interval(one.slide_plane.kt_ratio, "kt/kn");
-  expect_interval(one.slide_plane.friction, "friction");
-  expect_interval(one.retreat, "retreat");
-  for (const SlideLaw& borrowed : {one.slide_solid, one.slide_soft}) {
-    EXPECT_EQ(borrowed.friction.value, one.slide_plane.friction.value);
-    EXPECT_TRUE(std::isinf(borrowed.friction.standard_error)) << "of other neighbours nothing was measured";
-    EXPECT_TRUE(std::isinf(borrowed.kt_ratio.high));
-  }
-
-  // Another configuration that slides three times as hard.
-  list.push_back(crowd_configuration(Arrangement::opposite, PartnerKind::plane, 0.0, 0.25, CrowdMove::slide));
-  CrowdMeasurements apart = crowd_measurements(model, list, o);
-  for (CrowdRun& run : apart.runs)
-    if (run.configuration == static_cast<std::int64_t>(list.size()) - 1)
-      for (CrowdPoint& p : run.points) p.tangential[0] = p.tangential[0] * 3.0;
-  const LawTableEntry two = fit_crowd_laws(apart, options);
-  EXPECT_GT(two.slide_plane.kt_ratio.standard_error, 3.0 * one.slide_plane.kt_ratio.standard_error);
-
-  options.replicates = 9;  // too few to say anything
-  const LawTableEntry few = fit_crowd_laws(crowd_measurements(model, list, o), options);
-  EXPECT_TRUE(std::isinf(few.slide_plane.friction.standard_error));
-  EXPECT_TRUE(std::isinf(few.retreat.standard_error));
-  EXPECT_EQ(few.retreat.low, -std::numeric_limits<double>::infinity());
 }
 
 /// Draws of packings without any force have no law: they are counted, and their start values are no replicates.
@@ -554,61 +326,6 @@ TEST(CrowdFit, TheSeedDecidesTheReplicates) {
   EXPECT_GT(a.laws[1].a.high, a.laws[1].a.value);
   options.seed = 2;
   EXPECT_NE(fit_crowd_laws(data, options).laws[1].a.low, a.laws[1].a.low);
-}
-
-TEST(CrowdStates, WeightsAreRepetitions) {
-  CrowdOptionsKnown o;
-  o.noise = 0.1;
-  o.packings = 4;
-  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), arrangements(), o);
-  CrowdMeasurements repeated = data;
-  repeated.runs.clear();
-  for (const CrowdRun& run : data.runs)
-    for (int k = 0; k < (run.packing == 0 ? 2 : run.packing == 1 ? 0 : 1); ++k) repeated.runs.push_back(run);
-  const auto weighted = average_states(data, {2.0, 0.0, 1.0, 1.0});
-  const auto plain = average_states(repeated);
-  ASSERT_EQ(weighted.size(), plain.size());
-  for (std::size_t c = 0; c < plain.size(); ++c) {
-    ASSERT_EQ(weighted[c].states.size(), plain[c].states.size());
-    for (std::size_t s = 0; s < plain[c].states.size(); ++s)
-      for (std::size_t k = 0; k < plain[c].states[s].mean.size(); ++k) {
-        EXPECT_DOUBLE_EQ(weighted[c].states[s].mean[k], plain[c].states[s].mean[k]);
-        EXPECT_NEAR(weighted[c].states[s].error[k], plain[c].states[s].error[k], 1e-9 * plain[c].states[s].error[k]);
-      }
-  }
-}
-
-/// Mean and sqrt(sum (x - mean)^2/(n (n - 1))) over packings.
-TEST(CrowdStates, ErrorsAreThoseOfAMean) {
-  CrowdOptionsKnown o;
-  o.noise = 0.1;
-  o.packings = 3;
-  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o);
-  const auto states = average_states(data);
-  ASSERT_EQ(data.runs.size(), 3U);
-  const std::size_t last = states[0].states.size() - 1;
-  std::vector<double> force;
-  for (const CrowdRun& run : data.runs) force.push_back(run.points[last].normal[0]);
-  const double mean = (force[0] + force[1] + force[2]) / 3.0;
-  double squares = 0.0;
-  for (const double f : force) squares += (f - mean) * (f - mean);
-  ASSERT_GT(squares, 0.0);
-  EXPECT_NEAR(states[0].states[last].mean[0], mean, 1e-12 * mean);
-  EXPECT_NEAR(states[0].states[last].error[0] / std::sqrt(squares / 6.0), 1.0, 1e-6);
-}
-
-TEST(CrowdStates, WhatDidNotConvergeDoesNotCount) {
-  CrowdOptionsKnown o;
-  o.packings = 3;
-  CrowdMeasurements data = crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o);
-  const auto all = average_states(data);
-  data.runs[0].points[4].converged = false;
-  data.runs[0].points[4].normal[0] = 1e9;
-  for (CrowdRun& run : data.runs) run.points[5].converged = run.packing == 2;  // one alone is no mean
-  const auto states = average_states(data);
-  ASSERT_EQ(states[0].states.size(), all[0].states.size() - 1);
-  EXPECT_EQ(states[0].states[4].packings, 2);
-  EXPECT_DOUBLE_EQ(states[0].states[4].mean[0], all[0].states[4].mean[0]);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/contact/crowd_from_table.h"
 #include "common/core/stopwatch.h"
@@ -32,15 +33,14 @@ void describe_inner(LevelContents& contents, const std::vector<ShellPacking>& po
   }
 }
 
-/// Sum over neighbours of the last loading point of a run, -1 when it is not there.
-double summed_end_force(const CrowdRun& run) {
+/// Sum over the neighbours of the centre at the last loading point of a run, -1 when it is not there.
+double summed_end_force(const CrowdConfiguration& c, const CrowdRun& run) {
   const CrowdPoint* last = nullptr;
   for (const CrowdPoint& p : run.points)
     if (p.stage == 0) last = &p;
   if (last == nullptr || !last->converged) return -1.0;
-  double sum = 0.0;
-  for (const double f : last->normal) sum += f;
-  return sum;
+  const auto end = last->normal.begin() + static_cast<std::ptrdiff_t>(c.touching());
+  return std::accumulate(last->normal.begin(), end, 0.0);
 }
 
 /// Ratio of mean end forces on the packings that both levels have, with its error by linear propagation of the paired
@@ -50,8 +50,8 @@ LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& be
   for (const CrowdRun& a : data.runs)
     for (const CrowdRun& b : below.runs)
       if (a.configuration == configuration && b.configuration == configuration && a.packing == b.packing) {
-        const double here = summed_end_force(a);
-        const double there = summed_end_force(b);
+        const double here = summed_end_force(data.configurations[static_cast<std::size_t>(configuration)], a);
+        const double there = summed_end_force(data.configurations[static_cast<std::size_t>(configuration)], b);
         if (here >= 0.0 && there >= 0.0) pairs.emplace_back(here, there);
       }
   LevelChange change{data.configurations[static_cast<std::size_t>(configuration)].name, 1.0, 0.0};

@@ -107,6 +107,12 @@ bool slides(CrowdPath path) {
   return path == CrowdPath::slide || path == CrowdPath::back_and_forth || path == CrowdPath::slide_press;
 }
 
+/// All neighbours only come nearer or go back.
+bool goes_straight(CrowdPath path) {
+  return path == CrowdPath::together || path == CrowdPath::sequential || path == CrowdPath::unload ||
+         path == CrowdPath::shear;
+}
+
 /// How far the first neighbour slides or rolls, and at which angle it comes.
 void read_way(const SceneTable& t, Wanted& w) {
   if (slides(w.path))
@@ -279,7 +285,7 @@ void read_press(const SceneTable& t, CrowdPath path, CrowdConfiguration& c) {
   if (std::none_of(c.partners.begin(), c.partners.end(), [](const auto& p) { return p.kind == PartnerKind::soft; }))
     t.mistake("pressed", "no neighbour is soft: there is nothing that the planes could press");
   if (!c.centre_free) t.mistake("pressed", "only around a free shell: centre = \"free\"");
-  if (path != CrowdPath::together && path != CrowdPath::unload && path != CrowdPath::shear)
+  if (!goes_straight(path) || path == CrowdPath::sequential)
     t.mistake("pressed", "neighbours that slide, roll or come one after the other are led: leave it out");
   press_soft_neighbours(c, depth);
 }
@@ -300,9 +306,7 @@ CrowdConfiguration read_configuration(const SceneTable& t) {
   c.centre_free = t.choice<Centre>("centre", Centre::fixed) == Centre::free;
   c.held_out = t.flag("held_out", false);
   c.turning = t.flag("turning", false);
-  if (c.turning && w.path != CrowdPath::together && w.path != CrowdPath::sequential && w.path != CrowdPath::unload &&
-      w.path != CrowdPath::shear)
-    t.mistake("turning", "neighbours that slide or roll are led: leave it out");
+  if (c.turning && !goes_straight(w.path)) t.mistake("turning", "neighbours that slide or roll are led: leave it out");
   read_press(t, w.path, c);
   c.name = t.text("name", default_name(w, c.centre_free) + (t.has("pressed") ? "-pressed" : ""));
   if (c.name.empty()) t.mistake("name", "must not be empty");

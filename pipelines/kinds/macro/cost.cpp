@@ -110,12 +110,12 @@ double twin_passes(const MacroSpec& spec, Twin twin) {
   return moves ? moving_passes(spec) + 0.3 * relaxing_passes(spec, twin) : relaxing_passes(spec, twin);
 }
 
-/// Runs that the band of a law takes on a sample, at most: two along each of a few components and two for what its form
-/// is off by, or one per draw (bands.cpp).
+/// Runs that the band of a law takes on a sample, at most: two along each of a few components and four for what its
+/// form is off by, or one per draw (bands.cpp).
 double band_runs(const MacroSetup& setup) {
   if (setup.bands == 0) return 0.0;
-  constexpr double kMostAlongComponents = 10.0;
-  return setup.band_estimator == BandEstimator::draws ? static_cast<double>(setup.bands + 2) : kMostAlongComponents;
+  constexpr double kMostAlongComponents = 12.0;
+  return setup.band_estimator == BandEstimator::draws ? static_cast<double>(setup.bands + 4) : kMostAlongComponents;
 }
 
 }  // namespace

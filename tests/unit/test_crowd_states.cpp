@@ -1,0 +1,123 @@
+// Means over packings, and what each configuration is used for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/crowd_states.h"
+#include "tests/support/known_crowd.h"
+
+namespace softgrain {
+namespace {
+
+using synthetic::arrangements;
+using synthetic::crowd_configuration;
+using synthetic::crowd_measurements;
+using synthetic::CrowdOptionsKnown;
+using synthetic::known;
+using synthetic::quick;
+
+/// The same loading of the same packings is no new data: it is fitted once, and not at all when it is held out.
+TEST(CrowdStates, ALoadingIsUsedOnce) {
+  std::vector<CrowdConfiguration> list{
+      crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.3),
+      crowd_configuration(Arrangement::one, PartnerKind::plane, 0.0, 0.25, CrowdMove::unload),
+      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.15, CrowdMove::slide),
+      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2),
+      crowd_configuration(Arrangement::one, PartnerKind::solid, 1.0, 0.3),
+      crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2)};
+  list[3].held_out = true;
+  list[5].centre_free = true;
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
+  const auto states = average_states(data);
+  const CrowdUse expected[] = {CrowdUse::fitted,    CrowdUse::repeated, CrowdUse::repeated,
+                               CrowdUse::predicted, CrowdUse::fitted,   CrowdUse::repeated};
+  for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(states[k].use, expected[k]) << k;
+  list[3].held_out = false;
+  const CrowdMeasurements all = crowd_measurements(known(Crowd::bag), list, {});
+  EXPECT_EQ(average_states(all)[2].use, CrowdUse::repeated);
+  EXPECT_EQ(average_states(all)[3].use, CrowdUse::fitted) << "the deepest of its loading";
+}
+
+/// A path that shears begins like a plain loading and is another one; that of a slide is the same.
+TEST(CrowdStates, APathThatGoesOnLoadingIsALoadingOfItsOwn) {
+  auto list = arrangements();
+  CrowdConfiguration sheared = list[4];
+  sheared.name = "sheared";
+  sheared.stages.push_back({CrowdMove::load, {0.24, 0.24, 0.14, 0.14, 0.14, 0.14}});
+  CrowdConfiguration shallow = sheared;
+  shallow.name = "half of it";
+  for (auto& s : shallow.stages)
+    for (double& h : s.overlap) h *= 0.5;
+  list.push_back(sheared);
+  list.push_back(shallow);
+  list.push_back(crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.17, CrowdMove::slide));
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), list, {});
+  const std::vector<CrowdStates> states = average_states(data);
+  EXPECT_EQ(states[4].use, CrowdUse::fitted);
+  EXPECT_EQ(states[10].use, CrowdUse::fitted);
+  EXPECT_EQ(states[11].use, CrowdUse::repeated);
+  EXPECT_EQ(states[12].use, CrowdUse::repeated);
+  list[10].held_out = true;
+  const CrowdMeasurements out = crowd_measurements(known(Crowd::bag), list, {});
+  EXPECT_EQ(average_states(out)[10].use, CrowdUse::predicted);
+  EXPECT_EQ(average_states(out)[4].use, CrowdUse::fitted);
+}
+
+TEST(CrowdStates, WeightsAreRepetitions) {
+  CrowdOptionsKnown o;
+  o.noise = 0.1;
+  o.packings = 4;
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), arrangements(), o);
+  CrowdMeasurements repeated = data;
+  repeated.runs.clear();
+  for (const CrowdRun& run : data.runs)
+    for (int k = 0; k < (run.packing == 0 ? 2 : run.packing == 1 ? 0 : 1); ++k) repeated.runs.push_back(run);
+  const auto weighted = average_states(data, {2.0, 0.0, 1.0, 1.0});
+  const auto plain = average_states(repeated);
+  ASSERT_EQ(weighted.size(), plain.size());
+  for (std::size_t c = 0; c < plain.size(); ++c) {
+    ASSERT_EQ(weighted[c].states.size(), plain[c].states.size());
+    for (std::size_t s = 0; s < plain[c].states.size(); ++s)
+      for (std::size_t k = 0; k < plain[c].states[s].mean.size(); ++k) {
+        EXPECT_DOUBLE_EQ(weighted[c].states[s].mean[k], plain[c].states[s].mean[k]);
+        EXPECT_NEAR(weighted[c].states[s].error[k], plain[c].states[s].error[k], 1e-9 * plain[c].states[s].error[k]);
+      }
+  }
+}
+
+/// Mean and sqrt(sum (x - mean)^2/(n (n - 1))) over packings.
+TEST(CrowdStates, ErrorsAreThoseOfAMean) {
+  CrowdOptionsKnown o;
+  o.noise = 0.1;
+  o.packings = 3;
+  const CrowdMeasurements data = crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o);
+  const auto states = average_states(data);
+  ASSERT_EQ(data.runs.size(), 3U);
+  const std::size_t last = states[0].states.size() - 1;
+  std::vector<double> force;
+  for (const CrowdRun& run : data.runs) force.push_back(run.points[last].normal[0]);
+  const double mean = (force[0] + force[1] + force[2]) / 3.0;
+  double squares = 0.0;
+  for (const double f : force) squares += (f - mean) * (f - mean);
+  ASSERT_GT(squares, 0.0);
+  EXPECT_NEAR(states[0].states[last].mean[0], mean, 1e-12 * mean);
+  EXPECT_NEAR(states[0].states[last].error[0] / std::sqrt(squares / 6.0), 1.0, 1e-6);
+}
+
+TEST(CrowdStates, WhatDidNotConvergeDoesNotCount) {
+  CrowdOptionsKnown o;
+  o.packings = 3;
+  CrowdMeasurements data = crowd_measurements(known(Crowd::bag), {arrangements()[0]}, o);
+  const auto all = average_states(data);
+  data.runs[0].points[4].converged = false;
+  data.runs[0].points[4].normal[0] = 1e9;
+  for (CrowdRun& run : data.runs) run.points[5].converged = run.packing == 2;  // one alone is no mean
+  const auto states = average_states(data);
+  ASSERT_EQ(states[0].states.size(), all[0].states.size() - 1);
+  EXPECT_EQ(states[0].states[4].packings, 2);
+  EXPECT_DOUBLE_EQ(states[0].states[4].mean[0], all[0].states[4].mean[0]);
+}
+
+}  // namespace
+}  // namespace softgrain
