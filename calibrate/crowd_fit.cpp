@@ -145,6 +145,7 @@ void judge(CrowdLaw& law, const FormFit& fit, const std::vector<CrowdStates>& st
     if (c.states.empty() || loading_states(c).empty() || !(c.largest_force() > 0.0)) continue;
     ConfigurationError e{c.configuration->name,   c.use,    crowd_error(fit.model, c),
                          end_ratio(fit.model, c), noise(c), loading_states(c).back()->packings};
+    e.in_proportion = c.configuration->in_proportion();
     if (c.use != CrowdUse::repeated && law.form != Crowd::pair && !c.for_crowds) e.use = CrowdUse::apart;
     if (e.use == CrowdUse::predicted) e.offset = form_offset(fit.model, c, discrepancy);
     law.errors.push_back(e);

@@ -55,6 +55,7 @@ struct ConfigurationError {
   double noise = 0.0;                  ///< root mean square standard error of the mean over that of the mean
   std::int64_t packings = 0;           ///< in its last loading state; 0: not recorded, as many as the entry has
   std::optional<FormOffset> offset{};  ///< of what the fit has not seen
+  bool in_proportion = true;           ///< CrowdConfiguration::in_proportion()
 };
 
 /// One form of law with its parameters.

@@ -75,6 +75,7 @@ void write_law(Out out, const CrowdLaw& law) {
                    quoted(to_string(e.use)));
     fmt::format_to(out, "error = {}\nend_ratio = {}\nnoise = {}\n", real(e.error), real(e.end_ratio), real(e.noise));
     if (e.packings > 0) fmt::format_to(out, "packings = {}\n", e.packings);
+    if (!e.in_proportion) fmt::format_to(out, "in_proportion = false  # overlaps: some grow as others shrink\n");
     if (e.offset)
       fmt::format_to(out,
                      "off = {{ force = {}, onset = {} }}  # ln of a factor, and delta, that would put the law right\n",
@@ -164,7 +165,7 @@ CrowdLaw read_law(const SceneTable& t) {
     law.errors.push_back({e.text("configuration"), e.choice<CrowdUse>("use"),
                           e.number("error", Unit::none, Range::not_negative()), e.number("end_ratio", Unit::none),
                           e.number("noise", Unit::none, Range::not_negative()), e.count("packings", 0, 1000000, 0),
-                          read_offset(e)});
+                          read_offset(e), e.flag("in_proportion", true)});
   for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft}) {
     const auto rows = law.rows(kind);
     for (std::size_t k = 1; k < rows.size(); ++k)

@@ -237,6 +237,20 @@ bool CrowdConfiguration::pressed(std::size_t k) const {
                      [k](const CrowdPartner& p) { return p.on == static_cast<std::int32_t>(k); });
 }
 
+bool CrowdConfiguration::in_proportion() const {
+  constexpr double kRounding = 1e-9;
+  const std::vector<double>* first = nullptr;
+  for (const CrowdStage& stage : stages) {
+    if (std::none_of(stage.overlap.begin(), stage.overlap.end(), [](double h) { return h > 0.0; })) continue;
+    if (first == nullptr) first = &stage.overlap;
+    const auto deepest = std::max_element(first->begin(), first->end()) - first->begin();
+    const double share = stage.overlap[static_cast<std::size_t>(deepest)] / (*first)[static_cast<std::size_t>(deepest)];
+    for (std::size_t k = 0; k < stage.overlap.size(); ++k)
+      if (std::abs(stage.overlap[k] - share * (*first)[k]) > kRounding) return false;
+  }
+  return true;
+}
+
 void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs) {
   write_records(group, runs);
   write_column(group, "point_count", "1", runs, [](const auto& r) { return r.points.size(); });

@@ -70,6 +70,8 @@ struct CrowdConfiguration {
   static std::size_t touching_of(const std::vector<CrowdPartner>& partners);
   /// Whether planes press neighbour k from its other sides.
   [[nodiscard]] bool pressed(std::size_t k) const;
+  /// Whether all overlaps keep their ratios along the path; where it is sheared, some grow as others shrink.
+  [[nodiscard]] bool in_proportion() const;
 };
 
 /// One relaxed state.

@@ -235,11 +235,15 @@ LawDraws card_draws(const LawSources& sources, const NamedLaws& named, const Mac
 }  // namespace
 
 double form_discrepancy(const CrowdLaw& law) {
-  std::vector<double> squares;
+  std::array<std::vector<double>, 2> squares;  // out of proportion, in proportion
   for (const ConfigurationError& e : law.errors)
-    if (e.use == CrowdUse::predicted) squares.push_back(e.error * e.error - e.noise * e.noise);
-  if (squares.empty()) return std::isfinite(law.error_cross) ? law.error_cross : 0.0;
-  return std::sqrt(std::max(mean_error(squares).mean, 0.0));
+    if (e.use == CrowdUse::predicted)
+      squares[e.in_proportion ? 1 : 0].push_back(e.error * e.error - e.noise * e.noise);
+  if (squares[0].empty() && squares[1].empty()) return std::isfinite(law.error_cross) ? law.error_cross : 0.0;
+  double worst = 0.0;
+  for (const std::vector<double>& path : squares)
+    if (!path.empty()) worst = std::max(worst, mean_error(path).mean);
+  return std::sqrt(worst);
 }
 
 std::vector<FormOffset> form_offsets(const CrowdLaw& law) {

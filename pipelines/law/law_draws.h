@@ -23,7 +23,8 @@ struct LawDraws {
   std::string origin;                      ///< of the draws, for people
   /// Standard deviation of the logarithm of all forces that the form of the law is off by, besides its draws: root mean
   /// square of its errors on configurations that the fit did not see (leaving one out, where there are none), the noise
-  /// of their means taken off. 0: not known.
+  /// of their means taken off. Of those pressed in proportion and those sheared the larger: in a scene, which holds
+  /// both, all soft particles may be in the state that the form knows least. 0: not known.
   double discrepancy = 0.0;
   std::string discrepancy_origin;
   /// Independent ways in which the form may be off, changes of `numbers` by one standard deviation: of all forces and

@@ -123,7 +123,12 @@ TEST(MacroBand, WhatAFormIsOffByComesFromWhatItHasNotSeen) {
   law.errors = {{"fitted", CrowdUse::fitted, 0.5, 1.0, 0.0},
                 {"a", CrowdUse::predicted, 0.10, 1.0, 0.06},
                 {"b", CrowdUse::predicted, 0.05, 1.0, 0.03}};
-  EXPECT_NEAR(form_discrepancy(law), std::sqrt(0.5 * (0.08 * 0.08 + 0.04 * 0.04)), 1e-12);
+  const double pressed = std::sqrt(0.5 * (0.08 * 0.08 + 0.04 * 0.04));
+  EXPECT_NEAR(form_discrepancy(law), pressed, 1e-12);
+  law.errors.push_back({"sheared", CrowdUse::predicted, 0.13, 1.0, 0.05, 10, {}, false});
+  EXPECT_NEAR(form_discrepancy(law), 0.12, 1e-12) << "a scene may be all shear";
+  law.errors.back().error = 0.05;
+  EXPECT_NEAR(form_discrepancy(law), pressed, 1e-12) << "or none";
 }
 
 TEST(MacroBand, AFormIsOffInItsForcesAndInItsOnset) {
