@@ -39,7 +39,7 @@ void StressCellVerlet<D>::drive(const Cell<D>& cell, double time) {
     if (std::isinf(control_.cell_mass)) continue;
     const double l0 = control_.reference_length[k];
     rate_[k] -= time * (l0 * (control_.imposed[k] - stress_[k]) / control_.cell_mass + cell_drag_ * rate_[k]);
-    rate_[k] = std::clamp(rate_[k], -control_.strain_rate_cap * l0, control_.strain_rate_cap * l0);
+    rate_[k] = std::clamp(rate_[k], -control_.edge_speed_cap, control_.edge_speed_cap);
   }
 }
 

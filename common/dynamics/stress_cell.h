@@ -18,7 +18,7 @@ struct StressControl {
   Vec<D> imposed{};           ///< Sigma per axis
   Vec<D> reference_length{};  ///< L0 of the strain eps, d(eps)/dt = -dL/dt/L0
   double cell_mass = 0.0;     ///< Mc of Mc d2(eps)/dt2 = Sigma_imposed - Sigma_measured; infinite: lengths are fixed
-  double strain_rate_cap = std::numeric_limits<double>::infinity();  ///< of |d(eps)/dt|
+  double edge_speed_cap = std::numeric_limits<double>::infinity();  ///< of |dL/dt| [length/time]
   double drag =
       0.0;  ///< gamma of -gamma m v, likewise on spins and on the rate of the cell: settles what has come together
 };

@@ -9,6 +9,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/verlet_list.h"
+#include "microsim/powder/powder_moduli.h"
 
 namespace softgrain {
 
@@ -44,10 +45,8 @@ StressControl<2> control_of(const PowderState& state, const PowderPhase& phase, 
   StressControl<2> control;
   control.imposed = {{phase.pressure, phase.pressure}};
   control.reference_length = state.phase_edge;
-  control.cell_mass = phase.fixed_cell ? kInfinity
-                                       : options.cell_mass * total_mass(state.system) /
-                                             std::sqrt(state.phase_edge[0] * state.phase_edge[1]);
-  control.strain_rate_cap = phase.strain_rate_cap > 0.0 ? phase.strain_rate_cap : kInfinity;
+  control.cell_mass = phase.fixed_cell ? kInfinity : options.cell_inertia * total_mass(state.system);
+  control.edge_speed_cap = phase.edge_speed_cap > 0.0 ? phase.edge_speed_cap : kInfinity;
   return control;
 }
 
@@ -93,6 +92,20 @@ std::vector<double> drag_of(const System<2>& s, double drag, bool rolling) {
   for (std::size_t u = 0; u < loose.size(); ++u)
     if (loose[u]) out[u] = 0.0;
   return out;
+}
+
+PowderStage stage_of(const PowderState& state, const PowderSpec& spec, const PowderPhase& phase) {
+  const PowderContacts c = powder_contacts(state.system, spec.zero_force(), spec.cohesive);
+  const auto moduli = powder_moduli(state.system, powder_interactions(state.system, spec.zero_force()));
+  return {.phase = state.phase,
+          .pressure = phase.pressure,
+          .time = state.system.time,
+          .fraction = powder_fraction(state.system),
+          .coordination = c.coordination,
+          .mean_repulsive = c.mean_repulsive,
+          .mean_tensile = c.mean_tensile,
+          .bulk = moduli ? moduli->bulk : kNaN,
+          .shear = moduli ? moduli->shear : kNaN};
 }
 
 constexpr const char* kDoing = "bringing disks together";
@@ -142,8 +155,8 @@ class Phase {
 
  private:
   void look() {
-    residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(), 1.0,
-                                !phase_.fixed_cell);
+    residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(phase_.pressure),
+                                1.0, !phase_.fixed_cell);
   }
   /// A run may go on from the very moment that it saved.
   [[nodiscard]] bool recorded() const {
@@ -204,7 +217,7 @@ class Phase {
   }
   /// Kinetic energy per disk, in F1 a, below which motion is vibration of springs.
   [[nodiscard]] double vibration() const {
-    const double f1 = spec_.force_scale();
+    const double f1 = spec_.force_scale(phase_.pressure);
     const double elastic = options_.settle_kinetic * f1 / state_.stiffness;
     return spec_.cohesive ? std::min(elastic, 0.1 * 0.5 * spec_.range / f1) : elastic;
   }
@@ -264,14 +277,25 @@ PowderResidual powder_residual(const System<2>& s, const Vec<2>& imposed, const 
 
 std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProtocol& p) {
   const double kappa = spec.stiffness;
-  const double cap = p.strain_rate_cap;
-  if (p.method == 1) return {{"compaction", false, false, spec.stress(), kappa, 0.0, cap}};
+  const double cap = p.edge_speed_cap;
+  const std::vector<double> pressures = p.pressures.empty() ? std::vector<double>{spec.stress()} : p.pressures;
+  const auto load = [&](std::vector<PowderPhase>& phases, std::size_t first) {
+    for (std::size_t k = first; k < pressures.size(); ++k)
+      if (pressures[k] > 0.0)
+        phases.push_back({k == 0 || pressures[k] > pressures[k - 1] ? "load" : "unload", false, false, pressures[k],
+                          kappa, 0.0, cap});
+  };
+  if (p.method == 1) {
+    std::vector<PowderPhase> phases{{"compaction", false, false, pressures.front(), kappa, 0.0, cap}};
+    load(phases, 1);
+    return phases;
+  }
   const bool soft = p.aggregation_kappa > 0.0;
   const double first = soft ? p.aggregation_kappa : kappa;
   std::vector<PowderPhase> phases{{"aggregation", true, true, 0.0, first, 0.0, 0.0}};
   // Soft rolling springs would let the freed cell ring by percents: it is freed as they stiffen.
   phases.push_back({soft ? "stiffening" : "free", false, false, 0.0, kappa, soft ? p.stiffening_time : 0.0, cap});
-  if (spec.stress() > 0.0) phases.push_back({"load", false, false, spec.stress(), kappa, 0.0, cap});
+  load(phases, 0);
   return phases;
 }
 
@@ -319,6 +343,7 @@ PowderResult run_powder(PowderState& state, const PowderSpec& spec, const std::v
     if (now.stiffening == 0.0 && state.stiffness != now.stiffness) set_stiffness(state, spec, now.stiffness);
     result.reason = Phase(state, spec, now, options).run(keeper, phases.size());
     if (!result.reason.empty()) break;
+    if (now.pressure > 0.0) state.stages.push_back(stage_of(state, spec, now));
     ++state.phase;
     state.phase_start = state.still_since = state.system.time;
     state.phase_stiffness = state.stiffness;

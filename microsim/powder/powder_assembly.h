@@ -39,19 +39,21 @@ struct PowderPhase {
   double pressure = 0.0;       ///< imposed, in the units of the sample
   double stiffness = 0.0;      ///< kappa of all contacts
   double stiffening = 0.0;     ///< T0 in which kappa goes there from where it was, evenly in its logarithm; 0: at once
-  double strain_rate_cap = 0.0;  ///< per T0; 0: none
+  double edge_speed_cap = 0.0;  ///< of |dL/dt| [a/T0]; 0: none
 };
 
 /// How a sample comes together.
 struct PowderProtocol {
   int method = 1;
-  double strain_rate_cap = 0.0;    ///< per T0; 0: none
+  /// Pressures one after the other, each until equilibrium [PRE 78, 031305]; empty: that of the sample.
+  std::vector<double> pressures{};
+  double edge_speed_cap = 0.0;     ///< of |dL/dt| [a/T0], the lengths of the cell; 0: none
   double aggregation_kappa = 0.0;  ///< method 2: stiffness while disks aggregate; 0: as always
   double stiffening_time = 200.0;  ///< T0 in which it goes to that of the sample, as the cell is freed
 };
 
 /// Method 1: at rest, the pressure at once. Method 2: the disks aggregate in a fixed cell, then the cell is freed at
-/// P = 0, then the pressure. With aggregation_kappa (published as series B) contacts are soft at first, which allows
+/// P = 0, then the pressures. With aggregation_kappa (published as series B) contacts are soft at first, which allows
 /// long steps, and stiffen at P = 0 before the pressure.
 std::vector<PowderPhase> powder_phases(const PowderSpec& spec, const PowderProtocol& protocol);
 
@@ -59,7 +61,10 @@ struct PowderOptions {
   /// dt over sqrt(m_min/K_N). Above 0.147 the normal dashpots of the smallest disks, surrounded by such, are unstable
   /// in the predicted velocities (zeta 0.8): single contacts then chatter and a sample never rests.
   double step = 0.12;
-  double cell_mass = 0.3;         ///< of the sum of all masses, divided by L/a
+  /// Mc of Mc d2(eps)/dt2 = Sigma_imposed - Sigma_measured over the sum of all masses, strain against the lengths with
+  /// which a phase begins. Fitted, not derived: the publication says 0.3, "divided by a linear size L", and the eight
+  /// published packs of method 1 come out with 1.5 to 3 (results/powder).
+  double cell_inertia = 3.0;
   double time_max = 3000.0;       ///< per phase [T0]
   double record_every = 10.0;     ///< [T0]
   std::int64_t test_every = 200;  ///< steps between two looks at the criteria
@@ -83,6 +88,19 @@ struct PowderPoint {
   Vec<2> stress{};
 };
 
+/// A pressure at which a sample came to rest.
+struct PowderStage {
+  std::int64_t phase = 0;
+  double pressure = 0.0;      ///< imposed
+  double time = 0.0;          ///< [T0]
+  double fraction = 0.0;      ///< Phi
+  double coordination = 0.0;  ///< z, distant pairs included
+  double mean_repulsive = 0.0;
+  double mean_tensile = 0.0;
+  double bulk = 0.0;   ///< modulus, as PowderModuli; NaN: not defined
+  double shear = 0.0;  ///< likewise
+};
+
 /// Everything a sample needs to go on.
 struct PowderState {
   System<2> system;
@@ -96,6 +114,7 @@ struct PowderState {
   Vec<2> still_edge{};
   std::int64_t still_contacts = 0;
   std::vector<PowderPoint> points;
+  std::vector<PowderStage> stages;        ///< of phases that imposed a pressure and are over
   std::vector<PowderSnapshot> snapshots;  ///< at the start, after each phase, and when Phi or z have changed visibly
   double pictured = 0.0;                  ///< z of the last one
 };

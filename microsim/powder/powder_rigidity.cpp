@@ -17,19 +17,19 @@ Rigidity rigidity_of(const RigidityMatrix& matrix) {
 }
 
 PowderRigidity powder_rigidity(const System<2>& system, const std::vector<PowderInteraction>& pairs, bool cohesive) {
-  const auto of = [&](const std::vector<bool>& keep, bool cell_free) {
-    return rigidity_of(rigidity_matrix(pairs, system, keep, cell_free));
+  const auto of = [&](const std::vector<bool>& keep, CellMotions cell) {
+    return rigidity_of(rigidity_matrix(pairs, system, keep, cell));
   };
   PowderRigidity out;
   const bool has_cell = system.cell.any_periodic();
   std::vector<bool> keep(static_cast<std::size_t>(system.particles.grains), true);
-  out.fixed = of(keep, false);
-  if (has_cell) out.free = of(keep, true);
+  out.fixed = of(keep, CellMotions::none);
+  if (has_cell) out.free = of(keep, CellMotions::lengths);
   if (cohesive) return out;
   keep = powder_rattlers(system);
   keep.flip();
-  out.backbone = of(keep, false);
-  if (has_cell) out.backbone_free = of(keep, true);
+  out.backbone = of(keep, CellMotions::none);
+  if (has_cell) out.backbone_free = of(keep, CellMotions::lengths);
   return out;
 }
 

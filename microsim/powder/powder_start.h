@@ -29,8 +29,8 @@ struct PowderSpec {
   double start_speed = 0.0;         ///< V0, root mean square of |v| at the start, over V* = sqrt(F0 D0/m); 0: at rest
   std::optional<Grading> sizes;     ///< of disks, by area; in any unit, its largest size counts as 1
 
-  /// F1 = max(F0, P a), the scale of forces in equilibrium criteria.
-  [[nodiscard]] double force_scale() const { return cohesive ? std::max(1.0, pressure) : 1.0; }
+  /// F1 = max(F0, P a) of a pressure imposed, the scale of forces in equilibrium criteria.
+  [[nodiscard]] double force_scale(double imposed) const { return cohesive ? std::max(1.0, imposed) : 1.0; }
   /// 1e-4 of the unit of force, with rolling resistance 1e-2 (published): below it a contact counts as unstressed.
   [[nodiscard]] double zero_force() const { return rolling ? 1e-2 : 1e-4; }
   /// Imposed stress.

@@ -99,6 +99,18 @@ void fields(auto&& visit, Of<PowderPoint> auto& p) {
   visit("stress_y", p.stress.v[1], "1");
 }
 
+void fields(auto&& visit, Of<PowderStage> auto& s) {
+  visit("phase", s.phase, "1");
+  visit("pressure", s.pressure, "1");
+  visit("time", s.time, "T0");
+  visit("fraction", s.fraction, "1");
+  visit("coordination", s.coordination, "1");
+  visit("mean_repulsive", s.mean_repulsive, "1");
+  visit("mean_tensile", s.mean_tensile, "1");
+  visit("bulk", s.bulk, "1");
+  visit("shear", s.shear, "1");
+}
+
 namespace {
 
 /// The numbers of a state beside its lists.
@@ -122,6 +134,9 @@ void fields(auto&& item, Of<PowderState> auto& s) {
 void write_powder_state(const h5::Group& group, const PowderState& state) {
   group.attribute("columns", std::string("phase, time [T0], Phi, z, kinetic energy per disk, stress x, stress y"));
   group.write("course", rows_of(state.points), {state.points.size(), columns_of<PowderPoint>().size()});
+  group.attribute("stage_columns", std::string("phase, imposed pressure, time [T0], Phi, z, mean repulsive and mean "
+                                               "tensile force, bulk and shear modulus"));
+  group.write("stages", rows_of(state.stages), {state.stages.size(), columns_of<PowderStage>().size()});
   fields(AttributeWriter{group.create("progress")}, state);
   write_snapshots(group, state.snapshots);
   write_system(group.create("system"), state.system);
@@ -129,6 +144,7 @@ void write_powder_state(const h5::Group& group, const PowderState& state) {
 
 void read_powder_state(const h5::Group& group, PowderState& state) {
   state.points = records_of<PowderPoint>(group.doubles("course"));
+  state.stages = group.has("stages") ? records_of<PowderStage>(group.doubles("stages")) : std::vector<PowderStage>{};
   fields(AttributeReader{group.open("progress")}, state);
   state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);

@@ -23,15 +23,15 @@ PairStiffness stiffness_of(const Law&) {
 
 class Builder {
  public:
-  Builder(const System<2>& system, const std::vector<bool>& keep, bool cell_free)
-      : system_(system), k_(pair_stiffness(system)), cell_free_(cell_free) {
+  Builder(const System<2>& system, const std::vector<bool>& keep, CellMotions cell)
+      : system_(system), k_(pair_stiffness(system)), strains_(static_cast<int>(cell)) {
     out_.per_disk = k_.tangential > 0.0 ? 3 : 2;
     for (const bool kept : keep) {
       first_.push_back(kept ? columns_ : -1);
       if (kept) columns_ += out_.per_disk;
     }
     out_.disk_columns = columns_;
-    out_.entries.columns = columns_ + (cell_free ? 2 : 0);
+    out_.entries.columns = columns_ + strains_;
   }
 
   void add(const PowderInteraction& pair) {
@@ -59,12 +59,14 @@ class Builder {
 
   /// Displacement of i against j along `axis`, where turning by theta moves the contact point by `turn` theta.
   void displacement(const PowderInteraction& pair, const Vec<2>& axis, double turn_i, double turn_j, double stiffness) {
-    const Vec<2> periods = winding(system_, pair);
+    Vec<2> periods = winding(system_, pair);
     for (int k = 0; k < 2; ++k) {
+      periods[k] *= system_.cell.edges[k][k];
       put(first(pair.i) + k, axis[k]);
       put(first(pair.j) + k, -axis[k]);
-      if (cell_free_) put(columns_ + k, axis[k] * periods[k] * system_.cell.edges[k][k]);
+      if (strains_ > 0) put(columns_ + k, axis[k] * periods[k]);
     }
+    if (strains_ > 2) put(columns_ + 2, 0.5 * (axis[0] * periods[1] + axis[1] * periods[0]));
     if (turn_i != 0.0) put(first(pair.i) + 2, turn_i / radius(pair.i));
     if (turn_j != 0.0) put(first(pair.j) + 2, turn_j / radius(pair.j));
     close_row(stiffness);
@@ -77,7 +79,7 @@ class Builder {
 
   const System<2>& system_;
   PairStiffness k_;
-  bool cell_free_;
+  int strains_;
   std::int64_t columns_ = 0;  ///< of disks
   std::vector<std::int64_t> first_;
   RigidityMatrix out_;
@@ -90,8 +92,8 @@ PairStiffness pair_stiffness(const System<2>& system) {
 }
 
 RigidityMatrix rigidity_matrix(const std::vector<PowderInteraction>& pairs, const System<2>& system,
-                               const std::vector<bool>& keep, bool cell_free) {
-  Builder builder(system, keep, cell_free);
+                               const std::vector<bool>& keep, CellMotions cell) {
+  Builder builder(system, keep, cell);
   for (const PowderInteraction& pair : pairs) builder.add(pair);
   return builder.take();
 }

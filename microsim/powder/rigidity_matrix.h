@@ -20,10 +20,17 @@ struct PairStiffness {
 /// Of the law of the first material with itself. Throws std::logic_error when that is not a cohesive disk.
 PairStiffness pair_stiffness(const System<2>& system);
 
+/// Motions of the cell that a matrix has columns for.
+enum class CellMotions : int {
+  none = 0,
+  lengths = 2,  ///< strains xx and yy
+  strain = 3    ///< and gamma_xy = 2 eps_xy
+};
+
 /// G: one row per contact and component of its relative displacement, du_N = (u_i - u_j).n, with friction
 /// du_T = (u_i - u_j).t - (a_i theta_i + a_j theta_j), with rolling resistance theta_i - theta_j; distant pairs have
-/// the first alone. Columns: u_x, u_y and, with friction, R theta of every disk; then, when the cell is free, its two
-/// strains: u includes the strain of the whole, so that only pairs across the boundary see the periods between them
+/// the first alone. Columns: u_x, u_y and, with friction, R theta of every disk; then the strains of the cell that may
+/// move: u includes the strain of the whole, so that only pairs across the boundary see the periods between them
 /// (with u relative to it every pair would see its branch vector: the same ranks, but two dense columns). Every contact
 /// counts in full, whether it slides or not.
 struct RigidityMatrix {
@@ -38,6 +45,6 @@ struct RigidityMatrix {
 /// Of the pairs between disks that `keep` names (by slot); the others have no columns. Arms and branches are those of
 /// the state, overlap included, so that a turn of a whole cluster moves no contact.
 RigidityMatrix rigidity_matrix(const std::vector<PowderInteraction>& pairs, const System<2>& system,
-                               const std::vector<bool>& keep, bool cell_free);
+                               const std::vector<bool>& keep, CellMotions cell);
 
 }  // namespace softgrain

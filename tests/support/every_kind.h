@@ -95,7 +95,7 @@ mu = 0.5
 method = 2
 aggregation_kappa = 1e2
 stiffening_time = 20.0
-strain_rate_cap = 0.05
+edge_speed_cap = 0.05
 pressure = 0.1
 [analysis]
 mesh = 10

@@ -137,7 +137,8 @@ Eigen::MatrixXd dense(const SparseEntries& m) {
 
 RigidityMatrix whole(const System<2>& s, bool cell_free) {
   return rigidity_matrix(powder_interactions(s, 1e-4), s,
-                         std::vector<bool>(static_cast<std::size_t>(s.particles.grains), true), cell_free);
+                         std::vector<bool>(static_cast<std::size_t>(s.particles.grains), true),
+                         cell_free ? CellMotions::lengths : CellMotions::none);
 }
 
 TEST(PowderRigidity, RanksAreThoseOfOtherFactorisations) {

@@ -1,7 +1,13 @@
 #include "pipelines/kinds/cohesive_powder/scene.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
 #include "common/io/hdf5_file.h"
 #include "common/packing/grading_scene.h"
+#include "pipelines/report/number_format.h"
 
 namespace softgrain {
 
@@ -27,10 +33,33 @@ void read_contact(const SceneTable& t, PowderSpec& spec) {
   spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
 }
 
+/// L/a of the start.
+double start_edge(const PowderSpec& spec) {
+  double area = 0.0;
+  for (const double d : drawn_diameters(spec, 1, 0)) area += 0.25 * std::numbers::pi * d * d;
+  return std::sqrt(area / spec.solid_fraction);
+}
+
+/// Keys of before, whose numbers meant something else. `sound`: so are the other tables.
+void refuse_old_keys(const SceneTable& t, const PowderSpec& spec, bool sound) {
+  const double length = sound && t.sound() ? start_edge(spec) : 0.0;
+  const auto refuse = [&](const char* key, const char* meant, const char* now, const char* means, bool grows) {
+    if (!t.has(key)) return;
+    const double old = t.number(key, Unit::none, Range::not_negative(), 0.0);
+    std::string text = fmt::format("this key was {}; now it is {}, {}", meant, now, means);
+    if (length > 0.0)
+      text += fmt::format(": {} would be {} = {} (L/a = {} at the start)", report::format_number(old, 4), now,
+                          report::format_number(grows ? old * length : old / length, 3), report::format_number(length, 3));
+    t.mistake(key, text);
+  };
+  refuse("cell_mass", "the inertia of the cell over (sum of m)/(L/a)", "cell_inertia", "over the sum of m", false);
+  refuse("strain_rate_cap", "a largest strain rate, over 1/T0", "edge_speed_cap", "the largest |dL/dt| in a/T0", true);
+}
+
 void read_protocol(const SceneTable& t, PowderSetup& setup) {
   PowderProtocol& p = setup.protocol;
   const bool aggregates = p.method == 2;
-  p.strain_rate_cap = t.number("strain_rate_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
+  p.edge_speed_cap = t.number("edge_speed_cap", Unit::none, Range::not_negative(), aggregates ? 0.05 : 0.0);
   for (const char* key : {"aggregation_kappa", "stiffening_time"})
     if (!aggregates && t.has(key)) t.mistake(key, "only method 2 has disks that aggregate first");
   if (!aggregates) return;
@@ -54,8 +83,9 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool sound) {
   setup.spec.start_speed =
       setup.protocol.method == 2 ? t.number("start_speed", Unit::none, Range::positive(), 9.48) : 0.0;
   if (!t.sound()) (void)t.has("start_speed");
+  refuse_old_keys(t, setup.spec, sound);
   read_protocol(t, setup);
-  setup.options.cell_mass = t.number("cell_mass", Unit::none, Range::positive(), setup.options.cell_mass);
+  setup.options.cell_inertia = t.number("cell_inertia", Unit::none, Range::positive(), setup.options.cell_inertia);
   setup.options.step = t.number("step", Unit::none, Range::closed(1e-6, 0.5), setup.options.step);
   setup.options.settle_drag = t.number("settle_drag", Unit::none, Range::closed(0.0, 10.0), setup.options.settle_drag);
   setup.options.settle_kinetic =
