@@ -37,8 +37,9 @@ void StressCellVerlet<D>::drive(const Cell<D>& cell, double time) {
   for (int k = 0; k < D; ++k) {
     stress_[k] = (virial_[k] + kinetic_[k]) / area;
     if (std::isinf(control_.cell_mass)) continue;
-    const double l0 = control_.reference_length[k];
-    rate_[k] -= time * (l0 * (control_.imposed[k] - stress_[k]) / control_.cell_mass + cell_drag_ * rate_[k]);
+    const double push = control_.reference_length[k] * (control_.imposed[k] - stress_[k]) / control_.cell_mass;
+    const double drag = push * rate_[k] > 0.0 ? cell_drag_ : 0.0;
+    rate_[k] -= time * (push + drag * rate_[k]);
     rate_[k] = std::clamp(rate_[k], -control_.edge_speed_cap, control_.edge_speed_cap);
   }
 }

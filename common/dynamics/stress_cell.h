@@ -43,7 +43,8 @@ class StressCellVerlet {
   void advance(System<D>& system, std::int64_t steps);
 
   /// From the next step on: gamma of -gamma m v (peculiar) and -gamma I spin per body, and of the rate of the cell
-  /// [1/time]. Empty: no drag.
+  /// [1/time] while that goes against what pushes it: it ends vibrations and does not hold back a pack that gives way.
+  /// Empty: no drag.
   void set_drag(double of_cell, std::vector<double> of_bodies) {
     cell_drag_ = of_cell;
     drag_ = std::move(of_bodies);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "microsim/powder/powder_contacts.h"
+#include "microsim/powder/powder_moduli.h"
 #include "microsim/powder/powder_percolation.h"
 #include "microsim/powder/powder_rigidity.h"
 #include "microsim/powder/powder_start.h"
@@ -19,6 +20,7 @@ struct PowderAnalysis {
   PowderForces forces;
   PowderPercolation percolation;
   std::optional<PowderRigidity> rigidity;  ///< when asked for
+  std::optional<PowderModuli> moduli;
   double solid_fraction_3d = 0.0;     ///< of spheres that look the same: 4/(3 sqrt(pi)) Phi^(3/2) = 0.752 Phi^(3/2)
   std::optional<double> rumpf_ratio;  ///< Rumpf's pressure, z Phi N d/(pi d^2) of means, over the one imposed, P > 0
 };

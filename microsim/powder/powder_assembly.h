@@ -64,7 +64,7 @@ struct PowderOptions {
   /// Mc of Mc d2(eps)/dt2 = Sigma_imposed - Sigma_measured over the sum of all masses, strain against the lengths with
   /// which a phase begins. Fitted, not derived: the publication says 0.3, "divided by a linear size L", and the eight
   /// published packs of method 1 come out with 1.5 to 3 (results/powder).
-  double cell_inertia = 3.0;
+  double cell_inertia = 2.0;
   double time_max = 3000.0;       ///< per phase [T0]
   double record_every = 10.0;     ///< [T0]
   std::int64_t test_every = 200;  ///< steps between two looks at the criteria

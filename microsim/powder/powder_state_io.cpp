@@ -142,9 +142,14 @@ void write_powder_state(const h5::Group& group, const PowderState& state) {
   write_system(group.create("system"), state.system);
 }
 
+std::vector<PowderStage> read_stages(const h5::Group& group) {
+  if (!group.has("stages")) return {};
+  return records_of<PowderStage>(group.doubles("stages"));
+}
+
 void read_powder_state(const h5::Group& group, PowderState& state) {
   state.points = records_of<PowderPoint>(group.doubles("course"));
-  state.stages = group.has("stages") ? records_of<PowderStage>(group.doubles("stages")) : std::vector<PowderStage>{};
+  state.stages = read_stages(group);
   fields(AttributeReader{group.open("progress")}, state);
   state.snapshots = read_snapshots(group);
   read_system(group.open("system"), state.system);

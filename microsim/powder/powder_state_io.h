@@ -11,6 +11,7 @@
 namespace softgrain {
 
 struct PowderState;
+struct PowderStage;
 
 struct PowderSnapshot {
   double time = 0.0;             ///< [T0]
@@ -39,6 +40,9 @@ void write_powder_state(const h5::Group& group, const PowderState& state);
 
 /// Into a state whose system has been made from the same PowderSpec. Throws FileTrouble when something is missing.
 void read_powder_state(const h5::Group& group, PowderState& state);
+
+/// The stages among that; empty where an earlier program left none.
+std::vector<PowderStage> read_stages(const h5::Group& group);
 
 /// The system of a stored sample (a group with what write_powder_state wrote) with the law of its specification, to be
 /// measured again. Throws FileTrouble.

@@ -208,6 +208,46 @@ TEST(PowderAssembly, ARunTakenUpAgainHasTheSameBits) {
   }
 }
 
+/// Consolidation is plastic: what a pressure has closed stays closed without it. Taken up again anywhere, the same bits.
+TEST(PowderAssembly, PressuresComeOneAfterTheOther) {
+  PowderSpec spec = small(1e3);
+  spec.rolling = true;
+  PowderProtocol protocol = method(1);
+  protocol.pressures = {0.1, 1.0, 10.0, 0.1};
+  spec.pressure = protocol.pressures.back();
+  const auto phases = powder_phases(spec, protocol);
+  ASSERT_EQ(phases.size(), 4U);
+  EXPECT_EQ(phases[2].name, "load");
+  EXPECT_EQ(phases[3].name, "unload");
+  PowderState s = start_powder(spec, 5, 0);
+  const PowderResult r = run_powder(s, spec, phases, {});
+  ASSERT_TRUE(r.usable) << r.reason;
+  ASSERT_EQ(s.stages.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(s.stages[k].pressure, protocol.pressures[k]);
+    EXPECT_GT(s.stages[k].bulk, 0.0);
+    EXPECT_GT(s.stages[k].shear, 0.0);
+  }
+  EXPECT_GT(s.stages[1].fraction, s.stages[0].fraction);
+  EXPECT_GT(s.stages[2].fraction, s.stages[1].fraction);
+  EXPECT_LT(s.stages[3].fraction, s.stages[2].fraction) << "contacts of kappa = 1e3 give by 1 % under P* = 10";
+  EXPECT_GT(s.stages[3].fraction, 0.5 * (s.stages[1].fraction + s.stages[2].fraction));
+  EXPECT_NEAR(r.stress[0], 0.1, 1e-4);
+  PowderState first = start_powder(spec, 5, 0);
+  PowderState saved;
+  RunControl<PowderState> control;
+  control.save = [&](const PowderState& now) {
+    saved = now;
+    if (now.stages.size() == 2) throw Stop();
+  };
+  EXPECT_THROW((void)run_powder(first, spec, phases, {}, control), Stop);
+  (void)run_powder(saved, spec, phases, {});
+  expect_same_bits(s, saved);
+  ASSERT_EQ(saved.stages.size(), 4U);
+  EXPECT_EQ(saved.stages[3].fraction, s.stages[3].fraction);
+  EXPECT_EQ(saved.stages[1].bulk, s.stages[1].bulk);
+}
+
 TEST(PowderAssembly, AStateAtItsEndIsOnlyLookedAt) {
   const PowderSpec spec = small(1e3);
   const auto phases = powder_phases(spec, method(1));

@@ -95,6 +95,18 @@ TEST_F(Powder, WhatCannotBeIsRefused) {
   expect_refused("--set disks.solid_fraction=1.2", "solid_fraction");
   expect_refused("--set contact.kapa=1e4", "kappa");
   expect_refused("--set contact.cohesive=true --set assembly.pressure=0", "nothing moves");
+  expect_refused("--set assembly.pressures=[0.1,0.2]", "kappa");
+  const std::string powder = "--set contact.cohesive=true ";
+  expect_refused(powder + "--set assembly.pressures=[0.1,0.05,0.2]", "rise to a largest one");
+  expect_refused(powder + "--set assembly.pressures=[0.1,0.1]", "rise to a largest one");
+  expect_refused(powder + "--set assembly.pressures=[0.1,0]", "above 0");
+  expect_refused(powder + "--set assembly.pressures=[0.1,1] --set assembly.pressure=1", "leave one of the two out");
+  expect_refused("--set assembly.cell_inertia=0", "above 0");
+  expect_refused("--set assembly.edge_speed_cap=1e-3", "allow at least");
+  expect_refused("--set assembly.edge_speed_cap=1e-8 --set assembly.time_max=1e12", "days of one core");
+  // L/a = sqrt(100 pi 7/12/4/0.36) = 11.3, but for the draw of the sizes.
+  expect_refused("--set assembly.cell_mass=0.3", "cell_inertia = 0.02");
+  expect_refused("--set assembly.strain_rate_cap=0.05", "edge_speed_cap = 0.56");
 }
 
 constexpr const char* kSeriesB = R"(kind = "cohesive-powder"

@@ -33,6 +33,7 @@ PowderSample read_sample(const h5::Group& group, const PowderSpec& spec) {
   PowderSample out;
   out.usable = group.integer("usable") != 0;
   out.course = read_course(group);
+  out.stages = read_stages(group);
   const System<2> system = read_powder_system(group, spec);
   out.packing = powder_snapshot(system);
   out.contacts = contact_records(system);

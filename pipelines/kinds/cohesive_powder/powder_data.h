@@ -8,6 +8,7 @@
 #include "calibrate/scattering_fit.h"
 #include "common/data/scattering_curve.h"
 #include "common/dynamics/force_pass.h"
+#include "microsim/powder/powder_assembly.h"
 #include "microsim/powder/powder_state_io.h"
 
 namespace softgrain {
@@ -34,6 +35,7 @@ struct PowderSample {
   PowderSnapshot packing;                  ///< at the end
   std::vector<ContactRecord<2>> contacts;  ///< of it, computed again from the stored state and its laws
   std::vector<PowderMoment> course;
+  std::vector<PowderStage> stages;
   std::vector<PowderSnapshot> snapshots;
   std::optional<FittedCurve> scattering;
 };

@@ -10,6 +10,7 @@
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
 #include "microsim/powder/powder_state_io.h"
+#include "pipelines/kinds/cohesive_powder/consolidation.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
 #include "pipelines/kinds/cohesive_powder/results.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
@@ -84,6 +85,7 @@ PackSummary summary_of(const Sample& s) {
   out.contact_evaluations = s.state.system.cost.contact_evaluations;
   out.fraction = s.result.fraction;
   out.stress = {s.result.stress[0], s.result.stress[1]};
+  if (s.state.stages.size() > 1) out.stages = s.state.stages;
   out.contacts = s.analysis.contacts;
   out.analysis = s.analysis;
   return out;
@@ -154,6 +156,14 @@ void add_samples(const std::vector<Sample>& samples, const PowderStructures& str
   for (const std::string& remark : structure_remarks(structures)) summary.head.remarks.push_back(remark);
 }
 
+/// Of several pressures; returns the line about them for people.
+std::string add_consolidation(const std::vector<Sample>& samples, PowderSummary& summary) {
+  std::vector<PowderStages> stages;
+  for (const Sample& s : samples) stages.push_back(s.state.stages);
+  summary.consolidation = consolidation_of(stages);
+  return summary.consolidation ? consolidation_text(*summary.consolidation) + "\n" : "";
+}
+
 /// Means over samples that came to rest; returns the line about them for people.
 std::string add_means(const PowderSetup& setup, const std::vector<Sample>& samples, const PowderStructures& structures,
                       PowderSummary& summary) {
@@ -189,6 +199,7 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   summary.head.sizes = summaries_of(drawn_sizes(setup, run.seed));
   add_samples(samples, structures, summary);
   std::string people = add_means(setup, samples, structures, summary);
+  people += add_consolidation(samples, summary);
   for (const std::string& remark : summary.head.remarks) people += "note: " + remark + "\n";
   return run.finish(json_of(summary), people + "data: " + run.path("powder.h5") + "\n");
 }

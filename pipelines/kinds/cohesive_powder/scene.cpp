@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "common/io/hdf5_file.h"
@@ -70,14 +72,61 @@ void read_protocol(const SceneTable& t, PowderSetup& setup) {
     p.stiffening_time = t.number("stiffening_time", Unit::none, Range::positive(), p.stiffening_time);
 }
 
+/// Of `pressures`: up to a largest one and, where it is not the last, down from there.
+void read_pressures(const SceneTable& t, PowderSetup& setup) {
+  if (!t.has("pressures")) return;
+  if (t.has("pressure")) t.mistake("pressure", "\"pressures\" says them all: leave one of the two out");
+  const std::vector<double> p = t.numbers("pressures", Unit::none, Range::positive());
+  if (p.empty()) {
+    t.mistake("pressures", "needs at least one pressure");
+    return;
+  }
+  const auto top = std::max_element(p.begin(), p.end());
+  const bool up = std::adjacent_find(p.begin(), top, std::greater_equal<>()) == top;
+  const bool down = std::adjacent_find(top, p.end(), std::less_equal<>()) == p.end();
+  if (!up || !down)
+    t.mistake("pressures", "must rise to a largest one and may fall from there, each but once: consolidation and its "
+                           "unloading");
+  setup.protocol.pressures = p;
+  setup.spec.pressure = p.back();
+}
+
+/// Whether the cell can close at the speed that it is allowed, in the time and in a day.
+void check_cap(const SceneTable& t, const PowderSetup& setup, bool sound) {
+  const double cap = setup.protocol.edge_speed_cap;
+  if (!sound || !t.sound() || !(cap > 0.0)) return;
+  constexpr double kDense = 0.85;          // no pack of disks is denser
+  constexpr double kPairSeconds = 2e-8;    // of one core, and 2 pairs per disk
+  constexpr double kDay = 86400.0;
+  const double way = start_edge(setup.spec) * (1.0 - std::sqrt(setup.spec.solid_fraction / kDense));
+  const double time = way / cap;
+  const double step = setup.options.step * std::sqrt(setup.spec.diameter_min * setup.spec.diameter_min /
+                                                     setup.spec.stiffness);
+  const double seconds = time / step * 2.0 * static_cast<double>(setup.spec.disks) * kPairSeconds;
+  if (time > setup.options.time_max)
+    t.mistake("edge_speed_cap",
+              fmt::format("the cell would need {} T0 to close by {} a, a phase ends after time_max = {}: allow at "
+                          "least {} a/T0, or more time",
+                          report::format_number(time, 3), report::format_number(way, 3),
+                          report::format_number(setup.options.time_max, 4),
+                          report::format_number(way / setup.options.time_max, 2)));
+  else if (seconds > kDay)
+    t.mistake("edge_speed_cap", fmt::format("the cell would need about {} days of one core to close: allow at least "
+                                            "{} a/T0",
+                                            report::format_number(seconds / kDay, 2),
+                                            report::format_number(cap * seconds / kDay, 2)));
+}
+
 /// `sound`: so is [contact].
 void read_assembly(const SceneTable& t, PowderSetup& setup, bool sound) {
   setup.protocol.method = static_cast<int>(t.count("method", 1, 2, 1));
-  if (sound && !setup.spec.cohesive && t.has("pressure"))
-    t.mistake("pressure", "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
+  for (const char* key : {"pressure", "pressures"})
+    if (sound && !setup.spec.cohesive && t.has(key))
+      t.mistake(key, "without cohesion P a is the unit of force: the stiffness kappa = K_N/P says how hard it is");
   if (sound && !setup.spec.cohesive && setup.protocol.method == 2)
     t.mistake("method", "disks without cohesion do not aggregate");
   setup.spec.pressure = t.number("pressure", Unit::none, Range::not_negative(), setup.spec.pressure);
+  read_pressures(t, setup);
   if (sound && setup.protocol.method == 1 && setup.spec.cohesive && setup.spec.pressure == 0.0)
     t.mistake("pressure", "method 1 starts at rest: without pressure nothing moves");
   setup.spec.start_speed =
@@ -93,6 +142,7 @@ void read_assembly(const SceneTable& t, PowderSetup& setup, bool sound) {
   setup.options.settle_after = t.number("settle_after", Unit::none, Range::not_negative(), setup.options.settle_after);
   setup.options.time_max = t.number("time_max", Unit::none, Range::positive(), setup.options.time_max);
   setup.options.record_every = t.number("record_every", Unit::none, Range::positive(), setup.options.record_every);
+  check_cap(t, setup, sound);
 }
 
 void read_structure(const SceneTable& t, PowderStructureOptions& o) {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "common/core/statistics.h"
+#include "pipelines/kinds/cohesive_powder/consolidation.h"
 #include "pipelines/kinds/cohesive_powder/report_plots.h"
 #include "pipelines/kinds/cohesive_powder/report_view.h"
 #include "pipelines/kinds/cohesive_powder/results.h"
@@ -53,7 +54,9 @@ std::vector<Column> force_columns() {
           {"share without force", [](const PackSummary& s) { return s.analysis.forces.zero_share.value_or(kNaN); }, 3},
           {"P of Rumpf", [](const PackSummary& s) { return s.contacts.rumpf_pressure; }, 3},
           {"over the imposed", [](const PackSummary& s) { return s.analysis.rumpf_ratio.value_or(kNaN); }, 4},
-          {"F_perc", [](const PackSummary& s) { return s.analysis.percolation.either.value_or(kNaN); }, 3}};
+          {"F_perc", [](const PackSummary& s) { return s.analysis.percolation.either.value_or(kNaN); }, 3},
+          {"B", [](const PackSummary& s) { return s.analysis.moduli ? s.analysis.moduli->bulk : kNaN; }, 3},
+          {"G", [](const PackSummary& s) { return s.analysis.moduli ? s.analysis.moduli->shear : kNaN; }, 3}};
 }
 
 /// h, k and definiteness of one matrix, which `find` gives; null: there is none.
@@ -177,7 +180,7 @@ std::string tables(const RunData& run) {
              "Lengths in a (largest diameter), forces in F0 (adhesion; without it P a). Interactions are contacts "
              "and distant pairs; unstressed ones are below the published threshold. F_perc: largest force whose "
              "contacts "
-             "still reach across the cell. Phi in 3D: the equivalent 0.752 Phi^1.5.") +
+             "still reach across the cell. B, G: bulk and shear modulus of the springs of all contacts, in F0/a. Phi in 3D: the equivalent 0.752 Phi^1.5.") +
          shares_table(samples) + paragraph("x_k: share of disks with k interactions.") +
          table_of(samples, rigidity_columns()) +
          paragraph(
@@ -236,8 +239,11 @@ std::string powder_section(const RunData& run) {
   if (found == nullptr) return "";
   const PowderRun& powder = *found;
   const std::string scattering = scattering_figure(powder);
+  std::vector<PowderStages> stages;
+  for (const PowderSample& s : powder.samples) stages.push_back(s.stages);
   return section("powder", "Packings", packings(powder) + snapshots(powder)) +
          section("powder-course", "Assembly", course_figures(powder)) +
+         section("powder-consolidation", "Consolidation", consolidation_figures(stages)) +
          section("powder-forces", "Forces", force_figures(powder)) +
          section("powder-scattering", "Scattered intensity", scattering.empty() ? "" : figure_row({scattering})) +
          section("powder-samples", "Samples", tables(run));

@@ -1,8 +1,10 @@
 // What powders came to: summary.json of their runs, which the report and the tables of variants read back.
 #pragma once
 
+#include "calibrate/consolidation_fit.h"
 #include "common/data/fields.h"
 #include "microsim/powder/powder_analysis.h"
+#include "microsim/powder/powder_assembly.h"
 #include "pipelines/kinds/cohesive_powder/structure.h"
 #include "pipelines/results/summary.h"
 
@@ -40,12 +42,21 @@ void fields(auto&& visit, Of<PowderPercolation> auto& s) {
   visit("both", s.both);
 }
 
+void fields(auto&& visit, Of<PowderModuli> auto& s) {
+  visit("bulk", s.bulk);
+  visit("shear", s.shear);
+  visit("shear_axes", s.shear_axes);
+  visit("shear_cross", s.shear_cross);
+  visit("distant", s.distant);
+}
+
 /// Forces, percolation and rigidity, without pairs, histograms and contacts.
 void fields(auto&& visit, Of<PowderAnalysis> auto& s) {
   visit("zero_force", s.zero);
   visit("zero_share", s.forces.zero_share);
   visit("F_perc", s.percolation);
   visit("rumpf_ratio", s.rumpf_ratio);
+  visit("moduli", s.moduli);
   visit("solid_fraction_3d", s.solid_fraction_3d);
   visit("rigidity", s.rigidity);
 }
@@ -99,6 +110,17 @@ void fields(auto&& visit, Of<ScatteringFit> auto& s) {
   estimate("c", s.background);
 }
 
+void fields(auto&& visit, Of<PowderStage> auto& s) {
+  visit("pressure", s.pressure);
+  visit("time", s.time);
+  visit("Phi", s.fraction);
+  visit("z", s.coordination);
+  visit("mean_repulsive", s.mean_repulsive);
+  visit("mean_tensile", s.mean_tensile);
+  visit("bulk", s.bulk);
+  visit("shear", s.shear);
+}
+
 /// One sample. What is not defined is NaN, or absent.
 struct PackSummary {
   bool usable = false;
@@ -109,6 +131,7 @@ struct PackSummary {
   std::int64_t contact_evaluations = 0;
   double fraction = 0.0;
   std::array<double, 2> stress{};
+  std::vector<PowderStage> stages;  ///< of several pressures
   PowderContacts contacts;
   PowderAnalysis analysis;  ///< its scalars
   std::optional<std::array<std::int64_t, 2>> mesh;
@@ -125,6 +148,7 @@ void fields(auto&& visit, Of<PackSummary> auto& s) {
   visit("contact_evaluations", s.contact_evaluations);
   visit("Phi", s.fraction);
   visit("stress", s.stress);
+  visit("stages", s.stages, kLeftOut);
   fields(visit, s.contacts);
   fields(visit, s.analysis);
   visit("mesh", s.mesh, kLeftOut);
@@ -146,6 +170,21 @@ void fields(auto&& visit, Of<EnsembleFit> auto& s) {
   visit("other_ranges", s.other_ranges);
 }
 
+void fields(auto&& visit, Of<ConsolidationNumber> auto& s) {
+  visit("value", s.value);
+  visit("error", s.error);
+}
+
+void fields(auto&& visit, Of<ConsolidationFit> auto& s) {
+  visit("usable", s.usable);
+  visit("reason", s.reason);
+  visit("lambda", s.slope);
+  range_field(visit, "lambda_pressures", s.low, s.high);
+  visit("regime_1_ends", s.begin);
+  visit("alpha", s.exponent);
+  visit("Phi_max", s.densest);
+}
+
 struct PowderSummary {
   SummaryHead head;
   std::string kind;
@@ -155,6 +194,7 @@ struct PowderSummary {
   nlohmann::json histograms;
   nlohmann::json mean;
   std::optional<EnsembleFit> scattering;
+  std::optional<ConsolidationFit> consolidation;  ///< of the pressures that rise
 };
 
 void fields(auto&& visit, Of<PowderSummary> auto& s) {
@@ -166,6 +206,7 @@ void fields(auto&& visit, Of<PowderSummary> auto& s) {
   visit("histograms", s.histograms);
   visit("mean", s.mean);
   visit("scattering", s.scattering, kLeftOut);
+  visit("consolidation", s.consolidation, kLeftOut);
 }
 
 /// Over the samples at rest of a variant.

@@ -71,6 +71,8 @@ constexpr std::array kQuantities{
     Quantity{"rumpf_ratio", [](const PackSummary& s) { return s.analysis.rumpf_ratio.value_or(kNaN); }},
     Quantity{"F_perc", [](const PackSummary& s) { return s.analysis.percolation.either.value_or(kNaN); }},
     Quantity{"solid_fraction_3d", [](const PackSummary& s) { return s.analysis.solid_fraction_3d; }},
+    Quantity{"bulk", [](const PackSummary& s) { return s.analysis.moduli ? s.analysis.moduli->bulk : kNaN; }},
+    Quantity{"shear", [](const PackSummary& s) { return s.analysis.moduli ? s.analysis.moduli->shear : kNaN; }},
     Quantity{"h", rigidity_fixed<kH>},
     Quantity{"k", rigidity_fixed<kK>},
     Quantity{"h_free", rigidity<kH, kFree>},
@@ -83,6 +85,9 @@ constexpr std::array kQuantities{
     Quantity{"loop_passes", [](const PackSummary& s) { return static_cast<double>(s.loop_passes); }}};
 
 constexpr const char* kSeconds = "seconds";  // stands beside the samples
+constexpr const char* kLambda = "lambda";    // these over all samples
+constexpr const char* kAlpha = "alpha";
+constexpr const char* kDensest = "Phi_max";
 
 void add_mean(VariantEntry& entry, const char* name, const std::vector<double>& values) {
   Tally sample;
@@ -108,6 +113,13 @@ void add_values(VariantEntry& entry, const PowderSummary& powder) {
     add_mean(entry, q.name, values);
   }
   add_mean(entry, kSeconds, seconds);
+  if (!powder.consolidation || !powder.consolidation->usable) return;
+  const auto add = [&](const char* name, const ConsolidationNumber& n) {
+    entry.values[name] = {n.value, kNaN, usable.size(), n.error};
+  };
+  add(kLambda, powder.consolidation->slope);
+  if (powder.consolidation->exponent) add(kAlpha, *powder.consolidation->exponent);
+  if (powder.consolidation->densest) add(kDensest, *powder.consolidation->densest);
 }
 
 /// One side's error alone would flatter or blame, so it takes both for the difference in errors.
@@ -139,7 +151,7 @@ const std::vector<const char*>& powder_quantities() {
   static const std::vector<const char*> names = [] {
     std::vector<const char*> out;
     for (const Quantity& q : kQuantities) out.push_back(q.name);
-    out.push_back(kSeconds);
+    for (const char* name : {kSeconds, kLambda, kAlpha, kDensest}) out.push_back(name);
     return out;
   }();
   return names;
