@@ -75,9 +75,11 @@ TEST(StressCellSteps, DragSlowsExponentially) {
 }
 
 /// The published protocol waits until undamped vibrations have rung down; with the drag a sample ends sooner in the
-/// same place. Contacts may be missing that slow ringing would have closed (a few per thousand at N = 1400).
+/// same place. Contacts may be missing that slow ringing would have closed (a few per thousand; of packs as small as 60
+/// disks a few per hundred).
 TEST(PowderAssembly, TheDragChangesTheTimeNotTheResult) {
-  const PowderSpec spec = small(1e3);
+  PowderSpec spec = small(1e3);
+  spec.disks = 200;
   const auto phases = powder_phases(spec, method(1));
   PowderOptions options;
   PowderOptions published;
@@ -96,11 +98,11 @@ TEST(PowderAssembly, TheDragChangesTheTimeNotTheResult) {
     ASSERT_TRUE(fast.usable) << fast.reason;
     ASSERT_TRUE(slow.usable) << slow.reason;
     EXPECT_NEAR(fast.fraction, slow.fraction, 3e-4);
-    EXPECT_NEAR(coordination(a, spec), coordination(b, spec), 2.01 * 2.0 / 60.0) << "two contacts of sixty disks";
+    EXPECT_NEAR(coordination(a, spec), coordination(b, spec), 2.01 * 2.0 / 200.0) << "two contacts of 200 disks";
     z[0] += coordination(a, spec);
     z[1] += coordination(b, spec);
   }
-  EXPECT_NEAR(z[0] / z[1], 1.0, 0.015) << "one contact and a half of ninety";
+  EXPECT_NEAR(z[0] / z[1], 1.0, 0.01) << "three contacts of 310";
   EXPECT_LT(time[0], 0.75 * time[1]);
 }
 
@@ -210,7 +212,7 @@ TEST(PowderAssembly, ARunTakenUpAgainHasTheSameBits) {
 
 /// Consolidation is plastic: what a pressure has closed stays closed without it. Taken up again anywhere, the same bits.
 TEST(PowderAssembly, PressuresComeOneAfterTheOther) {
-  PowderSpec spec = small(1e3);
+  PowderSpec spec = small(1e4);
   spec.rolling = true;
   PowderProtocol protocol = method(1);
   protocol.pressures = {0.1, 1.0, 10.0, 0.1};
@@ -230,8 +232,8 @@ TEST(PowderAssembly, PressuresComeOneAfterTheOther) {
   }
   EXPECT_GT(s.stages[1].fraction, s.stages[0].fraction);
   EXPECT_GT(s.stages[2].fraction, s.stages[1].fraction);
-  EXPECT_LT(s.stages[3].fraction, s.stages[2].fraction) << "contacts of kappa = 1e3 give by 1 % under P* = 10";
-  EXPECT_GT(s.stages[3].fraction, 0.5 * (s.stages[1].fraction + s.stages[2].fraction));
+  EXPECT_LT(s.stages[3].fraction, s.stages[2].fraction);
+  EXPECT_GT(s.stages[3].fraction, s.stages[0].fraction + 0.4 * (s.stages[2].fraction - s.stages[0].fraction));
   EXPECT_NEAR(r.stress[0], 0.1, 1e-4);
   PowderState first = start_powder(spec, 5, 0);
   PowderState saved;

@@ -207,7 +207,7 @@ TEST_F(PowderVariants, CheckAndReport) {
 /// The scenes that are handed out.
 TEST(PowderScenes, AreSound) {
   for (const char* name : {"powder_method1", "powder_method2", "powder_series_b", "powder_table", "powder_variants",
-                           "powder_method2_variants"}) {
+                           "powder_method2_variants", "powder_consolidation"}) {
     const std::string path = std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/" + name + ".toml";
     const ProgramOutcome outcome = run_the_program("check '" + path + "'");
     EXPECT_EQ(outcome.status, 0) << outcome.output;

@@ -190,7 +190,7 @@ count = 120
 [contact]
 kappa = 1e2
 [assembly]
-time_max = 20.0
+time_max = 120.0
 record_every = 2.0
 [analysis]
 mesh = 20
