@@ -72,6 +72,16 @@ def one(summary):
     return text + (fit_text(summary["scattering"]) if summary.get("scattering") else "")
 
 
+def folded(remarks):
+    """What several variants say alike, once."""
+    said = {}
+    for remark in remarks:
+        who, colon, what = remark.partition(": ")
+        said.setdefault(what if colon else remark, []).append(who if colon else "")
+    return [what if names == [""] else f"{', '.join(names) if len(names) < 5 else f'{len(names)} of them'}: {what}"
+            for what, names in said.items()]
+
+
 def run_text(argument):
     directory, _, figures = argument.partition(":")
     name = os.path.basename(os.path.normpath(directory))
@@ -94,7 +104,7 @@ def run_text(argument):
         shutil.copy(os.path.join(directory, "figures", figure + ".svg"), os.path.join(HERE, f"{name}-{figure}.svg"))
         text += f"![{figure.replace('-', ' ')}]({name}-{figure}.svg)\n\n"
     if summary.get("remarks"):
-        text += "".join(f"- {r}\n" for r in summary["remarks"]) + "\n"
+        text += "".join(f"- {r}\n" for r in folded(summary["remarks"])) + "\n"
     return text
 
 

@@ -41,6 +41,7 @@ SCENES = {
     "powder_table": ("microsim", {"samples": 1, "only": '["grains-mu05", "rr-mu015"]'}),
     "powder_variants": ("microsim", {"samples": 1, "only": '["phi-052", "kappa-1e3"]'}),
     "powder_method2_variants": ("microsim", {"samples": 1, "only": '["rr-p0"]'}),
+    "powder_consolidation": ("microsim", {"samples": 1, "only": '["dense"]'}),
 }
 
 
