@@ -68,8 +68,8 @@ void fit_approach(const std::vector<double>& pressure, const std::vector<double>
                   ConsolidationFit& out) {
   const std::size_t n = pressure.size() - first;
   if (n < kApproachPoints) {
-    out.reason = fmt::format("alpha: {} pressures from P* = {:.3g} on, {} are needed", n, pressure[first],
-                             kApproachPoints);
+    out.reason =
+        fmt::format("alpha: {} pressures from P* = {:.3g} on, {} are needed", n, pressure[first], kApproachPoints);
     return;
   }
   LeastSquaresProblem problem;
@@ -90,9 +90,10 @@ void fit_approach(const std::vector<double>& pressure, const std::vector<double>
 }
 
 void check(const ConsolidationCurves& c) {
-  const bool rising = std::adjacent_find(c.pressure.begin(), c.pressure.end(), std::greater_equal<>()) == c.pressure.end();
-  const bool whole = std::all_of(c.fraction.begin(), c.fraction.end(),
-                                 [&](const auto& f) { return f.size() == c.pressure.size(); });
+  const bool rising =
+      std::adjacent_find(c.pressure.begin(), c.pressure.end(), std::greater_equal<>()) == c.pressure.end();
+  const bool whole =
+      std::all_of(c.fraction.begin(), c.fraction.end(), [&](const auto& f) { return f.size() == c.pressure.size(); });
   if (!rising || !whole || c.fraction.empty())
     throw BadInput("consolidation: pressures must rise, and every sample have a solid fraction at each");
 }

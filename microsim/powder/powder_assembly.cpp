@@ -155,8 +155,8 @@ class Phase {
 
  private:
   void look() {
-    residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(), spec_.force_scale(phase_.pressure),
-                                1.0, !phase_.fixed_cell);
+    residual_ = powder_residual(state_.system, control_.imposed, integrator_.stress(),
+                                spec_.force_scale(phase_.pressure), 1.0, !phase_.fixed_cell);
   }
   /// A run may go on from the very moment that it saved.
   [[nodiscard]] bool recorded() const {

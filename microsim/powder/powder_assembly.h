@@ -33,12 +33,12 @@ PowderResidual powder_residual(const System<2>& system, const Vec<2>& imposed, c
 
 /// A stretch of an assembly.
 struct PowderPhase {
-  std::string name;            ///< "compaction", "aggregation", "free" or "stiffening", "load"
-  bool fixed_cell = false;     ///< the cell keeps its lengths; pressure is no criterion
-  bool one_aggregate = false;  ///< also wait until all disks hang together
-  double pressure = 0.0;       ///< imposed, in the units of the sample
-  double stiffness = 0.0;      ///< kappa of all contacts
-  double stiffening = 0.0;     ///< T0 in which kappa goes there from where it was, evenly in its logarithm; 0: at once
+  std::string name;             ///< "compaction", "aggregation", "free" or "stiffening", "load"
+  bool fixed_cell = false;      ///< the cell keeps its lengths; pressure is no criterion
+  bool one_aggregate = false;   ///< also wait until all disks hang together
+  double pressure = 0.0;        ///< imposed, in the units of the sample
+  double stiffness = 0.0;       ///< kappa of all contacts
+  double stiffening = 0.0;      ///< T0 in which kappa goes there from where it was, evenly in its logarithm; 0: at once
   double edge_speed_cap = 0.0;  ///< of |dL/dt| [a/T0]; 0: none
 };
 

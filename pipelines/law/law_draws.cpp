@@ -237,8 +237,7 @@ LawDraws card_draws(const LawSources& sources, const NamedLaws& named, const Mac
 double form_discrepancy(const CrowdLaw& law) {
   std::array<std::vector<double>, 2> squares;  // out of proportion, in proportion
   for (const ConfigurationError& e : law.errors)
-    if (e.use == CrowdUse::predicted)
-      squares[e.in_proportion ? 1 : 0].push_back(e.error * e.error - e.noise * e.noise);
+    if (e.use == CrowdUse::predicted) squares[e.in_proportion ? 1 : 0].push_back(e.error * e.error - e.noise * e.noise);
   if (squares[0].empty() && squares[1].empty()) return std::isfinite(law.error_cross) ? law.error_cross : 0.0;
   double worst = 0.0;
   for (const std::vector<double>& path : squares)

@@ -210,7 +210,8 @@ TEST(PowderAssembly, ARunTakenUpAgainHasTheSameBits) {
   }
 }
 
-/// Consolidation is plastic: what a pressure has closed stays closed without it. Taken up again anywhere, the same bits.
+/// Consolidation is plastic: what a pressure has closed stays closed without it. Taken up again anywhere, the same
+/// bits.
 TEST(PowderAssembly, PressuresComeOneAfterTheOther) {
   PowderSpec spec = small(1e4);
   spec.rolling = true;

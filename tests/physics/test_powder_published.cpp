@@ -1,5 +1,5 @@
-// Method 1 against the published means [CP 3.4]: small packs in the default suite, the eight published packs in the label
-// "slow".
+// Method 1 against the published means [CP 3.4]: small packs in the default suite, the eight published packs in the
+// label "slow".
 #include <gtest/gtest.h>
 
 #include <array>

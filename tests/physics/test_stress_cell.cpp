@@ -167,6 +167,23 @@ TEST(StressCell, TheCapHoldsTheSpeedOfTheEdge) {
   EXPECT_NEAR(s.cell.velocity_gradient[0][0] * s.cell.edges[0][0], -0.05, 1e-12);
 }
 
+/// A pack that gives way is not held back: the drag on the cell acts while that moves against its push alone.
+TEST(StressCell, TheDragOnTheCellOnlyActsAgainstThePush) {
+  const auto edge_after = [](double outward, double drag) {
+    System2 s = empty_cell(disk_law(1e4, 1.0), 10.0);
+    add_disk(s, {{5.0, 5.0}}, 1.0);
+    s.cell.velocity_gradient[0][0] = outward / 10.0;
+    StressCellVerlet<2> moving(1e-3, {{{3e-3, 3e-3}}, {{10.0, 10.0}}, 1.0, std::numeric_limits<double>::infinity()});
+    moving.set_drag(drag, {});
+    moving.initialise(s);
+    for (int k = 0; k < 1000; ++k) moving.step(s);
+    return s.cell.edges[0][0];
+  };
+  EXPECT_EQ(edge_after(-0.1, 2.0), edge_after(-0.1, 0.0)) << "inwards, as it is pushed";
+  EXPECT_NEAR(edge_after(0.1, 0.0) - 10.0, 0.1 - 0.015, 1e-3);
+  EXPECT_LT(edge_after(0.1, 2.0), edge_after(0.1, 0.0) - 0.02) << "outwards";
+}
+
 struct Rest {
   System2 system;
   Vec<2> stress{};

@@ -39,6 +39,17 @@ TEST(CrowdStates, ALoadingIsUsedOnce) {
   EXPECT_EQ(average_states(all)[3].use, CrowdUse::fitted) << "the deepest of its loading";
 }
 
+TEST(CrowdStates, PathsKeepTheirProportionsOrAreSheared) {
+  CrowdConfiguration c = crowd_configuration(Arrangement::cube, PartnerKind::plane, 0.0, 0.2);
+  c.stages = {{CrowdMove::load, {0.2, 0.1, 0.15, 0.0, 0.1, 0.1}},
+              {CrowdMove::unload, {0.1, 0.05, 0.075, 0.0, 0.05, 0.05}}};
+  EXPECT_TRUE(c.in_proportion()) << "unequally deep, and back the same way";
+  c.stages[1].overlap[1] = 0.1;
+  EXPECT_FALSE(c.in_proportion()) << "one stays";
+  c.stages[1] = {CrowdMove::load, {0.25, 0.05, 0.15, 0.0, 0.1, 0.1}};
+  EXPECT_FALSE(c.in_proportion()) << "one comes in as another goes";
+}
+
 /// A path that shears begins like a plain loading and is another one; that of a slide is the same.
 TEST(CrowdStates, APathThatGoesOnLoadingIsALoadingOfItsOwn) {
   auto list = arrangements();

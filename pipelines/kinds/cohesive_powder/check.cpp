@@ -15,12 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-double time_step(const PowderSetup& setup) {
-  return setup.options.step * std::sqrt(setup.spec.diameter_min * setup.spec.diameter_min / setup.spec.stiffness);
-}
-
 std::string check_setup(const PowderSetup& setup, json& facts) {
-  const double step = time_step(setup);
+  const double step = setup.time_step();
   const auto phases = static_cast<double>(setup.phases().size());
   facts["samples"] = setup.samples;
   facts["disks"] = setup.spec.disks;
@@ -32,9 +28,9 @@ std::string check_setup(const PowderSetup& setup, json& facts) {
 }
 
 /// Overlap of a contact at rest: adhesion presses by F0, the load by about P a, over K_N.
-double expected_overlap(const PowderSpec& spec) {
-  const double force = (spec.cohesive ? 1.0 : 0.0) + spec.stress();
-  return force / spec.stiffness;
+double expected_overlap(const PowderSetup& setup) {
+  const double force = (setup.spec.cohesive ? 1.0 : 0.0) + setup.largest_stress();
+  return force / setup.spec.stiffness;
 }
 
 /// Small, soft samples that are assembled the same way.
@@ -146,7 +142,7 @@ void warn_of_setup(const PowderSetup& setup, const std::string& name, Findings& 
                          "sample never rests",
                          setup.options.step, kChatter));
   constexpr double kSoft = 0.01;
-  const double overlap = expected_overlap(setup.spec);
+  const double overlap = expected_overlap(setup);
   if (overlap > kSoft)
     out.warn(of + fmt::format("contacts overlap by about {:.2g} a at rest: kappa = {:.3g} is soft for this pressure",
                               overlap, setup.spec.stiffness));
@@ -165,7 +161,7 @@ void warn_of_setup(const PowderSetup& setup, const std::string& name, Findings& 
 
 void check_one(const PowderSetup& setup, Findings& out) {
   out.lines += "  " + check_setup(setup, out.facts);
-  const double overlap = expected_overlap(setup.spec);
+  const double overlap = expected_overlap(setup);
   out.add("overlap", overlap, fmt::format("contacts overlap by about {:.2g} of the largest diameter at rest", overlap));
   add_sizes(out, drawn_sizes(setup, setup.seed));
   warn_of_setup(setup, "", out);

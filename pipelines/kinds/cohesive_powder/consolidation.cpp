@@ -50,9 +50,10 @@ std::string consolidation_text(const ConsolidationFit& fit) {
   using report::format_number;
   using report::format_with_error;
   if (!fit.usable) return "consolidation not determined: " + fit.reason;
-  std::string text = fmt::format("1/Phi falls by lambda = {} per unit of ln P* for P* from {} to {}; regime I ends at P* = {}",
-                                 format_with_error(fit.slope.value, fit.slope.error), format_number(fit.low, 3),
-                                 format_number(fit.high, 3), format_number(fit.begin, 2));
+  std::string text =
+      fmt::format("1/Phi falls by lambda = {} per unit of ln P* for P* from {} to {}; regime I ends at P* = {}",
+                  format_with_error(fit.slope.value, fit.slope.error), format_number(fit.low, 3),
+                  format_number(fit.high, 3), format_number(fit.begin, 2));
   if (fit.exponent && fit.densest)
     text += fmt::format("; beyond, Phi_max - Phi ~ P*^-alpha with alpha = {}, Phi_max = {}",
                         format_with_error(fit.exponent->value, fit.exponent->error),
@@ -97,11 +98,9 @@ void add_samples(Plot& plot, const std::vector<PowderStages>& samples, StageValu
 AxisOptions pressure_axis() { return {.label = "P a/F0", .scale = Scale::logarithmic}; }
 
 std::string density_figure(const std::vector<PowderStages>& samples, const std::optional<ConsolidationFit>& fit) {
-  Plot plot({.id = "powder-consolidation",
-             .title = "Consolidation",
-             .x = pressure_axis(),
-             .y = {.label = "1/Phi"}});
-  add_samples(plot, samples, [](const PowderStage& s) { return 1.0 / s.fraction; }, palette::blue, "samples");
+  Plot plot({.id = "powder-consolidation", .title = "Consolidation", .x = pressure_axis(), .y = {.label = "1/Phi"}});
+  add_samples(
+      plot, samples, [](const PowderStage& s) { return 1.0 / s.fraction; }, palette::blue, "samples");
   if (fit && fit->usable) {
     double offset = 0.0;
     const auto chosen = whole(samples);
@@ -121,17 +120,17 @@ std::string density_figure(const std::vector<PowderStages>& samples, const std::
 
 std::string consolidation_figures(const std::vector<PowderStages>& samples) {
   if (whole(samples).empty()) return "";
-  Plot contacts({.id = "powder-stages-z",
-                 .title = "Coordination number",
-                 .x = pressure_axis(),
-                 .y = {.label = "z"}});
-  add_samples(contacts, samples, [](const PowderStage& s) { return s.coordination; }, palette::blue, "samples");
+  Plot contacts({.id = "powder-stages-z", .title = "Coordination number", .x = pressure_axis(), .y = {.label = "z"}});
+  add_samples(
+      contacts, samples, [](const PowderStage& s) { return s.coordination; }, palette::blue, "samples");
   Plot moduli({.id = "powder-stages-moduli",
                .title = "Elastic moduli",
                .x = pressure_axis(),
                .y = {.label = "B, G [F0/a]", .scale = Scale::logarithmic}});
-  add_samples(moduli, samples, [](const PowderStage& s) { return s.bulk; }, palette::blue, "B");
-  add_samples(moduli, samples, [](const PowderStage& s) { return s.shear; }, palette::vermillion, "G");
+  add_samples(
+      moduli, samples, [](const PowderStage& s) { return s.bulk; }, palette::blue, "B");
+  add_samples(
+      moduli, samples, [](const PowderStage& s) { return s.shear; }, palette::vermillion, "G");
   return figure_row({density_figure(samples, consolidation_of(samples)),
                      figure(contacts.svg(), "Interactions per disk, distant pairs included."),
                      figure(moduli.svg(), "Of the springs of all contacts, prestress left out.")});

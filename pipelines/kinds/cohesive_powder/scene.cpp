@@ -50,8 +50,9 @@ void refuse_old_keys(const SceneTable& t, const PowderSpec& spec, bool sound) {
     const double old = t.number(key, Unit::none, Range::not_negative(), 0.0);
     std::string text = fmt::format("this key was {}; now it is {}, {}", meant, now, means);
     if (length > 0.0)
-      text += fmt::format(": {} would be {} = {} (L/a = {} at the start)", report::format_number(old, 4), now,
-                          report::format_number(grows ? old * length : old / length, 3), report::format_number(length, 3));
+      text +=
+          fmt::format(": {} would be {} = {} (L/a = {} at the start)", report::format_number(old, 4), now,
+                      report::format_number(grows ? old * length : old / length, 3), report::format_number(length, 3));
     t.mistake(key, text);
   };
   refuse("cell_mass", "the inertia of the cell over (sum of m)/(L/a)", "cell_inertia", "over the sum of m", false);
@@ -85,8 +86,9 @@ void read_pressures(const SceneTable& t, PowderSetup& setup) {
   const bool up = std::adjacent_find(p.begin(), top, std::greater_equal<>()) == top;
   const bool down = std::adjacent_find(top, p.end(), std::less_equal<>()) == p.end();
   if (!up || !down)
-    t.mistake("pressures", "must rise to a largest one and may fall from there, each but once: consolidation and its "
-                           "unloading");
+    t.mistake("pressures",
+              "must rise to a largest one and may fall from there, each but once: consolidation and its "
+              "unloading");
   setup.protocol.pressures = p;
   setup.spec.pressure = p.back();
 }
@@ -94,15 +96,13 @@ void read_pressures(const SceneTable& t, PowderSetup& setup) {
 /// Whether the cell can close at the speed that it is allowed, in the time and in a day.
 void check_cap(const SceneTable& t, const PowderSetup& setup, bool sound) {
   const double cap = setup.protocol.edge_speed_cap;
-  if (!sound || !t.sound() || !(cap > 0.0)) return;
-  constexpr double kDense = 0.85;          // no pack of disks is denser
-  constexpr double kPairSeconds = 2e-8;    // of one core, and 2 pairs per disk
+  if (!sound || !t.sound() || !(cap > 0.0) || !(setup.largest_stress() > 0.0)) return;
+  constexpr double kDense = 0.85;        // no pack of disks is denser
+  constexpr double kPairSeconds = 2e-8;  // of one core, and 2 pairs per disk
   constexpr double kDay = 86400.0;
   const double way = start_edge(setup.spec) * (1.0 - std::sqrt(setup.spec.solid_fraction / kDense));
   const double time = way / cap;
-  const double step = setup.options.step * std::sqrt(setup.spec.diameter_min * setup.spec.diameter_min /
-                                                     setup.spec.stiffness);
-  const double seconds = time / step * 2.0 * static_cast<double>(setup.spec.disks) * kPairSeconds;
+  const double seconds = time / setup.time_step() * 2.0 * static_cast<double>(setup.spec.disks) * kPairSeconds;
   if (time > setup.options.time_max)
     t.mistake("edge_speed_cap",
               fmt::format("the cell would need {} T0 to close by {} a, a phase ends after time_max = {}: allow at "
@@ -111,10 +111,10 @@ void check_cap(const SceneTable& t, const PowderSetup& setup, bool sound) {
                           report::format_number(setup.options.time_max, 4),
                           report::format_number(way / setup.options.time_max, 2)));
   else if (seconds > kDay)
-    t.mistake("edge_speed_cap", fmt::format("the cell would need about {} days of one core to close: allow at least "
-                                            "{} a/T0",
-                                            report::format_number(seconds / kDay, 2),
-                                            report::format_number(cap * seconds / kDay, 2)));
+    t.mistake("edge_speed_cap",
+              fmt::format("the cell would need about {} days of one core to close: allow at least "
+                          "{} a/T0",
+                          report::format_number(seconds / kDay, 2), report::format_number(cap * seconds / kDay, 2)));
 }
 
 /// `sound`: so is [contact].
@@ -153,6 +153,12 @@ void read_structure(const SceneTable& t, PowderStructureOptions& o) {
 }
 
 }  // namespace
+
+double PowderSetup::largest_stress() const {
+  double most = 0.0;
+  for (const PowderPhase& phase : phases()) most = std::max(most, phase.pressure);
+  return most;
+}
 
 std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed) {
   if (!setup.spec.sizes || !setup.states.empty()) return {};

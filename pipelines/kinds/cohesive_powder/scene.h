@@ -1,6 +1,7 @@
 // Tables of a scene of kind "cohesive-powder".
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct PowderSetup {
   bool rigidity = true;  ///< whether the rigidity matrix is factorised at the end
 
   [[nodiscard]] std::vector<PowderPhase> phases() const { return powder_phases(spec, protocol); }
+  /// Of the smallest disk that may be drawn [T0].
+  [[nodiscard]] double time_step() const { return options.step * spec.diameter_min / std::sqrt(spec.stiffness); }
+  /// Largest stress that any phase imposes.
+  [[nodiscard]] double largest_stress() const;
 };
 
 /// Disks whose sizes a distribution says.

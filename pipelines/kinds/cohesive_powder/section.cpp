@@ -180,7 +180,8 @@ std::string tables(const RunData& run) {
              "Lengths in a (largest diameter), forces in F0 (adhesion; without it P a). Interactions are contacts "
              "and distant pairs; unstressed ones are below the published threshold. F_perc: largest force whose "
              "contacts "
-             "still reach across the cell. B, G: bulk and shear modulus of the springs of all contacts, in F0/a. Phi in 3D: the equivalent 0.752 Phi^1.5.") +
+             "still reach across the cell. B, G: bulk and shear modulus of the springs of all contacts, in F0/a. Phi "
+             "in 3D: the equivalent 0.752 Phi^1.5.") +
          shares_table(samples) + paragraph("x_k: share of disks with k interactions.") +
          table_of(samples, rigidity_columns()) +
          paragraph(

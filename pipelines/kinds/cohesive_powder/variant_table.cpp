@@ -12,9 +12,9 @@ namespace softgrain {
 namespace {
 
 /// What a table for people shows of a variant beside Phi and z.
-constexpr std::array kShown{"z_star",       "x_0",         "x_1",    "x_2",         "mean_normal", "mean_repulsive",
-                            "mean_tensile", "rumpf_ratio", "F_perc", "zero_share",  "bulk",        "shear",
-                            "lambda",       "alpha",       "Phi_max", "h",          "k",           "dF",
+constexpr std::array kShown{"z_star",       "x_0",         "x_1",         "x_2",        "mean_normal", "mean_repulsive",
+                            "mean_tensile", "rumpf_ratio", "F_perc",      "zero_share", "bulk",        "shear",
+                            "lambda",       "alpha",       "Phi_max",     "h",          "k",           "dF",
                             "xi",           "R_w",         "loop_passes", "seconds"};
 
 constexpr std::array kCompared{"Phi", "z"};
