@@ -296,7 +296,8 @@ void describe_range(const std::vector<CrowdStates>& states, const CrowdModel& mo
 
 }  // namespace
 
-LawTableEntry fit_crowd_laws(const CrowdMeasurements& data, const CrowdFitOptions& options) {
+LawTableEntry fit_crowd_laws(const CrowdMeasurements& measured, const CrowdFitOptions& options) {
+  const CrowdMeasurements data = mean_over_orientations(measured);
   const std::vector<CrowdStates> states = average_states(data);
   require_data(data, states, options);
   LawTableEntry entry;

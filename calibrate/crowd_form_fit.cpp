@@ -22,7 +22,7 @@ void set_planes(CrowdModel& model, std::span<const double> p) {
 
 std::vector<ParameterBounds> plane_bounds(Crowd form) {
   std::vector<ParameterBounds> bounds{{-6.0, 6.0}, {1.05, 8.0}, {0.0, 0.3}};
-  bounds.insert(bounds.end(), static_cast<std::size_t>(coupling_parameters(form)), ParameterBounds{-3.0, 3.0});
+  bounds.insert(bounds.end(), static_cast<std::size_t>(coupling_parameters(form)), ParameterBounds{-10.0, 10.0});
   return bounds;
 }
 
@@ -332,25 +332,33 @@ std::vector<double> packing_weights(std::size_t packings, std::uint64_t seed, in
   return weight;
 }
 
+void FormRefits::take(const FormFit& fit, int draw) {
+  const std::vector<double> p = fit.parameters();
+  if (!fit.trouble().empty() || p.size() != columns.size()) {
+    ++failed;
+    return;
+  }
+  for (std::size_t j = 0; j < p.size(); ++j) columns[j].push_back(p[j]);
+  draws.push_back(draw);
+}
+
 FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options) {
-  std::vector<FormFit> fits(static_cast<std::size_t>(options.replicates));
-  parallel_tasks(options.replicates, [&](std::int64_t k) {
-    const auto r = static_cast<std::size_t>(k);
-    const auto weights = packing_weights(data.packings.size(), options.seed, static_cast<int>(r));
-    const auto states = average_states(data, weights);
-    fits[r] = all_together(states, form) ? refitted(full, states, options.discrepancy)
-                                         : fit_form(form, states, options.discrepancy, false, full.model);
-  });
+  constexpr int kMostPerReplicate = 2;
   FormRefits out;
   out.columns.resize(full.parameters().size());
-  for (std::size_t r = 0; r < fits.size(); ++r) {
-    const std::vector<double> p = fits[r].parameters();
-    if (!fits[r].trouble().empty() || p.size() != out.columns.size()) {
-      ++out.failed;
-      continue;
-    }
-    for (std::size_t j = 0; j < p.size(); ++j) out.columns[j].push_back(p[j]);
-    out.draws.push_back(static_cast<int>(r));
+  const auto wanted = static_cast<std::size_t>(options.replicates);
+  for (int tried = 0; out.draws.size() < wanted && tried < kMostPerReplicate * options.replicates;) {
+    const int more =
+        std::min(static_cast<int>(wanted - out.draws.size()), kMostPerReplicate * options.replicates - tried);
+    std::vector<FormFit> fits(static_cast<std::size_t>(more));
+    parallel_tasks(more, [&](std::int64_t k) {
+      const auto weights = packing_weights(data.packings.size(), options.seed, tried + static_cast<int>(k));
+      const auto states = average_states(data, weights);
+      fits[static_cast<std::size_t>(k)] = all_together(states, form)
+                                              ? refitted(full, states, options.discrepancy)
+                                              : fit_form(form, states, options.discrepancy, false, full.model);
+    });
+    for (const FormFit& fit : fits) out.take(fit, tried++);
   }
   return out;
 }

@@ -86,9 +86,13 @@ struct FormRefits {
   std::vector<std::vector<double>> columns;  ///< one per parameter, a value per refit
   std::vector<int> draws;                    ///< number of the replicate behind each
   int failed = 0;                            ///< the others, which count nowhere
+
+  /// One more, of this draw.
+  void take(const FormFit& fit, int draw);
 };
 
-/// Refits to packings drawn with replacement, from the fit to all of them.
+/// Refits to packings drawn with replacement, from the fit to all of them: as many as options.replicates that come to a
+/// minimum, or those of twice as many draws.
 FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options);
 
 }  // namespace softgrain

@@ -50,6 +50,12 @@ double scattering_intensity(const ScatteringModel& m, double k) {
   return m.background + m.amplitude * fractal_decay(m.dimension, m.length * k);
 }
 
+double independent_intensity(const std::vector<double>& diameters, double cell_area) {
+  double squares = 0.0;
+  for (const double d : diameters) squares += std::pow(0.25 * std::numbers::pi * d * d, 2);
+  return squares / cell_area;
+}
+
 double scattering_lower_length(const ScatteringModel& m, double solid_fraction) {
   if (m.dimension == 2.0) return kNaN;
   const double ratio = 2.0 * std::numbers::pi * solid_fraction * std::tgamma(m.dimension) *
@@ -59,7 +65,7 @@ double scattering_lower_length(const ScatteringModel& m, double solid_fraction) 
 
 namespace {
 
-constexpr std::size_t kParameters = 4;  ///< ln A, dF, ln xi, c
+constexpr std::size_t kParameters = 4;  ///< ln A or, where the amplitude is tied, ln l; dF, ln xi, c
 constexpr std::size_t kFewestBins = 8;
 constexpr ParameterBounds kDimensionBounds{0.02, 3.0};
 constexpr double kWorstChi2 = 10.0;
@@ -77,6 +83,12 @@ void require_valid(const ScatteringFitOptions& o) {
     throw BadInput(fmt::format("scattering fit: range of k [{}, {}] must rise from 0 or above", o.k_low, o.k_high));
   if (!(o.disk > 0.0) || !(o.cell_length >= 0.0))
     throw BadInput("scattering fit: disk must be above 0 and cell_length 0 or above");
+  if (!(o.solid_fraction >= 0.0) || !(o.lower_length_min > 0.0) || !(o.lower_length_max > o.lower_length_min) ||
+      !(o.background_max > 0.0))
+    throw BadInput(
+        "scattering fit: solid_fraction must be 0 or above, lower lengths must rise from above 0, and background_max "
+        "be "
+        "above 0");
 }
 
 /// The bins in range; `bad` counts those without a logarithm.
@@ -97,10 +109,40 @@ std::vector<Datum> select(const std::vector<ScatteringCurve>& curves, const Scat
   return data;
 }
 
-ScatteringModel model_of(std::span<const double> p) { return {std::exp(p[0]), p[1], std::exp(p[2]), p[3]}; }
+/// What the four parameters of the fit mean.
+class Parameters {
+ public:
+  explicit Parameters(double solid_fraction) : solid_fraction_(solid_fraction) {}
 
-bool residuals(const std::vector<Datum>& data, std::span<const double> p, std::span<double> r) {
-  const ScatteringModel model = model_of(p);
+  [[nodiscard]] bool tied() const { return solid_fraction_ > 0.0; }
+  [[nodiscard]] ScatteringModel model(std::span<const double> p) const {
+    return {std::exp(log_amplitude(p)), p[1], std::exp(p[2]), p[3]};
+  }
+  /// d ln A / dp.
+  [[nodiscard]] std::array<double, kParameters> slopes(std::span<const double> p) const {
+    if (!tied()) return {1.0, 0.0, 0.0, 0.0};
+    return {2.0 - p[1], gsl_sf_psi(p[1]) + p[2] - p[0], p[1], 0.0};
+  }
+  /// The first parameter of an amplitude; of a tied one as near as it can be.
+  [[nodiscard]] double first_of(double log_amplitude, double dimension, double log_length) const {
+    if (!tied()) return log_amplitude;
+    const double known = std::log(2.0 * std::numbers::pi * solid_fraction_) + gsl_sf_lngamma(dimension);
+    return (log_amplitude - known - dimension * log_length) / (2.0 - dimension);
+  }
+
+ private:
+  [[nodiscard]] double log_amplitude(std::span<const double> p) const {
+    if (!tied()) return p[0];
+    return std::log(2.0 * std::numbers::pi * solid_fraction_) + gsl_sf_lngamma(p[1]) + 2.0 * p[0] +
+           p[1] * (p[2] - p[0]);
+  }
+
+  double solid_fraction_;
+};
+
+bool residuals(const Parameters& parameters, const std::vector<Datum>& data, std::span<const double> p,
+               std::span<double> r) {
+  const ScatteringModel model = parameters.model(p);
   for (std::size_t n = 0; n < data.size(); ++n) {
     const double intensity = scattering_intensity(model, data[n].k);
     if (!(intensity > 0.0) || !std::isfinite(intensity)) return false;
@@ -109,10 +151,12 @@ bool residuals(const std::vector<Datum>& data, std::span<const double> p, std::s
   return true;
 }
 
-/// Exact in A and c, central differences of fourth order of the decay in dF and ln xi.
-bool jacobian(const std::vector<Datum>& data, std::span<const double> p, std::span<double> j) {
+/// Exact in A (or l) and c, central differences of fourth order of the decay in dF and ln xi.
+bool jacobian(const Parameters& parameters, const std::vector<Datum>& data, std::span<const double> p,
+              std::span<double> j) {
   constexpr double h = 1e-3;
-  const ScatteringModel m = model_of(p);
+  const ScatteringModel m = parameters.model(p);
+  const auto amplitude = parameters.slopes(p);
   const auto slope = [&](const auto& f) { return (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h); };
   for (std::size_t n = 0; n < data.size(); ++n) {
     const double x = m.length * data[n].k;
@@ -120,7 +164,8 @@ bool jacobian(const std::vector<Datum>& data, std::span<const double> p, std::sp
     const double by_dimension = slope([&](double e) { return fractal_decay(m.dimension + e, x); });
     const double by_length = slope([&](double e) { return fractal_decay(m.dimension, x * std::exp(e)); });
     const double scale = 1.0 / ((m.background + decay) * data[n].deviation);
-    const std::array<double, kParameters> row{decay, m.amplitude * by_dimension, m.amplitude * by_length, 1.0};
+    const std::array<double, kParameters> row{amplitude[0] * decay, amplitude[1] * decay + m.amplitude * by_dimension,
+                                              amplitude[2] * decay + m.amplitude * by_length, 1.0};
     for (std::size_t q = 0; q < kParameters; ++q) {
       j[kParameters * n + q] = row[q] * scale;
       if (!std::isfinite(j[kParameters * n + q])) return false;
@@ -129,7 +174,16 @@ bool jacobian(const std::vector<Datum>& data, std::span<const double> p, std::sp
   return true;
 }
 
-std::vector<std::vector<double>> starts_for(const std::vector<Datum>& data) {
+/// Bounds of all parameters.
+std::vector<ParameterBounds> bounds_of(const ScatteringFitOptions& o) {
+  std::vector<ParameterBounds> bounds{{}, kDimensionBounds, {-12.0, 12.0}, {}};
+  if (o.solid_fraction > 0.0) bounds[0] = {std::log(o.lower_length_min), std::log(o.lower_length_max)};
+  if (std::isfinite(o.background_max)) bounds[3] = {0.0, o.background_max};
+  return bounds;
+}
+
+std::vector<std::vector<double>> starts_for(const std::vector<Datum>& data, const Parameters& parameters,
+                                            const std::vector<ParameterBounds>& bounds) {
   double top = data.front().log_intensity;
   double bottom = top;
   for (const Datum& d : data) {
@@ -141,20 +195,24 @@ std::vector<std::vector<double>> starts_for(const std::vector<Datum>& data) {
   for (const double dimension : {1.2, 1.8})
     for (const double reach : {0.5, 3.0}) starts.push_back({top, dimension, std::log(reach / k_first), 0.0});
   starts.push_back({top, 1.5, std::log(1.0 / k_first), 0.3 * std::exp(bottom)});
+  for (std::vector<double>& p : starts) {
+    p[0] = parameters.first_of(p[0], p[1], p[2]);
+    for (std::size_t q = 0; q < kParameters; ++q) p[q] = std::clamp(p[q], bounds[q].low, bounds[q].high);
+  }
   return starts;
 }
 
-LeastSquaresFit solve(const std::vector<Datum>& data) {
+LeastSquaresFit solve(const Parameters& parameters, const std::vector<Datum>& data, const ScatteringFitOptions& o) {
   LeastSquaresProblem problem;
   problem.residuals = data.size();
-  problem.evaluate = [&](std::span<const double> p, std::span<double> r) { return residuals(data, p, r); };
-  problem.jacobian = [&](std::span<const double> p, std::span<double> j) { return jacobian(data, p, j); };
-  problem.bounds = {{}, kDimensionBounds, {-12.0, 12.0}, {}};
+  problem.evaluate = [&](std::span<const double> p, std::span<double> r) { return residuals(parameters, data, p, r); };
+  problem.jacobian = [&](std::span<const double> p, std::span<double> j) { return jacobian(parameters, data, p, j); };
+  problem.bounds = bounds_of(o);
   LeastSquaresOptions options;
   options.max_iterations = 100;
   options.scale_covariance = false;
   options.thorough = false;  // several starts with one strategy are enough nearly always
-  const auto starts = starts_for(data);
+  const auto starts = starts_for(data, parameters, problem.bounds);
   LeastSquaresFit found = fit_least_squares(problem, starts, options);
   if (found.end == FitEnd::converged) return found;
   options.thorough = true;
@@ -169,17 +227,44 @@ ScatteringEstimate logarithmic(double log_value, double error, double quantile) 
   return {value, value * error, std::exp(log_value - quantile * error), std::exp(log_value + quantile * error)};
 }
 
-void fill(const LeastSquaresFit& found, ScatteringFit& out) {
+/// Covariance of (ln A, dF, ln xi, c) from that of the parameters.
+std::vector<double> covariance_of(const LeastSquaresFit& found, const std::array<double, kParameters>& slopes) {
+  std::vector<double> half(kParameters * kParameters, 0.0);
+  std::vector<double> whole(kParameters * kParameters, 0.0);
+  const auto row = [&](std::size_t a, std::size_t q) { return a == 0 ? slopes[q] : a == q ? 1.0 : 0.0; };
+  for (std::size_t a = 0; a < kParameters; ++a)
+    for (std::size_t b = 0; b < kParameters; ++b)
+      for (std::size_t q = 0; q < kParameters; ++q)
+        half[kParameters * a + b] += row(a, q) * found.covariance[kParameters * q + b];
+  for (std::size_t a = 0; a < kParameters; ++a)
+    for (std::size_t b = 0; b < kParameters; ++b)
+      for (std::size_t q = 0; q < kParameters; ++q) whole[kParameters * a + b] += half[kParameters * a + q] * row(b, q);
+  return whole;
+}
+
+/// Which parameters the data would have elsewhere.
+std::string bounded_text(const LeastSquaresFit& found, const ScatteringFitOptions& o) {
+  std::string text;
+  const auto add = [&](std::size_t q, const std::string& name, double value) {
+    if (found.at_bound[q]) text += fmt::format("{}{} = {:.3g}", text.empty() ? "" : ", ", name, value);
+  };
+  if (o.solid_fraction > 0.0) add(0, "l", std::exp(found.parameters[0]));
+  add(3, "c", found.parameters[3]);
+  return text;
+}
+
+void fill(const LeastSquaresFit& found, const Parameters& parameters, ScatteringFit& out) {
   const auto& p = found.parameters;
-  out.model = model_of(p);
+  out.model = parameters.model(p);
   const auto degrees = static_cast<double>(found.degrees_of_freedom);
   out.chi2_per_degree = found.residual_sum_of_squares / degrees;
   const double widening = std::max(1.0, out.chi2_per_degree);
   const double quantile = widening > 1.0 ? gsl_cdf_tdist_Pinv(0.975, degrees) : gsl_cdf_ugaussian_Pinv(0.975);
-  out.covariance = found.covariance;
+  out.covariance = covariance_of(found, parameters.slopes(p));
   for (double& c : out.covariance) c *= widening;
   const auto error = [&](std::size_t q) { return std::sqrt(widening) * found.standard_deviations[q]; };
-  out.amplitude = logarithmic(p[0], error(0), quantile);
+  if (parameters.tied()) out.lower_length = logarithmic(p[0], error(0), quantile);
+  out.amplitude = logarithmic(std::log(out.model.amplitude), std::sqrt(out.covariance[0]), quantile);
   out.dimension = plain(p[1], error(1), quantile);
   out.length = logarithmic(p[2], error(2), quantile);
   out.background = plain(p[3], error(3), quantile);
@@ -227,12 +312,14 @@ ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const S
       std::minmax_element(data.begin(), data.end(), [](const Datum& a, const Datum& b) { return a.k < b.k; });
   fit.k_low = first->k;
   fit.k_high = last->k;
-  const LeastSquaresFit found = solve(data);
+  const Parameters parameters(options.solid_fraction);
+  const LeastSquaresFit found = solve(parameters, data, options);
   if (found.parameters.size() != kParameters || found.standard_deviations.size() != kParameters) {
     fit.reason = "no fit: " + found.message;
     return fit;
   }
-  fill(found, fit);
+  fill(found, parameters, fit);
+  fit.bounded = bounded_text(found, options);
   fit.reason = judge(found, fit, options);
   fit.usable = fit.reason.empty();
   return fit;

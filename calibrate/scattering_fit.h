@@ -1,6 +1,7 @@
 // Fractal dimension and correlation length of a packing from the intensity that it scatters [CP 3.5].
 #pragma once
 
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -32,8 +33,16 @@ double scattering_lower_length(const ScatteringModel& model, double solid_fracti
 struct ScatteringFitOptions {
   double k_low = 0.0;  ///< fitted range of k [1/length]; 0: from the first bin on
   double k_high =
-      std::numbers::pi;      ///< about pi/a, two diameters: beyond, the form factor of the disks bends the curve
-  double disk = 1.0;         ///< largest diameter: a xi below it is reported
+      std::numbers::pi;  ///< about pi/a, two diameters: beyond, the form factor of the disks bends the curve
+  double disk = 1.0;     ///< largest diameter: a xi below it is reported
+  /// Above 0: the amplitude is tied to it, A = Phi 2 pi l^2 Gamma(dF) (xi/l)^dF, and l, where the fractal begins, stays
+  /// within the sizes of what it is made of.
+  double solid_fraction = 0.0;
+  double lower_length_min = 0.25;  ///< smallest radius [length]
+  double lower_length_max = 1.0;   ///< largest diameter [length]
+  /// Largest c: that of disks at independent places (independent_intensity); infinite: any, also below 0. A finite one
+  /// keeps c at 0 or above.
+  double background_max = std::numeric_limits<double>::infinity();
   double cell_length = 0.0;  ///< shortest period: a xi beyond half of it is reported; 0: unknown
 };
 
@@ -53,20 +62,27 @@ struct ScatteringFit {
   ScatteringEstimate dimension;
   ScatteringEstimate length;
   ScatteringEstimate background;
-  std::vector<double> covariance;  ///< 4 x 4 row-major of (ln A, dF, ln xi, c)
-  double k_low = 0.0;              ///< first and last k that were fitted
+  ScatteringEstimate lower_length;  ///< l, where the amplitude is tied to it; else zero
+  std::string bounded;              ///< which numbers ended at a bound, and are taken as known in the errors of others
+  std::vector<double> covariance;   ///< 4 x 4 row-major of (ln A, dF, ln xi, c)
+  double k_low = 0.0;               ///< first and last k that were fitted
   double k_high = 0.0;
   std::size_t bins = 0;
   double chi2_per_degree = 0.0;  ///< about 1 when the model holds; above 1 the errors have been widened by its root
 };
+
+/// Intensity of disks at places that do not know of each other, at k = 0: sum of squared areas over the area of the
+/// cell, Phi <(pi d^2/4)^2>/<pi d^2/4> [length^2].
+double independent_intensity(const std::vector<double>& diameters, double cell_area);
 
 /// Least squares of ln I over the bins in [k_low, k_high]. A mode of a disordered density field has an exponentially
 /// distributed intensity, so the mean of m independent ones is gamma-distributed: its logarithm has the bias
 /// psi(m) - ln m and the deviation sqrt(psi'(m)), both exact, whatever the intensity. With them every residual has mean
 /// 0 and deviation 1, the steep start of the curve weighs as much as its modes tell, and chi^2 judges the model. Errors
 /// from the curvature; widened by sqrt(chi^2/degrees) (and Student's t) when that is above 1. Several starts.
-/// Several curves are fitted with common parameters (samples of one ensemble).
-/// Not usable, with the reason: fewer than 8 bins in the range, an intensity that is not positive and finite, no
+/// Several curves are fitted with common parameters (samples of one ensemble). One curve of a cell of few xi hardly
+/// tells amplitude, dF, xi and c apart: `solid_fraction` and `background_max` leave only what the disks allow. Not
+/// usable, with the reason: fewer than 8 bins in the range, an intensity that is not positive and finite, no
 /// convergence, parameters that the data do not determine, dF outside (0, 2], xi below the disks or beyond half the
 /// cell, an interval of dF wider than 2, chi^2 per degree above 10. Throws BadInput for options out of range.
 ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const ScatteringFitOptions& options = {});

@@ -12,22 +12,9 @@
 #include "common/state/run_control.h"
 #include "common/system.h"
 #include "microsim/protocol.h"
+#include "microsim/soft_content.h"
 
 namespace softgrain {
-
-/// A soft particle inside a soft particle.
-struct InnerSoft {
-  Vec3 x{};        ///< in units of the shell that holds it, from its centre
-  double r = 0.0;  ///< likewise
-};
-
-/// What a soft particle holds.
-struct SoftContent {
-  ShellPacking grains;
-  std::vector<InnerSoft> inner;              ///< of the next level; they act by law
-  std::vector<ShellPacking> inner_packings;  ///< unless their grains are here: inner soft particle k holds packing k,
-                                             ///< turn by turn, in a shell that moves with the forces on it
-};
 
 /// How soft particles inside soft particles interact. Laws must be without damping.
 struct InnerLaws {

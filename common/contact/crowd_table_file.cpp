@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 #include "common/contact/crowd_from_table.h"
 #include "common/data/crowd_replicates.h"
@@ -19,7 +19,7 @@ constexpr const char* kFormat = "crowd law table";
 
 /// Force of one contact over E Rs^2 on a grid of overlaps, one row per neighbour.
 void write_grid(const h5::Group& group, const CrowdLaw& law, double overlap_max) {
-  constexpr std::size_t kPoints = 101;
+  constexpr std::size_t kPoints = 51;
   const CrowdModel model = crowd_model(law);
   std::vector<CrowdPartner> partners{{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
   std::vector<double> reach{overlap_max};
@@ -47,6 +47,20 @@ void write_grid(const h5::Group& group, const CrowdLaw& law, double overlap_max)
   group.write("force", force, {partners.size(), kPoints});
 }
 
+/// One row per parameter of planes.
+void write_parameters(const h5::Group& group, const CrowdLaw& law) {
+  std::vector<double> all;
+  std::string names;
+  for (const CrowdParameterName& p : kCrowdParameters) {
+    const Estimate& v = law.*p.estimate;
+    all.insert(all.end(), {v.value, v.standard_error, v.low, v.high});
+    names += (names.empty() ? "" : ", ") + std::string(p.key);
+  }
+  group.write("parameters", all, {std::size(kCrowdParameters), 4});
+  group.attribute_of("parameters", "rows", names);
+  group.attribute_of("parameters", "columns", "value, standard error, ends of the 95 % interval");
+}
+
 /// What the fit gave for packings drawn with replacement; "numbers" says which law they belong to.
 void write_replicates(const h5::Group& group, const CrowdLaw& law) {
   if (law.replicates.empty()) return;
@@ -72,10 +86,7 @@ void write_table_file(const LawTable& table, const std::string& path, const Prov
     write_spec(group, e.spec);
     for (const CrowdLaw& law : e.laws) {
       const h5::Group of_law = group.create(to_string(law.form));
-      for (const CrowdParameterName& p : kCrowdParameters) {
-        const Estimate& v = law.*p.estimate;
-        of_law.write(p.key, std::array<double, 4>{v.value, v.standard_error, v.low, v.high});
-      }
+      write_parameters(of_law, law);
       write_replicates(of_law, law);
       write_grid(of_law, law, e.overlap_max);
     }

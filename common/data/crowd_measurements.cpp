@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "common/data/fields.h"
 #include "common/data/spec_io.h"
@@ -216,6 +218,47 @@ void require_path(const CrowdRun& run, const CrowdConfiguration& c) {
   }
 }
 
+/// Mean of the converged ones; all others say that none is.
+CrowdPoint mean_of(const std::vector<const CrowdPoint*>& points) {
+  std::vector<const CrowdPoint*> good;
+  for (const CrowdPoint* p : points)
+    if (p->converged) good.push_back(p);
+  if (good.empty()) return *points.front();
+  CrowdPoint mean = *good.front();
+  for (std::size_t k = 1; k < good.size(); ++k) {
+    const CrowdPoint& p = *good[k];
+    for (std::size_t j = 0; j < mean.overlap.size(); ++j) mean.overlap[j] += p.overlap[j];
+    for (std::size_t j = 0; j < mean.normal.size(); ++j) mean.normal[j] += p.normal[j];
+    for (std::size_t j = 0; j < mean.tangential.size(); ++j) mean.tangential[j] += p.tangential[j];
+    for (std::size_t j = 0; j < mean.moment.size(); ++j) mean.moment[j] += p.moment[j];
+    mean.centre += p.centre;
+    mean.residual = std::max(mean.residual, p.residual);
+    mean.max_overlap = std::max(mean.max_overlap, p.max_overlap);
+  }
+  const double share = 1.0 / static_cast<double>(good.size());
+  for (double& x : mean.overlap) x *= share;
+  for (double& x : mean.normal) x *= share;
+  for (Vec3& x : mean.tangential) x *= share;
+  for (Vec3& x : mean.moment) x *= share;
+  mean.centre *= share;
+  return mean;
+}
+
+CrowdRun mean_of(const std::vector<const CrowdRun*>& runs) {
+  CrowdRun mean{runs.front()->configuration, runs.front()->packing, {}, {}};
+  std::size_t length = runs.front()->points.size();
+  for (const CrowdRun* r : runs) {
+    length = std::min(length, r->points.size());
+    mean.cost += r->cost;
+  }
+  for (std::size_t k = 0; k < length; ++k) {
+    std::vector<const CrowdPoint*> points;
+    for (const CrowdRun* r : runs) points.push_back(&r->points[k]);
+    mean.points.push_back(mean_of(points));
+  }
+  return mean;
+}
+
 /// Runs, configurations and packings must speak of each other.
 void require_consistent(const CrowdMeasurements& data) {
   for (const CrowdRun& run : data.runs) {
@@ -251,8 +294,19 @@ bool CrowdConfiguration::in_proportion() const {
   return true;
 }
 
+CrowdMeasurements mean_over_orientations(const CrowdMeasurements& data) {
+  CrowdMeasurements out = data;
+  if (std::all_of(data.runs.begin(), data.runs.end(), [](const CrowdRun& r) { return r.orientation == 0; })) return out;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<const CrowdRun*>> of_packing;
+  for (const CrowdRun& r : data.runs) of_packing[{r.configuration, r.packing}].push_back(&r);
+  out.runs.clear();
+  for (const auto& [place, runs] : of_packing) out.runs.push_back(mean_of(runs));
+  return out;
+}
+
 void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs) {
   write_records(group, runs);
+  write_column(group, "orientation", "1", runs, [](const auto& r) { return r.orientation; });
   write_column(group, "point_count", "1", runs, [](const auto& r) { return r.points.size(); });
   std::vector<CrowdPoint> points;
   for (const CrowdRun& run : runs) points.insert(points.end(), run.points.begin(), run.points.end());
@@ -262,6 +316,9 @@ void write_crowd_runs(const h5::Group& group, const std::vector<CrowdRun>& runs)
 std::vector<CrowdRun> read_crowd_runs(const h5::Group& group) {
   std::vector<CrowdRun> runs(column_length(group, "configuration"));
   read_records(group, runs);
+  if (group.has("orientation"))
+    read_integers(group, "orientation", runs,
+                  [](auto& r, auto v) { r.orientation = below(v, 1000000, "orientation"); });
   const std::vector<CrowdPoint> points = read_points(group);
   Slices slices(points.size());
   read_integers(group, "point_count", runs, [&](auto& r, auto v) { r.points = take(points, slices, v); });

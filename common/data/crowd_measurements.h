@@ -90,12 +90,13 @@ struct CrowdPoint {
   bool converged = false;
 };
 
-/// All points of one packing in one configuration.
+/// All points of one packing, in one orientation, in one configuration.
 struct CrowdRun {
   std::int64_t configuration = 0;  ///< index into CrowdMeasurements::configurations
   std::int64_t packing = 0;        ///< index into CrowdMeasurements::packings
   std::vector<CrowdPoint> points;
   Cost cost;
+  std::int64_t orientation = 0;  ///< 0: as it was made, else so many times turned (microsim/soft_content.h)
 };
 
 struct CrowdMeasurements {
@@ -105,6 +106,11 @@ struct CrowdMeasurements {
   std::vector<CrowdConfiguration> configurations;
   std::vector<CrowdRun> runs;
 };
+
+/// The same with one run of every packing in every configuration: the mean over its orientations, point by point, of
+/// those that converged (residual and overlap of grains: the largest). What one packing tells in several orientations
+/// is not independent, so that errors are those over packings. A run that ended early ends the mean.
+CrowdMeasurements mean_over_orientations(const CrowdMeasurements& data);
 
 /// Writes to an HDF5 file, atomically. Throws FileTrouble.
 void save_crowd(const CrowdMeasurements& data, const std::string& path,

@@ -21,11 +21,12 @@ extern "C" herr_t softgrain_note_error(unsigned depth, const H5E_error2_t* entry
   return 0;
 }
 
-/// Locks are taken where the file system knows them. The format of HDF5 1.8: small, checksummed headers.
+/// Locks are taken where the file system knows them. The format of HDF5 1.10: small, checksummed headers, and no index
+/// of 2 kB for every data set of one chunk.
 Handle access_list() {
   Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(list.id(), true, true);
-  H5Pset_libver_bounds(list.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  H5Pset_libver_bounds(list.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   return list;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -145,6 +146,59 @@ GrainBoxForecast forecast(const GrainBoxSpec& spec) {
   out.overlap_ratio = std::pow(force / (4.0 / 3.0 * modulus * std::sqrt(0.5 * r)), 2.0 / 3.0) / r;
   out.contacts = 0.5 * kContacts * grains;
   out.bytes = kBytesPerGrain * grains;
+  return out;
+}
+
+namespace {
+
+using Arrangements = std::vector<const GrainBoxResult*>;
+
+MeanError mean_over(const Arrangements& all, const std::function<double(const GrainBoxResult&)>& value) {
+  std::vector<double> values;
+  for (const GrainBoxResult* r : all)
+    if (const double v = value(*r); std::isfinite(v)) values.push_back(v);
+  MeanError m = mean_error(values);
+  if (m.n < 2) m.mean = m.error = kNaN;
+  return m;
+}
+
+OverArrangements statistics_of(const Arrangements& all, const std::vector<double>& stresses) {
+  OverArrangements out;
+  out.pack = all.front()->spec.of;
+  out.arrangements = all.size();
+  for (const double stress : stresses) {
+    const MeanError bulk = mean_over(all, [&](const GrainBoxResult& r) { return moduli_at(r, stress).bulk; });
+    const MeanError shear = mean_over(all, [&](const GrainBoxResult& r) { return moduli_at(r, stress).shear; });
+    out.moduli.push_back({stress, bulk.mean, bulk.error, shear.mean, shear.error, bulk.n});
+  }
+  for (double SlidingShares::*share : {&SlidingShares::start_limit, &SlidingShares::start, &SlidingShares::end}) {
+    const MeanError m = mean_over(all, [&](const GrainBoxResult& r) {
+      const auto points = r.points_of(BoxPhase::loading);
+      return points.empty() ? kNaN : points.back()->sliding.*share;
+    });
+    out.sliding.*share = m.mean;
+    out.sliding_error.*share = m.error;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<OverArrangements> over_arrangements(const std::vector<GrainBoxResult>& results) {
+  const std::vector<double> stresses = comparison_stresses(results);
+  std::vector<Arrangements> packs;
+  for (const GrainBoxResult& r : results) {
+    if (!r.usable) continue;
+    const auto known = std::find_if(packs.begin(), packs.end(),
+                                    [&](const Arrangements& a) { return a.front()->spec.of == r.spec.of; });
+    if (known == packs.end())
+      packs.push_back({&r});
+    else
+      known->push_back(&r);
+  }
+  std::vector<OverArrangements> out;
+  for (const Arrangements& pack : packs)
+    if (pack.size() > 1) out.push_back(statistics_of(pack, stresses));
   return out;
 }
 

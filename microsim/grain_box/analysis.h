@@ -1,6 +1,9 @@
 // What follows from a run, or from a scene before it runs.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "microsim/grain_box/record.h"
 
 namespace softgrain {
@@ -16,6 +19,18 @@ struct ModuliAt {
   std::size_t points = 0;
 };
 [[nodiscard]] ModuliAt moduli_at(const GrainBoxResult& result, double pressure);
+
+/// Over the arrangements of one pack: means of K and G at a stress and of the sliding shares at the end of the loading,
+/// with standard errors over arrangements. NaN where fewer than two of them have a value.
+struct OverArrangements {
+  std::string pack;
+  std::size_t arrangements = 0;  ///< that came to their end
+  std::vector<ModuliAt> moduli;  ///< at comparison_stresses(); `points`: arrangements
+  SlidingShares sliding{};
+  SlidingShares sliding_error{};
+};
+/// Of every pack that has two arrangements or more, in the order of the results.
+[[nodiscard]] std::vector<OverArrangements> over_arrangements(const std::vector<GrainBoxResult>& results);
 
 /// Round stresses within the loading of all packs, at which their moduli are set side by side [Pa].
 [[nodiscard]] std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results);

@@ -119,19 +119,50 @@ ContactCounts count_contacts(const GrainPack& pack) {
   return out;
 }
 
-double share_at_current_limit(const GrainPack& pack) {
+namespace {
+
+double friction_of(const GrainPack& pack, const PackContact& c) {
+  return c.j < pack.grains() ? pack.friction : pack.walls[static_cast<std::size_t>(c.j - pack.grains())].friction;
+}
+
+/// Share of the contacts that carry force for which `at_limit` holds.
+template <class AtLimit>
+double share_of(const GrainPack& pack, const std::vector<PackContact>& contacts, AtLimit&& at_limit) {
   if (!(pack.friction > 0.0)) return std::numeric_limits<double>::quiet_NaN();
-  std::int64_t contacts = 0;
-  std::int64_t at_limit = 0;
-  for (const PackContact& c : pack.contacts) {
+  std::int64_t all = 0;
+  std::int64_t slide = 0;
+  for (const PackContact& c : contacts) {
     if (!(c.normal_force > 0.0)) continue;
-    const double friction =
-        c.j < pack.grains() ? pack.friction : pack.walls[static_cast<std::size_t>(c.j - pack.grains())].friction;
-    ++contacts;
-    at_limit += friction > 0.0 && norm(c.tangential_force) >= (1.0 - 1e-6) * friction * c.normal_force ? 1 : 0;
+    ++all;
+    slide += at_limit(c) ? 1 : 0;
   }
-  return contacts > 0 ? static_cast<double>(at_limit) / static_cast<double>(contacts)
-                      : std::numeric_limits<double>::quiet_NaN();
+  return all > 0 ? static_cast<double>(slide) / static_cast<double>(all) : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool reaches(const GrainPack& pack, const PackContact& c, double normal_force) {
+  const double friction = friction_of(pack, c);
+  return friction > 0.0 && normal_force > 0.0 && norm(c.tangential_force) >= (1.0 - 1e-6) * friction * normal_force;
+}
+
+}  // namespace
+
+double share_at_current_limit(const GrainPack& pack) {
+  return share_of(pack, pack.contacts, [&](const PackContact& c) { return reaches(pack, c, c.normal_force); });
+}
+
+SlidingShares sliding_shares(const std::vector<PackContact>& before, const GrainPack& after) {
+  const auto start_force = [&](const PackContact& c) {
+    const auto found =
+        std::lower_bound(before.begin(), before.end(), c,
+                         [](const PackContact& x, const PackContact& y) { return x.i != y.i ? x.i < y.i : x.j < y.j; });
+    return found != before.end() && found->i == c.i && found->j == c.j ? found->normal_force : 0.0;
+  };
+  SlidingShares out;
+  out.start_limit =
+      share_of(after, after.contacts, [&](const PackContact& c) { return reaches(after, c, start_force(c)); });
+  out.start = share_of(after, before, [&](const PackContact& c) { return reaches(after, c, c.normal_force); });
+  out.end = share_at_current_limit(after);
+  return out;
 }
 
 std::vector<Vec3> wall_moves(const Vec3& strain, const Vec3& reference) {

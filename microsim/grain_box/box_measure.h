@@ -41,6 +41,16 @@ struct ContactCounts {
 /// CoulombRule::reference it is smaller than the share that slid: P has grown since the limit was set.
 [[nodiscard]] double share_at_current_limit(const GrainPack& pack);
 
+/// Three ways to count what slides in an increment: shares of contacts with |Q| >= (1 - 1e-6) mu P, which the
+/// publication does not tell apart [QS 2.3]. NaN without friction.
+struct SlidingShares {
+  double start_limit = 0.0;  ///< Q at its end against P at its start; new contacts have no such limit and do not slide
+  double start = 0.0;        ///< both at its start, of the contacts that there were
+  double end = 0.0;          ///< both at its end
+};
+/// `before`: contacts at the start of the increment, sorted by (i, j).
+[[nodiscard]] SlidingShares sliding_shares(const std::vector<PackContact>& before, const GrainPack& after);
+
 /// Contacts of every grain.
 [[nodiscard]] std::vector<std::int32_t> contacts_per_grain(const GrainPack& pack);
 

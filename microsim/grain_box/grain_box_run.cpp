@@ -185,6 +185,7 @@ void GrainBoxRun::record(bool probe) {
 
 void GrainBoxRun::step(const BoxMove& move) {
   BoxStepper stepper = this->stepper();
+  const std::vector<PackContact> before = state_.pack.contacts;
   const auto note_failures = [&] {
     for (FailedTry& f : stepper.take_failures())
       state_.failures.push_back({static_cast<std::int64_t>(state_.points.size()), std::move(f)});
@@ -198,6 +199,7 @@ void GrainBoxRun::step(const BoxMove& move) {
   note_failures();
   const auto n = static_cast<std::int64_t>(state_.points.size());
   record(spec_.loading.probe_every > 0 && state_.phase != BoxPhase::compaction && n % spec_.loading.probe_every == 0);
+  state_.points.back().sliding = sliding_shares(before, state_.pack);
   StepEffort effort = stepper.take_effort();
   effort.factorisations += state_.points.back().effort.factorisations;
   state_.points.back().effort = effort;
@@ -282,7 +284,10 @@ void GrainBoxRun::add_friction() {
   for (PackWall& wall : state_.pack.walls) wall.friction = finite_friction(spec_.walls.friction);
   if (!(spec_.friction > 0.0)) return;
   BoxMove move;
-  move.strain[spec_.generation.axis] = spec_.generation.increment;
+  if (spec_.generation.isotropic)
+    move = isotropic(spec_.generation.increment);
+  else
+    move.strain[spec_.generation.axis] = spec_.generation.increment;
   while (!friction_phase_over(state_.points, spec_.generation)) {
     if (static_cast<std::int64_t>(std::count_if(state_.points.begin(), state_.points.end(), [](const BoxPoint& p) {
           return p.phase == BoxPhase::friction;
@@ -376,6 +381,7 @@ bool friction_phase_over(const std::vector<BoxPoint>& points, const GrainBoxGene
     return sum / static_cast<double>(w);
   };
   const double change = mean(&BoxPoint::sliding_share, n - w) - mean(&BoxPoint::sliding_share, n - 2 * w);
+  if (generation.isotropic) return std::abs(change) <= generation.saturation;  // no G to be had
   return std::abs(change) <= generation.saturation &&
          mean(&BoxPoint::shear_modulus, n - w) > mean(&BoxPoint::shear_modulus, n - 2 * w);
 }
@@ -391,7 +397,7 @@ double increment_at(const GrainBoxLoading& loading, double strain) {
 
 GrainBoxResult run_grain_box(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState state,
                              const RunControl<GrainBoxState>& control) {
-  return GrainBoxRun(spec, seed, std::move(state), control).run();
+  return GrainBoxRun(spec, seed + spec.arrangement, std::move(state), control).run();
 }
 
 }  // namespace softgrain

@@ -44,6 +44,14 @@ constexpr NumberColumn kNumbers[] = {{"shear_stress", "Pa", &BoxPoint::shear},
                                      {"mean_normal_force", "N", &BoxPoint::mean_force},
                                      {"solid_fraction", "1", &BoxPoint::solid_fraction}};
 
+struct SlidingColumn {
+  const char* name;
+  double SlidingShares::*values;
+};
+constexpr SlidingColumn kSliding[] = {{"sliding_limit_at_start", &SlidingShares::start_limit},
+                                      {"sliding_at_start", &SlidingShares::start},
+                                      {"sliding_at_end", &SlidingShares::end}};
+
 struct CountColumn {
   const char* name;
   std::int64_t BoxPoint::*values;
@@ -87,6 +95,8 @@ void write_points(const h5::Group& g, const std::vector<BoxPoint>& points) {
   for (const VectorColumn& c : kVectors) write_vector(g, c, points);
   for (const NumberColumn& c : kNumbers)
     write_column(g, c.name, c.unit, points, [&](const BoxPoint& p) { return p.*c.values; });
+  for (const SlidingColumn& c : kSliding)
+    write_column(g, c.name, "1", points, [&](const BoxPoint& p) { return p.sliding.*c.values; });
   for (const CountColumn& c : kCounts)
     write_column(g, c.name, "1", points, [&](const BoxPoint& p) { return p.*c.values; });
   for (const EffortColumn& c : kEffort)
@@ -100,6 +110,8 @@ std::vector<BoxPoint> read_points(const h5::Group& g) {
   for (const VectorColumn& c : kVectors) read_vector(g, c, points);
   for (const NumberColumn& c : kNumbers)
     read_doubles(g, c.name, c.unit, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
+  for (const SlidingColumn& c : kSliding)
+    if (g.has(c.name)) read_doubles(g, c.name, "1", points, [&](BoxPoint& p, double v) { p.sliding.*c.values = v; });
   for (const CountColumn& c : kCounts)
     read_integers(g, c.name, points, [&](BoxPoint& p, std::int64_t v) { p.*c.values = v; });
   for (const EffortColumn& c : kEffort)
@@ -150,6 +162,7 @@ void write_fits(const h5::Group& g, const GrainBoxResult& result) {
 
 void write_spec(const h5::Group& g, const GrainBoxSpec& spec) {
   g.attribute("name", spec.name);
+  g.attribute("arrangement_of", spec.of);
   g.attribute("grains", spec.grains);
   g.attribute("friction", spec.friction);
   g.attribute("wall_friction", spec.walls.friction);
@@ -170,6 +183,7 @@ GrainBoxResult read_result(const h5::Group& g) {
   GrainBoxResult result;
   GrainBoxSpec& spec = result.spec;
   spec.name = g.text("name");
+  spec.of = g.has_attribute("arrangement_of") ? g.text("arrangement_of") : spec.name;
   spec.grains = g.integer("grains");
   spec.friction = g.number("friction");
   spec.walls.friction = g.number("wall_friction");

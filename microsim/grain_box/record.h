@@ -7,6 +7,7 @@
 #include "common/io/hdf5_file.h"
 #include "common/io/provenance.h"
 #include "common/statics/grain_pack.h"
+#include "microsim/grain_box/box_measure.h"
 #include "microsim/grain_box/moduli.h"
 #include "microsim/grain_box/spec.h"
 #include "microsim/grain_box/stepper.h"
@@ -39,7 +40,8 @@ struct BoxPoint {
   double shear_probe = 0.0;
   double bulk_medium = 0.0;  ///< effective medium [Pa]
   double shear_medium = 0.0;
-  double sliding_share = 0.0;
+  double sliding_share = 0.0;  ///< at the limit that the rule of friction has
+  SlidingShares sliding{};     ///< the same counted in three ways; NaN at the first state
   double coordination = 0.0;
   double coordination_without = 0.0;  ///< rattlers left out
   double mean_force = 0.0;            ///< normal [N]

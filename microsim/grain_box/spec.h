@@ -51,6 +51,7 @@ struct GrainBoxGeneration {
   double saturation = 0.01;           ///< largest change of the mean sliding share between two windows
   std::int64_t max_increments = 400;  ///< of (b)
   int axis = 2;                       ///< of the uniaxial compression
+  bool isotropic = false;             ///< (b): compressed alike from all sides instead; ends when sliding has saturated
 };
 
 enum class AxisControl { strain, stress };
@@ -78,7 +79,9 @@ struct GrainBoxFit {
 
 /// Everything about one pack and its run.
 struct GrainBoxSpec {
-  std::string name = "pack";  ///< of the variant
+  std::string name = "pack";      ///< of the variant
+  std::string of = "pack";        ///< the name without the number of the arrangement
+  std::uint64_t arrangement = 0;  ///< which of several: added to the seed
   std::int64_t grains = 2740;
   Vec3 aspect{{1.0, 1.0, 1.0}};  ///< box lengths, relative
   double solid_fraction = 0.3;   ///< of the loose arrangement

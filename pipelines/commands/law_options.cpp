@@ -88,6 +88,7 @@ void add_plan(CLI::App& app, LawOptions& o) {
       ->option_text("SHARE");
   app.add_option("--out", o.out, "Directory of the run of --for SCENE; default results/plan_SCENE")->option_text("DIR");
   add_choice<Crowd>(app, "--form", o.form, "Form of the law; default the best that the run has error bars of");
+  app.add_flag("--toml", o.as_scene, "The plan as [[plan]] tables, to be appended to the law-table scene");
 }
 
 /// Names of the options that stand on the command line.

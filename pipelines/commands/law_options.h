@@ -64,6 +64,7 @@ struct LawOptions {
   std::string measure;         ///< --measure: law-table scene with the configurations that could be measured
   std::int64_t packings = 8;   ///< --packings: added at a time
   double narrow = 0.5;         ///< --narrow: wanted width over what it is
+  bool as_scene = false;       ///< --toml of plan: as tables of a law-table scene
   std::string command_line{};  ///< as given, for provenance
 
   std::vector<std::string> given;  ///< names of the options on the command line, for those that do not go together

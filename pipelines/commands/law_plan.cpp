@@ -82,13 +82,16 @@ json json_of(const LawPlan& plan, const std::string& law, const std::string& run
            {"remarks", plan.remarks}};
   for (const PlanCandidate& c : plan.candidates)
     out["candidates"].push_back({{"configuration", c.configuration},
+                                 {"depth", c.depth},
                                  {"overlap", c.overlap},
+                                 {"packings", c.packings},
                                  {"scatter", c.scatter},
                                  {"measured", c.measured},
                                  {"core_seconds_per_packing", c.seconds},
                                  {"share", c.share}});
   for (const PlanStep& s : plan.steps)
     out["plan"].push_back({{"configuration", plan.candidates[s.candidate].configuration},
+                           {"depth", plan.candidates[s.candidate].depth},
                            {"overlap", plan.candidates[s.candidate].overlap},
                            {"packings", s.packings},
                            {"core_seconds", s.seconds},
@@ -120,9 +123,10 @@ ExitStatus plan_next(const LawOptions& o) {
   const std::string run = fs::is_directory(o.target) ? o.target : run_of(o, file.path);
   const LawPlan plan =
       plan_law(*file.table, file.path, candidates.crowd, curves_in(run), {o.packings, o.narrow, o.form});
-  write_standard_output(o.json
-                            ? json_of(plan, file.path, run).dump(2, ' ', false, json::error_handler_t::replace) + "\n"
-                            : plan_text(plan));
+  if (o.json)
+    write_standard_output(json_of(plan, file.path, run).dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  else
+    write_standard_output(o.as_scene ? plan_scene_text(plan) : plan_text(plan));
   return ExitStatus::good;
 }
 

@@ -355,6 +355,11 @@ TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {
   refused("min_packings = 2", "min_packings = 5", {"packings_max", "min_packings"});
   refused("replicates = 0", "replicates = 0\n[[variant]]\npackings = 2", {"beta", "a variant needs another"});
   refused("replicates = 0", "replicates = 0\n[[variant]]\nbeta = -1", {"beta = -1"});
+  refused("replicates = 0", "replicates = 0\n[[plan]]\nconfiguration = \"one-plain\"\npackings = 4",
+          {"configuration", "no [[configuration]] has this name"});
+  refused("replicates = 0", "replicates = 0\n[[plan]]\nconfiguration = \"one-plane\"\ndepth = 1.5\npackings = 4",
+          {"depth = 1.5"});
+  refused("points = 4", "points = 4\norientations = 0", {"orientations = 0"});
   refused("min_packings = 2", "min_packings = 3\n[[variant]]\nbeta = 4\npackings = 2", {"packings", "min_packings"});
 }
 

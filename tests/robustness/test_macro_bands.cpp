@@ -94,6 +94,14 @@ TEST_F(MacroBands, APlanSaysWhatToMeasureNext) {
   EXPECT_GT(told["core_seconds_alike"].get<double>(), told["core_seconds"].get<double>());
   const std::string text = run_the_program(plan).output;
   EXPECT_NE(text.find("plan, one after the other"), std::string::npos) << text;
+  for (const auto& candidate : told["candidates"])
+    EXPECT_NE(candidate["configuration"], "icosahedron-plane-free") << "no fit sees what is held out";
+  // As tables of the scene: what it has and what the plan adds.
+  const std::string scene = read_text(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/law_table.toml");
+  write_text_atomic(directory_.file("more.toml"), scene + run_the_program(plan + "--toml").output);
+  const auto checked = run_the_program("check '" + directory_.file("more.toml") + "'");
+  EXPECT_EQ(checked.status, 0) << checked.output;
+  EXPECT_NE(checked.output.find("as planned"), std::string::npos) << checked.output;
 }
 
 TEST_F(MacroBands, BitsDoNotDependOnThreads) {

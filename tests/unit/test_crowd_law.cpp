@@ -166,12 +166,12 @@ TEST_F(CrowdLawIo, TheGridHoldsTheForcesOfTheLaw) {
   const h5::Group group = h5::open_file(directory_.file("law_table.h5")).open("entry_0").open("bag");
   const auto overlap = group.doubles("overlap");
   const auto force = group.doubles("force");
-  ASSERT_EQ(overlap.size(), 5U * 101U);  // one plane, two solid, two soft
+  ASSERT_EQ(overlap.size(), 5U * 51U);  // one plane, two solid, two soft
   const CrowdModel model = crowd_model(*entry.find(Crowd::bag));
   const CrowdPartner soft{PartnerKind::soft, 1.0, {{1.0, 0.0, 0.0}}};
-  EXPECT_EQ(overlap[100], entry.overlap_max);
-  EXPECT_EQ(force[3 * 101 + 77], crowd_forces(model, {soft}, {overlap[3 * 101 + 77]})[0]);
-  EXPECT_GT(force[3 * 101 + 100], 0.0);
+  EXPECT_EQ(overlap[50], entry.overlap_max);
+  EXPECT_EQ(force[3 * 51 + 37], crowd_forces(model, {soft}, {overlap[3 * 51 + 37]})[0]);
+  EXPECT_GT(force[3 * 51 + 50], 0.0);
 }
 
 TEST_F(CrowdLawIo, MissingAndUnknownKeysAreNamed) {

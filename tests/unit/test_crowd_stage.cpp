@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "calibrate/crowd_states.h"
 #include "pipelines/kinds/law_table/crowd_stage.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "tests/support/crowd.h"
@@ -121,6 +122,59 @@ TEST_F(CrowdStage, AConfigurationHasAsManyPackingsAsItSays) {
   };
   EXPECT_EQ(runs(0), 2);
   EXPECT_EQ(runs(1), 5);
+}
+
+/// The plan's packings come in as far as it says, along the same states, and count where they were.
+TEST_F(CrowdStage, PlannedPackingsGoAsDeepAsTheySay) {
+  setup_.configurations.resize(1);
+  setup_.target = 0.9;
+  const CrowdMeasurements before = measure(nullptr);
+  setup_.plan = {{setup_.configurations[0].name, 0.6, 5}, {setup_.configurations[0].name, 1.0, 3}};
+  const CrowdMeasurements data = measure(nullptr);
+  EXPECT_EQ(contents_.size(), 5U);
+  ASSERT_EQ(data.runs.size(), 5U);
+  for (std::size_t k = 0; k < 2; ++k) test::expect_equal(data.runs[k].points, before.runs[k].points);
+  const auto& whole = data.runs[2].points;
+  EXPECT_EQ(whole.size(), before.runs[0].points.size()) << "the deeper ones first";
+  for (std::size_t r = 3; r < 5; ++r) {
+    const auto& points = data.runs[r].points;
+    EXPECT_EQ(data.runs[r].packing, static_cast<std::int64_t>(r));
+    ASSERT_FALSE(points.empty());
+    ASSERT_LT(points.size(), whole.size());
+    EXPECT_LE(points.back().overlap[0], 0.6 * 0.3 + 1e-12);
+    EXPECT_GT(whole[points.size()].overlap[0], 0.6 * 0.3) << "no state within the depth is left out";
+    for (std::size_t k = 0; k < points.size(); ++k) EXPECT_NEAR(points[k].overlap[0], whole[k].overlap[0], 1e-12);
+  }
+  const auto force = mean_end_force(setup_.configurations[0], data.runs);
+  EXPECT_EQ(force.runs, 3) << "ways that are cut short say nothing of the end";
+  const auto states = average_states(data);
+  EXPECT_EQ(states[0].states.front().packings, 5);
+  EXPECT_EQ(states[0].states.back().packings, 3);
+}
+
+/// A packing in two orientations is one packing: its mean counts, and the errors are those over packings.
+TEST_F(CrowdStage, OrientationsOfAPackingCountAsOne) {
+  setup_.configurations.resize(1);
+  setup_.target = 0.9;
+  const CrowdMeasurements one = measure(nullptr);
+  setup_.orientations = 2;
+  const CrowdMeasurements data = measure(nullptr);
+  ASSERT_EQ(data.runs.size(), 4U);
+  test::expect_equal(data.runs[0].points, one.runs[0].points);
+  EXPECT_EQ(data.runs[1].orientation, 1);
+  EXPECT_EQ(data.runs[1].packing, 0);
+  EXPECT_NE(data.runs[1].points.back().normal, data.runs[0].points.back().normal);
+  const CrowdMeasurements kept = load_crowd(options_.out + "/crowd.h5");
+  EXPECT_EQ(kept.runs[3].orientation, 1);
+  const CrowdMeasurements mean = mean_over_orientations(kept);
+  ASSERT_EQ(mean.runs.size(), 2U);
+  const auto end = [](const CrowdRun& r) { return r.points.back().normal[0]; };
+  EXPECT_DOUBLE_EQ(end(mean.runs[1]), 0.5 * (end(data.runs[2]) + end(data.runs[3])));
+  EXPECT_EQ(mean.runs[1].cost.loop_passes, data.runs[2].cost.loop_passes + data.runs[3].cost.loop_passes);
+  const auto force = mean_end_force(setup_.configurations[0], data.runs);
+  EXPECT_EQ(force.runs, 2);
+  EXPECT_DOUBLE_EQ(force.mean, 0.5 * (end(mean.runs[0]) + end(mean.runs[1])));
+  EXPECT_NE(crowd_text(data).find("2 orientations of every packing"), std::string::npos) << crowd_text(data);
 }
 
 /// One packing whose grains are thrown out of their shell ends nothing but its own runs.

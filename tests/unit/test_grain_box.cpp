@@ -181,6 +181,30 @@ TEST(GrainBoxMeasure, SharesAtTheLimitGoByTheForceAsItIs) {
   EXPECT_TRUE(std::isnan(share_at_current_limit(pack)));
 }
 
+/// P and Q of the start and of the end of an increment, one contact for every case.
+TEST(GrainBoxMeasure, SlidingIsCountedInThreeWays) {
+  GrainPack pack;
+  pack.position.resize(5);
+  pack.friction = 0.5;
+  const auto contact = [](int j, double normal, double tangential) {
+    PackContact c;
+    c.j = j;
+    c.normal_force = normal;
+    c.tangential_force = {{0.0, tangential, 0.0}};
+    return c;
+  };
+  const std::vector<PackContact> before{contact(1, 2.0, 0.9), contact(2, 2.0, 1.0), contact(4, 1.0, 0.5)};
+  // Grown to the limit of the start; off the limit as P grows; new, at its limit; one that was at its limit has opened.
+  pack.contacts = {contact(1, 4.0, 1.0), contact(2, 4.0, 0.5), contact(3, 2.0, 1.0)};
+  const SlidingShares shares = sliding_shares(before, pack);
+  EXPECT_DOUBLE_EQ(shares.start_limit, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(shares.start, 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(shares.end, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(shares.end, share_at_current_limit(pack));
+  pack.friction = 0.0;
+  EXPECT_TRUE(std::isnan(sliding_shares(before, pack).start_limit));
+}
+
 TEST(GrainBoxMeasure, WallMovesStrainTheBoxFromBothSides) {
   const auto moves = wall_moves({{0.01, 0.0, -0.02}}, {{1.0, 2.0, 4.0}});
   ASSERT_EQ(moves.size(), 6U);

@@ -186,6 +186,71 @@ TEST(ScatteringFit, BadDataAreReported) {
   EXPECT_THROW((void)fit_scattering({flat}, backwards), BadInput);
 }
 
+/// Disks of l = 0.6 at the solid fraction of the truth; what the amplitude is follows from dF, xi and l.
+ScatteringModel tied_truth(double dimension, double length, double background) {
+  constexpr double kPhi = 0.36;
+  constexpr double kLower = 0.6;
+  return {kPhi * 2.0 * kPi * kLower * kLower * std::tgamma(dimension) * std::pow(length / kLower, dimension), dimension,
+          length, background};
+}
+
+ScatteringFitOptions tied() {
+  ScatteringFitOptions o = options();
+  o.solid_fraction = 0.36;
+  o.background_max = 0.19;
+  return o;
+}
+
+TEST(ScatteringFit, ATiedAmplitudeGivesTheLowerLength) {
+  for (const double dimension : {1.3, 1.55, 1.9}) {
+    const ScatteringModel truth = tied_truth(dimension, 6.0, 0.08);
+    ScatteringCurve curve = synthetic(truth, 0);
+    for (std::size_t n = 0; n < curve.size(); ++n) {
+      curve.modes[n] = 1e9;
+      curve.intensity[n] = scattering_intensity(truth, curve.k[n]);
+    }
+    const ScatteringFit fit = fit_scattering({curve}, tied());
+    EXPECT_TRUE(fit.usable) << fit.reason;
+    EXPECT_NEAR(fit.model.dimension, dimension, 1e-4);
+    EXPECT_NEAR(fit.lower_length.value, 0.6, 1e-3);
+    EXPECT_NEAR(fit.model.amplitude, truth.amplitude, 1e-3 * truth.amplitude);
+    EXPECT_TRUE(fit.bounded.empty()) << fit.bounded;
+    // The error of the amplitude goes the way of the covariance.
+    EXPECT_NEAR(fit.amplitude.error, std::sqrt(fit.covariance[0]) * fit.amplitude.value, 1e-9 * fit.amplitude.value);
+  }
+}
+
+/// Single samples in a cell of seven xi: what the disks allow keeps dF nearer to the truth than a free amplitude does,
+/// within its errors.
+TEST(ScatteringFit, WhatDisksAllowSteadiesSingleSamples) {
+  const ScatteringModel truth = tied_truth(1.55, 6.0, 0.08);
+  constexpr int kTrials = 40;
+  double free_square = 0.0;
+  double tied_square = 0.0;
+  int covered = 0;
+  int usable = 0;
+  for (int t = 0; t < kTrials; ++t) {
+    const ScatteringCurve curve = synthetic(truth, static_cast<std::uint64_t>(500 + t));
+    const ScatteringFit free = fit_scattering({curve}, options());
+    const ScatteringFit bound = fit_scattering({curve}, tied());
+    free_square += std::pow(free.model.dimension - 1.55, 2) / kTrials;
+    tied_square += std::pow(bound.model.dimension - 1.55, 2) / kTrials;
+    usable += bound.usable ? 1 : 0;
+    covered += bound.dimension.low <= 1.55 && 1.55 <= bound.dimension.high ? 1 : 0;
+  }
+  EXPECT_GE(usable, 38);
+  EXPECT_LT(tied_square, 0.25 * free_square);
+  EXPECT_LT(std::sqrt(tied_square), 0.2);
+  EXPECT_GE(covered, 32);
+}
+
+TEST(ScatteringFit, IndependentDisksScatterByTheirAreas) {
+  EXPECT_DOUBLE_EQ(independent_intensity({1.0, 1.0}, 4.0), 2.0 * std::pow(0.25 * kPi, 2) / 4.0);
+  ScatteringFitOptions wrong = tied();
+  wrong.lower_length_max = 0.1;
+  EXPECT_THROW((void)fit_scattering({synthetic(kTruth, 1)}, wrong), BadInput);
+}
+
 TEST(ScatteringFit, LengthsOutsideTheCellOrTheDisksAreReported) {
   ScatteringCurve curve = synthetic(kTruth, 1);
   const auto with = [&](const ScatteringModel& truth) {

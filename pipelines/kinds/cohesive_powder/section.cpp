@@ -157,9 +157,12 @@ std::string shares_table(const std::vector<PackSummary>& samples) {
 
 std::string fit_text(const ScatteringFit& fit) {
   if (!fit.usable) return "not to be relied on (" + fit.reason + ")";
-  return fmt::format("up to k a = {}: dF = {}, xi = {} a, chi² per degree {}", format_number(fit.k_high, 3),
+  return fmt::format("up to k a = {}: dF = {}, xi = {} a, l = {} a, chi² per degree {}{}", format_number(fit.k_high, 3),
                      format_with_error(fit.dimension.value, fit.dimension.error),
-                     format_with_error(fit.length.value, fit.length.error), format_number(fit.chi2_per_degree, 2));
+                     format_with_error(fit.length.value, fit.length.error),
+                     format_with_error(fit.lower_length.value, fit.lower_length.error),
+                     format_number(fit.chi2_per_degree, 2),
+                     fit.bounded.empty() ? "" : ", at the end of what the disks allow: " + fit.bounded);
 }
 
 /// One fit to all samples, and what other ends of the fitted range make of it.

@@ -23,10 +23,19 @@ std::vector<double> edges_for(const std::vector<const System<2>*>& samples) {
   return scattering_bins(2.0 * std::numbers::pi / longest, kLastWaveNumber);
 }
 
-ScatteringFitOptions fit_options(const PowderStructureOptions& options, double cell_length) {
+/// What a fit may take from the samples: means of solid fraction and of the intensity of independent disks, shortest
+/// cell.
+ScatteringFitOptions fit_options(const PowderStructureOptions& options, const std::vector<PowderStructure>& samples) {
   ScatteringFitOptions o;
   o.k_high = options.fit_k_max;
-  o.cell_length = cell_length;
+  double independent = 0.0;
+  for (const PowderStructure& s : samples) {
+    const double length = std::min(s.lengths[0], s.lengths[1]);
+    o.cell_length = o.cell_length > 0.0 ? std::min(o.cell_length, length) : length;
+    o.solid_fraction += s.solid_fraction / static_cast<double>(samples.size());
+    independent += s.independent / static_cast<double>(samples.size());
+  }
+  o.background_max = independent;
   return o;
 }
 
@@ -42,12 +51,18 @@ PowderStructure structure_of(const System<2>& s, const std::vector<double>& edge
                              const PowderStructureOptions& options) {
   PowderStructure out;
   out.lengths = lengths_of(s);
+  std::vector<double> diameters;
+  for (Slot k = 0; k < s.particles.grains; ++k)
+    diameters.push_back(2.0 * s.particles.sphere[static_cast<std::size_t>(k)].r);
+  for (const double d : diameters)
+    out.solid_fraction += 0.25 * std::numbers::pi * d * d / (out.lengths[0] * out.lengths[1]);
+  out.independent = independent_intensity(diameters, out.lengths[0] * out.lengths[1]);
   PowderMesh mesh = powder_mesh(s, options.mesh);
   out.nx = mesh.nx;
   out.ny = mesh.ny;
   if (options.scattering) {
     out.curve = powder_scattering(mesh, edges);
-    out.fit = fit_scattering({*out.curve}, fit_options(options, std::min(out.lengths[0], out.lengths[1])));
+    out.fit = fit_scattering({*out.curve}, fit_options(options, {out}));
   }
   if (options.holes) out.holes = holes_of(s, mesh);
   return out;
@@ -56,11 +71,10 @@ PowderStructure structure_of(const System<2>& s, const std::vector<double>& edge
 void fit_ensemble(const std::vector<bool>& usable, const std::vector<double>& edges,
                   const PowderStructureOptions& options, PowderStructures& out) {
   std::vector<ScatteringCurve> curves;
-  double shortest = 0.0;
+  std::vector<PowderStructure> taken;
   for (std::size_t k = 0; k < out.samples.size(); ++k) {
     if (!usable[k]) continue;
-    const double length = std::min(out.samples[k].lengths[0], out.samples[k].lengths[1]);
-    shortest = curves.empty() ? length : std::min(shortest, length);
+    taken.push_back(out.samples[k]);
     curves.push_back(*out.samples[k].curve);
   }
   if (curves.empty()) {
@@ -68,11 +82,11 @@ void fit_ensemble(const std::vector<bool>& usable, const std::vector<double>& ed
     return;
   }
   out.mean_curve = pooled_curve(curves, edges);
-  out.fit = fit_scattering(curves, fit_options(options, shortest));
+  out.fit = fit_scattering(curves, fit_options(options, taken));
   for (const double share : {2.0 / 3.0, 4.0 / 3.0}) {
     PowderStructureOptions other = options;
     other.fit_k_max *= share;
-    out.other_ranges.push_back(fit_scattering(curves, fit_options(other, shortest)));
+    out.other_ranges.push_back(fit_scattering(curves, fit_options(other, taken)));
   }
 }
 

@@ -27,7 +27,9 @@ struct PowderStructure {
   std::optional<ScatteringCurve> curve;
   ScatteringFit fit;
   std::optional<PowderHoles> holes;
-  Vec<2> lengths{};  ///< of the cell [a]
+  Vec<2> lengths{};             ///< of the cell [a]
+  double solid_fraction = 0.0;  ///< of the disks
+  double independent = 0.0;     ///< independent_intensity of its disks [a^2]
   std::int64_t nx = 0;
   std::int64_t ny = 0;
 };

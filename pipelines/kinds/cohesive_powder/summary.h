@@ -108,6 +108,8 @@ void fields(auto&& visit, Of<ScatteringFit> auto& s) {
   estimate("xi", s.length);
   estimate("amplitude", s.amplitude);
   estimate("c", s.background);
+  estimate("l", s.lower_length);
+  visit("bounded", s.bounded, kLeftOut);
 }
 
 void fields(auto&& visit, Of<PowderStage> auto& s) {

@@ -71,6 +71,7 @@ ExitStatus run_grain_box_scene(const Scene& scene, const CommonOptions& options)
   summary["kind"] = "grain-box";
   summary["title"] = setup.title;
   summary["packs"] = grain_boxes_json(results);
+  if (const nlohmann::json over = arrangements_json(results); !over.empty()) summary["over_arrangements"] = over;
   summary["remarks"] = grain_box_remarks(results);
   if (setup.packs.front().material.sizes) summary["sizes"] = json_of(summaries_of(drawn_sizes(setup, run.seed)));
   summary["files"] = {{"record", run.path("grain_box.h5")}, {"report", run.path("report.html")}};

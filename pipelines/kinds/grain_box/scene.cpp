@@ -67,6 +67,11 @@ void read_box(const SceneTable& t, GrainBoxSpec& spec) {
   spec.solid_fraction = t.number("solid_fraction", Unit::none, Range::closed(0.01, 0.36), spec.solid_fraction);
 }
 
+void read_friction_path(const SceneTable& t, GrainBoxGeneration& g) {
+  g.isotropic =
+      t.choice("friction_path", {"uniaxial", "isotropic"}, g.isotropic ? "isotropic" : "uniaxial") == "isotropic";
+}
+
 void read_generation(const SceneTable& t, GrainBoxGeneration& g) {
   g.pressure = t.number("pressure", Unit::pressure, Range::positive(), g.pressure);
   g.pressure_tolerance = t.number("tolerance", Unit::none, Range{0.0, 0.1, true, false}, g.pressure_tolerance);
@@ -77,6 +82,7 @@ void read_generation(const SceneTable& t, GrainBoxGeneration& g) {
   g.saturation = t.number("saturation", Unit::none, Range{0.0, 1.0, true, false}, g.saturation);
   g.max_increments = t.count("max_increments", 1, 1000000, g.max_increments);
   g.axis = read_axis(t, g.axis);
+  read_friction_path(t, g);
 }
 
 void read_coulomb(const SceneTable& t, LeastWorkOptions& o) {
@@ -238,7 +244,15 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
   if (walls_follow) spec.walls.friction = spec.friction;
   spec.walls.friction = read_friction(t, "wall_mu", spec.walls.friction);
   spec.generation.pressure = t.number("pressure", Unit::pressure, Range::positive(), spec.generation.pressure);
+  read_friction_path(t, spec.generation);
   read_coulomb(t, spec.solver);
+  spec.solver.torsion = t.flag("torsion", spec.solver.torsion);
+  if (t.has("tolerance")) {
+    spec.solver.residual_tolerance =
+        t.number("tolerance", Unit::none, Range{0.0, 0.1, true, false}, spec.solver.residual_tolerance);
+    if (spec.solver.method == LeastWorkMethod::published)
+      t.mistake("tolerance", "solver.method = \"published\" stops by work_tolerance and force_tolerance; leave it out");
+  }
   read_increments(t, spec.loading);
   read_end(t, spec.loading);
   if (!sound || !t.sound()) return spec;
@@ -249,12 +263,30 @@ GrainBoxSpec read_variant(const SceneTable& t, GrainBoxSpec spec, bool walls_fol
 
 }  // namespace
 
+namespace {
+
+/// Every pack in so many arrangements: "4MPa", "4MPa-2", "4MPa-3".
+std::vector<GrainBoxSpec> repeated(const std::vector<GrainBoxSpec>& packs, std::int64_t arrangements) {
+  std::vector<GrainBoxSpec> out;
+  for (const GrainBoxSpec& pack : packs)
+    for (std::int64_t k = 0; k < arrangements; ++k) {
+      out.push_back(pack);
+      out.back().of = pack.name;
+      out.back().arrangement = static_cast<std::uint64_t>(k);
+      if (k > 0) out.back().name += fmt::format("-{}", k + 1);
+    }
+  return out;
+}
+
+}  // namespace
+
 std::vector<DrawnSizes> drawn_sizes(const GrainBoxSetup& setup, std::uint64_t seed) {
   std::vector<DrawnSizes> out;
   for (const GrainBoxSpec& spec : setup.packs)
     if (spec.material.sizes)
-      out.push_back(
-          {.of = "grains of " + spec.name, .asked = *spec.material.sizes, .samples = {drawn_radii(spec, seed)}});
+      out.push_back({.of = "grains of " + spec.name,
+                     .asked = *spec.material.sizes,
+                     .samples = {drawn_radii(spec, seed + spec.arrangement)}});
   return out;
 }
 
@@ -282,10 +314,17 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
       setup.packs.push_back(read_variant(variant, spec, !walls.has("mu"), sound));
       if (!names.insert(setup.packs.back().name).second) variant.mistake("name", "is used twice");
     }
-    if (!setup.packs.empty()) return setup;
-    if (sound) require_sense(loading, spec);
-    if (root.sound()) require_memory(root.table_or_empty("box"), spec);
-    setup.packs.push_back(spec);
+    const std::int64_t arrangements = root.count("arrangements", 1, 1000, 1);
+    if (setup.packs.empty()) {
+      if (sound) require_sense(loading, spec);
+      if (root.sound()) require_memory(root.table_or_empty("box"), spec);
+      setup.packs.push_back(spec);
+    }
+    setup.packs = repeated(setup.packs, arrangements);
+    std::set<std::string> all;
+    for (const GrainBoxSpec& pack : setup.packs)
+      if (!all.insert(pack.name).second)
+        root.mistake("arrangements", "two packs would be called '" + pack.name + "'; rename a variant");
     return setup;
   });
 }

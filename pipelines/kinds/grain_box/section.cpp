@@ -160,14 +160,15 @@ std::string generation_table(const Packs& packs) {
 
 std::string end_table(const Packs& packs) {
   HtmlTable table({"at the end", "sigma_c [MPa]", "solid fraction", "contacts per grain", "sliding",
-                   "with |Q| = mu P as it is then", "shear/sigma_c, largest [%]", "status"});
+                   "|Q| at the end = mu P at its start", "both at its start", "both at its end",
+                   "shear/sigma_c, largest [%]", "status"});
   for (const GrainBoxResult& r : packs) {
     const BoxPoint& c = last_of(r, BoxPhase::loading);
     double shear = 0.0;
     for (const BoxPoint* p : r.points_of(BoxPhase::loading)) shear = std::max(shear, p->shear / p->pressure);
     table.row({r.spec.name, format_number(c.pressure * kMega, 4), format_number(c.solid_fraction, 4),
-               format_number(c.coordination, 4), share_text(c.sliding_share),
-               share_text(share_at_current_limit(r.state.pack)), format_number(100.0 * shear, 2),
+               format_number(c.coordination, 4), share_text(c.sliding_share), share_text(c.sliding.start_limit),
+               share_text(c.sliding.start), share_text(c.sliding.end), format_number(100.0 * shear, 2),
                r.usable ? "good" : "broke off"});
   }
   return table.html();
@@ -210,6 +211,37 @@ std::string moduli_table(const Packs& packs, bool bulk) {
   return table.html();
 }
 
+/// "0.42 ± 0.01", of shares.
+std::string known_share(double value, double error) {
+  return std::isfinite(value) ? format_with_error(value, error) : "–";
+}
+
+std::string arrangements_tables(const Packs& packs) {
+  const std::vector<OverArrangements> over = over_arrangements(packs);
+  if (over.empty()) return "";
+  HtmlTable sliding(
+      {"pack", "arrangements", "sliding: |Q| at the end = mu P at its start", "both at its start", "both at its end"});
+  std::vector<std::string> header{"over arrangements, at sigma_c [MPa]"};
+  for (const ModuliAt& m : over.front().moduli) header.push_back(format_number(m.pressure * kMega, 3));
+  HtmlTable moduli(header);
+  for (const OverArrangements& o : over) {
+    sliding.row({o.pack, format_count(static_cast<std::int64_t>(o.arrangements)),
+                 known_share(o.sliding.start_limit, o.sliding_error.start_limit),
+                 known_share(o.sliding.start, o.sliding_error.start), known_share(o.sliding.end, o.sliding_error.end)});
+    std::vector<std::string> bulk{o.pack + ", K [GPa]"};
+    std::vector<std::string> shear{o.pack + ", G [GPa]"};
+    for (const ModuliAt& m : o.moduli) {
+      bulk.push_back(known_share(m.bulk * kGiga, m.bulk_error * kGiga));
+      shear.push_back(known_share(m.shear * kGiga, m.shear_error * kGiga));
+    }
+    moduli.row(std::move(bulk));
+    moduli.row(std::move(shear));
+  }
+  return moduli.html() + paragraph("Means over arrangements with the standard errors of these means.") +
+         sliding.html() +
+         paragraph("Contacts at the limit of friction in the last increment of the loading, counted in three ways.");
+}
+
 std::string effort_table(const Packs& packs) {
   HtmlTable table({"pack", "states", "iterations", "loop passes", "factorisations", "tries that failed",
                    "worst residual", "seconds", "seconds per state"});
@@ -238,7 +270,8 @@ std::string grain_box_section(const RunData& run) {
              "moduli", "Moduli",
              modulus_figures(packs) + exponents_table(packs) + moduli_table(packs, true) + moduli_table(packs, false) +
                  paragraph(
-                     "Mean over the intervals within 10 % of the stress, with the standard error of their scatter.")) +
+                     "Mean over the intervals within 10 % of the stress, with the standard error of their scatter.") +
+                 arrangements_tables(packs)) +
          section("pack-view", "Inside",
                  view.empty()
                      ? ""

@@ -32,6 +32,9 @@ json point_json(const std::vector<const BoxPoint*>& points) {
           {"rattlers", p.rattlers},
           {"fewest_contacts", p.fewest_contacts},
           {"sliding_share", number(p.sliding_share)},
+          {"sliding_limit_at_start", number(p.sliding.start_limit)},
+          {"sliding_at_start", number(p.sliding.start)},
+          {"sliding_at_end", number(p.sliding.end)},
           {"mean_normal_force", p.mean_force}};
 }
 
@@ -108,6 +111,31 @@ nlohmann::json grain_boxes_json(const std::vector<GrainBoxResult>& results) {
   const std::vector<double> stresses = comparison_stresses(results);
   json out = json::array();
   for (const GrainBoxResult& result : results) out.push_back(result_json(result, stresses));
+  return out;
+}
+
+nlohmann::json arrangements_json(const std::vector<GrainBoxResult>& results) {
+  json out = json::array();
+  for (const OverArrangements& o : over_arrangements(results)) {
+    json moduli = json::array();
+    for (const ModuliAt& m : o.moduli)
+      if (m.points > 1)
+        moduli.push_back({{"pressure", m.pressure},
+                          {"K", number(m.bulk)},
+                          {"K_error", number(m.bulk_error)},
+                          {"G", number(m.shear)},
+                          {"G_error", number(m.shear_error)},
+                          {"arrangements", m.points}});
+    out.push_back({{"pack", o.pack},
+                   {"arrangements", o.arrangements},
+                   {"moduli", moduli},
+                   {"sliding_limit_at_start", number(o.sliding.start_limit)},
+                   {"sliding_limit_at_start_error", number(o.sliding_error.start_limit)},
+                   {"sliding_at_start", number(o.sliding.start)},
+                   {"sliding_at_start_error", number(o.sliding_error.start)},
+                   {"sliding_at_end", number(o.sliding.end)},
+                   {"sliding_at_end_error", number(o.sliding_error.end)}});
+  }
   return out;
 }
 

@@ -49,7 +49,8 @@ LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& be
   std::vector<std::pair<double, double>> pairs;
   for (const CrowdRun& a : data.runs)
     for (const CrowdRun& b : below.runs)
-      if (a.configuration == configuration && b.configuration == configuration && a.packing == b.packing) {
+      if (a.configuration == configuration && b.configuration == configuration && a.packing == b.packing &&
+          a.orientation == b.orientation) {
         const double here = summed_end_force(data.configurations[static_cast<std::size_t>(configuration)], a);
         const double there = summed_end_force(data.configurations[static_cast<std::size_t>(configuration)], b);
         if (here >= 0.0 && there >= 0.0) pairs.emplace_back(here, there);

@@ -13,12 +13,11 @@ void check_law_table(const Scene& scene, Findings& out) {
   spend_on_crowd(setup.crowd, trial, 1.0, "measuring", out);
   out.facts["variants"] = setup.variants.size();
   for (const LawTableVariant& v : setup.variants) {
-    CrowdSetup of_variant = setup.crowd;
-    of_variant.packings_min = of_variant.packings_max = v.packings;
-    of_variant.packings.clear();
+    const CrowdSetup of_variant = setup_of(v, setup.crowd);
     spend_on_packings(of_variant, trial, 1.0, out);
     spend_on_crowd(of_variant, trial, 1.0, "variants", out);
-    out.lines += fmt::format("  the same on {} packings with beta = {}, {} trials per grain\n", v.packings, v.spec.beta,
+    out.lines += fmt::format("  the same on {} with beta = {}, {} trials per grain\n",
+                             v.packings ? fmt::format("{} packings", *v.packings) : "as many packings", v.spec.beta,
                              v.spec.trials);
   }
   if (setup.variants.empty())

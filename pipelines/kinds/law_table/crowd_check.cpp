@@ -120,6 +120,17 @@ double expected_packings(const CrowdSetup& setup, const CrowdConfiguration& c) {
   return std::clamp(needed, static_cast<double>(setup.least_packings(c)), static_cast<double>(setup.most_packings(c)));
 }
 
+/// Core seconds of what the plan asks for beyond that, in one orientation.
+double planned_seconds(const CrowdSetup& setup, double pass_seconds) {
+  double seconds = 0.0;
+  for (const PlannedPackings& p : setup.plan)
+    for (const CrowdConfiguration& c : setup.configurations)
+      if (c.name == p.configuration)
+        seconds += std::max(static_cast<double>(p.packings) - expected_packings(setup, c), 0.0) *
+                   seconds_per_packing(cut_short(c, p.depth), setup, pass_seconds);
+  return seconds;
+}
+
 }  // namespace
 
 MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
@@ -130,8 +141,8 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
   std::int64_t least = 0;
   std::int64_t most = 0;
   for (const CrowdConfiguration& c : setup.configurations) {
-    least += setup.least_packings(c);
-    most += setup.most_packings(c);
+    least += setup.orientations * setup.least_packings(c);
+    most += setup.orientations * setup.most_packings(c);
     increments += increments_of(c, setup.options);
     stages += static_cast<std::int64_t>(c.stages.size());
     softs = std::max(softs, softs_of(c));
@@ -142,7 +153,9 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
   out.facts["points_per_packing"] = stages * setup.points;
   out.facts["relaxations_per_packing"] = increments;
   const std::string own =
-      setup.packings.empty() ? "" : fmt::format(" ({} on as many as they say)", setup.packings.size());
+      (setup.packings.empty() ? "" : fmt::format(" ({} on as many as they say)", setup.packings.size())) +
+      (setup.orientations > 1 ? fmt::format(" in {} orientations each", setup.orientations) : "") +
+      (setup.plan.empty() ? "" : fmt::format(" and {} as planned", setup.plan.size()));
   out.lines += fmt::format("  {} configurations on {} to {} packings{}: {} to {} runs\n", configurations,
                            setup.packings_min, setup.packings_max, own, least, most);
   out.lines +=
@@ -170,7 +183,8 @@ void spend_on_crowd(const CrowdSetup& setup, const MeasureTrial& trial, double t
   double seconds = 0.0;
   for (const CrowdConfiguration& c : setup.configurations)
     seconds += expected_packings(setup, c) * seconds_per_packing(c, setup, trial.pass_seconds);
-  out.spend(part, times * seconds);
+  seconds += planned_seconds(setup, trial.pass_seconds);
+  out.spend(part, times * static_cast<double>(setup.orientations) * seconds);
 }
 
 }  // namespace softgrain

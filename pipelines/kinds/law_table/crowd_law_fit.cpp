@@ -104,7 +104,8 @@ void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOp
           fmt::format("solid fraction {:.3f}, {} law: {} of {} refits to drawn packings did not come to a minimum and "
                       "are left out of "
                       "the intervals",
-                      entry.solid_fraction, to_string(law.form), law.replicates_failed, options.replicates));
+                      entry.solid_fraction, to_string(law.form), law.replicates_failed,
+                      law.replicates_failed + static_cast<int>(law.replicates.size())));
     if (law.status == LawStatus::good) continue;
     fit.usable = fit.usable && law.form != entry.best;
     fit.remarks.push_back(to_string(law.form) + " law: " + to_string(law.status) + ": " + law.reason);

@@ -45,6 +45,7 @@ void read_crowd(const SceneTable& t, CrowdSetup& setup) {
   if (setup.packings_max < setup.packings_min) t.mistake("packings_max", "must be at least packings_min");
   setup.target = t.number("target", Unit::none, kShare, setup.target);
   setup.points = t.count("points", 2, 1000, setup.points);
+  setup.orientations = t.count("orientations", 1, 1000, setup.orientations);
 }
 
 /// How the neighbours come and go.
@@ -343,6 +344,32 @@ CrowdSetup read_crowd_setup(const SceneTable& root) {
   }
   if (setup.configurations.empty()) root.mistake("configuration", "at least one [[configuration]] is needed");
   return setup;
+}
+
+bool may_be_cut(const CrowdConfiguration& configuration) {
+  return configuration.stages.front().move == CrowdMove::load;
+}
+
+CrowdConfiguration cut_short(const CrowdConfiguration& configuration, double depth) {
+  CrowdConfiguration c = configuration;
+  if (depth >= 1.0) return c;
+  c.stages.resize(1);
+  for (double& h : c.stages.front().overlap) h *= depth;
+  return c;
+}
+
+void read_plan(const SceneTable& root, CrowdSetup& setup) {
+  for (const SceneTable& t : root.tables("plan")) {
+    PlannedPackings p{t.text("configuration"), t.number("depth", Unit::none, kShare, 1.0),
+                      t.count("packings", 2, 100000)};
+    const auto named = std::find_if(setup.configurations.begin(), setup.configurations.end(),
+                                    [&](const CrowdConfiguration& c) { return c.name == p.configuration; });
+    if (named == setup.configurations.end())
+      t.mistake("configuration", "no [[configuration]] has this name");
+    else if (p.depth < 1.0 && !may_be_cut(*named))
+      t.mistake("depth", "its way begins with a slide: it cannot be cut short; leave it out");
+    setup.plan.push_back(std::move(p));
+  }
 }
 
 }  // namespace softgrain

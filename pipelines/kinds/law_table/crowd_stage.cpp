@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <map>
-#include <set>
+#include <optional>
 
 #include "common/core/parallel_tasks.h"
 #include "common/io/interrupt.h"
@@ -23,12 +24,13 @@ constexpr std::int64_t kPilotPackings = 3;
 constexpr double kPilotIncrement = 4.0;  ///< of that of the measurement: a pilot looks for the onset only
 constexpr std::int64_t kBatch = 4;       ///< packings that a configuration gets at a time beyond the first ones
 
-/// One configuration of one packing.
+/// One configuration of one packing in one orientation.
 struct CrowdTask {
   const CrowdConfiguration* configuration = nullptr;
   const CrowdPlan* plan = nullptr;
   std::int64_t index = 0;  ///< of the configuration
   std::int64_t packing = 0;
+  std::int64_t orientation = 0;
 };
 
 std::int64_t soft_count(const CrowdConfiguration& c) {
@@ -102,6 +104,7 @@ class CrowdRunner {
     std::string text = fmt::format("seed {} packings", run_.seed);
     for (const std::int64_t p : packings_of(task, static_cast<std::int64_t>(contents_.size())))
       text += fmt::format(" {}", p);
+    if (task.orientation > 0) text += fmt::format("\norientation {}", task.orientation);
     if (level_ != nullptr) text += "\nlevel " + level_->tag;
     return crowd_run_key(setup_.spec, *task.configuration, *task.plan, options, text);
   }
@@ -121,17 +124,20 @@ class CrowdRunner {
     }
     run->configuration = task.index;
     run->packing = task.packing;
+    run->orientation = task.orientation;
     return *run;
   }
 
   CrowdRun measured(const CrowdTask& task, const std::string& name, const CrowdOptions& options, double weight,
                     Progress& progress) const {
     const auto packings = packings_of(task, static_cast<std::int64_t>(contents_.size()));
+    std::vector<SoftContent> contents;
+    for (const std::int64_t p : packings)
+      contents.push_back(turned(contents_[static_cast<std::size_t>(p)], run_.seed, p, task.orientation));
     std::vector<const SoftContent*> others;
-    for (std::size_t k = 1; k < packings.size(); ++k)
-      others.push_back(&contents_[static_cast<std::size_t>(packings[k])]);
-    CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents_[static_cast<std::size_t>(packings[0])],
-                                   others, level_ != nullptr ? &level_->laws : nullptr);
+    for (std::size_t k = 1; k < contents.size(); ++k) others.push_back(&contents[k]);
+    CrowdExperiment e = make_crowd(setup_.spec, *task.configuration, contents.front(), others,
+                                   level_ != nullptr ? &level_->laws : nullptr);
     TaskProgress mine(progress, weight);
     return run_kept_crowd(run_.store, name, e, *task.plan, options, [&](double share) { mine.reach(share); });
   }
@@ -222,7 +228,8 @@ class Batches {
     std::vector<CrowdTask> tasks;
     for (std::size_t c = 0; c < runs_.size(); ++c)
       for (auto p = tried_[c]; p < wanted_[c]; ++p)
-        tasks.push_back({&setup_.configurations[c], &plans_[c], static_cast<std::int64_t>(c), p});
+        for (std::int64_t o = 0; o < setup_.orientations; ++o)
+          tasks.push_back({&setup_.configurations[c], &plans_[c], static_cast<std::int64_t>(c), p, o});
     return tasks;
   }
   void take(std::vector<CrowdRun> runs) {
@@ -232,9 +239,15 @@ class Batches {
       if (!met(mean_end_force(setup_.configurations[c], runs_[c]), setup_.target))
         wanted_[c] = std::min(setup_.most_packings(setup_.configurations[c]), tried_[c] + kBatch);
   }
+  /// How many packings each configuration has, those that broke off included.
+  [[nodiscard]] const std::vector<std::int64_t>& tried() const { return tried_; }
+  void add(std::vector<CrowdRun> runs) {
+    for (CrowdRun& run : runs) runs_[static_cast<std::size_t>(run.configuration)].push_back(std::move(run));
+  }
   void require_enough_left(const CrowdRunner& runner) const {
     for (std::size_t c = 0; c < runs_.size(); ++c)
-      require_enough(setup_.configurations[c], runs_[c].size(), static_cast<std::size_t>(tried_[c]), runner);
+      require_enough(setup_.configurations[c], runs_[c].size(),
+                     static_cast<std::size_t>(tried_[c] * setup_.orientations), runner);
   }
   [[nodiscard]] std::vector<CrowdRun> all() const {
     std::vector<CrowdRun> out;
@@ -250,6 +263,55 @@ class Batches {
   std::vector<std::int64_t> wanted_;
 };
 
+/// A configuration and where it is recorded.
+struct Way {
+  CrowdConfiguration configuration;
+  CrowdPlan plan;
+};
+
+/// As far as the last state that is recorded within `depth`, and the same states as shares of that; none: no way.
+std::optional<Way> cut_short(const Way& way, double depth) {
+  if (depth >= 1.0) return way;
+  constexpr double kRounding = 1e-9;
+  std::vector<double> shares;
+  for (const double s : way.plan.front())
+    if (s <= depth * (1.0 + kRounding)) shares.push_back(s);
+  if (shares.empty()) return {};
+  const double reach = shares.back();
+  for (double& s : shares) s /= reach;
+  return Way{cut_short(way.configuration, reach), {shares}};
+}
+
+/// What the plan asks for beyond the packings that there are; of one configuration the deepest first.
+class Planned {
+ public:
+  Planned(const CrowdSetup& setup, const std::vector<CrowdPlan>& plans, std::vector<std::int64_t> tried) {
+    std::vector<PlannedPackings> wanted = setup.plan;
+    std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.depth > b.depth; });
+    for (const PlannedPackings& p : wanted) add(setup, plans, p, tried);
+  }
+
+  [[nodiscard]] const std::vector<CrowdTask>& tasks() const { return tasks_; }
+
+ private:
+  void add(const CrowdSetup& setup, const std::vector<CrowdPlan>& plans, const PlannedPackings& p,
+           std::vector<std::int64_t>& tried) {
+    for (std::size_t c = 0; c < setup.configurations.size(); ++c) {
+      if (setup.configurations[c].name != p.configuration) continue;
+      const std::optional<Way> way = cut_short(Way{setup.configurations[c], plans[c]}, p.depth);
+      if (!way) continue;  // nothing is recorded so near
+      ways_.push_back(*way);
+      for (std::int64_t packing = tried[c]; packing < p.packings; ++packing)
+        for (std::int64_t o = 0; o < setup.orientations; ++o)
+          tasks_.push_back({&ways_.back().configuration, &ways_.back().plan, static_cast<std::int64_t>(c), packing, o});
+      tried[c] = std::max(tried[c], p.packings);
+    }
+  }
+
+  std::deque<Way> ways_;  ///< stay where they are
+  std::vector<CrowdTask> tasks_;
+};
+
 std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, const Run& run) {
   std::vector<CrowdPlan> plans;
   const Pilot pilot(setup, runner);
@@ -262,6 +324,11 @@ std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, 
     what = "measuring more packings";
   }
   batches.require_enough_left(runner);
+  const Planned planned(setup, plans, batches.tried());
+  if (!planned.tasks().empty()) {
+    run.context.say(fmt::format("as planned: {} runs", planned.tasks().size()));
+    batches.add(runner.measure(planned.tasks(), setup.options, "measuring as planned"));
+  }
   return batches.all();
 }
 

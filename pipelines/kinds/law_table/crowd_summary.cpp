@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
@@ -29,17 +30,45 @@ double mean_force(const CrowdConfiguration& c, const CrowdPoint& p) {
   return end == p.normal.begin() ? 0.0 : mean_error({p.normal.begin(), end}).mean;
 }
 
-/// The last recorded point of a stage; nullptr when there is none.
-const CrowdPoint* last_of(const CrowdRun& run, std::int64_t stage) {
-  const CrowdPoint* last = nullptr;
-  for (const CrowdPoint& p : run.points)
-    if (p.stage == stage) last = &p;
-  return last;
+/// Points up to the end of a stage.
+std::size_t points_until(const CrowdRun& run, std::int64_t stage) {
+  return static_cast<std::size_t>(
+      std::count_if(run.points.begin(), run.points.end(), [&](const CrowdPoint& p) { return p.stage <= stage; }));
+}
+
+/// Forces at the end of the loading by packing, one per orientation; ways that were cut short have none.
+std::map<std::int64_t, std::vector<double>> end_forces(const CrowdConfiguration& c, const std::vector<CrowdRun>& runs) {
+  const std::int64_t stage = last_loading(c);
+  std::size_t whole = 1;
+  for (const CrowdRun& run : runs) whole = std::max(whole, points_until(run, stage));
+  std::map<std::int64_t, std::vector<double>> out;
+  for (const CrowdRun& run : runs)
+    if (points_until(run, stage) == whole && run.points[whole - 1].stage == stage)
+      out[run.packing].push_back(mean_force(c, run.points[whole - 1]));
+  return out;
 }
 
 MeanForce statistics(const std::vector<double>& values) {
   const MeanError m = mean_error(values);
   return {m.n > 0 ? m.mean : 0.0, m.n > 1 ? m.error : kInfinity, static_cast<std::int64_t>(m.n)};
+}
+
+/// Variance of single runs within a packing over all of it; NaN where packings have one orientation each, or too few.
+double share_within(const CrowdConfiguration& c, const std::vector<CrowdRun>& runs) {
+  Tally within;
+  Tally orientations;
+  std::vector<double> means;
+  for (const auto& [packing, forces] : end_forces(c, runs)) {
+    if (forces.size() < 2) continue;
+    const MeanError m = mean_error(forces);
+    within.add(m.deviation * m.deviation);
+    orientations.add(static_cast<double>(forces.size()));
+    means.push_back(m.mean);
+  }
+  if (means.size() < 2) return kNaN;
+  const double of_means = std::pow(mean_error(means).deviation, 2);
+  const double between = std::max(of_means - within.mean() / orientations.mean(), 0.0);
+  return within.mean() / (within.mean() + between);
 }
 
 std::vector<CrowdRun> runs_of(const CrowdMeasurements& data, std::size_t configuration) {
@@ -98,6 +127,23 @@ json cost_json(const Cost& cost) {
       {"loop_passes", cost.loop_passes}, {"contact_evaluations", cost.contact_evaluations}, {"seconds", cost.seconds}};
 }
 
+/// What further orientations of a packing are worth, over all configurations.
+std::string orientations_text(const CrowdMeasurements& data) {
+  std::int64_t orientations = 1;
+  for (const CrowdRun& r : data.runs) orientations = std::max(orientations, r.orientation + 1);
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < data.configurations.size(); ++k)
+    if (const double share = share_within(data.configurations[k], runs_of(data, k)); std::isfinite(share))
+      shares.push_back(share);
+  if (shares.empty()) return "";
+  const double same = 1.0 - mean_error(shares).mean;
+  const auto n = static_cast<double>(orientations);
+  return fmt::format(
+      "{} orientations of every packing: {:.0f} % of the variance of end forces is between packings, the rest between "
+      "orientations (mean of {} configurations); so many count as {:.2f} packings of one orientation each\n",
+      orientations, 100.0 * same, shares.size(), n / (1.0 + (n - 1.0) * same));
+}
+
 json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>& runs, double target) {
   const MeanForce force = mean_end_force(c, runs);
   const Convergence points = convergence(runs);
@@ -109,6 +155,7 @@ json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>
   out["force"] = force.mean;
   out["force_standard_error"] = force.standard_error;
   out["target_met"] = met(force, target);
+  if (const double share = share_within(c, runs); std::isfinite(share)) out["variance_within_packings"] = share;
   out["onset"] = onset(c, runs);
   out["points"] = points.points;
   out["converged_share"] =
@@ -120,9 +167,7 @@ json configuration_json(const CrowdConfiguration& c, const std::vector<CrowdRun>
 
 MeanForce mean_end_force(const CrowdConfiguration& configuration, const std::vector<CrowdRun>& runs) {
   std::vector<double> values;
-  for (const CrowdRun& run : runs)
-    if (const CrowdPoint* p = last_of(run, last_loading(configuration)); p != nullptr)
-      values.push_back(mean_force(configuration, *p));
+  for (const auto& [packing, forces] : end_forces(configuration, runs)) values.push_back(mean_error(forces).mean);
   return statistics(values);
 }
 
@@ -175,7 +220,7 @@ std::string crowd_text(const CrowdMeasurements& data) {
     text += fmt::format("  {:<28} {:>3} packings  onset {:.3f}  F/(E Rs^2) {:.5f} +- {:.5f}{}\n", c.name, f.runs,
                         onset(c, runs), f.mean, f.standard_error, c.held_out ? "  (held out)" : "");
   }
-  return text;
+  return text + orientations_text(data);
 }
 
 }  // namespace softgrain

@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
+#include "common/data/card_text.h"
 #include "pipelines/kinds/law_table/crowd_check.h"
 #include "pipelines/kinds/law_table/crowd_plan.h"
 #include "pipelines/kinds/soft_particle/cost.h"
@@ -19,7 +20,8 @@ namespace softgrain {
 
 namespace {
 
-/// Of the overlap at the end of a loading: how far a configuration may be pressed in.
+/// Of the overlap at the end of a loading: how far a configuration may be pressed in. One of several stages goes all
+/// its way.
 constexpr std::array kDepths{0.5, 0.75, 1.0};
 
 using Curves = std::vector<const MacroCurve*>;
@@ -87,6 +89,11 @@ class KnownErrors {
       if (e.name == name) return &e;
     return nullptr;
   }
+  /// That the table has of it; `else_` where the table does not know it.
+  [[nodiscard]] std::int64_t packings(const ConfigurationError* known, std::int64_t else_) const {
+    if (known == nullptr) return else_;
+    return known->packings > 0 ? known->packings : packings_;
+  }
   [[nodiscard]] double scatter(const ConfigurationError* known) const {
     return known != nullptr && known->noise > 0.0 ? scatter_of(*known) : usual_;
   }
@@ -115,7 +122,7 @@ std::vector<CrowdConfiguration> loadings(const CrowdSetup& setup, const KnownErr
   std::vector<CrowdConfiguration> out;
   for (const CrowdConfiguration& c : setup.configurations) {
     const ConfigurationError* error = known.find(c.name);
-    if (error != nullptr && (error->use == CrowdUse::apart || error->use == CrowdUse::repeated)) continue;
+    if (c.held_out || (error != nullptr && error->use != CrowdUse::fitted)) continue;
     CrowdConfiguration load = loading_part(c);
     load.name = c.name;
     if (std::none_of(out.begin(), out.end(), [&](const CrowdConfiguration& o) { return same_loading(o, load); }))
@@ -136,12 +143,13 @@ Candidates candidates_of(const CrowdSetup& setup, const KnownErrors& known, cons
   Candidates out;
   for (const CrowdConfiguration& c : loadings(setup, known))
     for (const double depth : kDepths) {
-      CrowdConfiguration part = c;
-      std::vector<double>& overlap = part.stages.front().overlap;
-      for (double& h : overlap) h *= depth;
+      if (depth < 1.0 && c.stages.size() > 1) continue;
+      const CrowdConfiguration part = cut_short(c, depth);
+      const std::vector<double>& overlap = part.stages.back().overlap;
       const ConfigurationError* error = known.find(c.name);
-      out.told.push_back({c.name, *std::max_element(overlap.begin(), overlap.end()), known.scatter(error),
-                          error != nullptr, seconds_per_packing(part, setup, pass), 1.0});
+      out.told.push_back({c.name, depth, *std::max_element(overlap.begin(), overlap.end()), known.scatter(error),
+                          error != nullptr, known.packings(error, setup.least_packings(c)),
+                          seconds_per_packing(part, setup, pass), 1.0});
       out.states.push_back({part.partners, overlap});
     }
   const std::vector<double> best = law.crowd_forces(law.numbers, out.states);
@@ -168,10 +176,11 @@ std::vector<PlanStep> steps_of(const std::vector<PlannedBlock>& blocks) {
 }
 
 /// Core seconds of packings of all configurations alike, as deep as they go, that come to this share.
-double seconds_alike(const std::vector<std::vector<double>>& predicted, const std::vector<Measurable>& all,
-                     double share) {
+double seconds_alike(const std::vector<std::vector<double>>& predicted, const std::vector<PlanCandidate>& told,
+                     const std::vector<Measurable>& all, double share) {
   std::vector<Measurable> deepest;
-  for (std::size_t k = kDepths.size() - 1; k < all.size(); k += kDepths.size()) deepest.push_back(all[k]);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (told[k].depth == 1.0) deepest.push_back(all[k]);
   double seconds = 0.0;
   for (const Measurable& m : deepest) seconds += m.cost;
   const auto share_of = [&](std::int64_t packings) {
@@ -237,7 +246,7 @@ LawPlan plan_law(const LawTable& table, const std::string& table_file, const Cro
     plan.seconds += s.seconds;
   }
   plan.share = after.share();
-  plan.even_seconds = blocks.empty() ? kNaN : seconds_alike(predicted, all.measurables, plan.share);
+  plan.even_seconds = blocks.empty() ? kNaN : seconds_alike(predicted, all.told, all.measurables, plan.share);
   plan.candidates = std::move(all.told);
   if (plan.share > wish.share)
     plan.remarks.push_back(fmt::format(
@@ -284,6 +293,20 @@ std::string plan_text(const LawPlan& plan) {
     text += fmt::format("all: {:.3g} core seconds{}\n", plan.seconds, even);
   }
   for (const std::string& r : plan.remarks) text += "note: " + r + "\n";
+  return text;
+}
+
+std::string plan_scene_text(const LawPlan& plan) {
+  std::string text = fmt::format(
+      "# What `softgrain law plan` found for the error bars of {} curves: packings on top of those of [crowd], so "
+      "deep.\n",
+      plan.curves);
+  for (const PlanStep& s : plan.steps) {
+    const PlanCandidate& c = plan.candidates[s.candidate];
+    text += fmt::format("[[plan]]\nconfiguration = {}\n", quoted(c.configuration));
+    if (c.depth < 1.0) text += fmt::format("depth = {}\n", c.depth);
+    text += fmt::format("packings = {}\n", c.packings + s.packings);
+  }
   return text;
 }
 

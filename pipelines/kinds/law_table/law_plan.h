@@ -14,11 +14,13 @@ namespace softgrain {
 /// A configuration of a scene up to an overlap.
 struct PlanCandidate {
   std::string configuration;
-  double overlap = 0.0;   ///< largest of its neighbours [Rs]
-  double scatter = 0.0;   ///< of the force between packings, a share of it
-  bool measured = false;  ///< its scatter is that of the table; else the median of those there
-  double seconds = 0.0;   ///< of one core, with one packing
-  double share = 1.0;     ///< width of the band's law part over what it is, after one block of packings more
+  double depth = 1.0;         ///< over that at the end of its loading
+  double overlap = 0.0;       ///< largest of its neighbours [Rs]
+  double scatter = 0.0;       ///< of the force between packings, a share of it
+  bool measured = false;      ///< its scatter is that of the table; else the median of those there
+  std::int64_t packings = 0;  ///< that the table has of it, or the scene asks for
+  double seconds = 0.0;       ///< of one core, with one packing
+  double share = 1.0;         ///< width of the band's law part over what it is, after one block of packings more
 };
 
 /// Packings of one candidate, in all blocks of the plan.
@@ -59,5 +61,8 @@ LawPlan plan_law(const LawTable& table, const std::string& table_file, const Cro
 
 /// For people.
 std::string plan_text(const LawPlan& plan);
+
+/// The plan as [[plan]] tables of a law-table scene.
+std::string plan_scene_text(const LawPlan& plan);
 
 }  // namespace softgrain

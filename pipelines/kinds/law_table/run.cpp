@@ -19,20 +19,6 @@ namespace softgrain {
 
 namespace {
 
-/// Configurations that only test the law are left to the main measurement.
-CrowdSetup setup_of(const LawTableVariant& variant, const CrowdSetup& base) {
-  CrowdSetup setup = base;
-  setup.spec = variant.spec;
-  setup.packings_min = setup.packings_max = variant.packings;
-  setup.packings.clear();
-  std::erase_if(setup.configurations, [&](const CrowdConfiguration& c) {
-    const auto softs = std::count_if(c.partners.begin(), c.partners.end(),
-                                     [](const CrowdPartner& p) { return p.kind == PartnerKind::soft; });
-    return c.held_out || softs >= setup.packings_max;
-  });
-  return setup;
-}
-
 /// Everything a run leaves behind, for summary and screen.
 struct LawTableRun {
   CrowdMeasurements data;

@@ -1,6 +1,7 @@
 // Scene kind "law-table": what is measured with which neighbours, and how it is fitted.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,11 @@ namespace softgrain {
 /// The same measurement on looser or denser packings.
 struct LawTableVariant {
   SoftParticleSpec spec;
-  std::int64_t packings = 0;
+  std::optional<std::int64_t> packings;  ///< of every configuration; empty: as those of the main measurement
 };
+
+/// What is measured for it: all that the main one measures, or, on packings of its own number, what the fit takes.
+CrowdSetup setup_of(const LawTableVariant& variant, const CrowdSetup& main);
 
 struct LawTableSetup {
   std::string title;

@@ -136,7 +136,8 @@ std::string parameter_table(const LawTableEntry& entry) {
 
 std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeasurements>& crowd) {
   std::string body = paragraph(fmt::format(
-      "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = {:.2f} "
+      "Solid fraction {:.4f} ± {:.4f}, {} packings. Taken where none is named: the {} law. Measured up to h/Rs = "
+      "{:.2f} "
       "and an equivalent lost volume of {:.3f}; grains overlap there by up to {:.1f} of the smaller radius. Sliding, "
       "{}; {}.",
       entry.solid_fraction, entry.solid_fraction_error, entry.packings, to_string(entry.best), entry.overlap_max,
@@ -147,7 +148,7 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeas
                         (law.reason.empty() ? "" : ": " + law.reason) + ".");
   body += parameter_table(entry) + error_table(entry);
   if (!crowd) return body;
-  const std::vector<CrowdStates> states = average_states(*crowd);
+  const std::vector<CrowdStates> states = average_states(mean_over_orientations(*crowd));
   std::vector<std::string> figures;
   for (const Group& g : kGroups) {
     const std::string f = group_figure(g, states, entry);
