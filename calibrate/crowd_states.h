@@ -34,7 +34,7 @@ struct CrowdStates {
   [[nodiscard]] double largest_force() const;  ///< mean normal force of a neighbour, over all states
 };
 
-/// Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
+/// `data` must outlive what is returned. Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
 /// ratios of their overlaps, stage by stage up to the first slide, roll or retreat) only the deepest is fitted, or none
 /// when plain loading is held out. Bodies of a scene are never held: where there are kEnoughFree loadings of planes
 /// around a free shell, laws of crowds are fitted to free shells alone, and the pair law, which has but one neighbour,
@@ -42,5 +42,6 @@ struct CrowdStates {
 /// empty: once each. States with fewer than two converged packings are left out.
 inline constexpr int kEnoughFree = 4;
 std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std::vector<double>& weight = {});
+std::vector<CrowdStates> average_states(CrowdMeasurements&& data, const std::vector<double>& weight = {}) = delete;
 
 }  // namespace softgrain

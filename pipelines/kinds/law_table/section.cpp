@@ -148,7 +148,8 @@ std::string entry_body(const LawTableEntry& entry, const std::optional<CrowdMeas
                         (law.reason.empty() ? "" : ": " + law.reason) + ".");
   body += parameter_table(entry) + error_table(entry);
   if (!crowd) return body;
-  const std::vector<CrowdStates> states = average_states(mean_over_orientations(*crowd));
+  const CrowdMeasurements data = mean_over_orientations(*crowd);  // states point to its configurations
+  const std::vector<CrowdStates> states = average_states(data);
   std::vector<std::string> figures;
   for (const Group& g : kGroups) {
     const std::string f = group_figure(g, states, entry);
