@@ -177,7 +177,11 @@ bool jacobian(const Parameters& parameters, const std::vector<Datum>& data, std:
 /// Bounds of all parameters.
 std::vector<ParameterBounds> bounds_of(const ScatteringFitOptions& o) {
   std::vector<ParameterBounds> bounds{{}, kDimensionBounds, {-12.0, 12.0}, {}};
-  if (o.solid_fraction > 0.0) bounds[0] = {std::log(o.lower_length_min), std::log(o.lower_length_max)};
+  if (o.solid_fraction > 0.0) {
+    bounds[0] = {std::log(o.lower_length_min), std::log(o.lower_length_max)};
+    bounds[1].high = 2.0;
+    bounds[2] = {std::log(o.disk), o.cell_length > 2.0 * o.disk ? std::log(0.5 * o.cell_length) : bounds[2].high};
+  }
   if (std::isfinite(o.background_max)) bounds[3] = {0.0, o.background_max};
   return bounds;
 }
@@ -280,8 +284,11 @@ std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const 
   const double xi = fit.model.length;
   if (fit.model.dimension > 2.0 || found.at_bound[1])
     reasons.push_back(fmt::format("dF = {:.3f} is outside (0, 2]", fit.model.dimension));
-  if (xi < o.disk) reasons.push_back(fmt::format("xi = {:.3g} is below the disks", xi));
-  if (o.cell_length > 0.0 && xi > 0.5 * o.cell_length)
+  if (o.solid_fraction > 0.0 && found.at_bound[2])
+    reasons.push_back(fmt::format("xi ends at {:.3g}, {}", xi, xi < 2.0 * o.disk ? "the disks" : "half the cell"));
+  else if (xi < o.disk)
+    reasons.push_back(fmt::format("xi = {:.3g} is below the disks", xi));
+  if (!(o.solid_fraction > 0.0) && o.cell_length > 0.0 && xi > 0.5 * o.cell_length)
     reasons.push_back(fmt::format("xi = {:.3g} is beyond half the cell, {:.3g}", xi, 0.5 * o.cell_length));
   if (!(fit.dimension.high - fit.dimension.low < kWidestInterval))
     reasons.emplace_back("the interval of dF is wider than all it can be");
