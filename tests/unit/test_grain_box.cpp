@@ -193,13 +193,13 @@ TEST(GrainBoxMeasure, SlidingIsCountedInThreeWays) {
     c.tangential_force = {{0.0, tangential, 0.0}};
     return c;
   };
-  const std::vector<PackContact> before{contact(1, 2.0, 0.9), contact(2, 2.0, 1.0), contact(4, 1.0, 0.5)};
-  // Grown to the limit of the start; off the limit as P grows; new, at its limit; one that was at its limit has opened.
-  pack.contacts = {contact(1, 4.0, 1.0), contact(2, 4.0, 0.5), contact(3, 2.0, 1.0)};
+  const std::vector<PackContact> before{contact(1, 2.0, 0.9), contact(2, 2.0, 1.0), contact(4, 1.0, 0.4)};
+  // To the limit of the start while P grows, twice; new, at its limit; to a limit that stays.
+  pack.contacts = {contact(1, 4.0, 1.0), contact(2, 4.0, 1.0), contact(3, 2.0, 1.0), contact(4, 1.0, 0.5)};
   const SlidingShares shares = sliding_shares(before, pack);
-  EXPECT_DOUBLE_EQ(shares.start_limit, 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(shares.start, 2.0 / 3.0);
-  EXPECT_DOUBLE_EQ(shares.end, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(shares.start_limit, 3.0 / 4.0);
+  EXPECT_DOUBLE_EQ(shares.start, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(shares.end, 2.0 / 4.0);
   EXPECT_DOUBLE_EQ(shares.end, share_at_current_limit(pack));
   pack.friction = 0.0;
   EXPECT_TRUE(std::isnan(sliding_shares(before, pack).start_limit));
