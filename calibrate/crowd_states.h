@@ -34,12 +34,12 @@ struct CrowdStates {
   [[nodiscard]] double largest_force() const;  ///< mean normal force of a neighbour, over all states
 };
 
-/// `data` must outlive what is returned. Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
+/// Averages every configuration and says what it is used for: of all that begin with the same loading (neighbours and
 /// ratios of their overlaps, stage by stage up to the first slide, roll or retreat) only the deepest is fitted, or none
-/// when plain loading is held out. Bodies of a scene are never held: where there are kEnoughFree loadings of planes
-/// around a free shell, laws of crowds are fitted to free shells alone, and the pair law, which has but one neighbour,
-/// to held ones; else all laws to held ones. `weight[p]` says how often packing p counts (a bootstrap replicate);
-/// empty: once each. States with fewer than two converged packings are left out.
+/// when plain loading is held out. `data` must outlive what is returned. Bodies of a scene are never held: where there
+/// are kEnoughFree loadings of planes around a free shell, laws of crowds are fitted to free shells alone, and the pair
+/// law, which has but one neighbour, to held ones; else all laws to held ones. `weight[p]` says how often packing p
+/// counts (a bootstrap replicate); empty: once each. States with fewer than two converged packings are left out.
 inline constexpr int kEnoughFree = 4;
 std::vector<CrowdStates> average_states(const CrowdMeasurements& data, const std::vector<double>& weight = {});
 std::vector<CrowdStates> average_states(CrowdMeasurements&& data, const std::vector<double>& weight = {}) = delete;

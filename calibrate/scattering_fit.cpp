@@ -86,8 +86,7 @@ void require_valid(const ScatteringFitOptions& o) {
   if (!(o.solid_fraction >= 0.0) || !(o.lower_length_min > 0.0) || !(o.lower_length_max > o.lower_length_min) ||
       !(o.background_max > 0.0))
     throw BadInput(
-        "scattering fit: solid_fraction must be 0 or above, lower lengths must rise from above 0, and background_max "
-        "be "
+        "scattering fit: solid_fraction must be 0 or above, lower lengths must rise from above 0, background_max be "
         "above 0");
 }
 

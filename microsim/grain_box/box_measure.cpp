@@ -146,10 +146,6 @@ bool reaches(const GrainPack& pack, const PackContact& c, double normal_force) {
 
 }  // namespace
 
-double share_at_current_limit(const GrainPack& pack) {
-  return share_of(pack, pack.contacts, [&](const PackContact& c) { return reaches(pack, c, c.normal_force); });
-}
-
 SlidingShares sliding_shares(const std::vector<PackContact>& before, const GrainPack& after) {
   const auto start_force = [&](const PackContact& c) {
     const auto found =
@@ -161,7 +157,7 @@ SlidingShares sliding_shares(const std::vector<PackContact>& before, const Grain
   out.start_limit =
       share_of(after, after.contacts, [&](const PackContact& c) { return reaches(after, c, start_force(c)); });
   out.start = share_of(after, before, [&](const PackContact& c) { return reaches(after, c, c.normal_force); });
-  out.end = share_at_current_limit(after);
+  out.end = share_of(after, after.contacts, [&](const PackContact& c) { return reaches(after, c, c.normal_force); });
   return out;
 }
 

@@ -37,10 +37,6 @@ struct ContactCounts {
 /// Rattlers have fewer than 4 contacts without friction, fewer than 2 with it; they are taken out until none is left.
 [[nodiscard]] ContactCounts count_contacts(const GrainPack& pack);
 
-/// Share of contacts with |Q| >= (1 - 1e-6) mu P at the normal force as it is; NaN without friction. Under
-/// CoulombRule::reference it is smaller than the share that slid: P has grown since the limit was set.
-[[nodiscard]] double share_at_current_limit(const GrainPack& pack);
-
 /// Three ways to count what slides in an increment: shares of contacts with |Q| >= (1 - 1e-6) mu P, which the
 /// publication does not tell apart [QS 2.3]. NaN without friction.
 struct SlidingShares {

@@ -48,7 +48,7 @@ def states(packs):
         row([pack["name"], str(pack["grains"]), str(pack["mu"]), ", ".join(f"{x:g}" for x in pack["increments"]),
              text(a["pressure"] / 1e6), text(a["solid_fraction"], 4), text(a["coordination"], 4), text(b["pressure"] / 1e6),
              text(b["sliding_share"]), text(c["pressure"] / 1e6, 4) if c else "-", text(c["sliding_share"]) if c else "-",
-             text(pack.get("share_at_current_limit_at_end")), text(c["coordination"], 4) if c else "-",
+             text(c["sliding_at_end"]) if c else "-", text(c["coordination"], 4) if c else "-",
              text(in_mpa(pack["pressure_of_smallest_G"])), text(pack["largest_shear_stress_ratio"], 2)])
 
 

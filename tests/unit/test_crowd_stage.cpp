@@ -150,6 +150,11 @@ TEST_F(CrowdStage, PlannedPackingsGoAsDeepAsTheySay) {
   const auto states = average_states(data);
   EXPECT_EQ(states[0].states.front().packings, 5);
   EXPECT_EQ(states[0].states.back().packings, 3);
+  // Nearer than all recorded states: said, and no run.
+  setup_.plan = {{setup_.configurations[0].name, 1e-3, 5}};
+  EXPECT_EQ(measure(nullptr).runs.size(), 2U);
+  ASSERT_EQ(left_out_.size(), 1U);
+  EXPECT_NE(left_out_[0].find("nothing is recorded within 0.001"), std::string::npos) << left_out_[0];
 }
 
 /// A packing in two orientations is one packing: its mean counts, and the errors are those over packings.

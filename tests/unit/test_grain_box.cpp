@@ -174,11 +174,11 @@ TEST(GrainBoxMeasure, CountsContactsAndRattlers) {
 
 TEST(GrainBoxMeasure, SharesAtTheLimitGoByTheForceAsItIs) {
   GrainPack pack = small_pack();  // |Q| = 0.1 P everywhere, mu = 0.3
-  EXPECT_EQ(share_at_current_limit(pack), 0.0);
+  EXPECT_EQ(sliding_shares({}, pack).end, 0.0);
   pack.contacts[0].tangential_force = {{0.0, 0.3 * pack.contacts[0].normal_force, 0.0}};
-  EXPECT_DOUBLE_EQ(share_at_current_limit(pack), 1.0 / 6.0);
+  EXPECT_DOUBLE_EQ(sliding_shares({}, pack).end, 1.0 / 6.0);
   pack.friction = 0.0;
-  EXPECT_TRUE(std::isnan(share_at_current_limit(pack)));
+  EXPECT_TRUE(std::isnan(sliding_shares({}, pack).end));
 }
 
 /// P and Q of the start and of the end of an increment, one contact for every case.
@@ -200,7 +200,6 @@ TEST(GrainBoxMeasure, SlidingIsCountedInThreeWays) {
   EXPECT_DOUBLE_EQ(shares.start_limit, 3.0 / 4.0);
   EXPECT_DOUBLE_EQ(shares.start, 1.0 / 3.0);
   EXPECT_DOUBLE_EQ(shares.end, 2.0 / 4.0);
-  EXPECT_DOUBLE_EQ(shares.end, share_at_current_limit(pack));
   pack.friction = 0.0;
   EXPECT_TRUE(std::isnan(sliding_shares(before, pack).start_limit));
 }

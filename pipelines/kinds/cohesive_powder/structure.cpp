@@ -6,6 +6,7 @@
 
 #include "common/dynamics/force_pass.h"
 #include "microsim/powder/powder_scattering.h"
+#include "microsim/powder/powder_start.h"
 
 namespace softgrain {
 
@@ -24,7 +25,7 @@ std::vector<double> edges_for(const std::vector<const System<2>*>& samples) {
 }
 
 /// What a fit may take from the samples: means of solid fraction and of the intensity of independent disks, shortest
-/// cell.
+/// cell, smallest radius; the largest diameter is the unit.
 ScatteringFitOptions fit_options(const PowderStructureOptions& options, const std::vector<PowderStructure>& samples) {
   ScatteringFitOptions o;
   o.k_high = options.fit_k_max;
@@ -34,6 +35,7 @@ ScatteringFitOptions fit_options(const PowderStructureOptions& options, const st
     o.cell_length = o.cell_length > 0.0 ? std::min(o.cell_length, length) : length;
     o.solid_fraction += s.solid_fraction / static_cast<double>(samples.size());
     independent += s.independent / static_cast<double>(samples.size());
+    o.lower_length_min = &s == &samples.front() ? s.smallest_radius : std::min(o.lower_length_min, s.smallest_radius);
   }
   o.background_max = independent;
   return o;
@@ -54,8 +56,8 @@ PowderStructure structure_of(const System<2>& s, const std::vector<double>& edge
   std::vector<double> diameters;
   for (Slot k = 0; k < s.particles.grains; ++k)
     diameters.push_back(2.0 * s.particles.sphere[static_cast<std::size_t>(k)].r);
-  for (const double d : diameters)
-    out.solid_fraction += 0.25 * std::numbers::pi * d * d / (out.lengths[0] * out.lengths[1]);
+  out.solid_fraction = powder_fraction(s);
+  out.smallest_radius = 0.5 * *std::min_element(diameters.begin(), diameters.end());
   out.independent = independent_intensity(diameters, out.lengths[0] * out.lengths[1]);
   PowderMesh mesh = powder_mesh(s, options.mesh);
   out.nx = mesh.nx;

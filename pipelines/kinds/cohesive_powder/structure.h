@@ -27,9 +27,10 @@ struct PowderStructure {
   std::optional<ScatteringCurve> curve;
   ScatteringFit fit;
   std::optional<PowderHoles> holes;
-  Vec<2> lengths{};             ///< of the cell [a]
-  double solid_fraction = 0.0;  ///< of the disks
-  double independent = 0.0;     ///< independent_intensity of its disks [a^2]
+  Vec<2> lengths{};              ///< of the cell [a]
+  double solid_fraction = 0.0;   ///< of the disks
+  double independent = 0.0;      ///< independent_intensity of its disks [a^2]
+  double smallest_radius = 0.0;  ///< of its disks [a]
   std::int64_t nx = 0;
   std::int64_t ny = 0;
 };

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "microsim/grain_box/analysis.h"
-#include "microsim/grain_box/box_measure.h"
 #include "pipelines/kinds/grain_box/curves.h"
 #include "pipelines/kinds/grain_box/results.h"
 #include "pipelines/report/html.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "microsim/grain_box/analysis.h"
-#include "microsim/grain_box/box_measure.h"
 
 namespace softgrain {
 
@@ -92,7 +91,6 @@ json result_json(const GrainBoxResult& result, const std::vector<double>& stress
               {"after_compaction", point_json(result.points_of(BoxPhase::compaction))},
               {"after_friction", point_json(result.points_of(BoxPhase::friction))},
               {"at_end", point_json(result.points_of(BoxPhase::loading))},
-              {"share_at_current_limit_at_end", number(share_at_current_limit(result.state.pack))},
               {"pressure_of_smallest_G", number(pressure_of_smallest_shear(result))},
               {"largest_shear_stress_ratio", largest_shear_ratio(result)},
               {"moduli", moduli_json(result, stresses)},

@@ -85,6 +85,11 @@ class CrowdRunner {
   }
 
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+  /// Said, and among the remarks.
+  void leave_out(const std::string& text) {
+    run_.context.say(text);
+    left_out_.push_back(text);
+  }
 
  private:
   std::vector<CrowdRun> whole_ones(std::vector<CrowdRun> runs, const std::vector<std::string>& broke_off) {
@@ -94,8 +99,7 @@ class CrowdRunner {
         out.push_back(std::move(runs[k]));
         continue;
       }
-      run_.context.say(broke_off[k]);
-      left_out_.push_back(broke_off[k]);
+      leave_out(broke_off[k]);
     }
     return out;
   }
@@ -292,6 +296,8 @@ class Planned {
   }
 
   [[nodiscard]] const std::vector<CrowdTask>& tasks() const { return tasks_; }
+  /// What the plan asks for and cannot have.
+  [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
   void add(const CrowdSetup& setup, const std::vector<CrowdPlan>& plans, const PlannedPackings& p,
@@ -299,7 +305,13 @@ class Planned {
     for (std::size_t c = 0; c < setup.configurations.size(); ++c) {
       if (setup.configurations[c].name != p.configuration) continue;
       const std::optional<Way> way = cut_short(Way{setup.configurations[c], plans[c]}, p.depth);
-      if (!way) continue;  // nothing is recorded so near
+      if (!way) {
+        left_out_.push_back(
+            fmt::format("{}: nothing is recorded within {} of its way, so that the plan's packings there "
+                        "are left out",
+                        p.configuration, p.depth));
+        continue;
+      }
       ways_.push_back(*way);
       for (std::int64_t packing = tried[c]; packing < p.packings; ++packing)
         for (std::int64_t o = 0; o < setup.orientations; ++o)
@@ -310,6 +322,7 @@ class Planned {
 
   std::deque<Way> ways_;  ///< stay where they are
   std::vector<CrowdTask> tasks_;
+  std::vector<std::string> left_out_;
 };
 
 std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, const Run& run) {
@@ -325,6 +338,7 @@ std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, 
   }
   batches.require_enough_left(runner);
   const Planned planned(setup, plans, batches.tried());
+  for (const std::string& text : planned.left_out()) runner.leave_out(text);
   if (!planned.tasks().empty()) {
     run.context.say(fmt::format("as planned: {} runs", planned.tasks().size()));
     batches.add(runner.measure(planned.tasks(), setup.options, "measuring as planned"));
