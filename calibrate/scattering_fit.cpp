@@ -70,6 +70,8 @@ constexpr std::size_t kFewestBins = 8;
 constexpr ParameterBounds kDimensionBounds{0.02, 3.0};
 constexpr double kWorstChi2 = 10.0;
 constexpr double kWidestInterval = 2.0;
+/// chi^2 that one number may cost by chance in 1 of 20 cases: more, and the amplitude is not what the disks allow.
+constexpr double kDearTie = 3.84;
 
 /// One bin as the fit sees it.
 struct Datum {
@@ -300,6 +302,40 @@ std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const 
 
 }  // namespace
 
+namespace {
+
+/// With an amplitude that is tied or free, as the options say.
+void fit_data(const std::vector<Datum>& data, const ScatteringFitOptions& options, ScatteringFit& fit) {
+  const Parameters parameters(options.solid_fraction);
+  const LeastSquaresFit found = solve(parameters, data, options);
+  if (found.parameters.size() != kParameters || found.standard_deviations.size() != kParameters) {
+    fit.reason = "no fit: " + found.message;
+    return;
+  }
+  fill(found, parameters, fit);
+  fit.bounded = bounded_text(found, options);
+  fit.reason = judge(found, fit, options);
+  fit.usable = fit.reason.empty();
+}
+
+double chi2_of(const ScatteringFit& fit) { return fit.chi2_per_degree * static_cast<double>(fit.bins - kParameters); }
+
+/// The fit with a free amplitude in place of a tied one, where the tie costs more than chance explains.
+ScatteringFit untied_if_dear(const std::vector<Datum>& data, ScatteringFitOptions options, const ScatteringFit& tied) {
+  if (options.solid_fraction == 0.0 || tied.amplitude.value == 0.0) return tied;
+  ScatteringFit free = tied;
+  free.lower_length = {};
+  free.bounded.clear();
+  options.solid_fraction = 0.0;
+  fit_data(data, options, free);
+  const double cost = chi2_of(tied) - chi2_of(free);
+  if (!(cost > kDearTie)) return tied;
+  free.tie_cost = cost;
+  return free;
+}
+
+}  // namespace
+
 ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const ScatteringFitOptions& options) {
   require_valid(options);
   ScatteringFit fit;
@@ -318,17 +354,8 @@ ScatteringFit fit_scattering(const std::vector<ScatteringCurve>& curves, const S
       std::minmax_element(data.begin(), data.end(), [](const Datum& a, const Datum& b) { return a.k < b.k; });
   fit.k_low = first->k;
   fit.k_high = last->k;
-  const Parameters parameters(options.solid_fraction);
-  const LeastSquaresFit found = solve(parameters, data, options);
-  if (found.parameters.size() != kParameters || found.standard_deviations.size() != kParameters) {
-    fit.reason = "no fit: " + found.message;
-    return fit;
-  }
-  fill(found, parameters, fit);
-  fit.bounded = bounded_text(found, options);
-  fit.reason = judge(found, fit, options);
-  fit.usable = fit.reason.empty();
-  return fit;
+  fit_data(data, options, fit);
+  return untied_if_dear(data, options, fit);
 }
 
 ScatteringCurve pooled_curve(const std::vector<ScatteringCurve>& curves, const std::vector<double>& edges) {

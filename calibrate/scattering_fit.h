@@ -64,6 +64,7 @@ struct ScatteringFit {
   ScatteringEstimate background;
   ScatteringEstimate lower_length;  ///< l, where the amplitude is tied to it; else zero
   std::string bounded;              ///< which numbers ended at a bound, and are taken as known in the errors of others
+  double tie_cost = 0.0;  ///< above 0: the amplitude is free, since tying it to Phi would cost so much chi^2
   std::vector<double> covariance;   ///< 4 x 4 row-major of (ln A, dF, ln xi, c)
   double k_low = 0.0;               ///< first and last k that were fitted
   double k_high = 0.0;
@@ -83,7 +84,8 @@ double independent_intensity(const std::vector<double>& diameters, double cell_a
 /// Several curves are fitted with common parameters (samples of one ensemble). One curve of a cell of few xi hardly
 /// tells amplitude, dF, xi and c apart: `solid_fraction` and `background_max` leave only what the disks allow. Of four
 /// samples in cells of seven xi the deviation of dF from the truth is then two thirds of that with a free amplitude;
-/// its 95 % intervals, which take a number at its bound as known, hold the truth in 16 of 20 cases. Not usable, with
+/// its 95 % intervals, which take a number at its bound as known, hold the truth in 16 of 20 cases. Where the tie costs
+/// more chi^2 than chance explains (3.84), the amplitude is free after all (`tie_cost`). Not usable, with
 /// the reason: fewer than 8 bins in the range, an intensity that is not positive and finite, no convergence, parameters
 /// that the data do not determine, dF outside (0, 2], xi below the disks or beyond half the cell, an interval of dF
 /// wider than 2, chi^2 per degree above 10. Throws BadInput for options out of range.

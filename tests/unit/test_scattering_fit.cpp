@@ -248,6 +248,22 @@ TEST(ScatteringFit, WhatDisksAllowSteadiesFewSamples) {
   EXPECT_GE(covered, 15) << "of 20: where a bound holds, the others' intervals are somewhat narrow";
 }
 
+/// An intensity that is a third of what l within the disks gives: the tie would bend dF and xi, so it is given up.
+TEST(ScatteringFit, AnAmplitudeThatDisksDoNotAllowIsLeftFree) {
+  ScatteringModel truth = tied_truth(1.55, 4.0, 0.02);
+  truth.amplitude *= 0.33;
+  std::vector<ScatteringCurve> curves;
+  for (int k = 0; k < 8; ++k) curves.push_back(synthetic(truth, static_cast<std::uint64_t>(900 + k)));
+  const ScatteringFit fit = fit_scattering(curves, tied());
+  EXPECT_TRUE(fit.usable) << fit.reason;
+  EXPECT_GT(fit.tie_cost, 3.84);
+  EXPECT_EQ(fit.lower_length.value, 0.0);
+  EXPECT_NEAR(fit.model.dimension, 1.55, 3.0 * fit.dimension.error);
+  EXPECT_LT(fit.dimension.error, 0.25);
+  EXPECT_NEAR(std::log(fit.model.length / 4.0), 0.0, 3.0 * fit.length.error / fit.model.length);
+  EXPECT_LT(fit.chi2_per_degree, 1.4);
+}
+
 TEST(ScatteringFit, IndependentDisksScatterByTheirAreas) {
   EXPECT_DOUBLE_EQ(independent_intensity({1.0, 1.0}, 4.0), 2.0 * std::pow(0.25 * kPi, 2) / 4.0);
   ScatteringFitOptions wrong = tied();

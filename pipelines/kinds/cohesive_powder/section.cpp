@@ -155,12 +155,18 @@ std::string shares_table(const std::vector<PackSummary>& samples) {
   return table_of(samples, columns);
 }
 
+/// What became of the lower end of the fractal.
+std::string lower_end_text(const ScatteringFit& fit) {
+  if (fit.tie_cost > 0.0)
+    return fmt::format("amplitude free (tied to Phi, chi² grows by {})", format_number(fit.tie_cost, 2));
+  return fmt::format("l = {} a", format_with_error(fit.lower_length.value, fit.lower_length.error));
+}
+
 std::string fit_text(const ScatteringFit& fit) {
   if (!fit.usable) return "not to be relied on (" + fit.reason + ")";
-  return fmt::format("up to k a = {}: dF = {}, xi = {} a, l = {} a, chi² per degree {}{}", format_number(fit.k_high, 3),
+  return fmt::format("up to k a = {}: dF = {}, xi = {} a, {}, chi² per degree {}{}", format_number(fit.k_high, 3),
                      format_with_error(fit.dimension.value, fit.dimension.error),
-                     format_with_error(fit.length.value, fit.length.error),
-                     format_with_error(fit.lower_length.value, fit.lower_length.error),
+                     format_with_error(fit.length.value, fit.length.error), lower_end_text(fit),
                      format_number(fit.chi2_per_degree, 2),
                      fit.bounded.empty() ? "" : ", at the end of what the disks allow: " + fit.bounded);
 }

@@ -28,6 +28,7 @@ void write_curve(const h5::Group& group, const ScatteringCurve& curve, const Sca
   group.attribute("dF", fit.model.dimension);
   group.attribute("xi", fit.model.length);
   group.attribute("c", fit.model.background);
+  group.attribute("tie_cost", fit.tie_cost);
   if (!fit.covariance.empty()) group.write("covariance", fit.covariance, {4, 4});
 }
 

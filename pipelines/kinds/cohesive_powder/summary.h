@@ -110,6 +110,7 @@ void fields(auto&& visit, Of<ScatteringFit> auto& s) {
   estimate("c", s.background);
   estimate("l", s.lower_length);
   visit("bounded", s.bounded, kLeftOut);
+  visit("tie_cost", s.tie_cost);
 }
 
 void fields(auto&& visit, Of<PowderStage> auto& s) {
