@@ -1,5 +1,7 @@
 #include "common/dynamics/parallel_pass.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,6 +9,8 @@
 #include <vector>
 
 #include "common/dynamics/block_loop.h"
+#include "common/dynamics/thread_pace.h"
+#include "common/neighbours/spatial_order.h"
 
 namespace softgrain {
 
@@ -32,45 +36,33 @@ struct Share {
 
 /// Who does what, good for one list and number of threads.
 struct Plan {
+  ThreadPace pace;
   std::uint64_t build = 0;
   int threads = 0;
   bool rolls = false;                      ///< some law of the scene has rolling resistance
   std::vector<std::vector<Share>> shares;  ///< [thread][section]
 };
 
-/// Slabs across the longest axis with about as many pairs each. Walls belong to the first thread.
+/// Stretches of the space-filling curve with the given shares of all pairs. Grains of a large scene lie along it, size
+/// class by size class: what a thread owns is a few ranges of slots, and its pairs are neighbours in the list. Walls
+/// belong to the first thread.
 template <int D>
-std::vector<std::uint8_t> owners_of(const System<D>& s, int threads) {
-  constexpr std::size_t kBins = 4096;
-  const auto& p = s.particles;
-  Vec<D> low = p.sphere.front().x;
-  Vec<D> high = low;
-  for (Slot i = 0; i < p.grains; ++i)
-    for (int k = 0; k < D; ++k) {
-      const double x = p.sphere[static_cast<std::size_t>(i)].x[k];
-      low[k] = std::min(low[k], x);
-      high[k] = std::max(high[k], x);
-    }
-  int axis = 0;
-  for (int k = 1; k < D; ++k)
-    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-  const double scale = high[axis] > low[axis] ? static_cast<double>(kBins) / (high[axis] - low[axis]) : 0.0;
-  const auto bin = [&](Slot i) {
-    const double at = (p.sphere[static_cast<std::size_t>(i)].x[axis] - low[axis]) * scale;
-    return std::min(static_cast<std::size_t>(std::max(at, 0.0)), kBins - 1);
-  };
-  std::vector<std::int64_t> pairs(kBins, 0);
-  for (const Slot i : s.contacts.i) ++pairs[bin(i)];
-  std::vector<std::uint8_t> thread_of(kBins, 0);
-  std::int64_t before = 0;
-  const auto all = static_cast<std::int64_t>(s.contacts.i.size());
-  for (std::size_t b = 0; b < kBins; ++b) {
-    thread_of[b] = static_cast<std::uint8_t>(
-        std::min<std::int64_t>(before * threads / std::max<std::int64_t>(all, 1), threads - 1));
-    before += pairs[b];
+std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<double>& share) {
+  const std::vector<std::uint16_t> part = curve_parts(s);
+  std::vector<std::int64_t> pairs(kCurveParts, 0);
+  for (const Slot i : s.contacts.i) ++pairs[part[at(i)]];
+  std::vector<std::uint8_t> thread_of(kCurveParts, 0);
+  double left = share.front() * static_cast<double>(s.contacts.i.size());
+  std::size_t thread = 0;
+  for (std::size_t b = 0; b < kCurveParts; ++b) {
+    const auto here = static_cast<double>(pairs[b]);
+    while (thread + 1 < share.size() && left < 0.5 * here)
+      left += share[++thread] * static_cast<double>(s.contacts.i.size());
+    thread_of[b] = static_cast<std::uint8_t>(thread);
+    left -= here;
   }
-  std::vector<std::uint8_t> owner(p.sphere.size(), 0);
-  for (Slot i = 0; i < p.grains; ++i) owner[static_cast<std::size_t>(i)] = thread_of[bin(i)];
+  std::vector<std::uint8_t> owner(s.particles.sphere.size(), 0);
+  for (std::size_t u = 0; u < part.size(); ++u) owner[u] = thread_of[part[u]];
   return owner;
 }
 
@@ -99,7 +91,8 @@ void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t
 
 template <int D>
 void make_plan(const System<D>& s, int threads, Plan& plan) {
-  const std::vector<std::uint8_t> owner = owners_of(s, threads);
+  plan.pace.share_out(static_cast<std::size_t>(threads));
+  const std::vector<std::uint8_t> owner = owners_of(s, plan.pace.share);
   plan.build = s.contacts.build;
   plan.threads = threads;
   plan.rolls = false;
@@ -156,6 +149,13 @@ class Pass {
  public:
   Pass(System<D>& s, double dt, History history, Plan& plan) : s_(s), dt_(dt), history_(history), plan_(plan) {}
 
+  /// What it takes a thread decides on its later share, never on a sum.
+  void timed(std::size_t thread, void (Pass::*work)(std::size_t)) {
+    const double begin = omp_get_wtime();
+    (this->*work)(thread);
+    plan_.pace.seconds[thread] += omp_get_wtime() - begin;
+  }
+
   void put_down(std::size_t thread) {
     for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
       Share& share = plan_.shares[thread][k];
@@ -194,16 +194,17 @@ template <int D>
 void parallel_pass(System<D>& s, double dt, History history, int threads) {
   Plan& plan = s.contacts.plan.template get<Plan>();
   const int many = std::min(threads, 255);
-  if (plan.build != s.contacts.build || plan.threads != many) make_plan(s, many, plan);
+  if (plan.build != s.contacts.build || plan.threads != many || plan.pace.uneven()) make_plan(s, many, plan);
   particle_pass(s);
   Pass<D> pass(s, dt, history, plan);
 #pragma omp parallel num_threads(many)
   {
 #pragma omp for schedule(static, 1)
-    for (int t = 0; t < many; ++t) pass.put_down(static_cast<std::size_t>(t));
+    for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::put_down);
 #pragma omp for schedule(static, 1)
-    for (int t = 0; t < many; ++t) pass.add(static_cast<std::size_t>(t));
+    for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add);
   }
+  ++plan.pace.passes;
 }
 
 template void parallel_pass<2>(System<2>&, double, History, int);

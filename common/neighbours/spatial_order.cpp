@@ -175,6 +175,17 @@ std::vector<Slot> spatial_order(const System<D>& s) {
 }
 
 template <int D>
+std::vector<std::uint16_t> curve_parts(const System<D>& s) {
+  constexpr int kPartBits = 12;
+  static_assert(kCurveParts == std::size_t{1} << kPartBits && kPartBits % D == 0);
+  std::vector<std::uint16_t> parts;
+  if (s.particles.grains == 0) return parts;
+  for (const Vec<D>& unit : unit_places(s))
+    parts.push_back(static_cast<std::uint16_t>(morton<D>(unit) >> (kBits * D - kPartBits)));
+  return parts;
+}
+
+template <int D>
 void reorder_grains(System<D>& s, const std::vector<Slot>& order) {
   auto& p = s.particles;
   if (p.id.empty()) {
@@ -213,6 +224,8 @@ std::vector<Slot> slots_by_id(const Particles<D>& p) {
 
 template std::vector<Slot> spatial_order<2>(const System<2>&);
 template std::vector<Slot> spatial_order<3>(const System<3>&);
+template std::vector<std::uint16_t> curve_parts<2>(const System<2>&);
+template std::vector<std::uint16_t> curve_parts<3>(const System<3>&);
 template void reorder_grains<2>(System<2>&, const std::vector<Slot>&);
 template void reorder_grains<3>(System<3>&, const std::vector<Slot>&);
 template void restore_order<2>(System<2>&);

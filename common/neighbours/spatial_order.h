@@ -1,6 +1,7 @@
 // Grains that meet lie near each other in memory: small ones first, each size class along a space-filling curve.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "common/system.h"
@@ -12,6 +13,13 @@ namespace softgrain {
 /// come out sorted); within a class along the Morton curve of the cell.
 template <int D>
 std::vector<Slot> spatial_order(const System<D>& system);
+
+/// Equal stretches of that curve.
+inline constexpr std::size_t kCurveParts = 4096;
+
+/// The stretch of the curve that each grain lies in.
+template <int D>
+std::vector<std::uint16_t> curve_parts(const System<D>& system);
 
 /// Puts the grains into that order, with everything that goes by slot: state, margins, pairs and their histories. Which
 /// grain is which stays in Particles::id. Forces are sums in list order, so that their last bits may change at the next
