@@ -27,7 +27,7 @@ struct Waiting {
 /// Pairs of one section that concern one thread.
 struct Share {
   std::vector<std::int32_t> inner;    ///< places in the list of pairs whose bodies are both the thread's
-  std::vector<std::int32_t> outer;    ///< of those whose first body is the thread's and whose second is another's
+  std::vector<std::int32_t> outer;    ///< of those that it evaluates of pairs with bodies of two threads
   std::vector<ContactLoad> loads;     ///< of outer
   std::vector<ContactRoll> rolls;     ///< of outer, in space where some law has rolling resistance
   std::vector<std::uint8_t> touches;  ///< of outer
@@ -66,21 +66,28 @@ std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<double
   return owner;
 }
 
+/// Who evaluates a pair of two threads: the one that has fewer of them for its share.
+std::uint8_t lender_of(const Plan& plan, std::size_t section, std::uint8_t a, std::uint8_t b) {
+  const auto lent = [&](std::uint8_t t) { return static_cast<double>(plan.shares[t][section].outer.size()); };
+  return lent(a) * plan.pace.share[b] <= lent(b) * plan.pace.share[a] ? a : b;
+}
+
 template <int D>
 void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t>& owner, Plan& plan) {
   const auto& list = s.contacts;
   for (std::int32_t c = list.sections[k].begin; c < list.sections[k].end; ++c) {
-    const std::uint8_t mine = owner[static_cast<std::size_t>(list.i[static_cast<std::size_t>(c)])];
-    const std::uint8_t other = owner[static_cast<std::size_t>(list.j[static_cast<std::size_t>(c)])];
-    Share& share = plan.shares[mine][k];
-    if (mine == other) {
-      share.inner.push_back(c);
+    const std::uint8_t first = owner[at(list.i[static_cast<std::size_t>(c)])];
+    const std::uint8_t second = owner[at(list.j[static_cast<std::size_t>(c)])];
+    if (first == second) {
+      plan.shares[first][k].inner.push_back(c);
       continue;
     }
-    const auto number = static_cast<std::int32_t>(share.outer.size());
-    share.outer.push_back(c);
-    share.waiting.push_back({c, mine, number, true});
-    plan.shares[other][k].waiting.push_back({c, mine, number, false});
+    const std::uint8_t lender = lender_of(plan, k, first, second);
+    std::vector<std::int32_t>& outer = plan.shares[lender][k].outer;
+    const auto number = static_cast<std::int32_t>(outer.size());
+    outer.push_back(c);
+    plan.shares[first][k].waiting.push_back({c, lender, number, true});
+    plan.shares[second][k].waiting.push_back({c, lender, number, false});
   }
   for (auto& of_thread : plan.shares) {
     of_thread[k].loads.resize(of_thread[k].outer.size());

@@ -5,10 +5,11 @@
 
 namespace softgrain {
 
-/// Adds all contact forces to their bodies, whose forces must be zero. Every thread owns the bodies of a slab of space.
-/// Pairs with bodies of two threads are evaluated first, by the owner of the first body, and put down. Then each thread
-/// goes through the list in order: pairs of its own are evaluated and added, its share of those put down is added when
-/// their turn comes. So every body gets its sums in list order, whatever the number of threads.
+/// Adds all contact forces to their bodies, whose forces must be zero. Every thread owns the bodies of a stretch of
+/// the space-filling curve, longer for a faster thread. Pairs with bodies of two threads are evaluated first, by one of
+/// the two, and put down. Then each thread goes through the list in order: pairs of its own are evaluated and added,
+/// its share of those put down is added when their turn comes. So every body gets its sums in list order, whatever the
+/// number of threads and whoever owns it.
 template <int D>
 void parallel_pass(System<D>& system, double dt, History history, int threads);
 

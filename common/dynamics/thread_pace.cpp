@@ -6,9 +6,9 @@ namespace softgrain {
 
 namespace {
 
-/// Passes between two looks, and those that make a measurement.
-constexpr int kLookEvery = 64;
+/// Passes that make a measurement, and the most between two looks.
 constexpr int kEnough = 16;
+constexpr int kLookAtLeastEvery = 1024;
 /// Waiting time, as a share of the longest, from which new shares pay.
 constexpr double kUneven = 0.08;
 constexpr double kLeastPart = 0.2;
@@ -30,12 +30,13 @@ void ThreadPace::share_out(std::size_t threads) {
     }
     for (double& part : share) part /= sum;
   }
+  if (passes >= look_after) look_after = std::min(2 * look_after, kLookAtLeastEvery);
   seconds.assign(threads, 0.0);
   passes = 0;
 }
 
 bool ThreadPace::uneven() const {
-  if (passes < kLookEvery || seconds.empty()) return false;
+  if (passes < look_after || seconds.empty()) return false;
   const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
   return *most - *least > kUneven * *most;
 }

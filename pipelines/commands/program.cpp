@@ -16,6 +16,7 @@
 
 #include "common/io/interrupt.h"
 #include "common/io/text_file.h"
+#include "pipelines/commands/complaints.h"
 #include "pipelines/commands/law_options.h"
 #include "pipelines/commands/observables.h"
 #include "pipelines/run/run_context.h"
@@ -189,6 +190,16 @@ void require_command(int argc, char** argv) {
                  "commands are " + list);
 }
 
+/// A run that is refused leaves no directory behind.
+ExitStatus run_or_leave_nothing(const Command& command, const CommonOptions& options, const FreshDirectory& out) {
+  try {
+    return command.function(options);
+  } catch (const BadInput&) {
+    out.remove_if_empty();
+    throw;
+  }
+}
+
 /// Parses and runs. CLI::ParseError (help, version, mistakes) and Error go up.
 ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   CommonOptions options;
@@ -220,23 +231,18 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
     require_observables(options.inputs.front(), options.overrides);
     if (options.out.empty()) options.out = observables + "_run";
   }
+  const FreshDirectory out(options.out);
   if (!options.out.empty()) require_writable_directory(options.out);
   for (const std::string& cache : {options.law_cache, options.packing_cache, options.twin_cache})
     if (!cache.empty()) require_writable_directory(cache);
   if (chosen->saves) install_interrupt_handler();
-  const ExitStatus status = chosen->function(options);
+  const ExitStatus status = run_or_leave_nothing(*chosen, options, out);
   if (!observables.empty()) write_observables(options.out, options.overrides, observables);
   return status;
 }
 
-int complain(ExitStatus status, const std::string& message) {
-  // Not by fmt: it throws where standard error cannot be written, and the status is what is left to tell then.
-  (void)std::fputs(("softgrain: " + message + "\n").c_str(), stderr);
-  return static_cast<int>(status);
-}
-
 /// Help and version go to standard output with status 0, mistakes to standard error with status 2.
-int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& e, bool as_json) {
   if (e.get_exit_code() == 0) {
     std::ostringstream text;
     (void)app.exit(e, text, text);
@@ -247,14 +253,19 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& e) {
   // CLI11 puts "--threads: " before the message of a validator, which names the option itself.
   for (const std::string option : {"--threads", "--seed", "--ranks"})
     if (message.starts_with(option + ": " + option)) message.erase(0, option.size() + 2);
-  return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)");
+  return complain(ExitStatus::bad_input, message + " (see softgrain COMMAND --help)", as_json);
+}
+
+/// Known before anything is parsed: mistakes in the command line are told in the same form.
+bool wants_json(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--json"; });
 }
 
 int parse_and_run_or_explain(CLI::App& app, int argc, char** argv) {
   try {
     return static_cast<int>(parse_and_run(app, argc, argv));
   } catch (const CLI::ParseError& e) {
-    return end_of_parsing(app, e);
+    return end_of_parsing(app, e, wants_json(argc, argv));
   }
 }
 
@@ -273,20 +284,17 @@ int run_program(int argc, char** argv) {
   const Provenance build = build_provenance();
   app.set_version_flag("--version", "softgrain " + build.version + " (" + build.commit + ")");
   app.footer(kFooter);
+  const bool as_json = wants_json(argc, argv);
   try {
     return parse_and_run_or_explain(app, argc, argv);
-  } catch (const BadScene& e) {
-    std::istringstream mistakes(e.what());
-    for (std::string one; std::getline(mistakes, one);) (void)complain(e.status(), one);
-    return static_cast<int>(e.status());
   } catch (const Error& e) {
-    return complain(e.status(), e.what());
+    return complain(e.status(), e.what(), as_json);
   } catch (const std::bad_alloc&) {
-    return complain(ExitStatus::not_usable, "not enough memory");
+    return complain(ExitStatus::not_usable, "not enough memory", as_json);
   } catch (const std::system_error& e) {  // of file systems and streams
-    return complain(ExitStatus::file_trouble, e.what());
+    return complain(ExitStatus::file_trouble, e.what(), as_json);
   } catch (const std::exception& e) {
-    return complain(ExitStatus::not_usable, std::string("unexpected: ") + e.what());
+    return complain(ExitStatus::not_usable, std::string("unexpected: ") + e.what(), as_json);
   }
 }
 

@@ -15,11 +15,12 @@ namespace softgrain::test {
 
 struct ProgramOutcome {
   int status = -1;
-  std::string output;  ///< standard output and standard error together
+  std::string output;  ///< standard output and, unless it goes elsewhere, standard error
 };
 
-inline ProgramOutcome run_the_program(const std::string& arguments) {
-  const std::string line = std::string("'") + SOFTGRAIN_PROGRAM + "' " + arguments + " 2>&1 </dev/null";
+/// `errors`: where standard error goes.
+inline ProgramOutcome run_the_program(const std::string& arguments, const std::string& errors = "&1") {
+  const std::string line = std::string("'") + SOFTGRAIN_PROGRAM + "' " + arguments + " 2>" + errors + " </dev/null";
   ProgramOutcome outcome;
   FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) return outcome;

@@ -24,7 +24,7 @@ TEST(ThreadPace, SharesFollowPairsPerSecond) {
   EXPECT_EQ(pace.passes, 0);
   // With these shares all take equally long: nothing changes any more.
   pace.seconds = {1.2, 1.2, 1.2};
-  pace.passes = 100;
+  pace.passes = 200;
   EXPECT_FALSE(pace.uneven());
   pace.share_out(3);
   EXPECT_NEAR(pace.share[1], 0.2, 1e-12);
@@ -38,6 +38,22 @@ TEST(ThreadPace, AThreadThatStallsKeepsSomething) {
   pace.share_out(2);
   EXPECT_NEAR(pace.share[1], 0.1 / (0.1 + 1000.0 / 1001.0), 1e-12);
   EXPECT_NEAR(pace.share[0] + pace.share[1], 1.0, 1e-15);
+}
+
+TEST(ThreadPace, LooksEverLessOften) {
+  ThreadPace pace;
+  pace.share_out(2);
+  int after = 0;
+  for (int k = 0; k < 8; ++k) {
+    while (!pace.uneven()) {
+      ++pace.passes;
+      pace.seconds = {1.0, k % 2 == 0 ? 2.0 : 0.5};  // a machine that cannot make up its mind
+    }
+    EXPECT_GE(pace.passes, after);
+    after = pace.passes;
+    pace.share_out(2);
+  }
+  EXPECT_EQ(after, 1024);
 }
 
 TEST(ThreadPace, TooLittleToGoByLeavesTheShares) {

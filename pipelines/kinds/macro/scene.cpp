@@ -332,6 +332,9 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     out.law = read_scene_law(root, law_file);
     out.spec = out.law.cells ? grains_of(*out.law.cells) : measured_spec(out.law);
   }
+  if (root.has("material"))
+    root.mistake("material",
+                 "goes without: the materials of all bodies are those of the law, which was measured with them");
   const SceneTable macro = root.table("macro");
   out.setup = read_macro_setup(macro, out.spec);
   read_stages(root, macro, out.setup.spec);
