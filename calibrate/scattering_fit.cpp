@@ -300,10 +300,6 @@ std::string judge(const LeastSquaresFit& found, const ScatteringFit& fit, const 
   return text;
 }
 
-}  // namespace
-
-namespace {
-
 /// With an amplitude that is tied or free, as the options say.
 void fit_data(const std::vector<Datum>& data, const ScatteringFitOptions& options, ScatteringFit& fit) {
   const Parameters parameters(options.solid_fraction);
@@ -320,9 +316,11 @@ void fit_data(const std::vector<Datum>& data, const ScatteringFitOptions& option
 
 double chi2_of(const ScatteringFit& fit) { return fit.chi2_per_degree * static_cast<double>(fit.bins - kParameters); }
 
-/// The fit with a free amplitude in place of a tied one, where the tie costs more than chance explains.
+/// The fit with a free amplitude in place of a tied one, where the tie costs more than chance explains. Where nothing
+/// is at a bound both are the same fit in other parameters.
 ScatteringFit untied_if_dear(const std::vector<Datum>& data, ScatteringFitOptions options, const ScatteringFit& tied) {
-  if (options.solid_fraction == 0.0 || tied.amplitude.value == 0.0) return tied;
+  if (options.solid_fraction == 0.0 || tied.amplitude.value == 0.0 || (tied.usable && tied.bounded.empty()))
+    return tied;
   ScatteringFit free = tied;
   free.lower_length = {};
   free.bounded.clear();

@@ -64,7 +64,7 @@ struct ScatteringFit {
   ScatteringEstimate background;
   ScatteringEstimate lower_length;  ///< l, where the amplitude is tied to it; else zero
   std::string bounded;              ///< which numbers ended at a bound, and are taken as known in the errors of others
-  double tie_cost = 0.0;  ///< above 0: the amplitude is free, since tying it to Phi would cost so much chi^2
+  double tie_cost = 0.0;            ///< above 0: the amplitude is free, since tying it to Phi would cost so much chi^2
   std::vector<double> covariance;   ///< 4 x 4 row-major of (ln A, dF, ln xi, c)
   double k_low = 0.0;               ///< first and last k that were fitted
   double k_high = 0.0;

@@ -38,7 +38,6 @@ struct Share {
 struct Plan {
   ThreadPace pace;
   std::uint64_t build = 0;
-  int threads = 0;
   bool rolls = false;                      ///< some law of the scene has rolling resistance
   std::vector<std::vector<Share>> shares;  ///< [thread][section]
 };
@@ -97,14 +96,13 @@ void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t
 }
 
 template <int D>
-void make_plan(const System<D>& s, int threads, Plan& plan) {
-  plan.pace.share_out(static_cast<std::size_t>(threads));
+void make_plan(const System<D>& s, std::size_t threads, Plan& plan) {
+  plan.pace.share_out(threads);
   const std::vector<std::uint8_t> owner = owners_of(s, plan.pace.share);
   plan.build = s.contacts.build;
-  plan.threads = threads;
   plan.rolls = false;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
-  plan.shares.assign(static_cast<std::size_t>(threads), std::vector<Share>(s.contacts.sections.size()));
+  plan.shares.assign(threads, std::vector<Share>(s.contacts.sections.size()));
   for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, owner, plan);
 }
 
@@ -201,7 +199,8 @@ template <int D>
 void parallel_pass(System<D>& s, double dt, History history, int threads) {
   Plan& plan = s.contacts.plan.template get<Plan>();
   const int many = std::min(threads, 255);
-  if (plan.build != s.contacts.build || plan.threads != many || plan.pace.uneven()) make_plan(s, many, plan);
+  if (plan.build != s.contacts.build || plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
+    make_plan(s, static_cast<std::size_t>(many), plan);
   particle_pass(s);
   Pass<D> pass(s, dt, history, plan);
 #pragma omp parallel num_threads(many)

@@ -11,7 +11,7 @@ struct ThreadPace {
   std::vector<double> share;    ///< of all pairs, per thread; sum 1
   std::vector<double> seconds;  ///< spent by each since the shares were made [s]
   int passes = 0;               ///< since then
-  int look_after = 64;          ///< passes between two looks at the pace: ever more, new shares cost about ten passes
+  int look_after = 64;          ///< passes between two looks at the pace: ever more, as new shares need a new plan
 
   /// Makes the shares anew, in proportion to the pairs per second of each thread; equal ones for another number of
   /// threads or before enough has been measured. No thread gets less than a fifth of an equal share: what it is

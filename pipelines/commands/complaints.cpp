@@ -8,27 +8,20 @@
 #include <system_error>
 #include <utility>
 
+#include "common/core/words.h"
+
 namespace softgrain {
+
+template <>
+inline constexpr auto words<ExitStatus> = word_list<ExitStatus>({{ExitStatus::good, "good"},
+                                                                 {ExitStatus::bad_input, "bad input"},
+                                                                 {ExitStatus::not_usable, "not usable"},
+                                                                 {ExitStatus::file_trouble, "file trouble"},
+                                                                 {ExitStatus::interrupted, "interrupted"}});
 
 namespace {
 
 using nlohmann::json;
-
-std::string words_of(ExitStatus status) {
-  switch (status) {
-    case ExitStatus::good:
-      return "good";
-    case ExitStatus::bad_input:
-      return "bad input";
-    case ExitStatus::not_usable:
-      return "not usable";
-    case ExitStatus::file_trouble:
-      return "file trouble";
-    case ExitStatus::interrupted:
-      return "interrupted";
-  }
-  return "not usable";
-}
 
 json error_object(const std::string& text) {
   static const std::regex placed("^([^:]+):([0-9]+): (.*)$");
@@ -49,7 +42,7 @@ int complain(ExitStatus status, const std::string& messages, bool as_json) {
     errors.push_back(error_object(one));
   }
   if (!as_json) return number;
-  const json all{{"status", words_of(status)}, {"exit_status", number}, {"errors", errors}};
+  const json all{{"status", to_string(status)}, {"exit_status", number}, {"errors", errors}};
   const std::string text = all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   (void)std::fputs(text.c_str(), stdout);
   (void)std::fflush(stdout);

@@ -53,6 +53,17 @@ TEST(Complaints, JsonAlsoForTheCommandLine) {
   EXPECT_TRUE(run_the_program("microsim --threads none scene.toml", "/dev/null").output.empty());
 }
 
+TEST(Complaints, AMacroSceneSaysWhereItsMaterialsComeFrom) {
+  const TemporaryDirectory directory;
+  const std::string scene = directory.file("scene.toml");
+  write_text_atomic(scene, "kind = \"macro\"\nlaw = \"" SOFTGRAIN_SOURCE_DIR
+                           "/results/published/law.toml\"\n[material]\nE = 1e9\n[macro]\nbodies = 12\n");
+  const ProgramOutcome refused = run_the_program("macrosim " + scene + " --out " + directory.file("run"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.output.find("are those of the law"), std::string::npos) << refused.output;
+  EXPECT_FALSE(fs::exists(directory.file("run")));
+}
+
 TEST(Complaints, ARefusedRunLeavesNoDirectory) {
   const TemporaryDirectory directory;
   const std::string scene = directory.file("scene.toml");
