@@ -6,6 +6,8 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "common/neighbours/spatial_order.h"
+#include "macrosim/hard_bodies.h"
 #include "macrosim/preparation.h"
 
 namespace softgrain {
@@ -47,6 +49,21 @@ std::vector<MacroBody> draw_power_laws(const MacroSpec& spec, double soft_share,
     bodies.push_back(body);
   }
   return bodies;
+}
+
+}  // namespace
+
+namespace {
+
+/// From this many on.
+constexpr std::size_t kOrderedBodies = 2000;
+
+/// Bodies that will meet lie near each other in memory: compaction moves them less than their order does.
+void order_in_space(const MacroSpec& spec, MacroPacking& packing) {
+  if (packing.bodies.size() < kOrderedBodies) return;
+  std::vector<MacroBody> ordered;
+  for (const Slot k : spatial_order(HardBodies(spec, packing).system)) ordered.push_back(packing.bodies[at(k)]);
+  packing.bodies = std::move(ordered);
 }
 
 }  // namespace
@@ -95,6 +112,7 @@ MacroPacking pack_bodies(const MacroSpec& spec, std::vector<MacroBody> bodies, s
   const double fraction = spec.protocol.start_fraction;
   if (spec.protocol.coarse_share < 1.0) return pack_densely(spec, std::move(bodies), seed, sample, watch);
   MacroPacking packing = place_loosely(std::move(bodies), seed, sample, fraction, spec.boundary);
+  order_in_space(spec, packing);
   if (spec.preparation != Preparation::lammps) bring_into_touch(spec, packing, watch);
   return packing;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/over_bodies.h"
+
 namespace softgrain {
 
 namespace {
@@ -33,9 +35,11 @@ const Vec3& PressedBox::resisted(System3& s) {
   if (box_.periodic) return resisted_ = virial_.of(s);
   const auto& p = s.particles;
   const Vec3 centre = box_centre(s, box_);
-  resisted_ = {};
-  for (std::size_t u = 0; u < at(p.size()); ++u) resisted_ += by_axis(p.force[u], carried_place(s, u) - centre);
-  return resisted_;
+  return resisted_ = sum_over_bodies<Vec3>(at(p.size()), [&](std::size_t begin, std::size_t end) {
+           Vec3 sum{};
+           for (std::size_t u = begin; u < end; ++u) sum += by_axis(p.force[u], carried_place(s, u) - centre);
+           return sum;
+         });
 }
 
 PressedBox::Sums PressedBox::feel(System3& s) {
@@ -63,12 +67,16 @@ void PressedBox::carry(System3& s, double step) {
   strained_ += velocity_ * step;
   const Vec3 centre = box_centre(s, box_);
   carried_.resize(at(p.size()));
+  const auto carry = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) {
+      carried_[u] = by_axis(velocity_, centre - carried_place(s, u));
+      p.sphere[u].x += carried_[u] * step;
+      p.velocity[u] += carried_[u];
+    }
+  };
   // Shells come after the grains in them: all are still where they were.
-  for (std::size_t u = 0; u < carried_.size(); ++u) {
-    carried_[u] = by_axis(velocity_, centre - carried_place(s, u));
-    p.sphere[u].x += carried_[u] * step;
-    p.velocity[u] += carried_[u];
-  }
+  over_bodies(at(p.grains), carry);
+  carry(at(p.grains), carried_.size());
   if (!box_.periodic) return;
   for (int k = 0; k < 3; ++k) {
     const double shrink = velocity_[k] * step;
@@ -85,8 +93,10 @@ void PressedBox::release(System3& s) {
   if (box_.periodic)
     for (std::size_t u = 0; u < carried_.size(); ++u)
       if (const Vec3 way = placed_[u] - p.sphere[u].x; way != Vec3{}) carried_[u] -= s.cell.velocity_gradient * way;
-  for (std::size_t u = 0; u < carried_.size(); ++u)
-    p.velocity[u] = p.force[u] == Stored<3>{} ? Vec3{} : Vec3(p.velocity[u]) - carried_[u];
+  over_bodies(carried_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u)
+      p.velocity[u] = p.force[u] == Stored<3>{} ? Vec3{} : Vec3(p.velocity[u]) - carried_[u];
+  });
   if (box_.periodic) s.cell.velocity_gradient = {};
 }
 

@@ -21,15 +21,21 @@ Block<D>& scratch() {
   return block;
 }
 
+/// Which pairs of a range a loop takes: all of them, those of an order, or those that are not lent, with what waits
+/// added in between.
+enum class Take { all, ordered, own };
+
 /// Finds the touching pairs of a block and brings all that a law asks for into rows. kTraits: what laws of this kind
 /// ask for.
-template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, bool kOrdered>
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, Take kTake>
 class Gatherer {
  public:
   Gatherer(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass)
       : s_(s), list_(s.contacts), kernel_(kernel), range_(range), pass_(pass), images_(s.cell) {}
 
  protected:
+  static constexpr bool kOrdered = kTake == Take::ordered;
+
   static std::size_t u(std::int32_t k) { return static_cast<std::size_t>(k); }
 
   /// Place in the list of number k of the range.
@@ -61,9 +67,22 @@ class Gatherer {
     }
   }
 
+  /// One bit for each of four pairs from place k on that is lent.
+  [[nodiscard]] int lent([[maybe_unused]] std::int32_t k) const {
+    int bits = 0;
+    if constexpr (kTake == Take::own) {
+      std::uint32_t flags = 0;
+      std::memcpy(&flags, pass_.lent + k, sizeof flags);
+      if (flags != 0)
+        for (int l = 0; l < 4; ++l) bits |= static_cast<int>(flags >> (8 * l) & 1U) << l;
+    }
+    return bits;
+  }
+
   /// Branch vector and the fourth number of every pair, and which touch. No branch depends on that: about one pair in
   /// three does, which no processor can guess.
-  void find_touching(std::int32_t begin, std::int32_t end) {  // NOLINT(readability-function-size): one hot loop
+  void find_touching(std::int32_t begin,
+                     std::int32_t end) {  // NOLINT(readability-function-size): one hot loop
     const Slot* const first = list_.i.data();
     const Slot* const second = list_.j.data();
     const Sphere<D>* const spheres = s_.particles.sphere.data();
@@ -101,7 +120,8 @@ class Gatherer {
       }
       std::array<Quad, 4> t = d;
       transpose(t[0], t[1], t[2], t[3]);
-      const int touch = ~apart(t, normal) & ((1 << valid) - 1);
+      const int here = ((1 << valid) - 1) & ~lent(k);
+      const int touch = ~apart(t, normal) & here;
       for (int l = 0; l < 4; ++l) {
         record[n] = d[u(l)];
         pair[n] = c[u(l)];
@@ -109,7 +129,7 @@ class Gatherer {
         if constexpr (kOrdered) number[n] = k + l;
         n += touch >> l & 1;
       }
-      if constexpr (kTraits.has_tangential) note_touch(c, valid, touch);
+      if constexpr (kTraits.has_tangential) note_touch(c, here, touch);
       if constexpr (kOrdered)
         if (pass_.touches != nullptr)
           for (int l = 0; l < valid; ++l) pass_.touches[k + l] = static_cast<std::uint8_t>(touch >> l & 1);
@@ -122,18 +142,17 @@ class Gatherer {
     }
   }
 
-  /// A contact that has opened forgets its history.
-  void note_touch(const std::array<std::int32_t, 4>& c, int valid, int touch) {
+  /// A contact that has opened forgets its history. `here`: one bit for each of the four that is looked at.
+  void note_touch(const std::array<std::int32_t, 4>& c, int here, int touch) {
     if (pass_.history == History::none) return;
     if (pass_.history == History::next) {
-      for (int l = 0; l < valid; ++l)
-        if ((touch >> l & 1) == 0) forget(list_.spring_next, list_.memory_next, list_.roll_next, u(c[u(l)]));
+      for (int l = 0; l < 4; ++l)
+        if (((here & ~touch) >> l & 1) != 0) forget(list_.spring_next, list_.memory_next, list_.roll_next, u(c[u(l)]));
       return;
     }
     std::uint8_t* const touched = list_.touched.data();
-    int had = 0;
     if constexpr (!kOrdered) {
-      if (valid == 4) {  // four flags in one word, which seldom changes
+      if (here == 15) {  // four flags in one word, which seldom changes
         std::uint32_t old = 0;
         std::memcpy(&old, touched + c[0], sizeof old);
         const std::uint32_t now = kFlags[u(touch)];
@@ -144,13 +163,13 @@ class Gatherer {
         return;
       }
     }
-    for (int l = 0; l < valid; ++l) {
-      had |= touched[c[u(l)]] << l;
-      touched[c[u(l)]] = static_cast<std::uint8_t>(touch >> l & 1);
+    for (int l = 0; l < 4; ++l) {
+      if ((here >> l & 1) == 0) continue;
+      const std::size_t place = u(c[u(l)]);
+      const bool now = (touch >> l & 1) != 0;
+      if (touched[place] != 0 && !now) forget(list_.spring, list_.memory, list_.roll, place);
+      touched[place] = static_cast<std::uint8_t>(now);
     }
-    if ((had & ~touch) == 0) return;
-    for (int l = 0; l < valid; ++l)
-      if (((had & ~touch) >> l & 1) != 0) forget(list_.spring, list_.memory, list_.roll, u(c[u(l)]));
   }
 
   static constexpr bool kRolls = has_roll_history<D>(kTraits);
@@ -250,9 +269,9 @@ class Gatherer {
 };
 
 /// Forces of a range of pairs.
-template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, bool kOrdered>
-class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
-  using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered>;
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, Take kTake>
+class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
+  using Base = Gatherer<D, kTraits, kGeometry, kPeriodic, kTake>;
   using Base::block_, Base::list_, Base::pass_, Base::s_, Base::u, Base::kRolls;
 
  public:
@@ -264,7 +283,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
       this->find_touching(k, std::min(k + kBlock, range.end));
       if (block_.touching == 0) continue;
       this->gather();
-      this->kernel_(pass_.dt, pass_.stiffness != nullptr, block_);
+      this->kernel_(pass_.dt, pass_.stiffness != nullptr || pass_.stiffnesses != nullptr, block_);
       if (pass_.loads != nullptr)
         put_down();
       else
@@ -289,13 +308,18 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
       wall = -1;
     };
     for_records([&](int k, std::size_t c, Quad force, Quad moment) {
-      if constexpr (kOrdered)
+      if constexpr (kTake != Take::all)
         if (pass_.waiting != nullptr && pass_.waiting->next < static_cast<std::int32_t>(c)) {
           if constexpr (kWalls) let_go();
           pass_.waiting->add_before(static_cast<std::int32_t>(c));
         }
       const std::size_t i = u(first[c]);
       const std::size_t j = u(second[c]);
+      if (pass_.stiffness != nullptr) {
+        const ContactStiffness stiffness = stiffness_of(k);
+        add_first(stiffness, i, *pass_.stiffness);
+        add_second(stiffness, j, *pass_.stiffness);
+      }
       store(forces[i], quad_of(forces[i]) + force);
       if constexpr (kTraits.has_tangential) store(torques[i], quad_of(torques[i]) - moment * block_.arm_i.v[k]);
       if constexpr (kWalls) {
@@ -325,30 +349,21 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
       }
     });
     if constexpr (kWalls) let_go();
-    if (pass_.stiffness != nullptr) add_stiffness(*pass_.stiffness);
     if (pass_.virial != nullptr) add_virial(*pass_.virial);
   }
 
-  void add_stiffness(BodyStiffness& out) {
-    for (int k = 0; k < block_.touching; ++k) {
-      const std::size_t c = u(block_.pair[u(k)]);
-      const std::size_t i = u(list_.i[c]);
-      const std::size_t j = u(list_.j[c]);
-      if (block_.normal_force.v[k] != 0.0) {
-        out.force_sum += std::abs(block_.normal_force.v[k]);
-        ++out.contacts;
-      }
-      out.translation[i] += block_.stiffness.v[k];
-      out.translation[j] += block_.stiffness.v[k];
-      if constexpr (kTraits.has_tangential) {
-        out.rotation[i] += block_.tangential_stiffness.v[k] * block_.arm_i.v[k] * block_.arm_i.v[k];
-        out.rotation[j] += block_.tangential_stiffness.v[k] * block_.arm_j.v[k] * block_.arm_j.v[k];
-      }
-      if constexpr (kRolls) {
-        out.rotation[i] += block_.rolling_stiffness.v[k];
-        out.rotation[j] += block_.rolling_stiffness.v[k];
-      }
+  /// Of number k of the block.
+  [[nodiscard]] ContactStiffness stiffness_of(int k) const {
+    ContactStiffness out{block_.stiffness.v[k], 0.0, 0.0, std::abs(block_.normal_force.v[k])};
+    if constexpr (kTraits.has_tangential) {
+      out.rotation_i = block_.tangential_stiffness.v[k] * block_.arm_i.v[k] * block_.arm_i.v[k];
+      out.rotation_j = block_.tangential_stiffness.v[k] * block_.arm_j.v[k] * block_.arm_j.v[k];
     }
+    if constexpr (kRolls) {
+      out.rotation_i += block_.rolling_stiffness.v[k];
+      out.rotation_j += block_.rolling_stiffness.v[k];
+    }
+    return out;
   }
 
   void add_virial(Vec<D>& out) {
@@ -361,6 +376,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
   void put_down() {
     for_records([&](int k, std::size_t, Quad force, Quad moment) {
       ContactLoad& load = pass_.loads[block_.number[u(k)]];
+      if (pass_.stiffnesses != nullptr) pass_.stiffnesses[block_.number[u(k)]] = stiffness_of(k);
       if constexpr (kTraits.has_tangential) {
         force[3] = block_.arm_i.v[k];
         moment[3] = block_.arm_j.v[k];
@@ -420,15 +436,15 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kOrdered> {
 
 /// The first half of the particle pass: what every contact takes from its bodies.
 template <class Law, Geometry kGeometry, bool kPeriodic>
-class Shares
-    : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic, false> {
-  using Base =
-      Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic, false>;
+class Shares : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic,
+                        Take::all> {
+  using Base = Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic,
+                        Take::all>;
   using Base::block_, Base::list_, Base::u;
 
  public:
-  Shares(System<3>& s, const Law& law, const PairRange& range)
-      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0}, range, {}), law_(law) {}
+  Shares(System<3>& s, const Law& law, const PairRange& range, OwnBodies own)
+      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0}, range, {}), law_(law), own_(own) {}
 
   void run() {
     for (std::int32_t k = this->range_.begin; k < this->range_.end; k += kBlock) {
@@ -444,11 +460,14 @@ class Shares
   void add(int n) {
     const std::size_t c = u(block_.pair[u(n)]);
     const Vec<3> normal{{block_.normal[0].v[n], block_.normal[1].v[n], block_.normal[2].v[n]}};
-    if (law_.i_is_soft) Law::add(block_.taken_i.v[n], -normal, list_.particle_sum[u(list_.i[c])]);
-    if (law_.j_is_soft) Law::add(block_.taken_j.v[n], normal, list_.particle_sum[u(list_.j[c])]);
+    const Slot i = list_.i[c];
+    const Slot j = list_.j[c];
+    if (law_.i_is_soft && own_(i)) Law::add(block_.taken_i.v[n], -normal, list_.particle_sum[u(i)]);
+    if (law_.j_is_soft && own_(j)) Law::add(block_.taken_j.v[n], normal, list_.particle_sum[u(j)]);
   }
 
   const Law& law_;
+  OwnBodies own_;
 };
 
 /// Closes sums, each once, several at a time.
@@ -502,11 +521,16 @@ void open(const System<D>& s, const ContactSection& section, Work&& work) {
 
 template <int D, LawTraits kTraits, Geometry kGeometry>
 void run_loop(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass) {
-  const auto run = [&](auto periodic, auto ordered) {
-    Loop<D, kTraits, kGeometry, decltype(periodic)::value, decltype(ordered)::value>(s, kernel, range, pass).run();
+  const auto run = [&]<Take kTake>(auto periodic) {
+    Loop<D, kTraits, kGeometry, decltype(periodic)::value, kTake>(s, kernel, range, pass).run();
   };
   const auto with_order = [&](auto periodic) {
-    range.order == nullptr ? run(periodic, std::false_type{}) : run(periodic, std::true_type{});
+    if (range.order != nullptr)
+      run.template operator()<Take::ordered>(periodic);
+    else if (pass.lent != nullptr)
+      run.template operator()<Take::own>(periodic);
+    else
+      run.template operator()<Take::all>(periodic);
   };
   if constexpr (kGeometry != Geometry::sphere_plane)
     if (s.cell.any_periodic()) return with_order(std::true_type{});
@@ -514,6 +538,35 @@ void run_loop(System<D>& s, const Kernel<D>& kernel, const PairRange& range, con
 }
 
 }  // namespace
+
+void BodyStiffness::clear(std::size_t bodies) {
+  translation.assign(bodies, 0.0);
+  rotation.assign(bodies, 0.0);
+  force.assign(bodies, 0.0);
+  contacts.assign(bodies, 0);
+}
+
+double BodyStiffness::mean_force() const {
+  double sum = 0.0;
+  std::int64_t many = 0;
+  for (std::size_t u = 0; u < force.size(); ++u) {
+    sum += force[u];
+    many += contacts[u];
+  }
+  return many > 0 ? sum / static_cast<double>(many) : 0.0;
+}
+
+void add_first(const ContactStiffness& of, std::size_t body, BodyStiffness& to) {
+  to.translation[body] += of.translation;
+  to.rotation[body] += of.rotation_i;
+  to.force[body] += of.force;
+  to.contacts[body] += of.force != 0.0 ? 1 : 0;
+}
+
+void add_second(const ContactStiffness& of, std::size_t body, BodyStiffness& to) {
+  to.translation[body] += of.translation;
+  to.rotation[body] += of.rotation_j;
+}
 
 template <int D>
 void block_loop(System<D>& s, const ContactSection& section, const PairRange& range, const BlockPass<D>& pass) {
@@ -530,39 +583,52 @@ void block_loop(System<D>& s, const BlockPass<D>& pass) {
 }
 
 template <>
-void particle_pass(System<2>&) {}
+void add_particle_shares(System<2>&, const ContactSection&, const PairRange&, OwnBodies) {}
 
 template <>
-void particle_pass(System<3>& s) {
+void add_particle_shares(System<3>& s, const ContactSection& section, const PairRange& range, OwnBodies own) {
+  open(s, section, [&]<class Law>(const Law& law, auto geometry) {
+    constexpr Geometry kGeometry = decltype(geometry)::value;
+    if constexpr (Law::traits.needs_particle_pass) {
+      if (kGeometry == Geometry::sphere_sphere && s.cell.any_periodic())
+        Shares<Law, kGeometry, true>(s, law, range, own).run();
+      else
+        Shares<Law, kGeometry, false>(s, law, range, own).run();
+    }
+  });
+}
+
+template <>
+void close_particle_sums(System<2>&, const ContactSection&, const PairRange&, OwnBodies) {}
+
+template <>
+void close_particle_sums(System<3>& s, const ContactSection& section, const PairRange& range, OwnBodies own) {
+  open(s, section, [&]<class Law>(const Law& law, auto) {
+    if constexpr (Law::traits.needs_particle_pass) {
+      Closing<Law> closing(law);
+      for (std::int32_t c = range.begin; c < range.end; ++c)
+        for (const Slot body : {s.contacts.i[at(c)], s.contacts.j[at(c)]})
+          if (own(body)) closing.add(s.contacts.particle_sum[at(body)]);
+      closing.close();
+    }
+  });
+}
+
+template <int D>
+void particle_pass(System<D>& s) {
   if (s.contacts.particle_sum.empty()) return;
-  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), CrowdSum<3>{});
+  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), CrowdSum<D>{});
   for (const ContactSection& section : s.contacts.sections)
-    open(s, section, [&]<class Law>(const Law& law, auto geometry) {
-      constexpr Geometry kGeometry = decltype(geometry)::value;
-      const PairRange range{section.begin, section.end};
-      if constexpr (Law::traits.needs_particle_pass) {
-        if (kGeometry == Geometry::sphere_sphere && s.cell.any_periodic())
-          Shares<Law, kGeometry, true>(s, law, range).run();
-        else
-          Shares<Law, kGeometry, false>(s, law, range).run();
-      }
-    });
+    add_particle_shares<D>(s, section, {section.begin, section.end}, {});
   for (const ContactSection& section : s.contacts.sections)
-    open(s, section, [&]<class Law>(const Law& law, auto) {
-      if constexpr (Law::traits.needs_particle_pass) {
-        Closing<Law> closing(law);
-        for (auto c = static_cast<std::size_t>(section.begin); c < static_cast<std::size_t>(section.end); ++c) {
-          closing.add(s.contacts.particle_sum[static_cast<std::size_t>(s.contacts.i[c])]);
-          closing.add(s.contacts.particle_sum[static_cast<std::size_t>(s.contacts.j[c])]);
-        }
-        closing.close();
-      }
-    });
+    close_particle_sums<D>(s, section, {section.begin, section.end}, {});
 }
 
 template void block_loop<2>(System<2>&, const ContactSection&, const PairRange&, const BlockPass<2>&);
 template void block_loop<3>(System<3>&, const ContactSection&, const PairRange&, const BlockPass<3>&);
 template void block_loop<2>(System<2>&, const BlockPass<2>&);
 template void block_loop<3>(System<3>&, const BlockPass<3>&);
+template void particle_pass<2>(System<2>&);
+template void particle_pass<3>(System<3>&);
 
 }  // namespace softgrain

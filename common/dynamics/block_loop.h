@@ -37,11 +37,25 @@ class WaitingLoads {
 struct BodyStiffness {
   std::vector<double> translation;  ///< sum of kn + kt over the contacts of a body [N/m]
   std::vector<double> rotation;     ///< sum of kt arm^2, in space with that of rolling [N m]
-  double force_sum = 0.0;           ///< of |normal force| over contacts [N]
-  std::int64_t contacts = 0;        ///< force-carrying
+  // Of the contacts whose first body it is, so that every contact counts once:
+  std::vector<double> force;           ///< sum of |normal force| [N]
+  std::vector<std::int32_t> contacts;  ///< that carry a force
 
-  [[nodiscard]] double mean_force() const { return contacts > 0 ? force_sum / static_cast<double>(contacts) : 0.0; }
+  void clear(std::size_t bodies);
+  [[nodiscard]] double mean_force() const;
 };
+
+/// What a contact adds to them, put down likewise.
+struct ContactStiffness {
+  double translation;  ///< kn + kt [N/m]
+  double rotation_i;   ///< [N m]
+  double rotation_j;   ///< [N m]
+  double force;        ///< |normal force| [N]
+};
+
+/// Adds what a contact has to its first and second body.
+void add_first(const ContactStiffness& of, std::size_t body, BodyStiffness& to);
+void add_second(const ContactStiffness& of, std::size_t body, BodyStiffness& to);
 
 /// What a pass over contacts does beside the forces.
 template <int D>
@@ -50,11 +64,13 @@ struct BlockPass {
   History history = History::next;
   ContactLoad* loads =
       nullptr;  ///< when there, bodies are left alone: the load of pair k of the range goes to loads[k]
-  ContactRoll* rolls = nullptr;        ///< likewise, of laws with rolling resistance in space
-  std::uint8_t* touches = nullptr;     ///< and touches[k] says whether it touches
-  WaitingLoads* waiting = nullptr;     ///< added in between, in list order
-  BodyStiffness* stiffness = nullptr;  ///< gets the sums of what goes to the bodies
-  Vec<D>* virial = nullptr;            ///< sum over contacts of force times branch, per axis [N m]
+  ContactRoll* rolls = nullptr;             ///< likewise, of laws with rolling resistance in space
+  std::uint8_t* touches = nullptr;          ///< and touches[k] says whether it touches
+  WaitingLoads* waiting = nullptr;          ///< added in between, in list order
+  const std::uint8_t* lent = nullptr;       ///< one flag per place in the list, 1: pairs of the range that are left out
+  BodyStiffness* stiffness = nullptr;       ///< gets the sums of what goes to the bodies
+  ContactStiffness* stiffnesses = nullptr;  ///< put down with the loads
+  Vec<D>* virial = nullptr;                 ///< sum over contacts of force times branch, per axis [N m]
 };
 
 /// Adds the forces and torques of some pairs of a section to their bodies, in the order of the range, and treats their
@@ -69,5 +85,20 @@ void block_loop(System<D>& system, const BlockPass<D>& pass);
 /// The particle pass of all laws that ask for one; must precede the loop over contacts.
 template <int D>
 void particle_pass(System<D>& system);
+
+/// The bodies of one thread; by default all of them.
+struct OwnBodies {
+  const std::uint8_t* owner = nullptr;  ///< per body
+  std::uint8_t thread = 0;
+
+  bool operator()(Slot body) const { return owner == nullptr || owner[at(body)] == thread; }
+};
+
+/// Its two halves for own bodies: what contacts take from them, whose sums must be empty; and the closing of their sums
+/// once all sections were seen. Nothing in the plane.
+template <int D>
+void add_particle_shares(System<D>& system, const ContactSection& section, const PairRange& range, OwnBodies own);
+template <int D>
+void close_particle_sums(System<D>& system, const ContactSection& section, const PairRange& range, OwnBodies own);
 
 }  // namespace softgrain

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/over_bodies.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
@@ -30,60 +31,60 @@ void DampedRelaxation<D>::scale_masses(System<D>& s, RelaxingFrame<D>* frame) {
   const StiffnessSums sums(p, stiffness_);
   const PseudoMasses masses(sums.stiffness, sums.radii, options_.least_stiffness,
                             sums.stiffness > 0.0 ? 0.0 : worst_net_force(p));
-  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
-    const double r = p.sphere[u].r;
-    if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(stiffness_.translation[u], r);
-    if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = masses.inverse_inertia(stiffness_.rotation[u], r);
-  }
+  over_bodies(inverse_mass_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) {
+      const double r = p.sphere[u].r;
+      if (p.inverse_mass[u] > 0.0) inverse_mass_[u] = masses.inverse_mass(stiffness_.translation[u], r);
+      if (p.inverse_inertia[u] > 0.0) inverse_inertia_[u] = masses.inverse_inertia(stiffness_.rotation[u], r);
+    }
+  });
   if (frame != nullptr) frame->scale_masses(s, stiffness_, masses);
 }
 
 template <int D>
-void DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame) {
-  auto& p = s.particles;
-  double power = 0.0;
-  double speed2 = 0.0;
-  double pull2 = 0.0;
-  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
+typename RelaxingFrame<D>::Sums DampedRelaxation<D>::sums_of(const Particles<D>& p, std::size_t begin,
+                                                             std::size_t end) const {
+  typename RelaxingFrame<D>::Sums sums;
+  for (std::size_t u = begin; u < end; ++u) {
     if (inverse_mass_[u] > 0.0) {
-      power += dot(p.velocity[u], p.force[u]);
-      speed2 += norm2(p.velocity[u]) / inverse_mass_[u];
-      pull2 += norm2(p.force[u]) * inverse_mass_[u];
+      sums.power += dot(p.velocity[u], p.force[u]);
+      sums.speed2 += norm2(p.velocity[u]) / inverse_mass_[u];
+      sums.pull2 += norm2(p.force[u]) * inverse_mass_[u];
     }
     if (inverse_inertia_[u] > 0.0) {
-      power += dot(p.spin[u], p.torque[u]);
-      speed2 += norm2(p.spin[u]) / inverse_inertia_[u];
-      pull2 += norm2(p.torque[u]) * inverse_inertia_[u];
+      sums.power += dot(p.spin[u], p.torque[u]);
+      sums.speed2 += norm2(p.spin[u]) / inverse_inertia_[u];
+      sums.pull2 += norm2(p.torque[u]) * inverse_inertia_[u];
     }
   }
-  if (frame != nullptr) {
-    const auto sums = frame->feel(s);
-    power += sums.power;
-    speed2 += sums.speed2;
-    pull2 += sums.pull2;
-  }
-  const Fire::Steering steering = fire_.steer(power, speed2, pull2);
-  if (frame != nullptr) frame->steer(steering.keep, steering.pull);
-  if (steering.stop) {
-    stop_motion(p);
-    return;
-  }
-  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
-    p.velocity[u] = p.velocity[u] * steering.keep + p.force[u] * (steering.pull * inverse_mass_[u]);
-    p.spin[u] = p.spin[u] * steering.keep + p.torque[u] * (steering.pull * inverse_inertia_[u]);
-  }
+  return sums;
 }
 
 template <int D>
-void DampedRelaxation<D>::move(System<D>& s) {
-  auto& p = s.particles;
-  for (std::size_t u = 0; u < inverse_mass_.size(); ++u) {
+Fire::Steering DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame) {
+  auto sums = sum_over_bodies<typename RelaxingFrame<D>::Sums>(
+      inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return sums_of(s.particles, begin, end); });
+  if (frame != nullptr) sums += frame->feel(s);
+  const Fire::Steering steering = fire_.steer(sums.power, sums.speed2, sums.pull2);
+  if (frame != nullptr) frame->steer(steering.keep, steering.pull);
+  return steering;
+}
+
+template <int D>
+void DampedRelaxation<D>::move(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end) {
+  for (std::size_t u = begin; u < end; ++u) {
+    if (!steering.stop) {
+      p.velocity[u] = p.velocity[u] * steering.keep + p.force[u] * (steering.pull * inverse_mass_[u]);
+      p.spin[u] = p.spin[u] * steering.keep + p.torque[u] * (steering.pull * inverse_inertia_[u]);
+    }
     if (inverse_mass_[u] > 0.0) {
+      if (steering.stop) p.velocity[u] = {};
       p.velocity[u] += p.force[u] * (fire_.step * inverse_mass_[u]);
       limit_length(p.velocity[u], options_.max_move * p.sphere[u].r / fire_.step);
       p.sphere[u].x += p.velocity[u] * fire_.step;
     }
     if (inverse_inertia_[u] > 0.0) {
+      if (steering.stop) p.spin[u] = {};
       p.spin[u] += p.torque[u] * (fire_.step * inverse_inertia_[u]);
       limit_length(p.spin[u], options_.max_move / fire_.step);
     }
@@ -113,8 +114,9 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
       stop_if_interrupted("relaxing");
       scale_masses(s, frame);
     }
-    steer(s, frame);
-    move(s);
+    const Fire::Steering steering = steer(s, frame);
+    over_bodies(inverse_mass_.size(),
+                [&](std::size_t begin, std::size_t end) { move(s.particles, steering, begin, end); });
     if (frame != nullptr) frame->carry(s, fire_.step);
     if ((result.passes + 1) % kMassInterval == 0)
       force_pass(s, fire_.step, stiffness_, History::advance);

@@ -30,6 +30,13 @@ class RelaxingFrame {
     double power = 0.0;
     double speed2 = 0.0;
     double pull2 = 0.0;
+
+    Sums& operator+=(const Sums& o) {
+      power += o.power;
+      speed2 += o.speed2;
+      pull2 += o.pull2;
+      return *this;
+    }
   };
 
   virtual void scale_masses(const System<D>& system, const BodyStiffness& stiffness, const PseudoMasses& masses) = 0;
@@ -67,8 +74,12 @@ class DampedRelaxation {
  private:
   RelaxationResult relax(System<D>& system, RelaxingFrame<D>* frame);
   void scale_masses(System<D>& system, RelaxingFrame<D>* frame);
-  void steer(System<D>& system, RelaxingFrame<D>* frame);
-  void move(System<D>& system);
+  /// What Fire asks for, of bodies begin to end - 1.
+  [[nodiscard]] typename RelaxingFrame<D>::Sums sums_of(const Particles<D>& p, std::size_t begin,
+                                                        std::size_t end) const;
+  Fire::Steering steer(System<D>& system, RelaxingFrame<D>* frame);
+  /// Velocities take the steering and the forces, places the velocities.
+  void move(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end);
 
   DampedOptions options_;
   BodyStiffness stiffness_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/over_bodies.h"
 #include "common/dynamics/pair_loop.h"
 #include "common/dynamics/parallel_pass.h"
 #include "common/neighbours/verlet_list.h"
@@ -33,8 +34,12 @@ struct RecordSink {
 
 template <int D>
 void clear_forces(Particles<D>& p) {
-  std::fill(p.force.begin(), p.force.end(), Stored<D>{});
-  std::fill(p.torque.begin(), p.torque.end(), StoredRot<D>{});
+  over_bodies(p.force.size(), [&](std::size_t begin, std::size_t end) {
+    std::fill(p.force.begin() + static_cast<std::ptrdiff_t>(begin), p.force.begin() + static_cast<std::ptrdiff_t>(end),
+              Stored<D>{});
+    std::fill(p.torque.begin() + static_cast<std::ptrdiff_t>(begin),
+              p.torque.begin() + static_cast<std::ptrdiff_t>(end), StoredRot<D>{});
+  });
 }
 
 template <int D>
@@ -43,18 +48,23 @@ void count_pass(System<D>& s) {
   s.cost.contact_evaluations += s.contacts.size();
 }
 
+template <int D>
+void add_forces(System<D>& system, double dt, History history, BodyStiffness* stiffness) {
+  if (history == History::next) system.contacts.make_next();
+  if (system.contacts.size() >= kParallelPairs && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
+    parallel_pass(system, dt, history, omp_get_max_threads(), stiffness);
+  } else {
+    particle_pass(system);
+    block_loop<D>(system, {.dt = dt, .history = history, .stiffness = stiffness});
+  }
+  count_pass(system);
+}
+
 }  // namespace
 
 template <int D>
 void add_contact_forces(System<D>& system, double dt, History history) {
-  if (history == History::next) system.contacts.make_next();
-  if (system.contacts.size() >= kParallelPairs && omp_get_max_threads() > 1 && omp_in_parallel() == 0) {
-    parallel_pass(system, dt, history, omp_get_max_threads());
-  } else {
-    particle_pass(system);
-    block_loop<D>(system, {.dt = dt, .history = history});
-  }
-  count_pass(system);
+  add_forces(system, dt, history, nullptr);
 }
 
 template <int D>
@@ -68,14 +78,8 @@ template <int D>
 void force_pass(System<D>& system, double dt, BodyStiffness& stiffness, History history) {
   update_neighbours(system);
   clear_forces(system.particles);
-  stiffness.translation.assign(static_cast<std::size_t>(system.particles.size()), 0.0);
-  stiffness.rotation.assign(static_cast<std::size_t>(system.particles.size()), 0.0);
-  stiffness.force_sum = 0.0;
-  stiffness.contacts = 0;
-  if (history == History::next) system.contacts.make_next();
-  particle_pass(system);
-  block_loop<D>(system, {.dt = dt, .history = history, .stiffness = &stiffness});
-  count_pass(system);
+  stiffness.clear(static_cast<std::size_t>(system.particles.size()));
+  add_forces(system, dt, history, &stiffness);
 }
 
 template <int D>

@@ -26,12 +26,16 @@ struct Waiting {
 
 /// Pairs of one section that concern one thread.
 struct Share {
-  std::vector<std::int32_t> inner;    ///< places in the list of pairs whose bodies are both the thread's
-  std::vector<std::int32_t> outer;    ///< of those that it evaluates of pairs with bodies of two threads
-  std::vector<ContactLoad> loads;     ///< of outer
-  std::vector<ContactRoll> rolls;     ///< of outer, in space where some law has rolling resistance
-  std::vector<std::uint8_t> touches;  ///< of outer
-  std::vector<Waiting> waiting;       ///< bodies here of all pairs that were put down, in list order
+  std::vector<std::int32_t> inner;            ///< places in the list of pairs whose bodies are both the thread's
+  std::vector<PairRange> touching;            ///< stretches that hold all pairs with a body of the thread
+  std::vector<PairRange> stretches;           ///< of the list, that hold all of inner and
+                                              ///< beside them only pairs of two threads
+  std::vector<std::int32_t> outer;            ///< of those that it evaluates of pairs with bodies of two threads
+  std::vector<ContactLoad> loads;             ///< of outer
+  std::vector<ContactRoll> rolls;             ///< of outer, in space where some law has rolling resistance
+  std::vector<ContactStiffness> stiffnesses;  ///< of outer, where they have been asked for
+  std::vector<std::uint8_t> touches;          ///< of outer
+  std::vector<Waiting> waiting;               ///< bodies here of all pairs that were put down, in list order
 };
 
 /// Who does what, good for one list and number of threads.
@@ -39,6 +43,9 @@ struct Plan {
   ThreadPace pace;
   std::uint64_t build = 0;
   bool rolls = false;                      ///< some law of the scene has rolling resistance
+  bool in_stretches = false;               ///< all threads find their pairs in long stretches of the list
+  std::vector<std::uint8_t> owner;         ///< thread of every body
+  std::vector<std::uint8_t> lent;          ///< by place in the list, 1: the pair has bodies of two threads
   std::vector<std::vector<Share>> shares;  ///< [thread][section]
 };
 
@@ -71,16 +78,41 @@ std::uint8_t lender_of(const Plan& plan, std::size_t section, std::uint8_t a, st
   return lent(a) * plan.pace.share[b] <= lent(b) * plan.pace.share[a] ? a : b;
 }
 
+/// Pairs of two threads in a row that a stretch goes over, and the pairs of a stretch, on average, from which it pays
+/// to go along stretches.
+constexpr std::int32_t kBridge = 16;
+constexpr std::size_t kLongStretch = 64;
+
+/// Adds the pair at c, the next one whose bodies are both the thread's.
+void stretch_to(std::int32_t c, bool in_a_row, std::vector<PairRange>& stretches) {
+  if (in_a_row && !stretches.empty() && c - stretches.back().end <= kBridge)
+    stretches.back().end = c + 1;
+  else
+    stretches.push_back({c, c + 1});
+}
+
+bool long_ones(const std::vector<PairRange>& stretches) {
+  std::size_t pairs = 0;
+  for (const PairRange& stretch : stretches) pairs += static_cast<std::size_t>(stretch.end - stretch.begin);
+  return pairs >= kLongStretch * stretches.size();
+}
+
 template <int D>
-void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t>& owner, Plan& plan) {
+void share_out(const System<D>& s, std::size_t k, Plan& plan) {
   const auto& list = s.contacts;
+  int last = -1;
   for (std::int32_t c = list.sections[k].begin; c < list.sections[k].end; ++c) {
-    const std::uint8_t first = owner[at(list.i[static_cast<std::size_t>(c)])];
-    const std::uint8_t second = owner[at(list.j[static_cast<std::size_t>(c)])];
+    const std::uint8_t first = plan.owner[at(list.i[static_cast<std::size_t>(c)])];
+    const std::uint8_t second = plan.owner[at(list.j[static_cast<std::size_t>(c)])];
+    stretch_to(c, true, plan.shares[first][k].touching);
     if (first == second) {
       plan.shares[first][k].inner.push_back(c);
+      stretch_to(c, last == first, plan.shares[first][k].stretches);
+      last = first;
       continue;
     }
+    stretch_to(c, true, plan.shares[second][k].touching);
+    plan.lent[static_cast<std::size_t>(c)] = 1;
     const std::uint8_t lender = lender_of(plan, k, first, second);
     std::vector<std::int32_t>& outer = plan.shares[lender][k].outer;
     const auto number = static_cast<std::int32_t>(outer.size());
@@ -89,6 +121,11 @@ void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t
     plan.shares[second][k].waiting.push_back({c, lender, number, false});
   }
   for (auto& of_thread : plan.shares) {
+    plan.in_stretches = plan.in_stretches && long_ones(of_thread[k].touching);
+    if (of_thread[k].inner.size() >= kLongStretch * of_thread[k].stretches.size())
+      of_thread[k].inner.clear();
+    else
+      of_thread[k].stretches.clear();
     of_thread[k].loads.resize(of_thread[k].outer.size());
     of_thread[k].rolls.assign(D == 3 && plan.rolls ? of_thread[k].outer.size() : 0, {});
     of_thread[k].touches.resize(of_thread[k].outer.size());
@@ -98,20 +135,23 @@ void share_out(const System<D>& s, std::size_t k, const std::vector<std::uint8_t
 template <int D>
 void make_plan(const System<D>& s, std::size_t threads, Plan& plan) {
   plan.pace.share_out(threads);
-  const std::vector<std::uint8_t> owner = owners_of(s, plan.pace.share);
+  plan.owner = owners_of(s, plan.pace.share);
+  plan.in_stretches = true;
   plan.build = s.contacts.build;
   plan.rolls = false;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
+  plan.lent.assign(s.contacts.i.size() + 4,
+                   0);  // the loop looks at four places at once
   plan.shares.assign(threads, std::vector<Share>(s.contacts.sections.size()));
-  for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, owner, plan);
+  for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, plan);
 }
 
 /// The waiting loads of one thread and section.
 template <int D>
 class Waiters : public WaitingLoads {
  public:
-  Waiters(System<D>& s, const Plan& plan, std::size_t thread, std::size_t section)
-      : s_(s), plan_(plan), section_(section), waiting_(plan.shares[thread][section].waiting) {
+  Waiters(System<D>& s, const Plan& plan, std::size_t thread, std::size_t section, BodyStiffness* stiffness)
+      : s_(s), plan_(plan), section_(section), stiffness_(stiffness), waiting_(plan.shares[thread][section].waiting) {
     find_next();
   }
 
@@ -127,10 +167,11 @@ class Waiters : public WaitingLoads {
   void add(const Waiting& w) {
     const Share& from = plan_.shares[static_cast<std::size_t>(w.thread)][section_];
     const auto n = static_cast<std::size_t>(w.number);
-    if (from.touches[n] == 0) return;
-    const ContactLoad& load = from.loads[n];
     const auto c = static_cast<std::size_t>(w.place);
     const auto body = static_cast<std::size_t>(w.first ? s_.contacts.i[c] : s_.contacts.j[c]);
+    if (from.touches[n] == 0) return;
+    if (stiffness_ != nullptr) (w.first ? add_first : add_second)(from.stiffnesses[n], body, *stiffness_);
+    const ContactLoad& load = from.loads[n];
     const double sign = w.first ? 1.0 : -1.0;
     const double arm = w.first ? load.arm_i : load.arm_j;
     for (int k = 0; k < D; ++k) s_.particles.force[body][k] += sign * load.force[k];
@@ -145,6 +186,7 @@ class Waiters : public WaitingLoads {
   System<D>& s_;
   const Plan& plan_;
   std::size_t section_;
+  BodyStiffness* stiffness_;
   const std::vector<Waiting>& waiting_;
   std::size_t at_ = 0;
 };
@@ -152,7 +194,8 @@ class Waiters : public WaitingLoads {
 template <int D>
 class Pass {
  public:
-  Pass(System<D>& s, double dt, History history, Plan& plan) : s_(s), dt_(dt), history_(history), plan_(plan) {}
+  Pass(System<D>& s, double dt, History history, Plan& plan, BodyStiffness* stiffness)
+      : s_(s), dt_(dt), history_(history), plan_(plan), stiffness_(stiffness) {}
 
   /// What it takes a thread decides on its later share, never on a sum.
   void timed(std::size_t thread, void (Pass::*work)(std::size_t)) {
@@ -161,17 +204,33 @@ class Pass {
     plan_.pace.seconds[thread] += omp_get_wtime() - begin;
   }
 
+  /// The two halves of the particle pass.
+  void add_shares(std::size_t thread) {
+    const OwnBodies own{plan_.owner.data(), static_cast<std::uint8_t>(thread)};
+    auto& sums = s_.contacts.particle_sum;
+    for (std::size_t u = 0; u < sums.size(); ++u)
+      if (own(static_cast<Slot>(u))) sums[u] = {};
+    for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k)
+      for (const PairRange& stretch : plan_.shares[thread][k].touching)
+        add_particle_shares<D>(s_, s_.contacts.sections[k], stretch, own);
+    for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k)
+      for (const PairRange& stretch : plan_.shares[thread][k].touching)
+        close_particle_sums<D>(s_, s_.contacts.sections[k], stretch, own);
+  }
+
   void put_down(std::size_t thread) {
     for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k) {
       Share& share = plan_.shares[thread][k];
       const ContactSection& section = s_.contacts.sections[k];
       const PairRange range{0, static_cast<std::int32_t>(share.outer.size()), share.outer.data()};
+      if (stiffness_ != nullptr) share.stiffnesses.resize(share.outer.size());
       block_loop<D>(s_, section, range,
                     {.dt = dt_,
                      .history = history_,
                      .loads = share.loads.data(),
                      .rolls = share.rolls.data(),
-                     .touches = share.touches.data()});
+                     .touches = share.touches.data(),
+                     .stiffnesses = stiffness_ != nullptr ? share.stiffnesses.data() : nullptr});
     }
   }
 
@@ -180,8 +239,11 @@ class Pass {
       const Share& share = plan_.shares[thread][k];
       const ContactSection& section = s_.contacts.sections[k];
       const PairRange range{0, static_cast<std::int32_t>(share.inner.size()), share.inner.data()};
-      Waiters<D> waiting(s_, plan_, thread, k);
-      block_loop<D>(s_, section, range, {.dt = dt_, .history = history_, .waiting = &waiting});
+      Waiters<D> waiting(s_, plan_, thread, k, stiffness_);
+      const BlockPass<D> pass{
+          .dt = dt_, .history = history_, .waiting = &waiting, .lent = plan_.lent.data(), .stiffness = stiffness_};
+      if (range.end > 0) block_loop<D>(s_, section, range, pass);
+      for (const PairRange& stretch : share.stretches) block_loop<D>(s_, section, stretch, pass);
       waiting.add_all();
     }
   }
@@ -191,20 +253,26 @@ class Pass {
   double dt_;
   History history_;
   Plan& plan_;
+  BodyStiffness* stiffness_;
 };
 
 }  // namespace
 
 template <int D>
-void parallel_pass(System<D>& s, double dt, History history, int threads) {
+void parallel_pass(System<D>& s, double dt, History history, int threads, BodyStiffness* stiffness) {
   Plan& plan = s.contacts.plan.template get<Plan>();
   const int many = std::min(threads, 255);
   if (plan.build != s.contacts.build || plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
     make_plan(s, static_cast<std::size_t>(many), plan);
-  particle_pass(s);
-  Pass<D> pass(s, dt, history, plan);
+  const bool sums = !s.contacts.particle_sum.empty();
+  if (sums && !plan.in_stretches) particle_pass(s);
+  Pass<D> pass(s, dt, history, plan, stiffness);
 #pragma omp parallel num_threads(many)
   {
+    if (sums && plan.in_stretches) {
+#pragma omp for schedule(static, 1)
+      for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add_shares);
+    }
 #pragma omp for schedule(static, 1)
     for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::put_down);
 #pragma omp for schedule(static, 1)
@@ -213,7 +281,7 @@ void parallel_pass(System<D>& s, double dt, History history, int threads) {
   ++plan.pace.passes;
 }
 
-template void parallel_pass<2>(System<2>&, double, History, int);
-template void parallel_pass<3>(System<3>&, double, History, int);
+template void parallel_pass<2>(System<2>&, double, History, int, BodyStiffness*);
+template void parallel_pass<3>(System<3>&, double, History, int, BodyStiffness*);
 
 }  // namespace softgrain

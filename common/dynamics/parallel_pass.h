@@ -1,6 +1,7 @@
 // The sums of forces on several threads, bit for bit those of one.
 #pragma once
 
+#include "common/dynamics/block_loop.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -9,8 +10,8 @@ namespace softgrain {
 /// the space-filling curve, longer for a faster thread. Pairs with bodies of two threads are evaluated first, by one of
 /// the two, and put down. Then each thread goes through the list in order: pairs of its own are evaluated and added,
 /// its share of those put down is added when their turn comes. So every body gets its sums in list order, whatever the
-/// number of threads and whoever owns it.
+/// number of threads and whoever owns it. `stiffness`, where it is there, gets the stiffness sums; it must be clear.
 template <int D>
-void parallel_pass(System<D>& system, double dt, History history, int threads);
+void parallel_pass(System<D>& system, double dt, History history, int threads, BodyStiffness* stiffness = nullptr);
 
 }  // namespace softgrain

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/over_bodies.h"
 #include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
@@ -10,9 +11,6 @@
 namespace softgrain {
 
 namespace {
-
-/// Below this many bodies one thread is faster than two.
-constexpr std::size_t kParallelBodies = 4000;
 
 /// Share of the margins up to which a sum of bounds is trusted; the rest covers rounding.
 constexpr double kTrusted = 0.999;

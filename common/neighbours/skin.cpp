@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/core/over_bodies.h"
 #include "common/neighbours/hierarchical_grid.h"
 
 namespace softgrain {
@@ -88,6 +89,18 @@ class Uses {
   double drift_ = 0.0;
 };
 
+template <int D>
+double largest_use(const Uses<D>& uses, std::size_t bodies) {
+  return reduced_over_bodies<double>(
+      bodies,
+      [&](std::size_t begin, std::size_t end) {
+        double most = 0.0;
+        for (std::size_t u = begin; u < end; ++u) most = std::max(most, uses.of(u));
+        return most;
+      },
+      [](double& most, double piece) { most = std::max(most, piece); });
+}
+
 /// Size classes by halving of the radius, the smallest grain in class 0.
 constexpr std::size_t kClasses = 40;
 
@@ -164,10 +177,7 @@ template <int D>
 double skin_used(const System<D>& s) {
   const auto bodies = static_cast<std::size_t>(s.particles.size());
   if (s.neighbours.reference.size() != bodies) return kNever;
-  const Uses<D> uses(s);
-  double most = 0.0;
-  for (std::size_t u = 0; u < bodies; ++u) most = std::max(most, uses.of(u));
-  return most;
+  return largest_use(Uses<D>(s), bodies);
 }
 
 template <int D>

@@ -9,6 +9,7 @@
 
 #include "common/contact/soft_crowd.h"
 #include "common/dynamics/force_pass.h"
+#include "common/neighbours/spatial_order.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -239,8 +240,11 @@ TYPED_TEST(SoftCrowdLaws, UnloadingReturnsLessWork) {
   }
 }
 
-TYPED_TEST(SoftCrowdLaws, ThreadsChangeNoBit) {
-  constexpr int kEdge = 15;
+/// A lattice of soft and solid bodies after one pass, as it was added or in spatial order, where threads go along
+/// stretches of the list.
+template <class Law>
+std::pair<System3, BodyStiffness> large_crowd(int threads, bool ordered) {
+  constexpr int kEdge = 17;
   std::vector<std::pair<double, bool>> bodies;
   std::vector<Vec3> places;
   for (int k = 0; k < kEdge * kEdge * kEdge; ++k) {
@@ -248,18 +252,29 @@ TYPED_TEST(SoftCrowdLaws, ThreadsChangeNoBit) {
     places.push_back(Vec3{{double(k % kEdge), double(k / kEdge % kEdge), double(k / (kEdge * kEdge))}} * 0.0185);
   }
   const int before = omp_get_max_threads();
-  std::vector<System3> passed;
-  for (const int threads : {1, 2, 3}) {
-    omp_set_num_threads(threads);
-    passed.push_back(crowd<TypeParam>(bodies, places));
-    force_pass(passed.back(), 0.0);
-  }
+  omp_set_num_threads(threads);
+  std::pair<System3, BodyStiffness> out{crowd<Law>(bodies, places), {}};
+  if (ordered) reorder_grains(out.first, spatial_order(out.first));
+  force_pass(out.first, 0.0, out.second);
   omp_set_num_threads(before);
-  ASSERT_GT(passed[0].contacts.size(), 8000) << "too small for the parallel path";
-  EXPECT_NE(passed[0].particles.force[0], (Stored<3>{}));
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    EXPECT_EQ(passed[0].particles.force[k], passed[1].particles.force[k]) << k;
-    EXPECT_EQ(passed[0].particles.force[k], passed[2].particles.force[k]) << k;
+  return out;
+}
+
+TYPED_TEST(SoftCrowdLaws, ThreadsChangeNoBit) {
+  for (const bool ordered : {false, true}) {
+    const auto [one, stiffness] = large_crowd<TypeParam>(1, ordered);
+    ASSERT_GT(one.contacts.size(), 8000) << "too small for the parallel path";
+    EXPECT_NE(one.particles.force[0], (Stored<3>{}));
+    EXPECT_GT(stiffness.mean_force(), 0.0);
+    for (const int threads : {2, 3}) {
+      const auto [many, also] = large_crowd<TypeParam>(threads, ordered);
+      EXPECT_EQ(one.particles.force, many.particles.force) << threads << ordered;
+      EXPECT_EQ(one.particles.torque, many.particles.torque) << threads << ordered;
+      EXPECT_EQ(stiffness.translation, also.translation) << threads << ordered;
+      EXPECT_EQ(stiffness.rotation, also.rotation) << threads << ordered;
+      EXPECT_EQ(stiffness.force, also.force) << threads << ordered;
+      EXPECT_EQ(stiffness.contacts, also.contacts) << threads << ordered;
+    }
   }
 }
 

@@ -1,9 +1,13 @@
 // The same bits for any number of threads, where the parallel path is really taken.
 #include <omp.h>
 
+#include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/hdf5_file.h"
 #include "common/neighbours/spatial_order.h"
+#include "macrosim/hard_bodies.h"
+#include "macrosim/preparation.h"
+#include "macrosim/pressed_box.h"
 #include "microsim/particles/particles_run.h"
 #include "tests/support/small_packing.h"
 #include "tests/support/temporary_directory.h"
@@ -53,6 +57,47 @@ TEST(Threads, AnyNumberGivesTheSameBits) {
   for (const int threads : {2, 3, 8}) {
     SCOPED_TRACE(threads);
     expect_same_state(one, run_with(threads, 60));
+  }
+}
+
+/// Bodies of a macro scene on their way into touch: relaxation and box, whose sums go over all bodies.
+MacroPacking pressed(int threads, Boundary boundary) {
+  MacroSpec spec;
+  spec.bodies = 5000;
+  spec.boundary = boundary;
+  spec.soft_share = 0.0;
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  MacroPacking packing = place_loosely(drawn_bodies(spec, 3, 0), 3, 0, 0.36, boundary);
+  HardBodies hard(spec, packing, 0.3);
+  reorder_grains(hard.system, spatial_order(hard.system));
+  const double pressure = 1e-3 * spec.youngs_modulus;
+  PressedBox walls(hard.box, {{true, true, true}, {{pressure, pressure, pressure}}, true});
+  DampedOptions options;
+  options.max_passes = 250;
+  options.least_stiffness = 1e-3 * spec.youngs_modulus;
+  const RelaxationResult rest = DampedRelaxation<3>(options).relax(hard.system, walls);
+  EXPECT_EQ(rest.end, RelaxationEnd::capped);
+  EXPECT_GT(hard.system.contacts.size(), 8000) << "too small for the parallel path";
+  restore_order(hard.system);
+  hard.take_over(packing);
+  omp_set_num_threads(before);
+  return packing;
+}
+
+TEST(Threads, RelaxationUnderPressureGivesTheSameBits) {
+  for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
+    const MacroPacking one = pressed(1, boundary);
+    EXPECT_GT(one.springs.size(), 100U);
+    for (const int threads : {2, 3}) {
+      const MacroPacking many = pressed(threads, boundary);
+      EXPECT_EQ(one.high, many.high) << threads;
+      for (std::size_t k = 0; k < one.bodies.size(); ++k)
+        ASSERT_EQ(one.bodies[k].x, many.bodies[k].x) << threads << " " << k;
+      ASSERT_EQ(one.springs.size(), many.springs.size()) << threads;
+      for (std::size_t k = 0; k < one.springs.size(); ++k)
+        ASSERT_EQ(one.springs[k].spring, many.springs[k].spring) << k;
+    }
   }
 }
 
