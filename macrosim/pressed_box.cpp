@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/over_bodies.h"
+#include "common/core/in_pieces.h"
 
 namespace softgrain {
 
@@ -35,7 +35,7 @@ const Vec3& PressedBox::resisted(System3& s) {
   if (box_.periodic) return resisted_ = virial_.of(s);
   const auto& p = s.particles;
   const Vec3 centre = box_centre(s, box_);
-  return resisted_ = sum_over_bodies<Vec3>(at(p.size()), [&](std::size_t begin, std::size_t end) {
+  return resisted_ = sum_in_pieces<Vec3>(at(p.size()), [&](std::size_t begin, std::size_t end) {
            Vec3 sum{};
            for (std::size_t u = begin; u < end; ++u) sum += by_axis(p.force[u], carried_place(s, u) - centre);
            return sum;
@@ -75,7 +75,7 @@ void PressedBox::carry(System3& s, double step) {
     }
   };
   // Shells come after the grains in them: all are still where they were.
-  over_bodies(at(p.grains), carry);
+  in_pieces(at(p.grains), carry);
   carry(at(p.grains), carried_.size());
   if (!box_.periodic) return;
   for (int k = 0; k < 3; ++k) {
@@ -93,7 +93,7 @@ void PressedBox::release(System3& s) {
   if (box_.periodic)
     for (std::size_t u = 0; u < carried_.size(); ++u)
       if (const Vec3 way = placed_[u] - p.sphere[u].x; way != Vec3{}) carried_[u] -= s.cell.velocity_gradient * way;
-  over_bodies(carried_.size(), [&](std::size_t begin, std::size_t end) {
+  in_pieces(carried_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t u = begin; u < end; ++u)
       p.velocity[u] = p.force[u] == Stored<3>{} ? Vec3{} : Vec3(p.velocity[u]) - carried_[u];
   });

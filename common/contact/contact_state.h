@@ -19,6 +19,7 @@ struct LawTraits {
   bool has_onset = false;         ///< overlaps below onset() carry nothing
   bool acts_at_distance = false;  ///< pairs interact up to a gap of reach()
   bool needs_particle_pass = false;  ///< sums over all contacts of a body: share() and finish()
+  bool directions_in_sums = false;   ///< the sums know directions
   bool memory_in_sums = false;       ///< share() asks for the memory
   bool stores_energy = false;        ///< stored_energy() of a contact by itself
   bool is_fitted = false;            ///< measured over a range that it can leave

@@ -98,11 +98,11 @@ template <int D, class T = double>
 struct CrowdSum {
   T volume{};                             ///< sum nu
   T square{};                             ///< sum nu^2
-  Vec<D, T> first{};                      ///< sum nu n
-  std::array<T, D*(D + 1) / 2> second{};  ///< sum nu n n, upper triangle by rows
   T gain{};                               ///< p(S)/S, once all contacts are in
   T gain_slope{};                         ///< d gain/dS over S
   bool ready = false;                     ///< whether gain is there
+  Vec<D, T> first{};                      ///< sum nu n
+  std::array<T, D*(D + 1) / 2> second{};  ///< sum nu n n, upper triangle by rows
 
   /// For laws that do not ask for directions.
   void add(const T& nu) {

@@ -50,6 +50,7 @@ struct SoftCrowd {
                                     .has_memory = true,
                                     .has_rolling = kRolling,
                                     .needs_particle_pass = kCrowd != Crowd::pair,
+                                    .directions_in_sums = kCrowd == Crowd::directional,
                                     .memory_in_sums = kUnloading,
                                     .is_fitted = true,
                                     .is_crowd = true};

@@ -45,7 +45,7 @@ void put(Rows<D>& rows, int k, const Vec<D, Lanes>& x) {
 /// Sums of bodies, see CrowdSum.
 template <int D>
 struct SumRows {
-  Row volume, square;
+  Row volume;
   Rows<D> first;
   Rows<D*(D + 1) / 2> second;
   Row gain, gain_slope;

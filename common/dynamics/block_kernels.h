@@ -19,13 +19,15 @@ template <int D, Geometry kGeometry>
     return on_plane(d, b.fourth.at(g), at<D>(b.upright, g));
 }
 
-template <int D>
+/// What the force of a contact takes from a sum.
+template <int D, bool kDirections>
 [[gnu::always_inline]] inline CrowdSum<D, Lanes> sum_at(const SumRows<D>& rows, int g) {
   CrowdSum<D, Lanes> sum;
   sum.volume = rows.volume.at(g);
-  sum.square = rows.square.at(g);
-  sum.first = at<D>(rows.first, g);
-  for (std::size_t k = 0; k < sum.second.size(); ++k) sum.second[k] = rows.second[k].at(g);
+  if constexpr (kDirections) {
+    sum.first = at<D>(rows.first, g);
+    for (std::size_t k = 0; k < sum.second.size(); ++k) sum.second[k] = rows.second[k].at(g);
+  }
   sum.gain = rows.gain.at(g);
   sum.gain_slope = rows.gain_slope.at(g);
   return sum;
@@ -66,8 +68,8 @@ template <int D, Geometry kGeometry, class Law>
     if constexpr (kLaw.has_rolling) s.turning = at<kRot<D>>(b.spin_i, g) - at<kRot<D>>(b.spin_j, g);
     CrowdSum<D, Lanes> sum_i, sum_j;
     if constexpr (kLaw.needs_particle_pass) {
-      sum_i = sum_at(b.sum_i, g);
-      sum_j = sum_at(b.sum_j, g);
+      sum_i = sum_at<D, kLaw.directions_in_sums>(b.sum_i, g);
+      sum_j = sum_at<D, kLaw.directions_in_sums>(b.sum_j, g);
       s.sum_i = &sum_i;
       s.sum_j = &sum_j;
     }
@@ -115,6 +117,7 @@ struct Kernel {
   const void* law = nullptr;
   void (*run)(const void* law, double dt, bool stiffness, Block<D>& block) = nullptr;
   double reach = 0.0;
+  SoftSides sums{};  ///< of which bodies it asks for the sums
 
   void operator()(double dt, bool stiffness, Block<D>& block) const { run(law, dt, stiffness, block); }
 };
@@ -132,6 +135,7 @@ constexpr LawTraits seen_by_loop(LawTraits t) {
           .has_rolling = t.has_rolling,
           .acts_at_distance = t.acts_at_distance,
           .needs_particle_pass = t.needs_particle_pass,
+          .directions_in_sums = t.directions_in_sums,
           .is_crowd = t.is_crowd};
 }
 

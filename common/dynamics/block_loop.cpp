@@ -217,8 +217,8 @@ class Gatherer {
         }
         if constexpr (kTraits.has_memory) block_.memory.v[u(g) + l] = list_.memory[c];
         if constexpr (kTraits.needs_particle_pass) {
-          gather_sum(block_.sum_i, u(g) + l, sums[i]);
-          gather_sum(block_.sum_j, u(g) + l, sums[j]);
+          if (kernel_.sums.i) gather_sum(block_.sum_i, u(g) + l, sums[i]);
+          if (kernel_.sums.j) gather_sum(block_.sum_j, u(g) + l, sums[j]);
         }
         if constexpr (kGeometry == Geometry::sphere_plane) normal[l] = block_.upright_record[u(g) + l];
       }
@@ -252,9 +252,10 @@ class Gatherer {
 
   static void gather_sum(SumRows<D>& rows, std::size_t k, const CrowdSum<D>& sum) {
     rows.volume.v[k] = sum.volume;
-    rows.square.v[k] = sum.square;
-    for (int a = 0; a < D; ++a) rows.first[static_cast<std::size_t>(a)].v[k] = sum.first[a];
-    for (std::size_t a = 0; a < sum.second.size(); ++a) rows.second[a].v[k] = sum.second[a];
+    if constexpr (kTraits.directions_in_sums) {
+      for (int a = 0; a < D; ++a) rows.first[static_cast<std::size_t>(a)].v[k] = sum.first[a];
+      for (std::size_t a = 0; a < sum.second.size(); ++a) rows.second[a].v[k] = sum.second[a];
+    }
     rows.gain.v[k] = sum.gain;
     rows.gain_slope.v[k] = sum.gain_slope;
   }
@@ -444,7 +445,7 @@ class Shares : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .
 
  public:
   Shares(System<3>& s, const Law& law, const PairRange& range, OwnBodies own)
-      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0}, range, {}), law_(law), own_(own) {}
+      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0, {}}, range, {}), law_(law), own_(own) {}
 
   void run() {
     for (std::int32_t k = this->range_.begin; k < this->range_.end; k += kBlock) {
@@ -572,8 +573,9 @@ template <int D>
 void block_loop(System<D>& s, const ContactSection& section, const PairRange& range, const BlockPass<D>& pass) {
   open(s, section, [&]<class Law>(const Law& law, auto geometry) {
     constexpr Geometry kGeometry = decltype(geometry)::value;
-    run_loop<D, seen_by_loop(Law::traits), kGeometry>(s, {&law, &evaluate<D, kGeometry, Law>, reach_of(law)}, range,
-                                                      pass);
+    Kernel<D> kernel{&law, &evaluate<D, kGeometry, Law>, reach_of(law), {}};
+    if constexpr (Law::traits.needs_particle_pass) kernel.sums = law.soft_sides();
+    run_loop<D, seen_by_loop(Law::traits), kGeometry>(s, kernel, range, pass);
   });
 }
 

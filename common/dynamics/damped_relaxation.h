@@ -13,6 +13,7 @@ namespace softgrain {
 
 struct DampedOptions {
   double tolerance = 1e-2;   ///< largest net force over mean contact force at the end
+  double restless = 0.0;     ///< share of the bodies, rounded down, whose net force may be larger
   double force_floor = 0.0;  ///< the mean contact force never counts for less than this [N]
   std::int64_t max_passes = 20000;
   double max_move = 0.05;        ///< largest move of a body per pass, in its radius
@@ -85,6 +86,7 @@ class DampedRelaxation {
   BodyStiffness stiffness_;
   std::vector<double> inverse_mass_;  ///< pseudo, per body
   std::vector<double> inverse_inertia_;
+  bool turns_ = true;  ///< some body can
   Fire fire_;
 };
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/over_bodies.h"
+#include "common/core/in_pieces.h"
 #include "common/dynamics/pair_loop.h"
 #include "common/dynamics/parallel_pass.h"
 #include "common/neighbours/verlet_list.h"
@@ -34,7 +34,7 @@ struct RecordSink {
 
 template <int D>
 void clear_forces(Particles<D>& p) {
-  over_bodies(p.force.size(), [&](std::size_t begin, std::size_t end) {
+  in_pieces(p.force.size(), [&](std::size_t begin, std::size_t end) {
     std::fill(p.force.begin() + static_cast<std::ptrdiff_t>(begin), p.force.begin() + static_cast<std::ptrdiff_t>(end),
               Stored<D>{});
     std::fill(p.torque.begin() + static_cast<std::ptrdiff_t>(begin),

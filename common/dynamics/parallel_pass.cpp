@@ -36,6 +36,14 @@ struct Share {
   std::vector<ContactStiffness> stiffnesses;  ///< of outer, where they have been asked for
   std::vector<std::uint8_t> touches;          ///< of outer
   std::vector<Waiting> waiting;               ///< bodies here of all pairs that were put down, in list order
+
+  void clear() {
+    inner.clear();
+    touching.clear();
+    stretches.clear();
+    outer.clear();
+    waiting.clear();
+  }
 };
 
 /// Who does what, good for one list and number of threads.
@@ -72,12 +80,6 @@ std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<double
   return owner;
 }
 
-/// Who evaluates a pair of two threads: the one that has fewer of them for its share.
-std::uint8_t lender_of(const Plan& plan, std::size_t section, std::uint8_t a, std::uint8_t b) {
-  const auto lent = [&](std::uint8_t t) { return static_cast<double>(plan.shares[t][section].outer.size()); };
-  return lent(a) * plan.pace.share[b] <= lent(b) * plan.pace.share[a] ? a : b;
-}
-
 /// Pairs of two threads in a row that a stretch goes over, and the pairs of a stretch, on average, from which it pays
 /// to go along stretches.
 constexpr std::int32_t kBridge = 16;
@@ -97,53 +99,88 @@ bool long_ones(const std::vector<PairRange>& stretches) {
   return pairs >= kLongStretch * stretches.size();
 }
 
+/// Who evaluates pairs of two threads: the one that has fewer of them for its share. All threads go along the list and
+/// count alike.
+class Lenders {
+ public:
+  explicit Lenders(const std::vector<double>& share) : share_(share), lent_(share.size(), 0) {}
+
+  struct Lent {
+    std::uint8_t thread = 0;
+    std::int32_t number = 0;  ///< of the pairs that this thread evaluates
+  };
+  Lent next(std::uint8_t a, std::uint8_t b) {
+    const std::uint8_t thread = lent_[a] * share_[b] <= lent_[b] * share_[a] ? a : b;
+    return {thread, lent_[thread]++};
+  }
+
+ private:
+  const std::vector<double>& share_;
+  std::vector<std::int32_t> lent_;
+};
+
+/// Bodies of a pair and who owns them.
+struct Owners {
+  std::uint8_t first = 0;
+  std::uint8_t second = 0;
+};
+
 template <int D>
-void share_out(const System<D>& s, std::size_t k, Plan& plan) {
-  const auto& list = s.contacts;
+Owners owners_at(const System<D>& s, const Plan& plan, std::int32_t c) {
+  return {plan.owner[at(s.contacts.i[at(c)])], plan.owner[at(s.contacts.j[at(c)])]};
+}
+
+/// What a thread does in section k. Marks those lent pairs whose first body it owns.
+template <int D>
+void fill_share(const System<D>& s, std::size_t k, std::uint8_t thread, Plan& plan) {
+  const ContactSection& section = s.contacts.sections[k];
+  Share& share = plan.shares[thread][k];
+  share.clear();
+  Lenders lenders(plan.pace.share);
+  std::size_t inner = 0;
   int last = -1;
-  for (std::int32_t c = list.sections[k].begin; c < list.sections[k].end; ++c) {
-    const std::uint8_t first = plan.owner[at(list.i[static_cast<std::size_t>(c)])];
-    const std::uint8_t second = plan.owner[at(list.j[static_cast<std::size_t>(c)])];
-    stretch_to(c, true, plan.shares[first][k].touching);
+  for (std::int32_t c = section.begin; c < section.end; ++c) {
+    const auto [first, second] = owners_at(s, plan, c);
+    if (first == thread || second == thread) stretch_to(c, true, share.touching);
     if (first == second) {
-      plan.shares[first][k].inner.push_back(c);
-      stretch_to(c, last == first, plan.shares[first][k].stretches);
+      if (first == thread) {
+        ++inner;
+        stretch_to(c, last == first, share.stretches);
+      }
       last = first;
       continue;
     }
-    stretch_to(c, true, plan.shares[second][k].touching);
-    plan.lent[static_cast<std::size_t>(c)] = 1;
-    const std::uint8_t lender = lender_of(plan, k, first, second);
-    std::vector<std::int32_t>& outer = plan.shares[lender][k].outer;
-    const auto number = static_cast<std::int32_t>(outer.size());
-    outer.push_back(c);
-    plan.shares[first][k].waiting.push_back({c, lender, number, true});
-    plan.shares[second][k].waiting.push_back({c, lender, number, false});
+    const Lenders::Lent lent = lenders.next(first, second);
+    if (lent.thread == thread) share.outer.push_back(c);
+    if (first == thread) share.waiting.push_back({c, lent.thread, lent.number, true});
+    if (second == thread) share.waiting.push_back({c, lent.thread, lent.number, false});
+    if (first == thread) plan.lent[at(c)] = 1;
   }
-  for (auto& of_thread : plan.shares) {
-    plan.in_stretches = plan.in_stretches && long_ones(of_thread[k].touching);
-    if (of_thread[k].inner.size() >= kLongStretch * of_thread[k].stretches.size())
-      of_thread[k].inner.clear();
-    else
-      of_thread[k].stretches.clear();
-    of_thread[k].loads.resize(of_thread[k].outer.size());
-    of_thread[k].rolls.assign(D == 3 && plan.rolls ? of_thread[k].outer.size() : 0, {});
-    of_thread[k].touches.resize(of_thread[k].outer.size());
-  }
+  share.loads.resize(share.outer.size());
+  if (D == 3 && plan.rolls) share.rolls.resize(share.outer.size());
+  share.touches.resize(share.outer.size());
+  if (inner >= kLongStretch * share.stretches.size()) return;
+  share.stretches.clear();
+  for (std::int32_t c = section.begin; c < section.end; ++c)
+    if (const Owners of = owners_at(s, plan, c); of.first == thread && of.second == thread) share.inner.push_back(c);
 }
 
 template <int D>
 void make_plan(const System<D>& s, std::size_t threads, Plan& plan) {
   plan.pace.share_out(threads);
   plan.owner = owners_of(s, plan.pace.share);
-  plan.in_stretches = true;
   plan.build = s.contacts.build;
   plan.rolls = false;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
-  plan.lent.assign(s.contacts.i.size() + 4,
-                   0);  // the loop looks at four places at once
-  plan.shares.assign(threads, std::vector<Share>(s.contacts.sections.size()));
-  for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) share_out(s, k, plan);
+  plan.lent.assign(s.contacts.i.size() + 4, 0);  // the loop looks at four places at once
+  plan.shares.resize(threads);
+  for (auto& of_thread : plan.shares) of_thread.resize(s.contacts.sections.size());
+#pragma omp parallel for schedule(static, 1) num_threads(static_cast <int>(threads))
+  for (int t = 0; t < static_cast<int>(threads); ++t)
+    for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) fill_share(s, k, static_cast<std::uint8_t>(t), plan);
+  plan.in_stretches = true;
+  for (const auto& of_thread : plan.shares)
+    for (const Share& share : of_thread) plan.in_stretches = plan.in_stretches && long_ones(share.touching);
 }
 
 /// The waiting loads of one thread and section.

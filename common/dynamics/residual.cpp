@@ -40,6 +40,18 @@ double worst_net_force(const Particles<D>& p) {
 }
 
 template <int D>
+double worst_net_force(const Particles<D>& p, double but_for) {
+  const auto left_out = static_cast<std::ptrdiff_t>(but_for * static_cast<double>(p.force.size()));
+  if (left_out <= 0) return worst_net_force(p);
+  std::vector<double> all(p.force.size());
+  for (std::size_t u = 0; u < all.size(); ++u) all[u] = net_force2(p, u);
+  if (std::any_of(all.begin(), all.end(), [](double f2) { return !std::isfinite(f2); })) return worst_net_force(p);
+  const auto worst = all.end() - 1 - left_out;
+  std::nth_element(all.begin(), worst, all.end());
+  return std::sqrt(*worst);
+}
+
+template <int D>
 Residual residual(const System<D>& s) {
   Residual out;
   const auto& p = s.particles;
@@ -64,5 +76,7 @@ template Residual residual<2>(const System<2>&);
 template Residual residual<3>(const System<3>&);
 template double worst_net_force<2>(const Particles<2>&);
 template double worst_net_force<3>(const Particles<3>&);
+template double worst_net_force<2>(const Particles<2>&, double);
+template double worst_net_force<3>(const Particles<3>&, double);
 
 }  // namespace softgrain

@@ -27,4 +27,8 @@ Residual residual(const System<D>& system);
 template <int D>
 double worst_net_force(const Particles<D>& particles);
 
+/// The same but for a share of the bodies, rounded down, that are farthest from rest.
+template <int D>
+double worst_net_force(const Particles<D>& particles, double but_for);
+
 }  // namespace softgrain

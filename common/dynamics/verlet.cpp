@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/over_bodies.h"
+#include "common/core/in_pieces.h"
 #include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
@@ -85,7 +85,7 @@ void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
   turn_.resize(bodies);
   const SkinUse<D> use(s);
   double fastest2 = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelBodies)
+#pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelLength)
   for (std::size_t u = 0; u < bodies; ++u) {
     if (correct_first) correct(s, u);
     fastest2 = std::max(fastest2, drift(s, u, use));
@@ -116,7 +116,7 @@ void VelocityVerlet<D>::advance(System<D>& s, std::int64_t steps) {
   }
   if (steps <= 0) return;
   const std::size_t bodies = s.particles.force.size();
-#pragma omp parallel for schedule(static) if (bodies >= kParallelBodies)
+#pragma omp parallel for schedule(static) if (bodies >= kParallelLength)
   for (std::size_t u = 0; u < bodies; ++u) correct(s, u);
 }
 

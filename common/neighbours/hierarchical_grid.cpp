@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/core/error.h"
+#include "common/core/in_pieces.h"
 #include "common/neighbours/search_frame.h"
 
 namespace softgrain {
@@ -292,8 +293,10 @@ std::vector<CandidatePair> sorted_pairs(std::vector<std::vector<CandidatePair>>&
     for (const CandidatePair& c : piece) sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(c.i)]++)] = c;
     std::vector<CandidatePair>().swap(piece);
   }
-  for (std::size_t g = 0; g < grains; ++g)  // next[g] is now where the run of g ends
-    std::sort(sorted.begin() + (g == 0 ? 0 : next[g - 1]), sorted.begin() + next[g], before);
+  in_pieces(grains, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g)  // next[g] is now where the run of g ends
+      std::sort(sorted.begin() + (g == 0 ? 0 : next[g - 1]), sorted.begin() + next[g], before);
+  });
   return sorted;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/core/over_bodies.h"
+#include "common/core/in_pieces.h"
 #include "common/neighbours/hierarchical_grid.h"
 
 namespace softgrain {
@@ -91,7 +91,7 @@ class Uses {
 
 template <int D>
 double largest_use(const Uses<D>& uses, std::size_t bodies) {
-  return reduced_over_bodies<double>(
+  return joined_in_pieces<double>(
       bodies,
       [&](std::size_t begin, std::size_t end) {
         double most = 0.0;
@@ -124,12 +124,17 @@ double touching_pairs(const System<D>& s) {
   std::int64_t count = 0;
   for (const ContactSection& section : list.sections) {
     if (section.geometry != Geometry::sphere_sphere) continue;
-    for (auto c = static_cast<std::size_t>(section.begin); c < static_cast<std::size_t>(section.end); ++c) {
-      const Sphere<D>& a = s.particles.sphere[static_cast<std::size_t>(list.i[c])];
-      const Sphere<D>& b = s.particles.sphere[static_cast<std::size_t>(list.j[c])];
-      const double reach = a.r + b.r;
-      count += static_cast<std::int64_t>(norm2(a.x - b.x - s.cell.image_shift(list.image[c])) < reach * reach);
-    }
+    const std::size_t first = at(section.begin);
+    count += sum_in_pieces<std::int64_t>(at(section.end) - first, [&](std::size_t begin, std::size_t end) {
+      std::int64_t here = 0;
+      for (std::size_t c = first + begin; c < first + end; ++c) {
+        const Sphere<D>& a = s.particles.sphere[at(list.i[c])];
+        const Sphere<D>& b = s.particles.sphere[at(list.j[c])];
+        const double reach = a.r + b.r;
+        here += static_cast<std::int64_t>(norm2(a.x - b.x - s.cell.image_shift(list.image[c])) < reach * reach);
+      }
+      return here;
+    });
   }
   return static_cast<double>(count);
 }

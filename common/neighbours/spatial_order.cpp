@@ -1,12 +1,14 @@
 #include "common/neighbours/spatial_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
 #include <tuple>
 
+#include "common/core/in_pieces.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -29,23 +31,24 @@ struct Place {
 
 template <int D>
 std::uint64_t morton(const Vec<D>& unit) {
+  std::array<std::uint64_t, static_cast<std::size_t>(D)> whole;
+  // A place that is no number lies at the start: whoever follows the motion will say so.
+  for (int k = 0; k < D; ++k)
+    whole[at(k)] = static_cast<std::uint64_t>(
+        std::min(std::max(0.0, std::floor(unit[k] * (1 << kBits))), static_cast<double>((1 << kBits) - 1)));
   std::uint64_t code = 0;
   for (int bit = kBits - 1; bit >= 0; --bit)
-    for (int k = 0; k < D; ++k) {
-      // A place that is no number lies at the start: whoever follows the motion will say so.
-      const double whole =
-          std::min(std::max(0.0, std::floor(unit[k] * (1 << kBits))), static_cast<double>((1 << kBits) - 1));
-      code = code << 1 | (static_cast<std::uint64_t>(whole) >> bit & 1U);
-    }
+    for (const std::uint64_t w : whole) code = code << 1 | (w >> bit & 1U);
   return code;
 }
 
 /// Coordinates in the cell (periodic axes) or in the box around all grains (open ones), 0 to 1.
 template <int D>
 std::vector<Vec<D>> unit_places(const System<D>& s) {
-  std::vector<Vec<D>> unit;
-  for (Slot i = 0; i < s.particles.grains; ++i)
-    unit.push_back(s.cell.fractional(s.particles.sphere[static_cast<std::size_t>(i)].x));
+  std::vector<Vec<D>> unit(at(s.particles.grains));
+  in_pieces(unit.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) unit[u] = s.cell.fractional(s.particles.sphere[u].x);
+  });
   for (int k = 0; k < D; ++k) {
     if (s.cell.periodic[static_cast<std::size_t>(k)]) {
       for (Vec<D>& u : unit) u[k] -= std::floor(u[k]);
@@ -178,10 +181,13 @@ template <int D>
 std::vector<std::uint16_t> curve_parts(const System<D>& s) {
   constexpr int kPartBits = 12;
   static_assert(kCurveParts == std::size_t{1} << kPartBits && kPartBits % D == 0);
-  std::vector<std::uint16_t> parts;
-  if (s.particles.grains == 0) return parts;
-  for (const Vec<D>& unit : unit_places(s))
-    parts.push_back(static_cast<std::uint16_t>(morton<D>(unit) >> (kBits * D - kPartBits)));
+  std::vector<std::uint16_t> parts(at(s.particles.grains));
+  if (parts.empty()) return parts;
+  const std::vector<Vec<D>> unit = unit_places(s);
+  in_pieces(unit.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u)
+      parts[u] = static_cast<std::uint16_t>(morton<D>(unit[u]) >> (kBits * D - kPartBits));
+  });
   return parts;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/in_pieces.h"
 #include "common/neighbours/hierarchical_grid.h"
 #include "common/neighbours/skin.h"
 
@@ -15,7 +16,7 @@ namespace softgrain {
 
 namespace {
 
-/// Pairs of one geometry on their way into the list, sorted by i, then j.
+/// Pairs of one geometry on their way into the list, sorted by i, then j. Those without a law stay behind.
 struct FoundPair {
   Slot i = 0;
   Slot j = 0;
@@ -59,20 +60,21 @@ std::vector<FoundPair> grain_pairs(const System<D>& s) {
   std::vector<bool> late;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) late.push_back(has_onset(s.laws.law(l)));
   const auto candidates = candidate_pairs(p, s.cell, search_margins(s));
-  std::vector<FoundPair> out;
-  out.reserve(candidates.size());
-  for (const CandidatePair& c : candidates) {
-    const auto a = static_cast<std::size_t>(c.i);
-    const auto b = static_cast<std::size_t>(c.j);
+  const auto law_of = [&](const CandidatePair& c) {
+    const std::size_t a = at(c.i);
+    const std::size_t b = at(c.j);
     const std::int32_t law = s.laws.index(p.material[a], p.material[b]);
-    if (law == LawSet::kNoContact) continue;
-    if (late[static_cast<std::size_t>(law)]) {
-      const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_sphere, c.i, c.j));
-      const double reach = p.sphere[a].r + p.sphere[b].r - onset + s.neighbours.skin[a] + s.neighbours.skin[b];
-      if (norm2(p.sphere[a].x - p.sphere[b].x - s.cell.image_shift(c.image)) >= reach * reach) continue;
-    }
-    out.push_back({c.i, c.j, c.image, law});
-  }
+    if (law == LawSet::kNoContact || !late[at(law)]) return law;
+    const double onset = onset_of(s, law, bodies_of(p, Geometry::sphere_sphere, c.i, c.j));
+    const double reach = p.sphere[a].r + p.sphere[b].r - onset + s.neighbours.skin[a] + s.neighbours.skin[b];
+    const bool far = norm2(p.sphere[a].x - p.sphere[b].x - s.cell.image_shift(c.image)) >= reach * reach;
+    return far ? LawSet::kNoContact : law;
+  };
+  std::vector<FoundPair> out(candidates.size());
+  in_pieces(out.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      out[k] = {candidates[k].i, candidates[k].j, candidates[k].image, law_of(candidates[k])};
+  });
   return out;
 }
 
@@ -120,25 +122,34 @@ std::vector<FoundPair> plane_pairs(const System<D>& s) {
 /// One section per law, in the order of the laws.
 template <int D>
 void append_sections(ContactList<D>& list, Geometry geometry, const std::vector<FoundPair>& pairs, std::int32_t laws) {
-  std::vector<std::int32_t> count(static_cast<std::size_t>(laws), 0);
-  for (const FoundPair& pair : pairs) ++count[static_cast<std::size_t>(pair.law)];
-  std::vector<std::size_t> next(count.size());
-  auto end = static_cast<std::int32_t>(list.i.size());
+  // next[piece][law]: first how many of a law are in a piece, then where its next one goes.
+  std::vector<std::vector<std::int32_t>> next(pieces_of(pairs.size()), std::vector<std::int32_t>(at(laws), 0));
+  in_pieces(pairs.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (pairs[k].law != LawSet::kNoContact) ++next[begin / kPieceLength][at(pairs[k].law)];
+  });
+  auto all = static_cast<std::int32_t>(list.i.size());
   for (std::int32_t l = 0; l < laws; ++l) {
-    const std::int32_t many = count[static_cast<std::size_t>(l)];
-    next[static_cast<std::size_t>(l)] = static_cast<std::size_t>(end);
-    if (many > 0) list.sections.push_back({end, end + many, geometry, l});
-    end += many;
+    const std::int32_t first = all;
+    for (auto& of_piece : next) {
+      const std::int32_t many = of_piece[at(l)];
+      of_piece[at(l)] = all;
+      all += many;
+    }
+    if (all > first) list.sections.push_back({first, all, geometry, l});
   }
-  list.i.resize(static_cast<std::size_t>(end));
-  list.j.resize(static_cast<std::size_t>(end));
-  list.image.resize(static_cast<std::size_t>(end));
-  for (const FoundPair& pair : pairs) {
-    const std::size_t c = next[static_cast<std::size_t>(pair.law)]++;
-    list.i[c] = pair.i;
-    list.j[c] = pair.j;
-    list.image[c] = pair.image;
-  }
+  list.i.resize(at(all));
+  list.j.resize(at(all));
+  list.image.resize(at(all));
+  in_pieces(pairs.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (pairs[k].law == LawSet::kNoContact) continue;
+      const std::size_t c = at(next[begin / kPieceLength][at(pairs[k].law)]++);
+      list.i[c] = pairs[k].i;
+      list.j[c] = pairs[k].j;
+      list.image[c] = pairs[k].image;
+    }
+  });
 }
 
 /// What must survive a rebuild.
@@ -163,17 +174,27 @@ OldHistory<D> take_history(ContactList<D>& list) {
   return old;
 }
 
-/// Both lists are sorted by bodies within a section: one walk along both finds the pairs that stayed.
+/// Both lists are sorted by bodies within a section: one walk along both finds the pairs from `begin` to `end` that
+/// stayed.
 template <int D>
-void merge_history(const OldHistory<D>& old, const ContactSection& from, ContactList<D>& list,
-                   const ContactSection& to) {
-  auto a = static_cast<std::size_t>(from.begin);
-  for (auto c = static_cast<std::size_t>(to.begin); c < static_cast<std::size_t>(to.end); ++c) {
-    const auto before = [&](std::size_t k) {
-      return old.i[k] != list.i[c] ? old.i[k] < list.i[c] : old.j[k] < list.j[c];
-    };
-    while (a < static_cast<std::size_t>(from.end) && before(a)) ++a;
-    if (a == static_cast<std::size_t>(from.end)) return;
+void merge_history(const OldHistory<D>& old, const ContactSection& from, ContactList<D>& list, std::size_t begin,
+                   std::size_t end) {
+  const auto before = [&](std::size_t k, std::size_t c) {
+    return old.i[k] != list.i[c] ? old.i[k] < list.i[c] : old.j[k] < list.j[c];
+  };
+  std::size_t a = at(from.begin);
+  for (std::size_t left = at(from.end) - a; left > 0;) {  // the first that is not before the beginning
+    const std::size_t half = left / 2;
+    if (before(a + half, begin)) {
+      a += half + 1;
+      left -= half + 1;
+    } else {
+      left = half;
+    }
+  }
+  for (std::size_t c = begin; c < end; ++c) {
+    while (a < at(from.end) && before(a, c)) ++a;
+    if (a == at(from.end)) return;
     if (old.i[a] != list.i[c] || old.j[a] != list.j[c]) continue;
     if (!old.spring.empty() && list.has_spring) list.spring[c] = old.spring[a];
     if (!old.memory.empty() && list.has_memory) list.memory[c] = old.memory[a];
@@ -185,7 +206,10 @@ template <int D>
 void restore_history(ContactList<D>& list, const OldHistory<D>& old) {
   for (const ContactSection& to : list.sections)
     for (const ContactSection& from : old.sections)
-      if (from.geometry == to.geometry && from.law == to.law) merge_history(old, from, list, to);
+      if (from.geometry == to.geometry && from.law == to.law)
+        in_pieces(at(to.end - to.begin), [&](std::size_t begin, std::size_t end) {
+          merge_history(old, from, list, at(to.begin) + begin, at(to.begin) + end);
+        });
 }
 
 template <int D>
@@ -220,8 +244,10 @@ void fill_constants(System<D>& s) {
   for (const ContactSection& section : list.sections)
     std::visit(
         [&](const auto& law) {
-          for (auto c = static_cast<std::size_t>(section.begin); c < static_cast<std::size_t>(section.end); ++c)
-            list.constants[c] = law.pair_constants(bodies_of(s.particles, section.geometry, list.i[c], list.j[c]));
+          in_pieces(at(section.end - section.begin), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = at(section.begin) + begin; c < at(section.begin) + end; ++c)
+              list.constants[c] = law.pair_constants(bodies_of(s.particles, section.geometry, list.i[c], list.j[c]));
+          });
         },
         s.laws.law(section.law));
 }

@@ -1,5 +1,8 @@
 // softgrain run, microsim, macrosim: one scene; its `kind` says which.
 #include <fmt/format.h>
+#include <omp.h>
+
+#include <cstdio>
 
 #include "common/core/error.h"
 #include "pipelines/kinds/kinds.h"
@@ -18,6 +21,16 @@ std::string kinds_with_engine() {
   return text;
 }
 
+/// Results do not depend on the number, time does.
+void mind_cores(const CommonOptions& options) {
+  const int cores = omp_get_num_procs();
+  for (const auto& [option, wanted] : {std::pair<const char*, std::int64_t>{"--threads", options.threads},
+                                       std::pair<const char*, std::int64_t>{"--ranks", options.ranks}})
+    if (wanted > cores && !options.quiet)
+      fmt::print(stderr, "softgrain: mind: {} {}: {} here; more than that take turns and are slower than {}\n", option,
+                 wanted, cores == 1 ? "one core" : fmt::format("{} cores", cores), cores);
+}
+
 ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
   if (options.inputs.size() != 1)
     throw BadInput(command + ": one scene is needed (softgrain " + command + " SCENE.toml)");
@@ -28,6 +41,7 @@ ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
         fmt::format("{}: scenes of kind \"{}\" run in our own engine alone: --engine, --ranks and --write-only "
                     "go with {}",
                     command, kind.name, kinds_with_engine()));
+  mind_cores(options);
   return kind.run(scene, options);
 }
 

@@ -240,6 +240,12 @@ std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
   return lammps;
 }
 
+void require_bodies_for_ranks(const std::optional<LammpsEngine>& lammps, std::int64_t bodies) {
+  if (lammps && lammps->ranks > bodies)
+    throw BadInput(fmt::format("--ranks {}: the scene has {} bodies, and a rank needs one at least; allowed: 1 to {}",
+                               lammps->ranks, bodies, bodies));
+}
+
 std::string lammps_directory(const RunContext& context, std::int64_t sample, const std::string& folder) {
   return context.path(fmt::format("{}-{}", folder, sample));
 }

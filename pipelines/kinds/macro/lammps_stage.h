@@ -20,6 +20,9 @@ struct LammpsEngine {
 /// --engine, --ranks and --write-only; nothing for our own engine. Throws BadInput.
 std::optional<LammpsEngine> read_engine(const CommonOptions& options);
 
+/// Throws BadInput when there are more ranks than bodies.
+void require_bodies_for_ranks(const std::optional<LammpsEngine>& lammps, std::int64_t bodies);
+
 /// What all samples share.
 struct LammpsRuns {
   const MacroSetup& setup;

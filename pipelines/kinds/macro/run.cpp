@@ -159,6 +159,7 @@ ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
   const std::optional<LammpsEngine> lammps = read_engine(options);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
+  require_bodies_for_ranks(lammps, macro.setup.spec.bodies);
   if (macro.law.cells && lammps) throw BadInput("--engine lammps: LAMMPS knows no cells; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   const Run run(scene, options, "macrosim", macro.seed,

@@ -313,6 +313,7 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   const MaterialScene material = read_material_scene(scene);
   const std::optional<LammpsEngine> lammps = read_engine(options);
   require_engine(material, lammps);
+  for (const MaterialVariant& v : material.variants) require_bodies_for_ranks(lammps, v.setup.spec.bodies);
   const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
   if (lammps && lammps->write_only) return write_only(material, run);
   const std::vector<VariantResult> results = run_variants(material, run, {.lammps = lammps});

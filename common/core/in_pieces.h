@@ -1,0 +1,46 @@
+// Loops on several threads, in pieces of a fixed length: sums have the same bits for any number of threads.
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace softgrain {
+
+inline constexpr std::size_t kPieceLength = 2048;
+/// Below this length one thread is faster than two: of bodies, and of what costs as little as a body.
+inline constexpr std::size_t kParallelLength = 4000;
+
+inline std::size_t pieces_of(std::size_t length) { return (length + kPieceLength - 1) / kPieceLength; }
+
+/// work(begin, end) for all pieces of 0 .. length - 1; piece k begins at k kPieceLength.
+template <class Work>
+void in_pieces(std::size_t length, const Work& work) {
+  const auto pieces = static_cast<std::int64_t>(pieces_of(length));
+#pragma omp parallel for schedule(static) if (length >= kParallelLength && omp_in_parallel() == 0)
+  for (std::int64_t k = 0; k < pieces; ++k) {
+    const std::size_t begin = static_cast<std::size_t>(k) * kPieceLength;
+    work(begin, std::min(begin + kPieceLength, length));
+  }
+}
+
+/// What work(begin, end) returns for all pieces, joined in their order by join(so far, next).
+template <class Result, class Work, class Join>
+Result joined_in_pieces(std::size_t length, const Work& work, const Join& join) {
+  std::vector<Result> pieces(pieces_of(length));
+  in_pieces(length, [&](std::size_t begin, std::size_t end) { pieces[begin / kPieceLength] = work(begin, end); });
+  Result all{};
+  for (const Result& piece : pieces) join(all, piece);
+  return all;
+}
+
+/// Their sum.
+template <class Sum, class Work>
+Sum sum_in_pieces(std::size_t length, const Work& work) {
+  return joined_in_pieces<Sum>(length, work, [](Sum& all, const Sum& piece) { all += piece; });
+}
+
+}  // namespace softgrain
