@@ -287,14 +287,17 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
       this->kernel_(pass_.dt, pass_.stiffness != nullptr || pass_.stiffnesses != nullptr, block_);
       if (pass_.loads != nullptr)
         put_down();
+      else if (pass_.stiffness != nullptr)
+        scatter<true>();
       else
-        scatter();
+        scatter<false>();
     }
   }
 
  private:
   /// Rows become records again and go to the bodies in the order of the range. Of walls, which many contacts in a row
   /// share, the sums stay at hand.
+  template <bool kStiffness>
   void scatter() {
     const Slot* const first = list_.i.data();
     const Slot* const second = list_.j.data();
@@ -316,7 +319,7 @@ class Loop : Gatherer<D, kTraits, kGeometry, kPeriodic, kTake> {
         }
       const std::size_t i = u(first[c]);
       const std::size_t j = u(second[c]);
-      if (pass_.stiffness != nullptr) {
+      if constexpr (kStiffness) {
         const ContactStiffness stiffness = stiffness_of(k);
         add_first(stiffness, i, *pass_.stiffness);
         add_second(stiffness, j, *pass_.stiffness);
