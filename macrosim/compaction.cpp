@@ -24,8 +24,8 @@ namespace {
 constexpr double kLoose = 0.1;
 constexpr double kFall = 0.7;
 /// Share of the bodies that may still be on their way: to wait for the last loose one takes ever longer, the more there
-/// are (of 40,000 bodies 8,660 passes under the last pressure instead of 2,020, the fraction the same to 1e-4). The test
-/// begins by bringing all to rest with its own law.
+/// are (of 40,000 bodies 8,660 passes under the last pressure instead of 2,020, the fraction the same to 1e-4). The
+/// test begins by bringing all to rest with its own law.
 constexpr double kRestless = 1.0 / 2000.0;
 
 double mean_radius(const System3& s) {
@@ -51,7 +51,7 @@ DampedOptions options_under(double pressure, const HardBodies& hard, const Macro
 [[noreturn]] void not_jammed(const MacroSpec& spec, HardBodies& hard, const RelaxationResult& rest) {
   throw NotUsable(fmt::format(
       "{}: relaxation {} after {} passes; reached: walls at {:.3g} E, bodies fill {:.4f} of the box, largest net force "
-      "{:.3g} of the mean contact force",
+      "(but for one body in 2000) {:.3g} of the mean contact force",
       not_jammed_text(spec), to_string(rest.end), rest.passes, hard.pressure() / spec.youngs_modulus, hard.fraction(),
       rest.residual));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <vector>
 
 namespace softgrain {
@@ -16,15 +17,27 @@ inline constexpr std::size_t kParallelLength = 4000;
 
 inline std::size_t pieces_of(std::size_t length) { return (length + kPieceLength - 1) / kPieceLength; }
 
-/// work(begin, end) for all pieces of 0 .. length - 1; piece k begins at k kPieceLength.
+/// work(begin, end) for all pieces of 0 .. length - 1; piece k begins at k kPieceLength. Of errors that of the first
+/// piece is thrown, when all have ended.
 template <class Work>
 void in_pieces(std::size_t length, const Work& work) {
   const auto pieces = static_cast<std::int64_t>(pieces_of(length));
+  std::exception_ptr error;
+  std::int64_t failed = pieces;
 #pragma omp parallel for schedule(static) if (length >= kParallelLength && omp_in_parallel() == 0)
   for (std::int64_t k = 0; k < pieces; ++k) {
     const std::size_t begin = static_cast<std::size_t>(k) * kPieceLength;
-    work(begin, std::min(begin + kPieceLength, length));
+    try {
+      work(begin, std::min(begin + kPieceLength, length));
+    } catch (...) {
+#pragma omp critical(softgrain_in_pieces)
+      if (k < failed) {
+        failed = k;
+        error = std::current_exception();
+      }
+    }
   }
+  if (error) std::rethrow_exception(error);
 }
 
 /// What work(begin, end) returns for all pieces, joined in their order by join(so far, next).

@@ -8,6 +8,7 @@
 #include "common/core/in_pieces.h"
 #include "common/dynamics/pair_loop.h"
 #include "common/dynamics/parallel_pass.h"
+#include "common/dynamics/particle_pass.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {

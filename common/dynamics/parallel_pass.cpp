@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/dynamics/block_loop.h"
+#include "common/dynamics/particle_pass.h"
 #include "common/dynamics/thread_pace.h"
 #include "common/neighbours/spatial_order.h"
 
@@ -27,9 +28,8 @@ struct Waiting {
 /// Pairs of one section that concern one thread.
 struct Share {
   std::vector<std::int32_t> inner;            ///< places in the list of pairs whose bodies are both the thread's
-  std::vector<PairRange> touching;            ///< stretches that hold all pairs with a body of the thread
-  std::vector<PairRange> stretches;           ///< of the list, that hold all of inner and
-                                              ///< beside them only pairs of two threads
+  std::vector<PairRange> touching;            ///< stretches of the list that hold all pairs with a body of the thread
+  std::vector<PairRange> stretches;           ///< that hold all of inner and beside them only pairs of two threads
   std::vector<std::int32_t> outer;            ///< of those that it evaluates of pairs with bodies of two threads
   std::vector<ContactLoad> loads;             ///< of outer
   std::vector<ContactRoll> rolls;             ///< of outer, in space where some law has rolling resistance
@@ -50,10 +50,10 @@ struct Share {
 struct Plan {
   ThreadPace pace;
   std::uint64_t build = 0;
-  bool rolls = false;                      ///< some law of the scene has rolling resistance
-  bool in_stretches = false;               ///< all threads find their pairs in long stretches of the list
-  std::vector<std::uint8_t> owner;         ///< thread of every body
-  std::vector<std::uint8_t> lent;          ///< by place in the list, 1: the pair has bodies of two threads
+  bool rolls = false;               ///< some law of the scene has rolling resistance
+  bool shares_sums = false;         ///< the particle pass goes by threads: they find their pairs in long stretches
+  std::vector<std::uint8_t> owner;  ///< thread of every body
+  std::vector<std::uint8_t> lent;   ///< by place in the list, 1: the pair has bodies of two threads
   std::vector<std::vector<Share>> shares;  ///< [thread][section]
 };
 
@@ -141,7 +141,7 @@ void fill_share(const System<D>& s, std::size_t k, std::uint8_t thread, Plan& pl
   int last = -1;
   for (std::int32_t c = section.begin; c < section.end; ++c) {
     const auto [first, second] = owners_at(s, plan, c);
-    if (first == thread || second == thread) stretch_to(c, true, share.touching);
+    if (plan.shares_sums && (first == thread || second == thread)) stretch_to(c, true, share.touching);
     if (first == second) {
       if (first == thread) {
         ++inner;
@@ -172,15 +172,16 @@ void make_plan(const System<D>& s, std::size_t threads, Plan& plan) {
   plan.build = s.contacts.build;
   plan.rolls = false;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
+  plan.shares_sums = !s.contacts.particle_sum.empty();
   plan.lent.assign(s.contacts.i.size() + 4, 0);  // the loop looks at four places at once
   plan.shares.resize(threads);
   for (auto& of_thread : plan.shares) of_thread.resize(s.contacts.sections.size());
-#pragma omp parallel for schedule(static, 1) num_threads(static_cast <int>(threads))
-  for (int t = 0; t < static_cast<int>(threads); ++t)
+  const int many = static_cast<int>(threads);
+#pragma omp parallel for schedule(static, 1) num_threads(many)
+  for (int t = 0; t < many; ++t)
     for (std::size_t k = 0; k < s.contacts.sections.size(); ++k) fill_share(s, k, static_cast<std::uint8_t>(t), plan);
-  plan.in_stretches = true;
   for (const auto& of_thread : plan.shares)
-    for (const Share& share : of_thread) plan.in_stretches = plan.in_stretches && long_ones(share.touching);
+    for (const Share& share : of_thread) plan.shares_sums = plan.shares_sums && long_ones(share.touching);
 }
 
 /// The waiting loads of one thread and section.
@@ -301,12 +302,11 @@ void parallel_pass(System<D>& s, double dt, History history, int threads, BodySt
   const int many = std::min(threads, 255);
   if (plan.build != s.contacts.build || plan.shares.size() != static_cast<std::size_t>(many) || plan.pace.uneven())
     make_plan(s, static_cast<std::size_t>(many), plan);
-  const bool sums = !s.contacts.particle_sum.empty();
-  if (sums && !plan.in_stretches) particle_pass(s);
+  if (!plan.shares_sums) particle_pass(s);
   Pass<D> pass(s, dt, history, plan, stiffness);
 #pragma omp parallel num_threads(many)
   {
-    if (sums && plan.in_stretches) {
+    if (plan.shares_sums) {
 #pragma omp for schedule(static, 1)
       for (int t = 0; t < many; ++t) pass.timed(static_cast<std::size_t>(t), &Pass<D>::add_shares);
     }

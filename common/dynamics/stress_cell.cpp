@@ -5,6 +5,7 @@
 
 #include "common/core/limits.h"
 #include "common/dynamics/block_loop.h"
+#include "common/dynamics/particle_pass.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {

@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).parent
 
 
 class Work:
-    """Operations of one scene, counted by hand in common/dynamics/block_loop.cpp: what the physics needs, not what the
+    """Operations of one scene, counted by hand in common/dynamics/block_gather.h and block_loop.cpp: what the physics needs, not what the
     loop happens to do. Per listed pair, then per touching contact. A gather is a record of 32 bytes of a body, a scatter
     one that is added to; streams are bytes of the list, once each."""
 

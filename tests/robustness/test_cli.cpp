@@ -1,5 +1,6 @@
 // The built program from outside: exit statuses and messages of everything that can be asked wrongly.
 #include <gtest/gtest.h>
+#include <omp.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -84,6 +85,19 @@ TEST(CommandLine, UnwritableRunDirectoryIsFoundBeforeAnyWork) {
   fs::remove(scene);
 }
 
+constexpr const char* kOneGrain =
+    "kind = \"particles\"\n[material.a]\ndensity = 1.0\nE = 1.0\nnu = 0.2\n[[particle]]\nmaterial = \"a\"\n"
+    "radius = 1.0\nposition = [0.0, 0.0, 0.0]\n[time]\nstep = 0.1\nend = 0.2\n";
+
+TEST(CommandLine, MoreThreadsThanCoresAreSaid) {
+  const test::TemporaryDirectory directory;
+  const std::string scene = directory.file("scene.toml");
+  write_text_atomic(scene, kOneGrain);
+  const std::string more = std::to_string(omp_get_num_procs() + 1);
+  expect("microsim " + scene + " --out " + directory.file("run") + " --threads " + more, 0,
+         "mind: --threads " + more + ": ");
+}
+
 /// Folders of kept results, which have a page, are not written into unless asked for.
 TEST(CommandLine, RunsDoNotWriteAmongKeptResults) {
   const test::TemporaryDirectory directory;
@@ -92,10 +106,7 @@ TEST(CommandLine, RunsDoNotWriteAmongKeptResults) {
   fs::create_directories("results/kept");
   write_text_atomic("results/kept/README.md", "# Kept\n");
   for (const char* name : {"kept", "new"}) {
-    write_text_atomic(
-        std::string(name) + ".toml",
-        "kind = \"particles\"\n[material.a]\ndensity = 1.0\nE = 1.0\nnu = 0.2\n[[particle]]\nmaterial = \"a\"\n"
-        "radius = 1.0\nposition = [0.0, 0.0, 0.0]\n[time]\nstep = 0.1\nend = 0.2\n");
+    write_text_atomic(std::string(name) + ".toml", kOneGrain);
     expect("microsim " + std::string(name) + ".toml --quiet", 0, "");
   }
   EXPECT_TRUE(fs::exists("results/new/summary.json"));

@@ -82,6 +82,9 @@ TEST_F(MacroLammps, OptionsThatMeanNothingAreRefusedBeforeAnyWork) {
   expect(macro("run", "--ranks 2"), 2, {"--ranks goes with --engine lammps"});
   expect(macro("run", "--engine softgrain --write-only"), 2, {"--write-only goes with --engine lammps"});
   expect(macro("run", "--engine lammps --write-only --ranks 2"), 2, {"--ranks"});
+  (void)stand_in("exit 1");
+  expect(macro("run", "--engine lammps --ranks 1000"), 2, {"--ranks 1000", "bodies", "allowed: 1 to"});
+  ::unsetenv("SOFTGRAIN_LAMMPS");
   expect(macro("run", "--engine lammps --ranks 0"), 2, {"--ranks 0: must be a whole number"});
   expect(macro("run", "--set macro.preparation=lammps"), 2, {"macro.preparation", "--engine lammps"});
   expect(macro("run", "--engine lammps --write-only --set macro.preparation=lammps --set macro.construction=voids"), 2,

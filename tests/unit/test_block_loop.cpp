@@ -10,6 +10,7 @@
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/pair_loop.h"
+#include "common/dynamics/particle_pass.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace {

@@ -1,0 +1,288 @@
+// The first half of the vectorised loop: which pairs of a block touch, and all that a law asks for in rows. For
+// block_loop.cpp and particle_pass.cpp alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+
+#include "common/dynamics/block_kernels.h"
+#include "common/dynamics/block_loop.h"
+
+namespace softgrain::block {
+
+/// One per thread: clearing 80 kB in every pass is work that small systems need not do.
+template <int D>
+Block<D>& scratch() {
+  thread_local Block<D> block{};
+  return block;
+}
+
+/// Which pairs of a range a loop takes: all of them, those of an order, or those that are not lent, with what waits
+/// added in between.
+enum class Take { all, ordered, own };
+
+/// Finds the touching pairs of a block and brings all that a law asks for into rows. kTraits: what laws of this kind
+/// ask for.
+template <int D, LawTraits kTraits, Geometry kGeometry, bool kPeriodic, Take kTake>
+class Gatherer {
+ public:
+  Gatherer(System<D>& s, const Kernel<D>& kernel, const PairRange& range, const BlockPass<D>& pass)
+      : s_(s), list_(s.contacts), kernel_(kernel), range_(range), pass_(pass), images_(s.cell) {}
+
+ protected:
+  static constexpr bool kOrdered = kTake == Take::ordered;
+
+  static std::size_t u(std::int32_t k) { return static_cast<std::size_t>(k); }
+
+  /// Place in the list of number k of the range.
+  [[nodiscard]] std::int32_t place_of(std::int32_t k) const {
+    if constexpr (!kOrdered) return k;
+    return range_.at(k);
+  }
+
+  // Arrays are taken by local pointers in all loops: otherwise every store makes the compiler load them again.
+
+  static Quad dot(const std::array<Quad, 4>& a, const std::array<Quad, 4>& b) {
+    Quad sum = a[0] * b[0];
+    for (std::size_t axis = 1; axis < D; ++axis) sum += a[axis] * b[axis];
+    return sum;
+  }
+
+  /// One bit for each of four pairs that is apart: what is not a number is not, and makes a force that is none, as in
+  /// the scalar loop. `t`: branch and the fourth number in columns; `upright`: normals of planes.
+  [[gnu::always_inline]] int apart(const std::array<Quad, 4>& t, std::array<Quad, 4> upright) const {
+    if constexpr (kGeometry == Geometry::sphere_sphere) {
+      Quad touch = t[3];
+      if constexpr (kTraits.acts_at_distance) touch += kernel_.reach;
+      return sign_bits(dot(t, t) >= touch * touch);
+    } else if constexpr (kGeometry == Geometry::sphere_shell) {
+      return sign_bits(t[3] > 0.0) & sign_bits(dot(t, t) <= t[3] * t[3]);
+    } else {
+      transpose(upright[0], upright[1], upright[2], upright[3]);
+      return sign_bits(t[3] - dot(t, upright) <= 0.0);
+    }
+  }
+
+  /// One bit for each of four pairs from place k on that is lent.
+  [[nodiscard]] int lent([[maybe_unused]] std::int32_t k) const {
+    int bits = 0;
+    if constexpr (kTake == Take::own) {
+      std::uint32_t flags = 0;
+      std::memcpy(&flags, pass_.lent + k, sizeof flags);
+      if (flags != 0)
+        for (int l = 0; l < 4; ++l) bits |= static_cast<int>(flags >> (8 * l) & 1U) << l;
+    }
+    return bits;
+  }
+
+  /// Branch vector and the fourth number of every pair, and which touch. No branch depends on that: about one pair in
+  /// three does, which no processor can guess.
+  // NOLINTNEXTLINE(readability-function-size): one hot loop
+  [[gnu::always_inline]] void find_touching(std::int32_t begin, std::int32_t end) {
+    const Slot* const first = list_.i.data();
+    const Slot* const second = list_.j.data();
+    const Sphere<D>* const spheres = s_.particles.sphere.data();
+    const auto branch_of = [&](std::int32_t c) {
+      const Quad a = place(spheres[u(first[c])]);
+      const Quad b = place(spheres[u(second[c])]);
+      Quad d = a - b;
+      if constexpr (kPeriodic) d -= images_.shift[u(list_.image[u(c)])];
+      if constexpr (kGeometry == Geometry::sphere_sphere) return with_fourth(d, a + b);
+      return with_fourth(d, kGeometry == Geometry::sphere_shell ? b - a : a);
+    };
+    [[maybe_unused]] const Vec<D>* const normals = s_.particles.plane_normal.data();
+    [[maybe_unused]] const Slot first_plane = s_.particles.first_plane();
+    const auto upright_of = [&](std::int32_t c) {
+      const Vec<D>& n = normals[second[u(c)] - first_plane];
+      if constexpr (D == 3)
+        return Quad{n[0], n[1], n[2], 0.0};
+      else
+        return Quad{n[0], n[1], 0.0, 0.0};
+    };
+    Quad* const record = block_.record.data();
+    [[maybe_unused]] Quad* const upright = block_.upright_record.data();
+    std::int32_t* const pair = block_.pair.data();
+    [[maybe_unused]] std::int32_t* const number = block_.number.data();
+    int n = 0;
+    for (std::int32_t k = begin; k < end; k += 4) {
+      const int valid = std::min(end - k, 4);
+      std::array<Quad, 4> d;
+      std::array<Quad, 4> normal{};
+      std::array<std::int32_t, 4> c;
+      for (int l = 0; l < 4; ++l) {
+        c[u(l)] = place_of(std::min(k + l, end - 1));
+        d[u(l)] = branch_of(c[u(l)]);
+        if constexpr (kGeometry == Geometry::sphere_plane) normal[u(l)] = upright_of(c[u(l)]);
+      }
+      std::array<Quad, 4> t = d;
+      transpose(t[0], t[1], t[2], t[3]);
+      const int here = ((1 << valid) - 1) & ~lent(k);
+      const int touch = ~apart(t, normal) & here;
+      for (int l = 0; l < 4; ++l) {
+        record[n] = d[u(l)];
+        pair[n] = c[u(l)];
+        if constexpr (kGeometry == Geometry::sphere_plane) upright[n] = normal[u(l)];
+        if constexpr (kOrdered) number[n] = k + l;
+        n += touch >> l & 1;
+      }
+      if constexpr (kTraits.has_tangential) note_touch(c, here, touch);
+      if constexpr (kOrdered)
+        if (pass_.touches != nullptr)
+          for (int l = 0; l < valid; ++l) pass_.touches[k + l] = static_cast<std::uint8_t>(touch >> l & 1);
+    }
+    block_.touching = n;
+    for (int pad = n; n > 0 && pad < n + 8; ++pad) {  // lanes without a contact repeat the last one
+      record[pad] = record[n - 1];
+      pair[pad] = pair[n - 1];
+      if constexpr (kGeometry == Geometry::sphere_plane) upright[pad] = upright[n - 1];
+    }
+  }
+
+  /// A contact that has opened forgets its history. `here`: one bit for each of the four that is looked at.
+  [[gnu::always_inline]] void note_touch(const std::array<std::int32_t, 4>& c, int here, int touch) {
+    if (pass_.history == History::none) return;
+    if (pass_.history == History::next) {
+      for (int l = 0; l < 4; ++l)
+        if (((here & ~touch) >> l & 1) != 0) forget(list_.spring_next, list_.memory_next, list_.roll_next, u(c[u(l)]));
+      return;
+    }
+    std::uint8_t* const touched = list_.touched.data();
+    if constexpr (!kOrdered) {
+      if (here == 15) {  // four flags in one word, which seldom changes
+        std::uint32_t old = 0;
+        std::memcpy(&old, touched + c[0], sizeof old);
+        const std::uint32_t now = kFlags[u(touch)];
+        if (old == now) return;
+        std::memcpy(touched + c[0], &now, sizeof now);
+        for (int l = 0; l < 4; ++l)
+          if ((old & ~now) >> (8 * l) & 1U) forget(list_.spring, list_.memory, list_.roll, u(c[u(l)]));
+        return;
+      }
+    }
+    for (int l = 0; l < 4; ++l) {
+      if ((here >> l & 1) == 0) continue;
+      const std::size_t place = u(c[u(l)]);
+      const bool now = (touch >> l & 1) != 0;
+      if (touched[place] != 0 && !now) forget(list_.spring, list_.memory, list_.roll, place);
+      touched[place] = static_cast<std::uint8_t>(now);
+    }
+  }
+
+  static constexpr bool kRolls = has_roll_history<D>(kTraits);
+
+  static void forget(std::vector<Stored<D>>& spring, std::vector<double>& memory, std::vector<Stored<D>>& roll,
+                     std::size_t c) {
+    spring[c] = {};
+    if constexpr (kTraits.has_memory) memory[c] = 0.0;
+    if constexpr (kRolls) roll[c] = {};
+  }
+
+  /// From records to rows, four contacts at a time.
+  [[gnu::always_inline]] void gather() {
+    const auto& p = s_.particles;
+    const Slot* const first = list_.i.data();
+    const Slot* const second = list_.j.data();
+    const Sphere<D>* const spheres = p.sphere.data();
+    const CrowdSum<D>* const sums = list_.particle_sum.data();
+    const Stored<D>* const velocities = p.velocity.data();
+    const StoredRot<D>* const spins = p.spin.data();
+    const Stored<D>* const springs = list_.spring.data();
+    const PairConstants* const all_constants = list_.constants.data();
+    for (int g = 0; g < block_.touching; g += 4) {
+      std::array<Quad, 4> branch, motion, spin_i, spin_j, spring, normal, roll;
+      for (std::size_t l = 0; l < 4; ++l) {
+        const std::size_t c = u(block_.pair[u(g) + l]);
+        const std::size_t i = u(first[c]);
+        const std::size_t j = u(second[c]);
+        branch[l] = block_.record[u(g) + l];
+        block_.a.v[u(g) + l] = all_constants[c].a;
+        if constexpr (kTraits.needs_velocity || kTraits.is_crowd) block_.b.v[u(g) + l] = all_constants[c].b;
+        if constexpr (kTraits.needs_velocity) {
+          motion[l] = quad_of(velocities[i]) - quad_of(velocities[j]);
+          if constexpr (kPeriodic) motion[l] -= images_.velocity[u(list_.image[c])];
+        }
+        if constexpr (kTraits.has_tangential) {
+          spin_i[l] = with_fourth(quad_of(spins[i]), place(spheres[i]));
+          spin_j[l] = with_fourth(quad_of(spins[j]), place(spheres[j]));
+          spring[l] = quad_of(springs[c]);
+        }
+        if constexpr (kRolls) roll[l] = quad_of(list_.roll[c]);
+        if constexpr (kTraits.is_crowd && !kTraits.has_tangential) {
+          block_.radius_i.v[u(g) + l] = spheres[i].r;
+          block_.radius_j.v[u(g) + l] = spheres[j].r;
+        }
+        if constexpr (kTraits.has_memory) block_.memory.v[u(g) + l] = list_.memory[c];
+        if constexpr (kTraits.needs_particle_pass) {
+          if (kernel_.sums.i) gather_sum(block_.sum_i, u(g) + l, sums[i]);
+          if (kernel_.sums.j) gather_sum(block_.sum_j, u(g) + l, sums[j]);
+        }
+        if constexpr (kGeometry == Geometry::sphere_plane) normal[l] = block_.upright_record[u(g) + l];
+      }
+      transpose(branch[0], branch[1], branch[2], branch[3]);
+      store_rows<D>(block_.branch, g, branch);
+      store_quad(block_.fourth.v + g, branch[3]);
+      if constexpr (kGeometry == Geometry::sphere_plane) {
+        transpose(normal[0], normal[1], normal[2], normal[3]);
+        store_rows<D>(block_.upright, g, normal);
+      }
+      if constexpr (kTraits.needs_velocity) {
+        transpose(motion[0], motion[1], motion[2], motion[3]);
+        store_rows<D>(block_.velocity, g, motion);
+      }
+      if constexpr (kTraits.has_tangential) {
+        transpose(spin_i[0], spin_i[1], spin_i[2], spin_i[3]);
+        transpose(spin_j[0], spin_j[1], spin_j[2], spin_j[3]);
+        store_rows<kRot<D>>(block_.spin_i, g, spin_i);
+        store_rows<kRot<D>>(block_.spin_j, g, spin_j);
+        store_quad(block_.radius_i.v + g, spin_i[3]);
+        store_quad(block_.radius_j.v + g, spin_j[3]);
+        transpose(spring[0], spring[1], spring[2], spring[3]);
+        store_rows<D>(block_.spring, g, spring);
+      }
+      if constexpr (kRolls) {
+        transpose(roll[0], roll[1], roll[2], roll[3]);
+        store_rows<D>(block_.roll, g, roll);
+      }
+    }
+  }
+
+  static void gather_sum(SumRows<D>& rows, std::size_t k, const CrowdSum<D>& sum) {
+    rows.volume.v[k] = sum.volume;
+    if constexpr (kTraits.directions_in_sums) {
+      for (int a = 0; a < D; ++a) rows.first[static_cast<std::size_t>(a)].v[k] = sum.first[a];
+      for (std::size_t a = 0; a < sum.second.size(); ++a) rows.second[a].v[k] = sum.second[a];
+    }
+    rows.gain.v[k] = sum.gain;
+    rows.gain_slope.v[k] = sum.gain_slope;
+  }
+
+  System<D>& s_;
+  ContactList<D>& list_;
+  const Kernel<D> kernel_;
+  const PairRange range_;
+  const BlockPass<D> pass_;
+  const Images<D, kPeriodic> images_;
+  Block<D>& block_ = scratch<D>();
+};
+/// Opens law and geometry of a section for those that this number of dimensions knows.
+template <int D, class Work>
+void open(const System<D>& s, const ContactSection& section, Work&& work) {
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        using G = Geometry;
+        if constexpr (!law_serves<Law, D>())
+          throw std::logic_error("a law for another number of dimensions");
+        else if (section.geometry == G::sphere_sphere)
+          work(law, std::integral_constant<G, G::sphere_sphere>{});
+        else if (section.geometry == G::sphere_shell)
+          work(law, std::integral_constant<G, G::sphere_shell>{});
+        else
+          work(law, std::integral_constant<G, G::sphere_plane>{});
+      },
+      s.laws.law(section.law));
+}
+
+}  // namespace softgrain::block

@@ -1,0 +1,125 @@
+#include "common/dynamics/particle_pass.h"
+
+#include "common/dynamics/block_gather.h"
+
+namespace softgrain {
+
+namespace {
+
+using namespace block;
+
+/// The first half of the particle pass: what every contact takes from its bodies.
+template <class Law, Geometry kGeometry, bool kPeriodic>
+class Shares : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic,
+                        Take::all> {
+  using Base = Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic,
+                        Take::all>;
+  using Base::block_, Base::list_, Base::u;
+
+ public:
+  Shares(System<3>& s, const Law& law, const PairRange& range, OwnBodies own)
+      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0, {}}, range, {}), law_(law), own_(own) {}
+
+  void run() {
+    for (std::int32_t k = this->range_.begin; k < this->range_.end; k += kBlock) {
+      this->find_touching(k, std::min(k + kBlock, this->range_.end));
+      if (block_.touching == 0) continue;
+      this->gather();
+      this->kernel_(0.0, false, block_);
+      for (int n = 0; n < block_.touching; ++n) add(n);
+    }
+  }
+
+ private:
+  void add(int n) {
+    const std::size_t c = u(block_.pair[u(n)]);
+    const Vec<3> normal{{block_.normal[0].v[n], block_.normal[1].v[n], block_.normal[2].v[n]}};
+    const Slot i = list_.i[c];
+    const Slot j = list_.j[c];
+    if (law_.i_is_soft && own_(i)) Law::add(block_.taken_i.v[n], -normal, list_.particle_sum[u(i)]);
+    if (law_.j_is_soft && own_(j)) Law::add(block_.taken_j.v[n], normal, list_.particle_sum[u(j)]);
+  }
+
+  const Law& law_;
+  OwnBodies own_;
+};
+
+/// Closes sums, each once, several at a time.
+template <class Law>
+class Closing {
+ public:
+  explicit Closing(const Law& law) : law_(law) {}
+
+  void add(CrowdSum<3>& sum) {
+    if (sum.ready || !(sum.square > 0.0)) return;
+    sum.ready = true;
+    waiting_[static_cast<std::size_t>(many_)] = &sum;
+    volume_.v[many_] = law_.equivalent(sum);
+    if (++many_ == kLanes) close();
+  }
+  void close() {
+    for (int l = many_; l < kLanes; ++l) volume_.v[l] = volume_.v[0];
+    CrowdSum<3, Lanes> sum;
+    if (many_ > 0) sum.close(law_.form.pressure, volume_.at(0));
+    for (int l = 0; l < many_; ++l) {
+      waiting_[static_cast<std::size_t>(l)]->gain = sum.gain[static_cast<std::size_t>(l)];
+      waiting_[static_cast<std::size_t>(l)]->gain_slope = sum.gain_slope[static_cast<std::size_t>(l)];
+    }
+    many_ = 0;
+  }
+
+ private:
+  const Law& law_;
+  int many_ = 0;
+  std::array<CrowdSum<3>*, static_cast<std::size_t>(kLanes)> waiting_{};
+  Row volume_{};
+};
+
+}  // namespace
+
+template <>
+void add_particle_shares(System<2>&, const ContactSection&, const PairRange&, OwnBodies) {}
+
+template <>
+void add_particle_shares(System<3>& s, const ContactSection& section, const PairRange& range, OwnBodies own) {
+  open(s, section, [&]<class Law>(const Law& law, auto geometry) {
+    constexpr Geometry kGeometry = decltype(geometry)::value;
+    if constexpr (Law::traits.needs_particle_pass) {
+      if (kGeometry == Geometry::sphere_sphere && s.cell.any_periodic())
+        Shares<Law, kGeometry, true>(s, law, range, own).run();
+      else
+        Shares<Law, kGeometry, false>(s, law, range, own).run();
+    }
+  });
+}
+
+template <>
+void close_particle_sums(System<2>&, const ContactSection&, const PairRange&, OwnBodies) {}
+
+template <>
+void close_particle_sums(System<3>& s, const ContactSection& section, const PairRange& range, OwnBodies own) {
+  open(s, section, [&]<class Law>(const Law& law, auto) {
+    if constexpr (Law::traits.needs_particle_pass) {
+      Closing<Law> closing(law);
+      for (std::int32_t c = range.begin; c < range.end; ++c)
+        for (const Slot body : {s.contacts.i[at(c)], s.contacts.j[at(c)]})
+          if (own(body)) closing.add(s.contacts.particle_sum[at(body)]);
+      closing.close();
+    }
+  });
+}
+
+template <int D>
+void particle_pass(System<D>& s) {
+  if (s.contacts.particle_sum.empty()) return;
+  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), CrowdSum<D>{});
+  for (const ContactSection& section : s.contacts.sections)
+    add_particle_shares<D>(s, section, {section.begin, section.end}, {});
+  for (const ContactSection& section : s.contacts.sections)
+    close_particle_sums<D>(s, section, {section.begin, section.end}, {});
+}
+
+template void particle_pass<2>(System<2>&);
+template void particle_pass<3>(System<3>&);
+
+}  // namespace softgrain
