@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/dynamics/pair_loop.h"
+#include "common/neighbours/spatial_order.h"
 #include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
@@ -226,10 +227,14 @@ class Network {
 template <int D>
 StableStep stable_step(const System<D>& system, double enough, Dashpots dashpots) {
   System<D> s = system;
+  const std::vector<Slot> order = spatial_order(s);  // many sweeps over the contacts: neighbours near in memory
+  reorder_grains(s, order);
   update_neighbours(s);
   particle_pass(s);
-  const StableStep safe = bound(s, dashpots);
-  return safe.step >= enough ? safe : Network<D>(s, dashpots).run();
+  StableStep out = bound(s, dashpots);
+  if (out.step < enough) out = Network<D>(s, dashpots).run();
+  if (out.body >= 0 && out.body < s.particles.grains) out.body = order[static_cast<std::size_t>(out.body)];
+  return out;
 }
 
 template StableStep stable_step<2>(const System<2>&, double, Dashpots);
