@@ -153,7 +153,10 @@ double best_interval(double near, double build, double passes) {
 constexpr double kFastestChange = 2.0;
 constexpr double kWidest = 0.5;            // of the radius ...
 constexpr double kWidestInSmallest = 1.0;  // ... and of the smallest one
-constexpr double kNarrowest = 0.01;        // of the radius of the smallest
+// A grain that flies has few neighbours, and few grains fly: wide margins cost little there.
+constexpr double kWidestOfFlyers = 8.0;  // of the radius
+constexpr double kFastestOfFlyers = 16.0;
+constexpr double kNarrowest = 0.01;  // of the radius of the smallest
 
 }  // namespace
 
@@ -207,33 +210,55 @@ void fit_skin_to_cell(System<D>& s) {
   }
 }
 
-/// What bodies have used up of their margins [m], largest per size class of grains; walls go by themselves.
+/// What bodies have used up of their margins [m]: of grains the largest of their size class, but for the few that fly,
+/// far ahead of the others: those go by themselves, as do walls.
 template <int D>
 class UsedUp {
  public:
   explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
     const Uses<D> uses(s);
     used_.resize(s.particles.sphere.size());
+    in_pieces(used_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t u = begin; u < end; ++u) used_[u] = uses.of(u) * s.neighbours.skin[u];
+    });
+    std::array<std::vector<double>, kClasses> of_class;
     for (std::size_t u = 0; u < used_.size(); ++u) {
-      used_[u] = uses.of(u) * s.neighbours.skin[u];
       known_ = known_ && std::isfinite(used_[u]);
-      if (static_cast<Slot>(u) >= grains_) continue;
-      double& most = of_class_[class_of(s.particles.sphere[u].r, smallest_)];
-      most = std::max(most, used_[u]);
+      if (static_cast<Slot>(u) < grains_) of_class[class_of(s.particles.sphere[u].r, smallest_)].push_back(used_[u]);
     }
+    if (!known_) return;
+    for (std::size_t c = 0; c < kClasses; ++c) most_[c] = most_of_the_others(of_class[c]);
   }
 
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] double smallest() const { return smallest_; }
+  [[nodiscard]] bool flies(std::size_t u, double r) const {
+    return static_cast<Slot>(u) < grains_ && used_[u] > most_[class_of(r, smallest_)];
+  }
   [[nodiscard]] double of(std::size_t u, double r) const {
-    return static_cast<Slot>(u) < grains_ ? of_class_[class_of(r, smallest_)] : used_[u];
+    return static_cast<Slot>(u) < grains_ && !flies(u, r) ? most_[class_of(r, smallest_)] : used_[u];
   }
 
  private:
+  static constexpr double kShareOfOthers = 0.99;  // of a class that does not fly, at least
+  static constexpr double kAhead = 2.0;           // of those, from which on one flies
+
+  /// The largest number that does not stand out.
+  static double most_of_the_others(std::vector<double>& used) {
+    if (used.empty()) return 0.0;
+    const auto place = static_cast<std::ptrdiff_t>(kShareOfOthers * static_cast<double>(used.size() - 1));
+    std::nth_element(used.begin(), used.begin() + place, used.end());
+    const double limit = kAhead * used[static_cast<std::size_t>(place)];
+    double most = 0.0;
+    for (const double x : used)
+      if (x <= limit) most = std::max(most, x);
+    return most;
+  }
+
   double smallest_;
   Slot grains_;
   bool known_ = true;
-  std::array<double, kClasses> of_class_{};
+  std::array<double, kClasses> most_{};
   std::vector<double> used_;
 };
 
@@ -251,8 +276,11 @@ void adapt_skin(System<D>& s) {
   const double stretch = std::clamp(target / passes, 1.0 / kFastestChange, kFastestChange);
   for (std::size_t u = 0; u < n.skin.size(); ++u) {
     const double r = p.sphere[u].r;
-    const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * kFastestChange);
-    const double widest = std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
+    const bool flies = used.flies(u, r);
+    const double up = flies ? kFastestOfFlyers : kFastestChange;
+    const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * up);
+    const double widest =
+        flies ? kWidestOfFlyers * r : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
     n.skin[u] = std::max(std::min(limited, widest), kNarrowest * used.smallest());
   }
 }

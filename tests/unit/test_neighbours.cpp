@@ -409,4 +409,31 @@ TEST(VerletList, MarginsLeaveRoomForTheReach) {
   EXPECT_EQ(s.contacts.size(), 1);
 }
 
+/// A crowd that hardly moves and one grain that flies through it: with the margin of the flyer for all, or that of the
+/// crowd for the flyer, lists would be made every few passes.
+TEST(VerletList, AGrainThatFliesHasAMarginOfItsOwn) {
+  System3 s = hertz_system<3>(0.5, 1.0, true);
+  for (int k = 0; k < 1000; ++k)
+    add_grain(s.particles, test_sphere<3>({{3.0 * (k % 10), 3.0 * (k / 10 % 10), 3.0 * (k / 100)}}, 1.0, 1.0));
+  add_grain(s.particles, test_sphere<3>({{-5.0, 1.5, 1.5}}, 1.15, 1.0));
+  const std::size_t flyer = 1000;
+  s.particles.inverse_mass.assign(flyer + 1, 0.0);
+  for (int pass = 0; pass < 400; ++pass) {
+    for (std::size_t u = 0; u < flyer; ++u)
+      s.particles.sphere[u].x[1] += (u % 2 == 0 ? 1e-3 : -1e-3) * (pass % 2 == 0 ? 1 : -1);
+    s.particles.sphere[flyer].x[0] += 0.08;
+    force_pass(s, 0.0, History::none);
+    std::size_t touching = 0;  // four at a time, between columns of grains
+    for (std::size_t u = 0; u < flyer; ++u)
+      touching += norm(s.particles.sphere[u].x - s.particles.sphere[flyer].x) < 2.15 ? 1 : 0;
+    std::size_t listed = 0;
+    for (std::size_t c = 0; c < at(s.contacts.size()); ++c) listed += at(s.contacts.j[c]) == flyer ? 1 : 0;
+    ASSERT_GE(listed, touching) << pass;
+  }
+  EXPECT_GT(s.neighbours.skin[flyer], 1.0);
+  EXPECT_LT(s.neighbours.skin[0], 0.51);
+  EXPECT_LT(s.neighbours.rebuilds, 60) << "32 m at 8 radii a list, and the first few";
+  EXPECT_LT(s.contacts.size(), 400) << "the crowd touches nowhere";
+}
+
 }  // namespace
