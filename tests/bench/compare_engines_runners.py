@@ -81,11 +81,22 @@ class Softgrain:
 
 
 class Lammps:
-    def __init__(self, law):
-        self.name, self.law = f"LAMMPS {law}", law
+    def __init__(self, law, threads=1):
+        self.name = f"LAMMPS {law}" + ("" if threads == 1 else f", {threads} ranks")
+        self.law, self.threads = law, threads
 
     def missing(self):
-        return "" if shutil.which("lmp") else "LAMMPS is not installed (package lammps)"
+        if not shutil.which("lmp"):
+            return "LAMMPS is not installed (package lammps)"
+        return "" if self.threads == 1 or shutil.which("mpirun") else "mpirun is not installed (package openmpi-bin)"
+
+    def launcher(self):
+        """Ranks share the cores that the whole command is given."""
+        if self.threads == 1:
+            return []
+        return ["mpirun", "-np", str(self.threads), "--bind-to", "none", "--oversubscribe"]
+
+    ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
     @staticmethod
     def write_data(scene, path):
@@ -105,11 +116,11 @@ class Lammps:
             self.write_data(scene, data)
         values = {"data": data, "law": self.law, "rate": scene.rate, "step": scene.step, "warm_up": scene.warm_up,
                   "steps": scene.steps, "skin": scene.skin, "search": scene.search, "classes": scene.classes or "0"}
-        command = ["lmp", "-in", str(HERE / "compare_engines_lammps.in"), "-log", "none"]
+        command = self.launcher() + ["lmp", "-in", str(HERE / "compare_engines_lammps.in"), "-log", "none"]
         for key, value in values.items():
             command += ["-var", key, str(value)]
-        output, memory = run(command, cores, {"OMP_NUM_THREADS": "1"}, directory)
-        return {**self.read(output), "peak_memory": memory}
+        output, memory = run(command, cores, self.ENVIRONMENT, directory)
+        return {**self.read(output), "peak_memory": memory * self.threads}
 
     @staticmethod
     def read(output):
