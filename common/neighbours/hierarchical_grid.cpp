@@ -89,12 +89,14 @@ void sort_members(Level<D>& level, const SearchFrame<D>& frame, const Particles<
   for (const auto n : level.cells) total *= n;
   std::vector<std::int32_t> where(level.members.size());
   level.start.assign(static_cast<std::size_t>(total) + 1, 0);
-  for (std::size_t m = 0; m < level.members.size(); ++m) {
-    const Vec<D> unit = frame.unit(p.sphere[static_cast<std::size_t>(level.members[m])].x);
-    require_at_home(p, *frame.cell, unit, level.members[m]);
-    where[m] = static_cast<std::int32_t>(cell_index(level, cell_of(level, unit)));
-    ++level.start[static_cast<std::size_t>(where[m]) + 1];
-  }
+  in_pieces(where.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t m = begin; m < end; ++m) {
+      const Vec<D> unit = frame.unit(p.sphere[static_cast<std::size_t>(level.members[m])].x);
+      require_at_home(p, *frame.cell, unit, level.members[m]);
+      where[m] = static_cast<std::int32_t>(cell_index(level, cell_of(level, unit)));
+    }
+  });
+  for (const std::int32_t cell : where) ++level.start[static_cast<std::size_t>(cell) + 1];
   for (std::size_t c = 1; c < level.start.size(); ++c) level.start[c] += level.start[c - 1];
   std::vector<std::int32_t> next(level.start.begin(), level.start.end() - 1);
   level.sorted.resize(level.members.size());
@@ -115,14 +117,15 @@ std::vector<Level<D>> make_levels(const Particles<D>& p, const std::vector<doubl
     largest = std::max(largest, p.sphere[static_cast<std::size_t>(i)].r + skin[static_cast<std::size_t>(i)]);
   std::vector<Level<D>> all(64);
   std::vector<int> raw(static_cast<std::size_t>(p.grains));
+  in_pieces(raw.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u)
+      raw[u] = std::clamp(static_cast<int>(std::floor(std::log2(largest / (p.sphere[u].r + skin[u])))), 0, 63);
+  });
   for (Slot i = 0; i < p.grains; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    const double reach = p.sphere[u].r + skin[u];
-    const int l = std::clamp(static_cast<int>(std::floor(std::log2(largest / reach))), 0, 63);
-    raw[u] = l;
-    auto& level = all[static_cast<std::size_t>(l)];
+    auto& level = all[static_cast<std::size_t>(raw[u])];
     level.members.push_back(i);
-    level.reach = std::max(level.reach, reach);
+    level.reach = std::max(level.reach, p.sphere[u].r + skin[u]);
   }
   std::vector<Level<D>> levels;
   std::vector<std::int32_t> renumbered(64, 0);
@@ -282,20 +285,48 @@ std::vector<std::vector<bool>> who_looks(const std::vector<Level<D>>& levels, co
 
 bool before(const CandidatePair& a, const CandidatePair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; }
 
-/// Counting sort by i, then every run by j. Pieces are given back as they are used up.
-std::vector<CandidatePair> sorted_pairs(std::vector<std::vector<CandidatePair>>& pieces, std::size_t grains) {
+/// Pairs whose first body lies in one stretch of slots, sorted into `to`: counting sort by i, then every run by j.
+void sort_stretch(const CandidatePair* from, std::size_t many, std::size_t first_grain, std::size_t grains,
+                  CandidatePair* to) {
   std::vector<std::int32_t> next(grains + 1, 0);
-  for (const auto& piece : pieces)
-    for (const CandidatePair& c : piece) ++next[static_cast<std::size_t>(c.i) + 1];
+  for (std::size_t k = 0; k < many; ++k) ++next[static_cast<std::size_t>(from[k].i) - first_grain + 1];
   for (std::size_t g = 1; g <= grains; ++g) next[g] += next[g - 1];
-  std::vector<CandidatePair> sorted(static_cast<std::size_t>(next[grains]));
-  for (auto& piece : pieces) {
-    for (const CandidatePair& c : piece) sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(c.i)]++)] = c;
-    std::vector<CandidatePair>().swap(piece);
+  for (std::size_t k = 0; k < many; ++k) to[next[static_cast<std::size_t>(from[k].i) - first_grain]++] = from[k];
+  for (std::size_t g = 0; g < grains; ++g)  // next[g] is now where the run of g ends
+    std::sort(to + (g == 0 ? 0 : next[g - 1]), to + next[g], before);
+}
+
+/// All pairs by i, then j. They are dealt out to stretches of slots first, so that all of it runs in parallel. Pieces
+/// are given back as they are used up.
+std::vector<CandidatePair> sorted_pairs(std::vector<std::vector<CandidatePair>>& pieces, std::size_t grains) {
+  const std::size_t stretches = pieces_of(grains);
+  const auto many = static_cast<Slot>(pieces.size());
+  const auto stretch_of = [](const CandidatePair& c) { return static_cast<std::size_t>(c.i) / kPieceLength; };
+  // next[piece][stretch]: first how many, then where the next one goes.
+  std::vector<std::vector<std::int32_t>> next(pieces.size(), std::vector<std::int32_t>(stretches, 0));
+#pragma omp parallel for schedule(static) if (grains >= kParallelLength && omp_in_parallel() == 0)
+  for (Slot piece = 0; piece < many; ++piece)
+    for (const CandidatePair& c : pieces[at(piece)]) ++next[at(piece)][stretch_of(c)];
+  std::vector<std::size_t> start(stretches + 1, 0);
+  std::int32_t all = 0;
+  for (std::size_t k = 0; k < stretches; ++k) {
+    for (auto& of_piece : next) {
+      const std::int32_t here = of_piece[k];
+      of_piece[k] = all;
+      all += here;
+    }
+    start[k + 1] = static_cast<std::size_t>(all);
   }
+  std::vector<CandidatePair> dealt(static_cast<std::size_t>(all));
+#pragma omp parallel for schedule(static) if (grains >= kParallelLength && omp_in_parallel() == 0)
+  for (Slot piece = 0; piece < many; ++piece) {
+    for (const CandidatePair& c : pieces[at(piece)]) dealt[at(next[at(piece)][stretch_of(c)]++)] = c;
+    std::vector<CandidatePair>().swap(pieces[at(piece)]);
+  }
+  std::vector<CandidatePair> sorted(dealt.size());
   in_pieces(grains, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end; ++g)  // next[g] is now where the run of g ends
-      std::sort(sorted.begin() + (g == 0 ? 0 : next[g - 1]), sorted.begin() + next[g], before);
+    const std::size_t k = begin / kPieceLength;
+    sort_stretch(dealt.data() + start[k], start[k + 1] - start[k], begin, end - begin, sorted.data() + start[k]);
   });
   return sorted;
 }

@@ -139,6 +139,58 @@ double touching_pairs(const System<D>& s) {
   return static_cast<double>(count);
 }
 
+/// What bodies have used up of their margins [m]: of grains the largest of their size class, but for the few that fly,
+/// far ahead of the others: those go by themselves, as do walls.
+template <int D>
+class UsedUp {
+ public:
+  explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
+    const Uses<D> uses(s);
+    used_.resize(s.particles.sphere.size());
+    in_pieces(used_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t u = begin; u < end; ++u) used_[u] = uses.of(u) * s.neighbours.skin[u];
+    });
+    std::array<std::vector<double>, kClasses> of_class;
+    for (std::size_t u = 0; u < used_.size(); ++u) {
+      known_ = known_ && std::isfinite(used_[u]);
+      if (static_cast<Slot>(u) < grains_) of_class[class_of(s.particles.sphere[u].r, smallest_)].push_back(used_[u]);
+    }
+    if (!known_) return;
+    for (std::size_t c = 0; c < kClasses; ++c) most_[c] = most_of_the_others(of_class[c]);
+  }
+
+  [[nodiscard]] bool known() const { return known_; }
+  [[nodiscard]] double smallest() const { return smallest_; }
+  [[nodiscard]] bool flies(std::size_t u, double r) const {
+    return static_cast<Slot>(u) < grains_ && used_[u] > most_[class_of(r, smallest_)];
+  }
+  [[nodiscard]] double of(std::size_t u, double r) const {
+    return static_cast<Slot>(u) < grains_ && !flies(u, r) ? most_[class_of(r, smallest_)] : used_[u];
+  }
+
+ private:
+  static constexpr double kShareOfOthers = 0.99;  // of a class that does not fly, at least
+  static constexpr double kAhead = 2.0;           // of those, from which on one flies
+
+  /// The largest number that does not stand out.
+  static double most_of_the_others(std::vector<double>& used) {
+    if (used.empty()) return 0.0;
+    const auto place = static_cast<std::ptrdiff_t>(kShareOfOthers * static_cast<double>(used.size() - 1));
+    std::nth_element(used.begin(), used.begin() + place, used.end());
+    const double limit = kAhead * used[static_cast<std::size_t>(place)];
+    double most = 0.0;
+    for (const double x : used)
+      if (x <= limit) most = std::max(most, x);
+    return most;
+  }
+
+  double smallest_;
+  Slot grains_;
+  bool known_ = true;
+  std::array<double, kClasses> most_{};
+  std::vector<double> used_;
+};
+
 // What making a list costs, in looks at a pair that does not touch: measured on scenes A, B and C
 // (results/performance).
 constexpr double kPerGrain = 120.0;
@@ -157,6 +209,24 @@ constexpr double kWidestInSmallest = 1.0;  // ... and of the smallest one
 constexpr double kWidestOfFlyers = 8.0;  // of the radius
 constexpr double kFastestOfFlyers = 16.0;
 constexpr double kNarrowest = 0.01;  // of the radius of the smallest
+
+/// Margins that last `stretch` times as long as the last ones.
+template <int D>
+void set_margins(System<D>& s, const UsedUp<D>& used, double stretch) {
+  NeighbourState<D>& n = s.neighbours;
+  const auto& p = s.particles;
+  in_pieces(n.skin.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) {
+      const double r = p.sphere[u].r;
+      const bool flies = used.flies(u, r);
+      const double up = flies ? kFastestOfFlyers : kFastestChange;
+      const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * up);
+      const double widest =
+          flies ? kWidestOfFlyers * r : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
+      n.skin[u] = std::max(std::min(limited, widest), kNarrowest * used.smallest());
+    }
+  });
+}
 
 }  // namespace
 
@@ -210,58 +280,6 @@ void fit_skin_to_cell(System<D>& s) {
   }
 }
 
-/// What bodies have used up of their margins [m]: of grains the largest of their size class, but for the few that fly,
-/// far ahead of the others: those go by themselves, as do walls.
-template <int D>
-class UsedUp {
- public:
-  explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
-    const Uses<D> uses(s);
-    used_.resize(s.particles.sphere.size());
-    in_pieces(used_.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t u = begin; u < end; ++u) used_[u] = uses.of(u) * s.neighbours.skin[u];
-    });
-    std::array<std::vector<double>, kClasses> of_class;
-    for (std::size_t u = 0; u < used_.size(); ++u) {
-      known_ = known_ && std::isfinite(used_[u]);
-      if (static_cast<Slot>(u) < grains_) of_class[class_of(s.particles.sphere[u].r, smallest_)].push_back(used_[u]);
-    }
-    if (!known_) return;
-    for (std::size_t c = 0; c < kClasses; ++c) most_[c] = most_of_the_others(of_class[c]);
-  }
-
-  [[nodiscard]] bool known() const { return known_; }
-  [[nodiscard]] double smallest() const { return smallest_; }
-  [[nodiscard]] bool flies(std::size_t u, double r) const {
-    return static_cast<Slot>(u) < grains_ && used_[u] > most_[class_of(r, smallest_)];
-  }
-  [[nodiscard]] double of(std::size_t u, double r) const {
-    return static_cast<Slot>(u) < grains_ && !flies(u, r) ? most_[class_of(r, smallest_)] : used_[u];
-  }
-
- private:
-  static constexpr double kShareOfOthers = 0.99;  // of a class that does not fly, at least
-  static constexpr double kAhead = 2.0;           // of those, from which on one flies
-
-  /// The largest number that does not stand out.
-  static double most_of_the_others(std::vector<double>& used) {
-    if (used.empty()) return 0.0;
-    const auto place = static_cast<std::ptrdiff_t>(kShareOfOthers * static_cast<double>(used.size() - 1));
-    std::nth_element(used.begin(), used.begin() + place, used.end());
-    const double limit = kAhead * used[static_cast<std::size_t>(place)];
-    double most = 0.0;
-    for (const double x : used)
-      if (x <= limit) most = std::max(most, x);
-    return most;
-  }
-
-  double smallest_;
-  Slot grains_;
-  bool known_ = true;
-  std::array<double, kClasses> most_{};
-  std::vector<double> used_;
-};
-
 template <int D>
 void adapt_skin(System<D>& s) {
   NeighbourState<D>& n = s.neighbours;
@@ -274,15 +292,7 @@ void adapt_skin(System<D>& s) {
   const double build = kPerGrain * static_cast<double>(p.grains) + kPerPair * listed;
   const double target = best_interval(listed - touching_pairs(s), build, passes);
   const double stretch = std::clamp(target / passes, 1.0 / kFastestChange, kFastestChange);
-  for (std::size_t u = 0; u < n.skin.size(); ++u) {
-    const double r = p.sphere[u].r;
-    const bool flies = used.flies(u, r);
-    const double up = flies ? kFastestOfFlyers : kFastestChange;
-    const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * up);
-    const double widest =
-        flies ? kWidestOfFlyers * r : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
-    n.skin[u] = std::max(std::min(limited, widest), kNarrowest * used.smallest());
-  }
+  set_margins(s, used, stretch);
 }
 
 template <int D>

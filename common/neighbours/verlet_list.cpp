@@ -269,8 +269,8 @@ template <int D>
 }
 
 template <int D>
-void require_sound(const Particles<D>& p, const Cell<D>& cell) {
-  for (Slot i = 0; i < p.size(); ++i) {
+void require_sound(const Particles<D>& p, const Cell<D>& cell, Slot begin, Slot end) {
+  for (Slot i = begin; i < end; ++i) {
     const auto u = static_cast<std::size_t>(i);
     const double distance2 = norm2(p.sphere[u].x);
     if (!std::isfinite(distance2)) lose(p, i);
@@ -286,6 +286,13 @@ void require_sound(const Particles<D>& p, const Cell<D>& cell) {
                       " m): " + std::to_string(outside) + " m lie between them");
     }
   }
+}
+
+template <int D>
+void require_sound(const Particles<D>& p, const Cell<D>& cell) {
+  in_pieces(at(p.size()), [&](std::size_t begin, std::size_t end) {
+    require_sound(p, cell, static_cast<Slot>(begin), static_cast<Slot>(end));
+  });
 }
 
 /// Edge c loses whole edges r until its component along axis r is within half an edge: another basis of the same
@@ -309,17 +316,18 @@ void wrap(System<D>& s) {
       if (s.cell.periodic[static_cast<std::size_t>(r)] && s.cell.periodic[static_cast<std::size_t>(c)])
         reduce_tilt(s.cell, r, c);
   auto& p = s.particles;
-  for (Slot i = 0; i < p.first_plane(); ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    const Vec<D> frac = s.cell.fractional(p.sphere[u].x);
-    Vec<D> back;
-    for (int k = 0; k < D; ++k)
-      if (s.cell.periodic[static_cast<std::size_t>(k)]) back[k] = std::floor(frac[k]);
-    if (back == Vec<D>{}) continue;
-    const Vec<D> shift = s.cell.edges * back;
-    p.sphere[u].x -= shift;
-    p.velocity[u] -= s.cell.velocity_gradient * shift;
-  }
+  in_pieces(at(p.first_plane()), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) {
+      const Vec<D> frac = s.cell.fractional(p.sphere[u].x);
+      Vec<D> back;
+      for (int k = 0; k < D; ++k)
+        if (s.cell.periodic[static_cast<std::size_t>(k)]) back[k] = std::floor(frac[k]);
+      if (back == Vec<D>{}) continue;
+      const Vec<D> shift = s.cell.edges * back;
+      p.sphere[u].x -= shift;
+      p.velocity[u] -= s.cell.velocity_gradient * shift;
+    }
+  });
 }
 
 }  // namespace
@@ -348,7 +356,9 @@ void rebuild_neighbours(System<D>& s) {
   adopt_list(s);
   restore_history(s.contacts, old);
   n.reference.resize(static_cast<std::size_t>(s.particles.size()));
-  for (std::size_t u = 0; u < n.reference.size(); ++u) n.reference[u] = s.particles.sphere[u].x;
+  in_pieces(n.reference.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t u = begin; u < end; ++u) n.reference[u] = s.particles.sphere[u].x;
+  });
   n.reference_edges = s.cell.edges;
   if (n.rebuilds > 1 && s.cost.loop_passes - n.passes_at_build <= 1) ++n.hasty;
   n.passes_at_build = s.cost.loop_passes;
