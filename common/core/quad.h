@@ -25,6 +25,14 @@ inline void store(Stored<3>& to, Quad q) { store_quad(&to, q); }
 inline void store(Stored<2>& to, Quad q) { to = Vec<2>{{q[0], q[1]}}; }
 inline void store(Stored<1>& to, Quad q) { to = Vec<1>{{q[0]}}; }
 
+/// The first numbers alone.
+template <int D>
+Vec<D> vec_of(Quad q) {
+  Vec<D> out;
+  for (int k = 0; k < D; ++k) out[k] = q[k];
+  return out;
+}
+
 /// `a` with its fourth number replaced by that of `b`.
 inline Quad with_fourth(Quad a, Quad b) { return __builtin_shufflevector(a, b, 0, 1, 2, 7); }
 

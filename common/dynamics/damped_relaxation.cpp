@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "common/core/in_pieces.h"
+#include "common/core/quad.h"
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
+#include "common/neighbours/skin.h"
 
 namespace softgrain {
 
@@ -15,9 +17,9 @@ namespace {
 /// Passes between two updates of masses and two tests for convergence.
 constexpr std::int64_t kMassInterval = PseudoMasses::kInterval;
 
-template <class V>
-void limit_length(V& v, double longest) {
-  const double size2 = norm2(v);
+template <int N>
+void limit_length(Quad& v, double longest) {
+  const double size2 = norm2(vec_of<N>(v));
   if (size2 > longest * longest) v *= longest / std::sqrt(size2);
 }
 
@@ -71,30 +73,54 @@ Fire::Steering DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame)
 }
 
 template <int D>
-void DampedRelaxation<D>::move(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end) {
+double DampedRelaxation<D>::move(System<D>& s, const Fire::Steering& steering, std::size_t begin, std::size_t end) {
+  auto& p = s.particles;
+  const SkinUse<D> use(s);
   const double fastest = options_.max_move / fire_.step;
+  double used2 = 0.0;
   for (std::size_t u = begin; u < end; ++u) {
-    Vec<D> velocity = p.velocity[u];
-    if (!steering.stop) velocity = velocity * steering.keep + p.force[u] * (steering.pull * inverse_mass_[u]);
+    Quad velocity = quad_of(p.velocity[u]);
+    const Quad force = quad_of(p.force[u]);
+    store(p.force[u], Quad{});
+    if (!steering.stop) velocity = velocity * steering.keep + force * (steering.pull * inverse_mass_[u]);
     if (inverse_mass_[u] > 0.0) {
-      if (steering.stop) velocity = {};
-      velocity += p.force[u] * (fire_.step * inverse_mass_[u]);
-      limit_length(velocity, fastest * p.sphere[u].r);
-      p.sphere[u].x += velocity * fire_.step;
+      if (steering.stop) velocity = Quad{};
+      velocity += force * (fire_.step * inverse_mass_[u]);
+      limit_length<D>(velocity, fastest * p.sphere[u].r);
+      p.sphere[u].x += vec_of<D>(velocity) * fire_.step;
+      used2 = std::max(used2, use.rate2(s, u, vec_of<D>(velocity)));
     }
-    p.velocity[u] = velocity;
+    store(p.velocity[u], velocity);
   }
-  if (!turns_) return;
+  turn(p, steering, begin, end);
+  return used2;
+}
+
+/// Forces of rotation go to zero too.
+template <int D>
+void DampedRelaxation<D>::turn(Particles<D>& p, const Fire::Steering& steering, std::size_t begin,
+                               std::size_t end) const {
   for (std::size_t u = begin; u < end; ++u) {
-    Rot<D> spin = p.spin[u];
-    if (!steering.stop) spin = spin * steering.keep + p.torque[u] * (steering.pull * inverse_inertia_[u]);
+    const Quad torque = quad_of(p.torque[u]);
+    store(p.torque[u], Quad{});
+    if (!turns_) continue;
+    Quad spin = quad_of(p.spin[u]);
+    if (!steering.stop) spin = spin * steering.keep + torque * (steering.pull * inverse_inertia_[u]);
     if (inverse_inertia_[u] > 0.0) {
-      if (steering.stop) spin = {};
-      spin += p.torque[u] * (fire_.step * inverse_inertia_[u]);
-      limit_length(spin, fastest);
+      if (steering.stop) spin = Quad{};
+      spin += torque * (fire_.step * inverse_inertia_[u]);
+      limit_length<kRot<D>>(spin, options_.max_move / fire_.step);
     }
-    p.spin[u] = spin;
+    store(p.spin[u], spin);
   }
+}
+
+template <int D>
+void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering) {
+  const double used2 = joined_in_pieces<double>(
+      inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return move(s, steering, begin, end); },
+      [](double& most, double piece) { most = std::max(most, piece); });
+  watch_.moved(fire_.step * std::sqrt(used2));
 }
 
 template <int D>
@@ -104,7 +130,9 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
   const auto& turn = s.particles.inverse_inertia;
   turns_ = std::any_of(turn.begin(), turn.end(), [](double inverse) { return inverse > 0.0; });
   fire_ = {};
+  const bool flows = !(s.cell.velocity_gradient == Matrix<D>{});  // which time in here does not drive
   force_pass(s, 0.0, stiffness_, History::none);
+  watch_.forget();
   add_gravity(s);
   for (;;) {
     if (result.passes % kMassInterval == 0) {
@@ -123,13 +151,14 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
       scale_masses(s, frame);
     }
     const Fire::Steering steering = steer(s, frame);
-    in_pieces(inverse_mass_.size(),
-              [&](std::size_t begin, std::size_t end) { move(s.particles, steering, begin, end); });
+    move_all(s, steering);
     if (frame != nullptr) frame->carry(s, fire_.step);
+    if (frame != nullptr || flows) watch_.forget();
+    watch_.require_list(s);
     if ((result.passes + 1) % kMassInterval == 0)
-      force_pass(s, fire_.step, stiffness_, History::advance);
+      add_contact_forces(s, fire_.step, stiffness_, History::advance);
     else
-      force_pass(s, fire_.step, History::advance);
+      add_contact_forces(s, fire_.step, History::advance);
     if (frame != nullptr) frame->release(s);
     add_gravity(s);
     ++result.passes;

@@ -7,6 +7,7 @@
 #include "common/dynamics/fire.h"
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/relaxation_result.h"
+#include "common/neighbours/list_watch.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -79,8 +80,11 @@ class DampedRelaxation {
   [[nodiscard]] typename RelaxingFrame<D>::Sums sums_of(const Particles<D>& p, std::size_t begin,
                                                         std::size_t end) const;
   Fire::Steering steer(System<D>& system, RelaxingFrame<D>* frame);
-  /// Velocities take the steering and the forces, places the velocities.
-  void move(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end);
+  /// Velocities take the steering and the forces, which go to zero; places take the velocities. Returns the square of
+  /// the largest share of its margin in the neighbour list that a body uses up per time.
+  double move(System<D>& system, const Fire::Steering& steering, std::size_t begin, std::size_t end);
+  void turn(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end) const;
+  void move_all(System<D>& system, const Fire::Steering& steering);
 
   DampedOptions options_;
   BodyStiffness stiffness_;
@@ -88,6 +92,7 @@ class DampedRelaxation {
   std::vector<double> inverse_inertia_;
   bool turns_ = true;  ///< some body can
   Fire fire_;
+  ListWatch<D> watch_;
 };
 
 }  // namespace softgrain

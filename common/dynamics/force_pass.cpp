@@ -69,6 +69,12 @@ void add_contact_forces(System<D>& system, double dt, History history) {
 }
 
 template <int D>
+void add_contact_forces(System<D>& system, double dt, BodyStiffness& stiffness, History history) {
+  stiffness.clear(static_cast<std::size_t>(system.particles.size()));
+  add_forces(system, dt, history, &stiffness);
+}
+
+template <int D>
 void force_pass(System<D>& system, double dt, History history) {
   update_neighbours(system);
   clear_forces(system.particles);
@@ -79,8 +85,7 @@ template <int D>
 void force_pass(System<D>& system, double dt, BodyStiffness& stiffness, History history) {
   update_neighbours(system);
   clear_forces(system.particles);
-  stiffness.clear(static_cast<std::size_t>(system.particles.size()));
-  add_forces(system, dt, history, &stiffness);
+  add_contact_forces(system, dt, stiffness, history);
 }
 
 template <int D>
@@ -95,6 +100,8 @@ std::vector<ContactRecord<D>> contact_records(const System<D>& system) {
 
 template void add_contact_forces<2>(System<2>&, double, History);
 template void add_contact_forces<3>(System<3>&, double, History);
+template void add_contact_forces<2>(System<2>&, double, BodyStiffness&, History);
+template void add_contact_forces<3>(System<3>&, double, BodyStiffness&, History);
 template void force_pass<2>(System<2>&, double, History);
 template void force_pass<3>(System<3>&, double, History);
 template void force_pass<2>(System<2>&, double, BodyStiffness&, History);

@@ -19,6 +19,10 @@ void force_pass(System<D>& system, double dt, History history = History::next);
 template <int D>
 void add_contact_forces(System<D>& system, double dt, History history);
 
+/// Those sums and the stiffness sums.
+template <int D>
+void add_contact_forces(System<D>& system, double dt, BodyStiffness& stiffness, History history);
+
 /// A pass that also returns the stiffness sums.
 template <int D>
 void force_pass(System<D>& system, double dt, BodyStiffness& stiffness, History history = History::next);

@@ -6,19 +6,8 @@
 #include "common/core/limits.h"
 #include "common/dynamics/block_loop.h"
 #include "common/dynamics/particle_pass.h"
-#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
-
-/// The exact test of the list runs only when the sum of the bounds says that it may fail.
-template <int D>
-void StressCellVerlet<D>::find_pairs(System<D>& s) {
-  constexpr double kTrusted = 0.999;  // the rest covers rounding
-  if (build_ == s.contacts.build && build_ != 0 && used_ < kTrusted) return;
-  update_neighbours(s);
-  build_ = s.contacts.build;
-  used_ = skin_used(s);
-}
 
 /// Forces must be zero before.
 template <int D>
@@ -55,8 +44,8 @@ void StressCellVerlet<D>::initialise(System<D>& s) {
   middle_.resize(bodies);
   middle_spin_.resize(bodies);
   for (int k = 0; k < D; ++k) rate_[k] = s.cell.velocity_gradient[k][k] * s.cell.edges[k][k];
-  build_ = 0;
-  find_pairs(s);
+  watch_.forget();
+  watch_.require_list(s);
   kinetic_ = {};
   for (std::size_t u = 0; u < bodies; ++u) {
     p.force[u] = {};
@@ -94,7 +83,7 @@ void StressCellVerlet<D>::move_bodies(System<D>& s, const Vec<D>& growth, const 
     p.torque[u] = {};
     fastest2 = larger_or_nan(fastest2, norm2(middle_[u]) * s.neighbours.inverse_skin2[u]);
   }
-  used_ += dt_ * (std::sqrt(fastest2) + SkinUse<D>(s).strain_rate());
+  watch_.moved(dt_ * (std::sqrt(fastest2) + SkinUse<D>(s).strain_rate()));
 }
 
 /// The cell and all that is in it one step on.
@@ -168,7 +157,7 @@ template <int D>
 void StressCellVerlet<D>::advance(System<D>& s, std::int64_t steps) {
   for (std::int64_t k = 0; k < steps; ++k) {
     move(s);
-    find_pairs(s);
+    watch_.require_list(s);
     sum_forces(s, dt_, History::advance);
     correct(s);
     s.time += dt_;

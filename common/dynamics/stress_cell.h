@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/neighbours/list_watch.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -55,7 +56,6 @@ class StressCellVerlet {
 
  private:
   void move(System<D>& system);
-  void find_pairs(System<D>& system);
   void sum_forces(System<D>& system, double dt, History history);
   void correct(System<D>& system);
   template <bool kDrag>
@@ -78,8 +78,7 @@ class StressCellVerlet {
   std::vector<Rot<D>> spin_;      ///< likewise
   std::vector<Vec<D>> middle_;    ///< peculiar velocity in the middle of a step
   std::vector<Rot<D>> middle_spin_;
-  std::uint64_t build_ = 0;  ///< list that used_ belongs to; 0: unknown
-  double used_ = 0.0;        ///< bound for the share of its margin that any body has used up
+  ListWatch<D> watch_;
 };
 
 }  // namespace softgrain

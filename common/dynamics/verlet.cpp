@@ -6,21 +6,10 @@
 #include "common/core/in_pieces.h"
 #include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
-#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
 
 namespace {
-
-/// Share of the margins up to which a sum of bounds is trusted; the rest covers rounding.
-constexpr double kTrusted = 0.999;
-
-template <int D>
-Vec<D> vec_of(Quad q) {
-  Vec<D> out;
-  for (int k = 0; k < D; ++k) out[k] = q[k];
-  return out;
-}
 
 template <int D>
 void load_planes(Particles<D>& p) {
@@ -47,7 +36,7 @@ template <int D>
 void VelocityVerlet<D>::initialise(System<D>& system) {
   force_pass(system, 0.0, History::none);
   add_gravity(system);
-  build_ = 0;
+  watch_.forget();
 }
 
 /// Position and predicted velocity one step on; forces are set to zero for the pass. Returns the largest share of its
@@ -91,17 +80,12 @@ void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
     fastest2 = std::max(fastest2, drift(s, u, use));
   }
   if (s.cell.any_periodic()) s.cell.advance(dt_);
-  used_ += dt_ * (std::sqrt(fastest2) + use.strain_rate());
+  watch_.moved(dt_ * (std::sqrt(fastest2) + use.strain_rate()));
 }
 
 template <int D>
 void VelocityVerlet<D>::sum_forces(System<D>& s) {
-  // The exact test runs only when the sum of the bounds says that it may fail.
-  if (build_ != s.contacts.build || !(used_ < kTrusted)) {
-    update_neighbours(s);
-    build_ = s.contacts.build;
-    used_ = skin_used(s);
-  }
+  watch_.require_list(s);
   add_contact_forces(s, dt_, History::advance);
   add_gravity(s);
 }

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/neighbours/verlet_list.h"
+#include "common/neighbours/list_watch.h"
+#include "common/neighbours/skin.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -35,8 +36,7 @@ class VelocityVerlet {
   void correct(System<D>& system, std::size_t u) const;
 
   double dt_;
-  std::uint64_t build_ = 0;         ///< list that used_ belongs to; 0: unknown
-  double used_ = 0.0;               ///< bound for the share of its margin that any body has used up
+  ListWatch<D> watch_;
   std::vector<Stored<D>> kick_;     ///< that the old forces gave the predicted velocities
   std::vector<StoredRot<D>> turn_;  ///< likewise the spins
 };
