@@ -15,6 +15,7 @@ using UnalignedQuad = double __attribute__((vector_size(32), may_alias, aligned(
 /// 32 bytes at an address that is a multiple of 32.
 inline Quad load_quad(const void* from) { return *static_cast<const detail::QuadInMemory*>(from); }
 inline void store_quad(void* to, Quad q) { *static_cast<detail::QuadInMemory*>(to) = q; }
+inline Quad load_unaligned(const double* from) { return *reinterpret_cast<const detail::UnalignedQuad*>(from); }
 inline void store_unaligned(double* to, Quad q) { *reinterpret_cast<detail::UnalignedQuad*>(to) = q; }
 
 /// Missing components are zero; the fourth is whatever the padding holds.
@@ -35,6 +36,19 @@ Vec<D> vec_of(Quad q) {
 
 /// `a` with its fourth number replaced by that of `b`.
 inline Quad with_fourth(Quad a, Quad b) { return __builtin_shufflevector(a, b, 0, 1, 2, 7); }
+
+using QuadMask = decltype(Quad{} < Quad{});
+
+/// One bit per lane of a comparison.
+inline int sign_bits(QuadMask mask) {
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256(reinterpret_cast<Quad>(mask));
+#else
+  int bits = 0;
+  for (int l = 0; l < 4; ++l) bits |= static_cast<int>(mask[l] & 1) << l;
+  return bits;
+#endif
+}
 
 /// Rows become columns.
 inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {

@@ -98,19 +98,6 @@ constexpr std::array<std::uint32_t, 16> kFlags = [] {
 }();
 static_assert(std::endian::native == std::endian::little);
 
-using QuadMask = decltype(Quad{} < Quad{});
-
-/// One bit per lane of a comparison.
-inline int sign_bits(QuadMask mask) {
-#ifdef __AVX__
-  return __builtin_ia32_movmskpd256(reinterpret_cast<Quad>(mask));
-#else
-  int bits = 0;
-  for (int l = 0; l < 4; ++l) bits |= static_cast<int>(mask[l] & 1) << l;
-  return bits;
-#endif
-}
-
 /// Shift of every periodic image and the velocity that goes with it; nothing in an open cell.
 template <int D, bool kPeriodic>
 struct Images {

@@ -3,35 +3,35 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "common/core/error.h"
 #include "common/core/in_pieces.h"
+#include "common/core/quad.h"
 #include "common/neighbours/search_frame.h"
 
 namespace softgrain {
 
 namespace {
 
-/// A grain in its cell, with all that the search asks of it.
-template <int D>
-struct Entry {
-  Vec<D> x{};
-  double reach = 0.0;  ///< r + skin
-  Slot slot = 0;
-};
+/// Grains looked at together.
+constexpr std::size_t kLanes = 4;
 
-/// One size class: grains sorted by cell (counting sort).
+/// One size class: grains sorted by cell, in a cell by slot (counting sort).
 template <int D>
 struct Level {
   using Index = std::array<std::int64_t, static_cast<std::size_t>(D)>;
   double reach = 0.0;               ///< largest r + skin of the class
   Index cells{};                    ///< per axis
   std::vector<Slot> members;        ///< ascending
-  std::vector<std::int32_t> start;  ///< per cell, into sorted
-  std::vector<Entry<D>> sorted;
+  std::vector<std::int32_t> start;  ///< per cell, into what follows
+  // What the search asks of the sorted grains, in rows that end with room for a full look.
+  std::array<std::vector<double>, static_cast<std::size_t>(D)> x;
+  std::vector<double> reaches;  ///< r + skin
+  std::vector<Slot> slot;
 };
 
 /// Cells at least `edge` wide; no more than a few per grain, so that sparse fine classes cost no memory.
@@ -99,12 +99,16 @@ void sort_members(Level<D>& level, const SearchFrame<D>& frame, const Particles<
   for (const std::int32_t cell : where) ++level.start[static_cast<std::size_t>(cell) + 1];
   for (std::size_t c = 1; c < level.start.size(); ++c) level.start[c] += level.start[c - 1];
   std::vector<std::int32_t> next(level.start.begin(), level.start.end() - 1);
-  level.sorted.resize(level.members.size());
+  const std::size_t room = level.members.size() + kLanes;
+  for (auto& row : level.x) row.resize(room);
+  level.reaches.resize(room);
+  level.slot.resize(room);
   for (std::size_t m = 0; m < level.members.size(); ++m) {
-    const Slot slot = level.members[m];
-    const auto u = static_cast<std::size_t>(slot);
-    level.sorted[static_cast<std::size_t>(next[static_cast<std::size_t>(where[m])]++)] = {
-        p.sphere[u].x, p.sphere[u].r + skin[u], slot};
+    const auto to = static_cast<std::size_t>(next[static_cast<std::size_t>(where[m])]++);
+    const std::size_t u = at(level.members[m]);
+    for (int k = 0; k < D; ++k) level.x[static_cast<std::size_t>(k)][to] = p.sphere[u].x[k];
+    level.reaches[to] = p.sphere[u].r + skin[u];
+    level.slot[to] = level.members[m];
   }
 }
 
@@ -175,23 +179,33 @@ class Search {
       shift_[static_cast<std::size_t>(image)] = cell.image_shift(image);
   }
 
-  /// Appends the partners of grain i in one class; of its own class only those with a larger slot.
+  /// Appends the partners of grain i in one class. Of its own class only those in cells that come later, or in its own
+  /// cell with a larger slot: the others find it.
   void run(const Level<D>& level, bool same_level, Slot i, std::vector<CandidatePair>& out) const {
-    const auto u = static_cast<std::size_t>(i);
+    const std::size_t u = at(i);
     const Sphere<D>& a = p_.sphere[u];
-    const double reach = a.r + skin_[u];
     const Vec<D> unit = frame_.unit(a.x);
-    std::array<Range, static_cast<std::size_t>(D)> ranges;
-    for (int k = 0; k < D; ++k) ranges[static_cast<std::size_t>(k)] = range(level, unit[k], reach + level.reach, k);
-    rows<D - 1>(level, ranges, 0, 0, [&](std::int64_t row, int image) {
-      along_row(level, ranges[0], [&](const Run& r) {
-        const int at = image + (r.wrap + 1);
-        scan(level, row, r, same_level, i, a.x - shift_[static_cast<std::size_t>(at)], reach, at, out);
-      });
-    });
+    Look look{level, i, a.x, a.r + skin_[u], {}, {}, out};
+    for (int k = 0; k < D; ++k)
+      look.ranges[static_cast<std::size_t>(k)] = range(level, unit[k], look.reach + level.reach, k);
+    if (same_level) look.own = cell_of(level, unit);
+    rows<D - 1>(look, same_level, 0, 0);
   }
 
  private:
+  using Axes = std::array<Range, static_cast<std::size_t>(D)>;
+
+  /// One grain in one class.
+  struct Look {
+    const Level<D>& level;
+    Slot i;
+    Vec<D> x;
+    double reach;
+    Axes ranges;
+    typename Level<D>::Index own;  ///< its cell, when it is of this class
+    std::vector<CandidatePair>& out;
+  };
+
   [[nodiscard]] Range range(const Level<D>& level, double unit, double reach, int axis) const {
     const auto k = static_cast<std::size_t>(axis);
     const double half = reach / frame_.width[axis] * (1.0 + 1e-12);  // rounding must not cut off a partner
@@ -202,26 +216,28 @@ class Search {
     return {place(unit - half), place(unit + half)};
   }
 
-  /// All rows along the first axis: visit(index of their first cell, image without the first axis).
-  template <int kAxis, class Visit>
-  void rows(const Level<D>& level, const std::array<Range, static_cast<std::size_t>(D)>& ranges, std::int64_t index,
-            int image, Visit&& visit) const {
+  /// All rows along the first axis. `level_with_own`: so far in the own cell along all axes, so that no cell before
+  /// counts. `index`: of the first cell, `image` without the first axis.
+  template <int kAxis>
+  void rows(const Look& look, bool level_with_own, std::int64_t index, int image) const {
+    const std::int64_t n = look.level.cells[kAxis];
+    Range range = look.ranges[kAxis];
+    if (level_with_own) range.low = look.own[kAxis];
     if constexpr (kAxis == 0) {
-      visit(index * level.cells[0], image);
+      along_row(range, n, [&](const Run& r) { scan(look, level_with_own, index * n, r, image + (r.wrap + 1)); });
     } else {
       int weight = 1;
       for (int k = 0; k < kAxis; ++k) weight *= 3;
-      const std::int64_t n = level.cells[kAxis];
-      for (std::int64_t c = ranges[kAxis].low; c <= ranges[kAxis].high; ++c) {
+      for (std::int64_t c = range.low; c <= range.high; ++c) {
         const int wrap = wrap_of(c, n);
-        rows<kAxis - 1>(level, ranges, index * n + c - wrap * n, image + (wrap + 1) * weight, visit);
+        rows<kAxis - 1>(look, level_with_own && c == look.own[kAxis], index * n + c - wrap * n,
+                        image + (wrap + 1) * weight);
       }
     }
   }
 
   template <class Visit>
-  static void along_row(const Level<D>& level, const Range& range, Visit&& visit) {
-    const std::int64_t n = level.cells[0];
+  static void along_row(const Range& range, std::int64_t n, Visit&& visit) {
     for (std::int64_t c = range.low; c <= range.high;) {
       const int wrap = wrap_of(c, n);
       const std::int64_t last = std::min(range.high, (wrap + 1) * n - 1);
@@ -230,22 +246,38 @@ class Search {
     }
   }
 
-  // NOLINTNEXTLINE(readability-function-size): what a run of cells is compared with, by value, in the hottest loop
-  void scan(const Level<D>& level, std::int64_t row, const Run& run, bool same_level, Slot i, const Vec<D>& x,
-            double reach_i, int image, std::vector<CandidatePair>& out) const {
-    const auto begin = static_cast<std::size_t>(level.start[static_cast<std::size_t>(row + run.low)]);
-    const auto end = static_cast<std::size_t>(level.start[static_cast<std::size_t>(row + run.high) + 1]);
-    for (std::size_t m = begin; m < end; ++m) {
-      const Entry<D>& b = level.sorted[m];
-      const double reach = reach_i + b.reach;
-      if (norm2(x - b.x) >= reach * reach) continue;
-      if (same_level && b.slot <= i) continue;
-      // The image belongs to the body with the larger slot.
-      if (i < b.slot)
-        out.push_back({i, b.slot, image});
-      else
-        out.push_back({b.slot, i, image_count<D>() - 1 - image});
+  /// A run of cells, in the own row from the own cell on.
+  void scan(const Look& look, bool own_row, std::int64_t row, const Run& run, int image) const {
+    const auto& start = look.level.start;
+    const auto first = static_cast<std::size_t>(row + run.low);
+    auto begin = static_cast<std::size_t>(start[first]);
+    const auto end = static_cast<std::size_t>(start[static_cast<std::size_t>(row + run.high) + 1]);
+    if (own_row && run.wrap == 0)
+      while (begin < static_cast<std::size_t>(start[first + 1]) && look.level.slot[begin] <= look.i) ++begin;
+    const Vec<D> x = look.x - shift_[static_cast<std::size_t>(image)];
+    for (std::size_t m = begin; m < end; m += kLanes) {
+      unsigned near = within_reach(look.level, m, x, look.reach) & ((1U << std::min(end - m, kLanes)) - 1U);
+      for (; near != 0; near &= near - 1) note(look, look.level.slot[m + std::countr_zero(near)], image);
     }
+  }
+
+  /// One bit for each of the grains from m on that is within reach.
+  static unsigned within_reach(const Level<D>& level, std::size_t m, const Vec<D>& x, double reach) {
+    Quad distance2{};
+    for (int k = 0; k < D; ++k) {
+      const Quad d = x[k] - load_unaligned(level.x[static_cast<std::size_t>(k)].data() + m);
+      distance2 += d * d;
+    }
+    const Quad both = reach + load_unaligned(level.reaches.data() + m);
+    return static_cast<unsigned>(sign_bits(distance2 < both * both));
+  }
+
+  /// The image belongs to the body with the larger slot.
+  static void note(const Look& look, Slot other, int image) {
+    if (look.i < other)
+      look.out.push_back({look.i, other, image});
+    else
+      look.out.push_back({other, look.i, image_count<D>() - 1 - image});
   }
 
   const Particles<D>& p_;
