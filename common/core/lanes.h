@@ -2,9 +2,13 @@
 // give a mask, bool for one number, and both sides of a choice are worked out.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
+#include <array>
 #include <cmath>
+#include <experimental/simd>
 #include <type_traits>
 #include <utility>
+
+#include "common/core/lane_power.h"
 
 namespace softgrain {
 
@@ -73,8 +77,13 @@ template <class T>
 T power(const T& x, const std::type_identity_t<T>& y) {
   if constexpr (std::is_same_v<Mask<T>, bool>)
     return std::pow(x, y);
-  else
-    return T([&](auto lane) { return std::pow(static_cast<double>(x[lane]), static_cast<double>(y[lane])); });
+  else {
+    alignas(64) std::array<double, T::size()> base, exponent;
+    x.copy_to(base.data(), std::experimental::element_aligned);
+    y.copy_to(exponent.data(), std::experimental::element_aligned);
+    powers_of(base.data(), exponent.data(), base.data(), T::size());
+    return T(base.data(), std::experimental::element_aligned);
+  }
 }
 
 }  // namespace softgrain

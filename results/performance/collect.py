@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""README.md and floor.svg of this folder from what was measured: python3 results/performance/collect.py DIRECTORY
+"""README.md, floor.svg and growth.svg of this folder from what was measured: python3 results/performance/collect.py DIRECTORY
 
 DIRECTORY holds what text.md says how to make, each left out with a word when it is not there:
   loop.json     bench_softgrain --benchmark_filter='Contact|Bare|Roofline' --benchmark_format=json
   scaling.json  tests/bench/scaling --json
   engines.json  tests/bench/compare_engines --json
   instructions.json  the same with --callgrind, when counted in another run
+  macro.json    tests/bench/scaling --macro --json
 """
 import json
+import math
 import pathlib
 import re
 import sys
@@ -195,10 +197,30 @@ def engines(report):
                  "MB"), rows)
     out += (f"\n\n{report['rounds']} rounds, {report['steps']} steps after {report['warm_up']}, {report['clock']} time, "
             f"{report['processor']}.")
-    for scene, result in report["scenes"].items():
-        if "thread_speedup" in result:
-            out += f" {scene.replace('_', ' ')}: {result['thread_speedup']:.2f} times as fast with all threads."
     return out
+
+
+def expected(share, threads):
+    """Amdahl: how many times as fast so many threads are when that share of the work runs on one."""
+    return 1.0 / (share + (1.0 - share) / threads)
+
+
+def threads(report):
+    """The gain of a second thread, and what it says of more: all that is lost taken for work that one thread does alone."""
+    rows = []
+    for scene, result in report["scenes"].items():
+        gains, ratios = result.get("gains", {}), result.get("ratios_on_all_cores", {})
+        if "softgrain" not in gains:
+            continue
+        share = min(1.0, max(0.0, 2.0 / gains["softgrain"] - 1.0))
+        lammps = [f"{number(gains.get(f'LAMMPS {law}'), 2)}" for law in ("classic", "granular")]
+        against = [f"{number(next((r for name, r in ratios.items() if name.startswith(f'LAMMPS {law}')), None), 2)}"
+                   for law in ("classic", "granular")]
+        rows.append((scene.replace("_", " "), number(gains["softgrain"], 2), *lammps, *against, f"{100 * share:.0f} %",
+                     number(expected(share, 8)), number(expected(share, 64))))
+    head = ("scene", "second thread", "second rank, classic", "granular", "time of LAMMPS classic over ours, all on two cores", "granular",
+            "lost, as serial share", "8 threads at least", "64 threads at least")
+    return table(head, rows) if rows else None
 
 
 def instructions(report):
@@ -219,6 +241,22 @@ PROFILE = {
 def profile(_):
     return table(("phase", "full", "no friction", "neither", ""),
                  [(name, *(f"{share} %" for share in shares), words) for name, (shares, words) in PROFILE.items()])
+
+
+def growth(report):
+    """Macro scenes: passes, seconds and memory, and the exponents from each size to the next."""
+    rows, before = [], None
+    for r in report["rows"]:
+        whole = r["preparation_seconds"] + r["test_seconds"]
+        exponent = None
+        if before:
+            exponent = math.log(whole / before[1]) / math.log(r["bodies"] / before[0])
+        before = (r["bodies"], whole)
+        rows.append((f"{r['bodies']:,}", f"{r['preparation_passes']:,.0f}", f"{r['test_passes']:,.0f}",
+                     number(r["preparation_seconds"], 2), number(r["test_seconds"], 2), number(exponent, 2),
+                     number(r["memory_mb"], 0)))
+    return table(("bodies", "preparation, passes", "test, passes", "preparation [s]", "test [s]", "whole grows like N to the",
+                  "peak memory [MB]"), rows)
 
 
 COLOURS = {"sums and products": "#0072b2", "roots, divisions": "#d55e00", "gathers": "#009e73", "scatters": "#56b4e9",
@@ -267,14 +305,66 @@ def picture(loop):
             + "\n".join(out) + "\n</svg>\n")
 
 
+def curves(scaling_report, macro_report):
+    """Cost per grain or body over their number: words -> points (number, ns)."""
+    out = {}
+    for r in (scaling_report or {"rows": []})["rows"]:
+        if r["axis"] == "grains":
+            words = f"grains, whole step, {r['threads']} thread" + ("s" if r["threads"] > 1 else "")
+            out.setdefault(words, []).append((r["grains"], 1e9 * r["seconds"] / (r["grains"] * r["steps"])))
+    for r in (macro_report or {"rows": []})["rows"]:
+        for what in ("preparation", "test"):
+            words = f"macro, {what}, a pass, {r['threads']} threads"
+            out.setdefault(words, []).append((r["bodies"], 1e9 * r[f"{what}_seconds"] / (r["bodies"] * r[f"{what}_passes"])))
+    return out
+
+
+def growth_picture(of):
+    """Curves in one plot, both axes logarithmic."""
+    left, top, width, height = 70, 20, 520, 300
+    points = [point for curve in of.values() for point in curve]
+    low_x, high_x = (f(math.log10(n) for n, _ in points) for f in (min, max))
+    low_y, high_y = math.floor(min(math.log10(y) for _, y in points)), math.ceil(max(math.log10(y) for _, y in points))
+    low_x, high_x = math.floor(low_x), math.ceil(high_x)
+
+    def at(n, y):
+        return (left + width * (math.log10(n) - low_x) / (high_x - low_x),
+                top + height * (high_y - math.log10(y)) / (high_y - low_y))
+
+    out = []
+    for tick in range(low_x, high_x + 1):
+        x, _ = at(10.0 ** tick, 10.0 ** low_y)
+        out.append(f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{top + height}" stroke="#ddd"/>'
+                   f'<text x="{x:.1f}" y="{top + height + 16}" text-anchor="middle">{10 ** tick:,}</text>')
+    for tick in range(low_y, high_y + 1):
+        for digit in (1, 2, 5) if tick < high_y else (1,):
+            _, y = at(10.0 ** low_x, digit * 10.0 ** tick)
+            out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{left + width}" y2="{y:.1f}" stroke="#ddd"/>'
+                       f'<text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{digit * 10 ** tick:,}</text>')
+    for k, ((words, curve), colour) in enumerate(zip(of.items(), COLOURS.values())):
+        places = [at(*point) for point in sorted(curve)]
+        out.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in places)}" fill="none" stroke="{colour}" '
+                   'stroke-width="2"/>')
+        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>' for x, y in places]
+        out.append(f'<rect x="{left + width + 14}" y="{top + 22 * k}" width="12" height="12" fill="{colour}"/>'
+                   f'<text x="{left + width + 32}" y="{top + 11 + 22 * k}">{words}</text>')
+    out.append(f'<text x="{left + width / 2}" y="{top + height + 36}" text-anchor="middle">grains or bodies</text>')
+    out.append(f'<text x="16" y="{top + height / 2}" text-anchor="middle" transform="rotate(-90 16 {top + height / 2})">'
+               'ns per body and step or pass, on the wall</text>')
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + width + 240}" height="{top + height + 48}" '
+            'font-family="sans-serif" font-size="12">\n<title>Cost per body over the number of bodies</title>\n'
+            '<rect width="100%" height="100%" fill="#fff"/>\n' + "\n".join(out) + "\n</svg>\n")
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     directory = pathlib.Path(sys.argv[1])
     read = {key: json.loads((directory / f"{key}.json").read_text()) if (directory / f"{key}.json").exists() else None
-            for key in ("loop", "scaling", "engines", "instructions")}
+            for key in ("loop", "scaling", "engines", "instructions", "macro")}
     loop = Loop(read["loop"]) if read["loop"] else None
     makers = {**{f.__name__: (f, loop) for f in (features, others, soft, machine, lists, steps, profile)},
+              "threads": (threads, read["engines"]), "growth": (growth, read["macro"]),
               "scaling": (scaling, read["scaling"]), "engines": (engines, read["engines"]),
               "instructions": (instructions, read["instructions"] or read["engines"])}
 
@@ -286,6 +376,9 @@ def main():
     (HERE / "README.md").write_text(text)
     if loop:
         (HERE / "floor.svg").write_text(picture(loop))
+    of = curves(read["scaling"], read["macro"])
+    if of:
+        (HERE / "growth.svg").write_text(growth_picture(of))
 
 
 if __name__ == "__main__":
