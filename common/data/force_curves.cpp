@@ -9,6 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/data/force_curve_rows.h"
+#include "common/data/force_scale.h"
 
 namespace softgrain {
 
@@ -209,6 +210,17 @@ ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& 
   for (ForceCurve& s : out.samples)
     if (at.ft != CurveLayout::none) add_secant_points(s, options.secant_angle_deg);
   return out;
+}
+
+std::vector<std::string> implausible_forces(const ForceCurves& curves) {
+  std::vector<double> delta;
+  std::vector<double> force;
+  for (const ForceCurve& s : curves.samples)
+    for (const ForcePoint& p : s.normal) {
+      delta.push_back(p.delta);
+      force.push_back(p.force);
+    }
+  return implausible_forces(delta, force, curves.spec.shell_radius, curves.spec.youngs_modulus);
 }
 
 std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,

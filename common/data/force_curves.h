@@ -58,6 +58,9 @@ struct ForceCurveOptions {
 /// few points (5), kind, Rs or E not given.
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options);
 
+/// See force_scale.h; of all samples together.
+std::vector<std::string> implausible_forces(const ForceCurves& curves);
+
 /// Files of one experiment, joined by pair kind (soft-solid first). A sample is named by its file when there are
 /// several. Throws BadInput when files disagree about Rs, E, nu, mu or density.
 std::vector<ForceCurves> read_force_curve_files(const std::vector<std::string>& paths,

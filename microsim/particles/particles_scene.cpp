@@ -172,7 +172,7 @@ void require_sense(const Scene& scene, const System<D>& s, const SceneLaws& laws
 }  // namespace
 
 template <int D>
-ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
+ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional<std::uint64_t>& seed) {
   if (particles_dimension(scene) != D) throw std::logic_error("a scene of another number of dimensions");
   return scene.read([&](const SceneTable& root) {
     (void)root.choice("kind", {"particles"});
@@ -186,12 +186,13 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
     s.laws = laws.laws;
     out.law_files = std::move(laws.files);
     out.remarks = laws.remarks;
-    SceneBodies<D> bodies = read_bodies<D>(scene, s.materials);
+    SceneBodies<D> bodies = read_bodies<D>(scene, s.materials, seed);
     root.table_or_empty("cell").part([&] { s.cell = read_cell(root, bodies); });
     s.particles = std::move(bodies.particles);
     if (bodies.sizes) out.law_files += bodies.sizes->text();
     out.sizes = std::move(bodies.sizes);
     out.drawn = std::move(bodies.drawn);
+    out.seed = bodies.seed;
     out.wall_name = std::move(bodies.wall_name);
     if (root.sound()) root.check([&] { require_sense(scene, s, laws); });
     const SceneTable time = root.table("time");
@@ -203,7 +204,7 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene) {
   });
 }
 
-template ParticlesSceneOf<2> read_particles_scene<2>(const Scene&);
-template ParticlesSceneOf<3> read_particles_scene<3>(const Scene&);
+template ParticlesSceneOf<2> read_particles_scene<2>(const Scene&, const std::optional<std::uint64_t>&);
+template ParticlesSceneOf<3> read_particles_scene<3>(const Scene&, const std::optional<std::uint64_t>&);
 
 }  // namespace softgrain

@@ -31,6 +31,7 @@ struct ParticlesSceneOf {
   std::string law_files;             ///< text of the law cards and tables that it takes laws from, and of sizes
   std::optional<Grading> sizes;      ///< of particles that were drawn
   std::vector<double> drawn;         ///< their radii
+  std::uint64_t seed = 0;            ///< that they were drawn with
   std::vector<std::string> remarks;  ///< what to mind about these laws
 };
 
@@ -41,7 +42,8 @@ int particles_dimension(const Scene& scene);
 
 /// Reads and checks everything, computes the step. `D` is the dimension of the scene. Throws BadInput with file:line
 /// (also for particles that lie in a file of their own), FileTrouble for files that cannot be read.
+/// `seed`: of what is drawn, in place of that of the scene.
 template <int D = 3>
-ParticlesSceneOf<D> read_particles_scene(const Scene& scene);
+ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional<std::uint64_t>& seed = {});
 
 }  // namespace softgrain

@@ -120,11 +120,17 @@ void add_file(Builder<D>& b, const SceneTable& t) {
 }
 
 template <int D>
-void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t) {
-  if (!t.has("count") && !t.has("sizes")) return;
+void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const std::optional<std::uint64_t>& seed) {
+  if (!t.has("count") && !t.has("sizes")) {
+    const std::string nothing =
+        "nothing is drawn at random in this scene ([particles] count and sizes are); leave it out";
+    if (root.has("seed")) root.mistake("seed", nothing);
+    if (seed) throw BadInput("--seed: " + nothing);
+    return;
+  }
   const std::int32_t material = material_index(b.materials, t, "material");
   const double density = density_of(b, t, material);
-  DrawnParticles<D> drawn = read_drawn<D>(root, t, b.walls, b.grains);
+  DrawnParticles<D> drawn = read_drawn<D>(root, t, b.walls, b.grains, seed);
   for (std::size_t k = 0; k < drawn.position.size(); ++k) {
     b.grains.push_back(solid_grain(drawn.position[k], drawn.radius[k], density, material));
     b.wall_of.push_back(wall_around(b, drawn.position[k]));
@@ -132,6 +138,7 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t) {
   b.out.sizes = std::move(drawn.sizes);
   b.out.drawn = std::move(drawn.radius);
   b.out.drawn_where = t.where("count");
+  b.out.seed = drawn.seed;
 }
 
 template <int D>
@@ -229,11 +236,11 @@ void place_all(Builder<D>& b) {
 }
 
 template <int D>
-void read_grains(Builder<D>& b, const SceneTable& root) {
+void read_grains(Builder<D>& b, const SceneTable& root, const std::optional<std::uint64_t>& seed) {
   for (const SceneTable& t : root.tables("particle")) t.part([&] { add_table(b, t); });
   const SceneTable many = root.table_or_empty("particles");
   many.part([&] { add_file(b, many); });
-  many.part([&] { add_drawn(b, root, many); });
+  many.part([&] { add_drawn(b, root, many, seed); });
   if (root.sound()) root.check([&] { place_all(b); });
 }
 
@@ -247,16 +254,17 @@ std::string SceneBodies<D>::where_of(Slot particle) const {
 }
 
 template <int D>
-SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials) {
+SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials,
+                           const std::optional<std::uint64_t>& seed) {
   const SceneTable root = scene.root();
   Builder<D> b{scene, materials, read_walls<D>(root, materials), root.sound(), {}, {}, {}};
-  read_grains(b, root);
+  read_grains(b, root, seed);
   return std::move(b.out);
 }
 
 template struct SceneBodies<2>;
 template struct SceneBodies<3>;
-template SceneBodies<2> read_bodies<2>(const Scene&, const std::vector<Material>&);
-template SceneBodies<3> read_bodies<3>(const Scene&, const std::vector<Material>&);
+template SceneBodies<2> read_bodies<2>(const Scene&, const std::vector<Material>&, const std::optional<std::uint64_t>&);
+template SceneBodies<3> read_bodies<3>(const Scene&, const std::vector<Material>&, const std::optional<std::uint64_t>&);
 
 }  // namespace softgrain

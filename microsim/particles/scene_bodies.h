@@ -25,14 +25,17 @@ struct SceneBodies {
   std::optional<Grading> sizes;    ///< of the particles that were drawn, which have no table of their own either
   std::vector<double> drawn;       ///< their radii
   std::string drawn_where;         ///< "file:line" of their table
+  std::uint64_t seed = 0;          ///< that they were drawn with
 
   /// "file:line" of a particle, for messages.
   [[nodiscard]] std::string where_of(Slot particle) const;
 };
 
 /// [[particle]], [particles] and [[wall]]. Throws BadInput: no particle, coincident centres, a particle without
-/// density, one that does not fit into its sphere, more than there is memory for.
+/// density, one that does not fit into its sphere, more than there is memory for; a seed, of the scene or of the
+/// command line (`seed`), where nothing is drawn.
 template <int D>
-SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials);
+SceneBodies<D> read_bodies(const Scene& scene, const std::vector<Material>& materials,
+                           const std::optional<std::uint64_t>& seed);
 
 }  // namespace softgrain

@@ -179,32 +179,39 @@ void place(const SceneTable& t, const Region<D>& region, const std::vector<Scene
   }
 }
 
+/// At the top level, as in scenes of all kinds, or in the table.
+std::uint64_t read_seed(const SceneTable& root, const SceneTable& t) {
+  constexpr std::int64_t kMost = 1'000'000'000'000;
+  if (root.has("seed") && t.has("seed")) t.mistake("seed", "is given at the top level too: leave one of them out");
+  return static_cast<std::uint64_t>(root.count("seed", 0, kMost, t.count("seed", 0, kMost, 1)));
+}
+
 }  // namespace
 
 template <int D>
 DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
-                             const std::vector<NewBody<D>>& others) {
+                             const std::vector<NewBody<D>>& others, const std::optional<std::uint64_t>& seed) {
   DrawnParticles<D> out;
   const std::int64_t count = t.count("count", 1, 10000000);
-  const auto seed = static_cast<std::uint64_t>(t.count("seed", 0, 1000000000000, 1));
+  out.seed = seed.value_or(read_seed(root, t));
   if (!t.has("sizes")) (void)t.table("sizes");  // says that it is missing
   out.sizes = read_sizes(t, "sizes", {}, D);
   const Region<D> region = read_region<D>(root, t);
   if (!out.sizes || !t.sound() || !root.sound()) return out;
   if (const std::string problem = memory_problem(count, available_memory()); !problem.empty())
     t.reject("count", problem);
-  RandomStream radii(seed, kParticleRadii, 0);
+  RandomStream radii(out.seed, kParticleRadii, 0);
   out.radius = out.sizes->draw(static_cast<std::size_t>(count), radii);
   std::reverse(out.radius.begin(), out.radius.end());
   require_room<D>(t, region, out.radius);
-  RandomStream places(seed, kParticlePlaces, 0);
+  RandomStream places(out.seed, kParticlePlaces, 0);
   place(t, region, walls, others, places, out);
   return out;
 }
 
 template DrawnParticles<2> read_drawn<2>(const SceneTable&, const SceneTable&, const std::vector<SceneWall<2>>&,
-                                         const std::vector<NewBody<2>>&);
+                                         const std::vector<NewBody<2>>&, const std::optional<std::uint64_t>&);
 template DrawnParticles<3> read_drawn<3>(const SceneTable&, const SceneTable&, const std::vector<SceneWall<3>>&,
-                                         const std::vector<NewBody<3>>&);
+                                         const std::vector<NewBody<3>>&, const std::optional<std::uint64_t>&);
 
 }  // namespace softgrain

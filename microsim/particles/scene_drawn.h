@@ -1,6 +1,7 @@
 // Particles of a scene that are drawn by a distribution of sizes and placed at random.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,13 +16,15 @@ struct DrawnParticles {
   std::vector<Vec<D>> position;
   std::vector<double> radius;  ///< largest first
   std::optional<Grading> sizes;
+  std::uint64_t seed = 1;  ///< they were drawn with
 };
 
-/// `count`, `sizes`, `seed`, `low` and `high` (corners of the box of places; without them [cell], whose periodic axes
-/// are closed) of the table `t` = [particles]: largest first at random places, without overlap with each other, with
-/// `others` or with walls. Throws BadInput when one finds none.
+/// `count`, `sizes`, `seed` (or that of the root; `seed` of the command line goes first), `low` and `high` (corners of
+/// the box of places; without them [cell], whose periodic axes are closed) of the table `t` = [particles]: largest
+/// first at random places, without overlap with each other, with `others` or with walls. Throws BadInput when one finds
+/// none.
 template <int D>
 DrawnParticles<D> read_drawn(const SceneTable& root, const SceneTable& t, const std::vector<SceneWall<D>>& walls,
-                             const std::vector<NewBody<D>>& others);
+                             const std::vector<NewBody<D>>& others, const std::optional<std::uint64_t>& seed);
 
 }  // namespace softgrain

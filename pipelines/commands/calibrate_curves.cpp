@@ -184,6 +184,9 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   ExperimentSummary summary;
   std::vector<std::string>& remarks = summary.head.remarks;
   remarks = fit.remarks;
+  for (const ForceCurves& kind : curves)
+    for (const std::string& one : implausible_forces(kind))
+      remarks.insert(remarks.begin(), to_string(kind.kind) + ": " + one);
   add_missing_kind(fit, remarks);
   std::string people;
   for (const FitReport& r : fit.reports) {

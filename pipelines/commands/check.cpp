@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "common/io/text_file.h"
 #include "pipelines/commands/result_check.h"
+#include "pipelines/commands/table_check.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/run/run_context.h"
@@ -34,6 +35,8 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
     check_data(path, out);
   else if (form == FileForm::json)
     check_summary(path, out);
+  else if (form && form != FileForm::toml)
+    check_table(path, out);
   else if (holds_laws(path))
     check_laws(path, out);
   else

@@ -27,6 +27,7 @@ namespace {
 
 constexpr int kMostThreads = 4096;
 constexpr std::int64_t kMostRanks = 1'000'000;
+constexpr int kMostCompared = 100;
 
 struct Command {
   const char* name;
@@ -39,7 +40,7 @@ struct Command {
   ExitStatus (*function)(const CommonOptions&);
 };
 
-constexpr std::array<Command, 8> kCommands{{
+constexpr std::array<Command, 9> kCommands{{
     {"run", "End to end: pack, measure, fit, macro, resolved twin, compare, report", "PIPELINE.toml", "pipeline to run",
      1, 1, true, command_run},
     {"microsim",
@@ -50,8 +51,11 @@ constexpr std::array<Command, 8> kCommands{{
      "files of measurements: .h5 of this program, or .csv of an experiment", 1, 1000, false, command_calibrate},
     {"macrosim", "One macro scene with soft particles that act by a fitted law", "SCENE.toml", "scene to run", 1, 1,
      true, command_macrosim},
-    {"compare", "Error norms and cost of two runs: A against the reference B", "RUN",
-     "two run directories or result files, A and B; one: what a run holds within itself", 1, 2, false, command_compare},
+    {"sweep", "One scene over values of its keys and over seeds, each run in a directory of its own; a table and plots",
+     "SCENE.toml", "scene to run", 1, 1, true, command_sweep},
+    {"compare", "What differs between runs, their numbers, error norms and cost: A, B, ... against the last one", "RUN",
+     "run directories or result files, the reference last; one: what a run holds within itself", 1, kMostCompared,
+     false, command_compare},
     {"report", "Writes a self-contained report.html of a run directory", "DIR", "run directory", 1, 1, false,
      command_report},
     {"check", "Validates a scene, card, result or run directory and says what follows from it, without running", "FILE",
@@ -113,11 +117,27 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
       ->check(CLI::Range(0.0, 1e9).description(""));
   app.add_flag("--quiet", o.quiet, "No log and no progress on standard error");
   app.add_flag("--json", o.json, "Summary as one JSON object on standard output");
-  if (command.function == command_run)
+  const bool sweeps = command.function == command_sweep;
+  const bool runs_scenes = sweeps || command.function == command_run || command.function == command_microsim ||
+                           command.function == command_macrosim;
+  if (sweeps)
+    app.add_option("--over", o.over,
+                   "Runs the scene with each of these values of a key: --over macro.bodies=20,40 or =1..8 (repeatable: "
+                   "every choice of all)")
+        ->option_text("KEY=A,B,C")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+  if (runs_scenes)
+    app.add_option("--seeds", o.seeds,
+                   "Runs the scene once with each of these seeds, in directories below DIR, and says mean, spread and "
+                   "standard error")
+        ->option_text("1..8");
+  if (sweeps || command.function == command_run)
     app.add_option("--law-cache", o.law_cache,
                    "Keeps finished measurements of law tables here and takes from here what is known already")
         ->option_text("DIR");
-  if (command.function == command_run || command.function == command_macrosim) {
+  if (runs_scenes && command.function != command_microsim) {
     app.add_option("--packing-cache", o.packing_cache,
                    "Keeps prepared packings of macro scenes here and takes from here what is known already")
         ->option_text("DIR");
@@ -129,7 +149,7 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
   }
   if (command.function == command_compare)
     app.add_flag("--different", o.different,
-                 "Compares runs that differ in bodies, materials, tests or packings too, and lists in what");
+                 "Error norms also of runs that differ in bodies, materials, tests or packings");
   if (command.function == command_export)
     app.add_option("--to", o.to, "Form of the files: vtp, lammps-dump or csv")->option_text("FORM");
   if (command.function == command_run || command.function == command_microsim || command.function == command_macrosim)
@@ -143,17 +163,18 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
     app.add_option("--modulus", o.modulus, "CSV: Young's modulus E of its grains, e.g. \"0.5 MPa\"")
         ->option_text("PRESSURE");
   }
-  if (command.function == command_run || command.function == command_macrosim) {
+  if (runs_scenes && command.function != command_microsim) {
     app.add_option("--engine", o.engine,
-                   command.function == command_run ? "What runs a material: softgrain (default) or lammps"
-                                                   : "What runs the scene with the law: softgrain (default) or lammps")
+                   command.function != command_macrosim
+                       ? "What runs a material: softgrain (default) or lammps"
+                       : "What runs the scene with the law: softgrain (default) or lammps")
         ->option_text("NAME");
     app.add_option("--ranks", o.ranks, "With --engine lammps: MPI ranks; default 1")
         ->option_text("N")
         ->transform(whole_number("--ranks", 1, kMostRanks));
-    app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
+    if (!sweeps) app.add_flag("--write-only", o.write_only, "With --engine lammps: writes its input files and stops");
   }
-  if (command.function == command_macrosim || command.function == command_check) {
+  if (sweeps || command.function == command_macrosim || command.function == command_check) {
     app.add_option("--bands", o.bands, "Error bars from so many draws of the law; default as the scene says (none)")
         ->check(CLI::Range(8, 100000));
     app.add_option("--law", o.law, "Law card or law table of the soft particles; default that of the scene")
@@ -235,6 +256,8 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   if (!options.out.empty()) require_writable_directory(options.out);
   for (const std::string& cache : {options.law_cache, options.packing_cache, options.twin_cache})
     if (!cache.empty()) require_writable_directory(cache);
+  if (!observables.empty() && !options.seeds.empty())
+    throw BadInput("--observables: goes with one run, not with --seeds");
   if (chosen->saves) install_interrupt_handler();
   const ExitStatus status = run_or_leave_nothing(*chosen, options, out);
   if (!observables.empty()) write_observables(options.out, options.overrides, observables);

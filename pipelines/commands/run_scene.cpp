@@ -7,6 +7,7 @@
 #include "common/core/error.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
+#include "pipelines/runs/run_set.h"
 
 namespace softgrain {
 
@@ -42,6 +43,10 @@ ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
                     "go with {}",
                     command, kind.name, kinds_with_engine()));
   mind_cores(options);
+  if (!options.seeds.empty()) {
+    if (options.seed_given) throw BadInput("--seeds: goes without --seed");
+    return run_set(options, make_plan({}, options.seeds, options.overrides), command, "seeds");
+  }
   return kind.run(scene, options);
 }
 

@@ -238,12 +238,12 @@ json to_json(const CompareResult& result) {
 
 std::string to_text(const CompareResult& result) {
   std::string out;
+  for (const std::string& difference : result.differences) out += "differs: " + difference + "\n";
   for (const auto& part : result.macro) out += text_of(part);
   for (const auto& part : result.relaxations) out += text_of(part);
   for (const auto& part : result.measurements) out += text_of(part);
   for (const auto& part : result.laws) out += text_of(part);
   for (const std::string& one : result.undefined) out += "undefined: " + one + "\n";
-  for (const std::string& difference : result.differences) out += "differs: " + difference + "\n";
   for (const std::string& remark : result.remarks) out += "not compared: " + remark + "\n";
   return out;
 }

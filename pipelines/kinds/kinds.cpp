@@ -50,7 +50,10 @@ std::span<const SceneKind> scene_kinds() {
 const std::vector<KindResults>& results_of_kinds() {
   static const std::vector<KindResults> results = [] {
     std::vector<KindResults> all;
-    for (const SceneKind& kind : scene_kinds()) all.push_back(kind.results);
+    for (const SceneKind& kind : scene_kinds()) {
+      all.push_back(kind.results);
+      all.back().kind = kind.name;
+    }
     return all;
   }();
   return results;

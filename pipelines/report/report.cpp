@@ -18,10 +18,10 @@ using namespace report;
 
 /// Those of no kind in particular, and those of every kind, in the order of their places.
 std::string sections_of(const RunData& run) {
-  std::vector<ReportSection> sections{{Place::own_data, own_data_section},    {Place::laws, laws_section},
-                                      {Place::packing, packing_section},      {Place::radii, radii_section},
-                                      {Place::radii, sizes_section},          {Place::cost, cost_section},
-                                      {Place::provenance, provenance_section}};
+  std::vector<ReportSection> sections{
+      {Place::runs, runs_section},       {Place::own_data, own_data_section}, {Place::laws, laws_section},
+      {Place::packing, packing_section}, {Place::radii, radii_section},       {Place::radii, sizes_section},
+      {Place::radii, grading_section},   {Place::cost, cost_section},         {Place::provenance, provenance_section}};
   for (const KindResults& kind : results_of_kinds())
     sections.insert(sections.end(), kind.sections.begin(), kind.sections.end());
   std::stable_sort(sections.begin(), sections.end(),
@@ -36,7 +36,7 @@ std::string sections_of(const RunData& run) {
 void write_report(const std::string& run_directory) {
   const RunData run = load_run(run_directory);
   std::string body = sections_of(run);
-  body = heading_section(run) + contents(body) + remarks_section(run) + body;
+  body = heading_section(run) + contents(body) + remarks_section(run) + body + next_section(run);
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
   std::filesystem::create_directories(run_directory + "/figures");
   for (const Figure& figure : figures_of(body))

@@ -45,11 +45,11 @@ std::string verdict(const AnySummary& summary) {
 }
 
 /// Command, seed, threads, time.
-std::string run_line(const AnySummary& summary) {
+std::string run_line(const RunData& run, const AnySummary& summary) {
   std::string out;
   const auto add = [&](const std::string& text) { out += (out.empty() ? "" : ", ") + text; };
   if (const auto& p = summary.provenance) {
-    add(fmt::format("seed {}", p->seed));
+    if (!is_set(run)) add(fmt::format("seed {}", p->seed));
     add(p->threads == 1 ? "one thread" : fmt::format("{} threads", p->threads));
   }
   if (summary.seconds) add(format_seconds(*summary.seconds));
@@ -70,10 +70,12 @@ std::string material_line(const RunData& run) {
 
 /// What came out, a few lines whatever the kind of run.
 std::vector<HeadLine> result_lines(const RunData& run) {
-  std::vector<HeadLine> lines;
+  std::vector<HeadLine> lines = set_lines(run);
   for (const KindResults& kind : results_of_kinds())
     if (kind.lines != nullptr)
       for (HeadLine& line : kind.lines(run)) lines.push_back(std::move(line));
+  for (const auto more : {law_lines, material_lines})
+    for (HeadLine& line : more(run)) lines.push_back(std::move(line));
   std::erase_if(lines, [](const HeadLine& line) { return line.second.empty(); });
   return lines;
 }
@@ -94,7 +96,7 @@ std::string list_of(const std::vector<HeadLine>& lines) {
 
 std::string heading_section(const RunData& run) {
   const auto summary = run.summary_as<AnySummary>();
-  std::string what = run_line(summary);
+  std::string what = run_line(run, summary);
   if (run.measurements || run.card) {
     const std::string material = material_line(run);
     what = material + (what.empty() ? "." : "; " + what);

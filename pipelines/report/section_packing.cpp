@@ -13,7 +13,7 @@ namespace {
 
 /// What the arrays of all states may take of the page [byte], and how many states a series may have.
 constexpr std::size_t kBudget = 5'000'000;
-constexpr std::size_t kStates = 6;
+constexpr std::size_t kStates = 24;
 
 /// Debian's package libjs-three; other systems may put the same file there.
 constexpr const char* kThree = "/usr/share/javascript/three/three.min.js";
@@ -33,6 +33,7 @@ std::optional<std::string> three_js() {
 }  // namespace
 
 std::string packing_section(const RunData& run) {
+  if (is_set(run)) return "";  // those of the runs are in their own reports
   std::vector<PackingSeries> series = packing_series_of(run.directory, kStates);
   std::erase_if(series, [](const PackingSeries& s) { return s.kind == SnapshotKind::powder; });  // has its own pictures
   if (series.empty()) return "";
@@ -48,7 +49,8 @@ std::string packing_section(const RunData& run) {
       "WebGL.</p></div>\n<figcaption>" +
       escape(
           "Drag to turn, wheel or two fingers to zoom, right button or shift to move; a click on a grain shows what it "
-          "carries. Tubes of force chains are as wide as the normal force; red pushes, green pulls.") +
+          "carries. Several recorded states: the slider goes to one, play through all. Tubes of force chains are as "
+          "wide as the normal force; red pushes, green pulls.") +
       "</figcaption></figure>\n";
   for (const std::string& sentence : left_out) body += paragraph(sentence);
   body += "<script type=\"application/json\" id=\"packing-data\">" + packing_json(series) + "</script>\n" + *three;

@@ -4,16 +4,24 @@
 #include <string>
 
 #include "pipelines/report/run_data.h"
+#include "pipelines/results/kind_results.h"
 
 namespace softgrain::report {
 
-std::string heading_section(const RunData& run);     ///< what was run and what came out
-std::string remarks_section(const RunData& run);     ///< what to be careful with
-std::string laws_section(const RunData& run);        ///< parameters, errors, intervals, units
-std::string own_data_section(const RunData& run);    ///< curves of an experiment and the law fitted to them
-std::string packing_section(const RunData& run);     ///< the packing in 3D, from the states that the run kept
-std::string radii_section(const RunData& run);       ///< size distribution of the packed grains
-std::string sizes_section(const RunData& run);       ///< passing over size, asked and obtained
+bool is_set(const RunData& run);                           ///< whether it is several runs side by side
+std::string runs_section(const RunData& run);              ///< several runs side by side, where the summary is of a set
+std::vector<HeadLine> set_lines(const RunData& run);       ///< of the head, of a set
+std::vector<HeadLine> law_lines(const RunData& run);       ///< of the head: form, solid fraction, material, hash
+std::vector<HeadLine> material_lines(const RunData& run);  ///< of the head
+std::string next_section(const RunData& run);              ///< what to do next, in two lines
+std::string heading_section(const RunData& run);           ///< what was run and what came out
+std::string remarks_section(const RunData& run);           ///< what to be careful with
+std::string laws_section(const RunData& run);              ///< parameters, errors, intervals, units
+std::string own_data_section(const RunData& run);          ///< curves of an experiment and the law fitted to them
+std::string packing_section(const RunData& run);           ///< the packing in 3D, from the states that the run kept
+std::string radii_section(const RunData& run);             ///< size distribution of the packed grains
+std::string sizes_section(const RunData& run);             ///< passing over size, asked and obtained
+std::string grading_section(const RunData& run);     ///< passing over size of all grains, where no sizes were asked for
 std::string cost_section(const RunData& run);        ///< passes, contact evaluations, seconds, speed-ups
 std::string provenance_section(const RunData& run);  ///< version, seeds, command, scene
 

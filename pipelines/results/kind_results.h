@@ -8,6 +8,7 @@
 
 #include "common/data/snapshot.h"
 #include "common/io/hdf5_file.h"
+#include "pipelines/results/run_values.h"
 
 namespace softgrain {
 
@@ -38,6 +39,7 @@ struct ResultFile {
 
 /// Places of the sections in a report.
 enum class Place {
+  runs,
   own_data,
   search,
   crowds,
@@ -69,11 +71,20 @@ struct ReportSection {
 /// Label and text of a line at the head of the report.
 using HeadLine = std::pair<std::string, std::string>;
 
+/// Two sentences on what to do next, with commands in backquotes; empty where the run is not of the kind.
+using NextSteps = std::vector<std::string>;
+
 struct KindResults {
   std::vector<ResultFile> files{};
   std::vector<ReportSection> sections{};
   /// What came out, a few lines; null: nothing is said.
   std::vector<HeadLine> (*lines)(const report::RunData& run) = nullptr;
+  /// By which it is set beside others, those that matter most first; null: by nothing.
+  std::vector<RunValue> (*values)(const report::RunData& run) = nullptr;
+  std::vector<RunCurve> (*curves)(const report::RunData& run) = nullptr;
+  /// For the end of the report of a run of this kind; `run`: its directory.
+  NextSteps (*next)(const report::RunData& run) = nullptr;
+  const char* kind = "";  ///< as the key `kind` of scenes names it
 };
 
 /// Those of every kind; see kinds/kinds.cpp.

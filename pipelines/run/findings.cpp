@@ -31,6 +31,12 @@ void Findings::warn(const std::string& text) {
   if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(text);
 }
 
+void Findings::warn_of_metres(const std::string& key, double radius) {
+  constexpr double kBoulder = 1.0;
+  if (radius > kBoulder)
+    warn(fmt::format("{} is {:g} m: numbers without a unit are metres; was \"{:g} mm\" meant?", key, radius, radius));
+}
+
 void Findings::spend(const std::string& part, double core_seconds) {
   const auto known = std::find_if(times_.begin(), times_.end(), [&](const auto& t) { return t.first == part; });
   if (known == times_.end())

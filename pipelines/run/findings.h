@@ -19,6 +19,8 @@ class Findings {
   void add_once(const std::string& key, const nlohmann::json& value, const std::string& line);
   /// Nothing is wrong, but it may not be what was meant. Said once.
   void warn(const std::string& text);
+  /// Where a radius [m] is so large that its unit was probably forgotten; `key`: what it is called.
+  void warn_of_metres(const std::string& key, double radius);
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// Adds to the time that the run will take [s of one core] what a part of it ("measuring", "twins") takes.
   void spend(const std::string& part, double core_seconds);

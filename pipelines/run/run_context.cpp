@@ -46,6 +46,12 @@ nlohmann::json read_object(const std::string& file) {
   return object.is_object() ? object : nlohmann::json::object();
 }
 
+/// Whether a summary is that of a run that came to its end, usable or not.
+bool has_ended(const nlohmann::json& summary) {
+  const auto status = from_word<RunStatus>(summary.value("status", ""));
+  return status == RunStatus::good || status == RunStatus::not_usable;
+}
+
 /// What the run in a directory is of; where its own file does not say it, the summary of a run that has ended does.
 nlohmann::json earlier_run(const std::string& run_file, const std::string& summary_file) {
   const nlohmann::json run = read_object(run_file);
@@ -82,6 +88,7 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
   }
   omp_set_num_threads(threads_);
   const Provenance build = build_provenance();
+  shows_ = !options_.member;
   logger_->sinks().front()->log(
       {"softgrain", spdlog::level::info,
        fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
@@ -91,20 +98,22 @@ RunContext RunContext::part(const std::string& name) const {
   CommonOptions options = options_;
   options.out = path(name);
   RunContext out(options, command_, name);
+  out.part_ = true;
   out.shows_ = false;
   return out;
 }
 
 void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const {
   const nlohmann::json now{{"scene", scene.text()}, {"seed", seed}, {"beside", short_hash(beside)}};
-  if (shows_ && resume()) {
+  if (!part_ && resume()) {
     const nlohmann::json before = earlier_run(path(kRunFile), path("summary.json"));
     for (const auto& [key, what] : {std::pair{"scene", "text"}, {"seed", "seed"}, {"beside", "law"}})
       if (before.contains(key) && before[key] != now[key])
-        throw BadInput(
+        throw OtherRun(
             fmt::format("{}: belongs to another scene (its {} is another); run without --resume to start anew, or "
                         "choose another --out",
                         directory_, what));
+    if (options_.member && has_ended(read_object(path("summary.json")))) throw HasEnded();
   }
   write_text_atomic(path(kRunFile), now.dump(2) + "\n");
 }

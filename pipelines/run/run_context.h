@@ -44,8 +44,20 @@ struct CommonOptions {
   std::string packing_cache;                       ///< --packing-cache DIR; empty: nothing is kept between runs
   std::string twin_cache;                          ///< --twin-cache DIR; empty: nothing is kept between runs
   bool different = false;                          ///< --different (compare)
-  std::string to;                                  ///< --to vtp, lammps-dump or csv (export)
-  std::string command_line;                        ///< as given, for provenance
+  std::vector<std::string> over;                   ///< --over key=a,b,c (sweep)
+  std::string seeds;                               ///< --seeds 1..8 (run, microsim, macrosim, sweep); empty: one run
+  /// One of several runs: its summary goes to its file alone, and where it has ended --resume says HasEnded.
+  bool member = false;
+  std::string to;            ///< --to vtp, lammps-dump or csv (export)
+  std::string command_line;  ///< as given, for provenance
+};
+
+/// Thrown where a run that is one of several is found to have ended: its results are those that it would make again.
+struct HasEnded {};
+
+/// A directory of another run than the one that --resume asks to go on with.
+struct OtherRun : BadInput {
+  using BadInput::BadInput;
 };
 
 /// results/NAME, or results/NAME_run where results/NAME is a folder with a page that is kept (README.md): a run does
@@ -65,7 +77,7 @@ class RunContext {
 
   /// Says what the run is of, once, before anything is written: scene, seed and what else determines it (`beside`, the
   /// text of a law file, say). A run that goes on must be the same one, whether it was interrupted or had ended. Throws
-  /// BadInput.
+  /// OtherRun; HasEnded (CommonOptions::member).
   void begin(const Scene& scene, std::uint64_t seed, const std::string& beside) const;
 
   /// A part of this run in a directory of its own below, with its own log and summary, which goes to the file alone.
@@ -110,7 +122,8 @@ class RunContext {
   std::string directory_;
   std::shared_ptr<DirectoryLock> lock_;
   int threads_ = 1;
-  bool shows_ = true;  ///< the summary on standard output; not of a part
+  bool part_ = false;  ///< of another run
+  bool shows_ = true;  ///< the summary on standard output; not of a part, nor of one of several runs
   std::shared_ptr<spdlog::logger> logger_;
 };
 
@@ -119,6 +132,7 @@ ExitStatus command_run(const CommonOptions& options);
 ExitStatus command_microsim(const CommonOptions& options);
 ExitStatus command_calibrate(const CommonOptions& options);
 ExitStatus command_macrosim(const CommonOptions& options);
+ExitStatus command_sweep(const CommonOptions& options);
 ExitStatus command_compare(const CommonOptions& options);
 ExitStatus command_report(const CommonOptions& options);
 ExitStatus command_check(const CommonOptions& options);

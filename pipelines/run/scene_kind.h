@@ -20,6 +20,8 @@ struct SceneKind {
   /// Reads the scene to its last key, but no file that it names (a law, states): what a reader makes of any text.
   /// Throws BadInput.
   void (*read)(const Scene& scene) = nullptr;
+  /// Throws all that run() refuses before it begins, files that the scene names included; null: as `read`.
+  void (*refuse)(const Scene& scene, const CommonOptions& options) = nullptr;
   KindResults results{};
   bool takes_law = false;     ///< whether --law goes with it
   bool takes_engine = false;  ///< whether --engine and what belongs to it do

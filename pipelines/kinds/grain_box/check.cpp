@@ -73,6 +73,7 @@ class PackTrials {
 };
 
 void warn_of_pack(const GrainBoxSpec& spec, const GrainBoxForecast& f, Findings& out) {
+  out.warn_of_metres("radius_max", spec.material.radius_max);
   constexpr std::int64_t kFew = 300;
   if (spec.grains < kFew)
     out.warn(fmt::format("{}: {} grains are few: the walls hold most of them, and moduli differ between packs",

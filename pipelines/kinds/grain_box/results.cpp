@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "microsim/grain_box/record.h"
+#include "pipelines/kinds/grain_box/curves.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/run/findings.h"
@@ -33,6 +34,41 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
+/// Of the last state of the loading.
+std::vector<RunValue> values_of(const RunData& run) {
+  std::vector<RunValue> out;
+  const auto* boxes = run.file("grain_box.h5", load_grain_boxes);
+  if (boxes == nullptr) return out;
+  for (const GrainBoxResult& r : *boxes) {
+    const auto points = r.points_of(BoxPhase::loading);
+    if (points.empty()) continue;
+    const std::string of = boxes->size() > 1 ? " (" + r.spec.name + ")" : "";
+    out.push_back({"confining stress at the end" + of, "Pa", points.back()->pressure});
+    out.push_back({"coordination number at the end" + of, "", points.back()->coordination});
+    out.push_back({"sliding contacts at the end" + of, "%", 100.0 * points.back()->sliding_share});
+  }
+  return out;
+}
+
+std::vector<RunCurve> curves_of_run(const RunData& run) {
+  std::vector<RunCurve> out;
+  const auto* boxes = run.file("grain_box.h5", load_grain_boxes);
+  if (boxes == nullptr) return out;
+  for (const GrainBoxResult& r : *boxes) {
+    const Series s = over_strain(r, [](const BoxPoint& p) { return p.pressure; }, 1.0, {});
+    out.push_back({"Confining stress", "strain along the main axis [%]", "confining stress", "Pa",
+                   boxes->size() > 1 ? r.spec.name : "", s.x, s.y});
+  }
+  return out;
+}
+
+NextSteps next_of(const RunData& run) {
+  return {"Errors of K, G and sliding shares: `--set arrangements=4` makes every pack several times.",
+          "What the moduli depend on: `softgrain sweep SCENE.toml --over material.mu=0.2,0.4`; states elsewhere: "
+          "`softgrain export " +
+              run.directory + " --to vtp`."};
+}
+
 }  // namespace
 
 KindResults grain_box_results() {
@@ -41,7 +77,10 @@ KindResults grain_box_results() {
                      .check = check_grain_box_file,
                      .visit = visit_grain_boxes}},
           .sections = {{Place::grain_boxes, grain_box_section}},
-          .lines = lines_of};
+          .lines = lines_of,
+          .values = values_of,
+          .curves = curves_of_run,
+          .next = next_of};
 }
 
 }  // namespace softgrain

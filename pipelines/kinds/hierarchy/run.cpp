@@ -208,6 +208,23 @@ std::vector<HeadLine> lines_of(const report::RunData& run) {
   return {{"Levels", levels->text}};
 }
 
+std::vector<RunValue> values_of(const report::RunData& run) {
+  std::vector<RunValue> out;
+  for (const LevelSummary& level : run.summary_as<HierarchySummary>().levels)
+    if (level.distance_percent)
+      out.push_back(
+          {fmt::format("law of level {}, away from the one below", level.level), "%", *level.distance_percent});
+  return out;
+}
+
+NextSteps next_of(const report::RunData& run) {
+  return {"Take the law of the last level in a scene: `softgrain macrosim SCENE.toml --law " + run.directory +
+              "/law_table.toml`.",
+          "Whether levels differ beyond the scatter of packings: more of them (`--set crowd.packings_max=8`, "
+          "`softgrain check` "
+          "says what that takes)."};
+}
+
 }  // namespace
 
 SceneKind hierarchy_kind() {
@@ -216,7 +233,10 @@ SceneKind hierarchy_kind() {
           .run = run_hierarchy,
           .check = [](const Scene& scene, const std::string&, Findings& out) { check_hierarchy(scene, out); },
           .read = [](const Scene& scene) { (void)read_hierarchy_setup(scene); },
-          .results = {.sections = {{Place::levels, report::hierarchy_section}}, .lines = lines_of}};
+          .results = {.sections = {{Place::levels, report::hierarchy_section}},
+                      .lines = lines_of,
+                      .values = values_of,
+                      .next = next_of}};
 }
 
 }  // namespace softgrain

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "common/core/error.h"
+#include "common/data/force_scale.h"
 #include "pipelines/kinds/inverse/scene.h"
 #include "pipelines/kinds/soft_particle/cost.h"
 
@@ -47,6 +48,11 @@ void check_inverse(const Scene& scene, Findings& out) {
   out.lines +=
       fmt::format("  target: Delta from {:.4g} to {:.4g}, force up to {:.4g} N\n", setup.target.delta.front(),
                   setup.target.delta.back(), *std::max_element(setup.target.force.begin(), setup.target.force.end()));
+  const SoftParticleSpec& spec = setup.measure.spec;
+  out.warn_of_metres("shell_radius", spec.shell_radius);
+  for (const std::string& one :
+       implausible_forces(setup.target.delta, setup.target.force, spec.shell_radius, spec.youngs_modulus))
+    out.warn(one);
   for (const std::string& remark : setup.remarks) out.warn(remark);
   out.spend("runs", seconds_per_run(setup) * static_cast<double>(runs));
 }

@@ -8,6 +8,7 @@
 #include "common/core/statistics.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/inverse/summary.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/run/run.h"
 #include "pipelines/run/size_summary.h"
 
@@ -162,16 +163,34 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   return run.finish(json_of(summary), people);
 }
 
+std::vector<RunValue> values_of(const report::RunData& run) {
+  std::vector<RunValue> out;
+  const auto search = run.summary_as<InverseSummary>().inverse;
+  if (!search) return out;
+  for (const FoundParameter& p : search->parameters) out.push_back({p.name, "", p.value, p.standard_error});
+  out.push_back({"misfit of the confirmed curve", "", search->confirmed.misfit});
+  return out;
+}
+
+NextSteps next_of(const report::RunData& run) {
+  return {
+      "The law of the soft particle that was found: `softgrain calibrate " + run.directory + "/measurements.h5`.",
+      "Parameters whose interval does not close are not told by this curve: measure deeper, or fix one of them in the "
+      "scene."};
+}
+
 }  // namespace
 
 SceneKind inverse_kind() {
-  return {
-      .name = "inverse",
-      .command = "run",
-      .run = run_inverse,
-      .check = [](const Scene& scene, const std::string&, Findings& out) { check_inverse(scene, out); },
-      .read = [](const Scene& scene) { (void)read_inverse(scene); },
-      .results = {.files = {{.names = "evaluations\\.csv"}}, .sections = {{Place::search, report::inverse_section}}}};
+  return {.name = "inverse",
+          .command = "run",
+          .run = run_inverse,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_inverse(scene, out); },
+          .read = [](const Scene& scene) { (void)read_inverse(scene); },
+          .results = {.files = {{.names = "evaluations\\.csv"}},
+                      .sections = {{Place::search, report::inverse_section}},
+                      .values = values_of,
+                      .next = next_of}};
 }
 
 }  // namespace softgrain

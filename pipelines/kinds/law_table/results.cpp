@@ -46,6 +46,28 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
+std::vector<RunValue> values_of(const RunData& run) {
+  std::vector<RunValue> out;
+  if (!run.law_table) return out;
+  for (const LawTableEntry& entry : run.law_table->entries) {
+    const CrowdLaw* best = entry.find(entry.best);
+    if (best == nullptr) continue;
+    const std::string of =
+        fmt::format(" ({} law at solid fraction {:.3g})", to_string(entry.best), entry.solid_fraction);
+    out.push_back({"off where it was fitted" + of, "%", 100.0 * best->error_fitted});
+    if (std::isfinite(best->error_held_out))
+      out.push_back({"off on what was held out" + of, "%", 100.0 * best->error_held_out});
+  }
+  return out;
+}
+
+NextSteps next_of(const RunData& run) {
+  return {"Take it in a scene, with error bars: `softgrain macrosim SCENE.toml --law " + run.directory +
+              "/law_table.toml --bands 64`.",
+          "What to measure next for that scene, most per second first: `softgrain law plan " + run.directory +
+              "/law_table.toml --for SCENE.toml`."};
+}
+
 }  // namespace
 
 KindResults law_table_results() {
@@ -55,7 +77,9 @@ KindResults law_table_results() {
                     {.names = "law(_table)?\\.toml", .check = check_laws},
                     {.names = "law_table\\.h5|law_table_level_[0-9]+\\.(toml|h5)"}},
           .sections = {{Place::crowds, law_table_section}},
-          .lines = lines_of};
+          .lines = lines_of,
+          .values = values_of,
+          .next = next_of};
 }
 
 }  // namespace softgrain

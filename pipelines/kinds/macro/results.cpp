@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/core/error.h"
 #include "common/core/statistics.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/kinds/macro/values.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
 #include "pipelines/run/findings.h"
@@ -68,6 +71,46 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return {{"Macro", macro_line(run.macro)}};
 }
 
+/// What the law is off by, and what it saves, beside the shelled twin.
+void add_comparison(const std::vector<MacroCurve>& macro, std::vector<RunValue>& out) {
+  const auto laws = curves_of(macro, "law");
+  const auto twins = curves_of(macro, "shelled");
+  if (laws.empty() || twins.empty()) return;
+  try {
+    const Comparison c = compare_curves(laws, twins);
+    if (!c.undefined.empty()) return;
+    out.push_back({"stress of the law, off from the twin", "%", 100.0 * c.axial_difference.mean,
+                   100.0 * c.axial_difference.error});
+    out.push_back({"contact evaluations of the twin over those of the law", "", c.speedup_contact_evaluations});
+  } catch (const BadInput&) {  // no sample with two usable curves: said elsewhere
+  }
+}
+
+std::vector<RunValue> values_beside(const RunData& run) {
+  std::vector<RunValue> out = stress_values(by_engine(run.macro));
+  add_comparison(run.macro, out);
+  return out;
+}
+
+std::vector<RunCurve> curves_beside(const RunData& run) { return stress_curves(by_engine(run.macro)); }
+
+NextSteps next_of(const RunData& run) {
+  const bool twin = !curves_of(run.macro, "shelled").empty();
+  const bool several =
+      std::any_of(run.macro.begin(), run.macro.end(), [](const MacroCurve& c) { return c.sample > 0; });
+  return {
+      twin ? "Where law and twin differ, more of the law helps: `softgrain law plan LAW_TABLE.toml --for SCENE.toml` "
+             "says "
+             "which measurement; `--bands 64` draws what the law is not sure of."
+           : "How far the law is off: the resolved twin of the same scene (`--set macro.resolved=true`; `softgrain "
+             "check` "
+             "says what it takes), or error bars from the law itself (`--bands 64`).",
+      several
+          ? "What the result depends on: `softgrain sweep SCENE.toml --over macro.bodies=40,80,160 --seeds 1..4`."
+          : "One sample tells nothing of scatter: `softgrain macrosim SCENE.toml --seeds 1..8` gives mean, spread and "
+            "standard error."};
+}
+
 }  // namespace
 
 KindResults macro_results() {
@@ -76,7 +119,10 @@ KindResults macro_results() {
                      .check = check_macro_file},
                     {.names = "states_macro\\.h5|lammps-[0-9]+"}},
           .sections = {{Place::macro, macro_section}},
-          .lines = lines_of};
+          .lines = lines_of,
+          .values = values_beside,
+          .curves = curves_beside,
+          .next = next_of};
 }
 
 }  // namespace softgrain

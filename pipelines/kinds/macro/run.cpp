@@ -7,6 +7,7 @@
 
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/first_point.h"
 #include "pipelines/kinds/macro/lammps_stage.h"
 #include "pipelines/kinds/macro/results.h"
 #include "pipelines/kinds/macro/stage.h"
@@ -75,6 +76,8 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
   MacroRunSummary summary;
   const bool resolved = has_twin(scene.setup, Twin::shelled);
   summary.head = {usable ? RunStatus::good : RunStatus::not_usable, scene.title, macro_remarks(curves), {}};
+  if (!scene.setup.given)
+    for (const std::string& one : first_point_remarks(scene.setup.spec, curves)) summary.head.remarks.push_back(one);
   summary.law = {law, scene.law_file};
   summary.runs.macro = summary_of(curves, "law");
   if (resolved) summary.runs.resolved = summary_of(curves, "shelled");
@@ -150,18 +153,32 @@ void require_draws(const MacroScene& scene, bool lammps) {
   (void)draws_of(scene, scene_law(scene.law, scene.setup.spec, 0.0, "law"), {});
 }
 
-ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
-  MacroScene macro = read_macro_scene(scene, options.law);
+/// The scene with its law, and what runs it; all that can be refused is, before anything is made.
+struct ReadyMacro {
+  MacroScene macro;
+  std::optional<LammpsEngine> lammps;
+};
+
+ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
+  ReadyMacro ready{read_macro_scene(scene, options.law), std::nullopt};
+  MacroScene& macro = ready.macro;
   if (options.bands > 0) macro.setup.bands = options.bands;
   if (macro.law_file.empty())
     scene.root().reject(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
-  const std::optional<LammpsEngine> lammps = read_engine(options);
+  const std::optional<LammpsEngine> lammps = ready.lammps = read_engine(options);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
   require_bodies_for_ranks(lammps, macro.setup.spec.bodies);
   if (macro.law.cells && lammps) throw BadInput("--engine lammps: LAMMPS knows no cells; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
+  return ready;
+}
+
+ExitStatus run_macro_scene(const Scene& scene, const CommonOptions& options) {
+  const ReadyMacro ready = ready_macro(scene, options);
+  const MacroScene& macro = ready.macro;
+  const std::optional<LammpsEngine>& lammps = ready.lammps;
   const Run run(scene, options, "macrosim", macro.seed,
                 {macro.law.files, macro.law.text + sizes_text(macro.setup.spec)});
   const auto contents =
@@ -200,6 +217,7 @@ SceneKind macro_kind() {
           .run = run_macro_scene,
           .check = check_macro_scene,
           .read = [](const Scene& scene) { (void)read_macro_scene_alone(scene); },
+          .refuse = [](const Scene& scene, const CommonOptions& options) { (void)ready_macro(scene, options); },
           .results = macro_results(),
           .takes_law = true,
           .takes_engine = true};

@@ -320,6 +320,13 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
   spec.cells = matter;
 }
 
+/// States that are kept unless the scene says how many: enough to see the test go on, where a scene is small.
+std::int64_t states_to_see(const MacroSpec& spec) {
+  constexpr std::int64_t kSmall = 1000;  // bodies
+  constexpr std::int64_t kOfSmall = 11;
+  return spec.bodies <= kSmall ? kOfSmall : kKeptStates;
+}
+
 MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   (void)root.choice("kind", {"macro"});
   MacroScene out;
@@ -346,7 +353,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     require_known_contents(macro, out.setup, out.spec, law_file);
   }
   if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
-  out.setup.kept_states = read_kept_states(root);
+  out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));
   out.contents = root.count("contents", 1, 100000, out.contents);
   return out;
 }

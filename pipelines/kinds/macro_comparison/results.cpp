@@ -35,12 +35,33 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
+std::vector<RunValue> values_of(const RunData& run) {
+  std::vector<RunValue> out;
+  for (const ComparedCurves& scene : run.macro_scenes)
+    for (const EngineScore& s : score_engines(scene.curves))
+      if (s.shelled.axial.n > 0 && !s.twin())
+        out.push_back({fmt::format("stress off from the twin ({}, {})", scene.name, s.engine), "%",
+                       100.0 * s.shelled.axial.mean, 100.0 * s.shelled.axial.error});
+  return out;
+}
+
+NextSteps next_of(const RunData&) {
+  return {
+      "Take the law that comes closest in scenes like these: `softgrain macrosim SCENE.toml --law LAW_TABLE.toml --set "
+      "form=NAME`.",
+      "What to measure next for it: `softgrain law plan LAW_TABLE.toml --for SCENE.toml`; twins are kept for other "
+      "laws by "
+      "`--twin-cache DIR`."};
+}
+
 }  // namespace
 
 KindResults macro_comparison_results() {
   return {.files = {{.names = "comparison\\.json"}, {.names = "(macro|states_macro)_.+\\.h5", .says_so = true}},
           .sections = {{Place::macro_scenes, macro_scenes_section}},
-          .lines = lines_of};
+          .lines = lines_of,
+          .values = values_of,
+          .next = next_of};
 }
 
 }  // namespace softgrain

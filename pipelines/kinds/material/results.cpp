@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pipelines/kinds/macro/values.h"
 #include "pipelines/kinds/material/summary.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
@@ -32,6 +33,45 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
+/// Of the tests of materials; summaries of other kinds have variants too.
+std::vector<NamedCurves> tests_of(const RunData& run) {
+  std::vector<NamedCurves> out;
+  for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants) {
+    if (!v.file.starts_with("material")) continue;
+    if (const auto* curves = run.file(v.file, load_macro)) out.push_back({v.name, *curves});
+  }
+  if (out.size() == 1) out.front().name.clear();
+  return out;
+}
+
+std::vector<RunValue> values_of(const RunData& run) {
+  const std::vector<NamedCurves> tests = tests_of(run);
+  std::vector<RunValue> out;
+  if (tests.empty()) return out;
+  for (const MaterialVariantSummary& v : run.summary_as<MaterialSummary>().variants) {
+    const std::string of = tests.size() > 1 ? " (" + v.name + ")" : "";
+    const auto add = [&](const char* what, const std::optional<MeanError>& m) {
+      if (m) out.push_back({what + of, "", m->mean, m->error});
+    };
+    add("solid fraction at the start", v.solid_fraction_start);
+    add("coordination number at the start", v.coordination_start);
+  }
+  const std::vector<RunValue> stresses = stress_values(tests);
+  out.insert(out.begin(), stresses.begin(), stresses.end());
+  return out;
+}
+
+std::vector<RunCurve> curves_of_run(const RunData& run) { return stress_curves(tests_of(run)); }
+
+NextSteps next_of(const RunData&) {
+  return {
+      "How far from converged: `softgrain run SCENE.toml --seeds 1..8` for the scatter, `softgrain sweep SCENE.toml "
+      "--over "
+      "grains.count=1000,2000,4000` for the size.",
+      "A law of this matter for larger spans: `softgrain run pipelines/material_law.toml` with the same [material] and "
+      "[grains]; models beside it: `softgrain run pipelines/material_vs_models.toml`."};
+}
+
 }  // namespace
 
 std::vector<double> mean_stresses(const MacroCurve& c) {
@@ -46,7 +86,10 @@ KindResults material_results() {
                     {.names = "(material|states_material)(_.+)?\\.h5", .says_so = true},
                     {.names = "lammps-(.+-)?[0-9]+"}},
           .sections = {{Place::material, material_section}},
-          .lines = lines_of};
+          .lines = lines_of,
+          .values = values_of,
+          .curves = curves_of_run,
+          .next = next_of};
 }
 
 }  // namespace softgrain

@@ -20,12 +20,29 @@ std::vector<HeadLine> lines_of_law(const report::RunData& run) {
   return {{"Cell law", text + (law.usable ? "." : "; not usable.")}};
 }
 
+std::vector<RunValue> values_of_law(const report::RunData& run) {
+  std::vector<RunValue> out;
+  for (const LawNumber& n : run.summary_as<MaterialLawSummary>().law.numbers)
+    out.push_back({n.name + " of the cell law", "", n.estimate.value, n.estimate.standard_error});
+  return out;
+}
+
+NextSteps next_of_law(const report::RunData& run) {
+  return {"Take it in a scene with cells of fines: `softgrain macrosim SCENE.toml --law " + run.directory +
+              "/cell_law.toml`.",
+          "How good it is on mixtures that it has not seen: `softgrain run pipelines/material_vs_models.toml`, whose "
+          "variants "
+          "in `blind` the law does not know."};
+}
+
 }  // namespace
 
 KindResults material_law_results() {
   return {.files = {{.names = "cell_law\\.toml", .check = check_laws}},
           .sections = {{Place::laws, report::cell_law_section}},
-          .lines = lines_of_law};
+          .lines = lines_of_law,
+          .values = values_of_law,
+          .next = next_of_law};
 }
 
 }  // namespace softgrain

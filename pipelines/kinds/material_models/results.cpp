@@ -123,9 +123,33 @@ std::string material_models_section(const RunData& run) {
 
 }  // namespace report
 
+namespace {
+
+std::vector<RunValue> values_of(const report::RunData& run) {
+  std::vector<RunValue> out;
+  for (const ModelScore& s : run.summary_as<MaterialModelsSummary>().scores)
+    if (std::isfinite(s.axial) && s.samples > 0)
+      out.push_back({fmt::format("axial stress off from the truth ({}, {})", s.variant, s.model), "%", 100.0 * s.axial,
+                     100.0 * s.axial_error});
+  return out;
+}
+
+NextSteps next_of(const report::RunData&) {
+  return {
+      "Take the model whose error is smallest at the cost you can afford: of cells `softgrain macrosim SCENE.toml "
+      "--law "
+      "cell_law.toml`.",
+      "Whether its error is beyond scatter: more samples (`--set samples=6`), or other packings of the same material "
+      "(`--seeds 1..4`)."};
+}
+
+}  // namespace
+
 KindResults material_models_results() {
   return {.files = {{.names = "models_.+\\.h5"}, {.names = "models\\.csv"}},
-          .sections = {{Place::material, report::material_models_section}}};
+          .sections = {{Place::material, report::material_models_section}},
+          .values = values_of,
+          .next = next_of};
 }
 
 }  // namespace softgrain

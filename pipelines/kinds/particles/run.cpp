@@ -29,11 +29,15 @@ ParticlesResultOf<D> run_with_progress(const ParticlesSceneOf<D>& scene, System<
   return result;
 }
 
+std::optional<std::uint64_t> seed_of(const CommonOptions& options) {
+  return options.seed_given ? std::optional(options.seed) : std::nullopt;
+}
+
 template <int D>
 ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   const double memory_before = peak_memory();
-  ParticlesSceneOf<D> setup = read_particles_scene<D>(scene);
-  const Run run(scene, options, "microsim", 0, {.files = contact_law_files(scene)});
+  ParticlesSceneOf<D> setup = read_particles_scene<D>(scene, seed_of(options));
+  const Run run(scene, options, "microsim", setup.seed, {.files = contact_law_files(scene)});
   const ParticlesResultOf<D> result = run_with_progress(setup, std::move(setup.system), run.context);
   ParticlesSummary summary = summary_of(setup, result, memory_before);
   summary.head.sizes = summaries_of(drawn_sizes(setup));
@@ -64,22 +68,24 @@ void check_any_particles(const Scene& scene, Findings& out) {
     check_particles(read_particles_scene<3>(scene), out);
 }
 
-void read_any_particles(const Scene& scene) {
+void read_any_particles(const Scene& scene, const std::optional<std::uint64_t>& seed) {
   if (particles_dimension(scene) == 2)
-    (void)read_particles_scene<2>(scene);
+    (void)read_particles_scene<2>(scene, seed);
   else
-    (void)read_particles_scene<3>(scene);
+    (void)read_particles_scene<3>(scene, seed);
 }
 
 }  // namespace
 
 SceneKind particles_kind() {
-  return {.name = "particles",
-          .command = "microsim",
-          .run = run_particles_scene,
-          .check = [](const Scene& scene, const std::string&, Findings& out) { check_any_particles(scene, out); },
-          .read = read_any_particles,
-          .results = particles_results()};
+  return {
+      .name = "particles",
+      .command = "microsim",
+      .run = run_particles_scene,
+      .check = [](const Scene& scene, const std::string&, Findings& out) { check_any_particles(scene, out); },
+      .read = [](const Scene& scene) { read_any_particles(scene, {}); },
+      .refuse = [](const Scene& scene, const CommonOptions& options) { read_any_particles(scene, seed_of(options)); },
+      .results = particles_results()};
 }
 
 }  // namespace softgrain

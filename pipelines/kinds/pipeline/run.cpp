@@ -9,11 +9,13 @@
 #include "pipelines/compare/compare.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
+#include "pipelines/kinds/macro/first_point.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/summary.h"
 #include "pipelines/kinds/soft_particle/check.h"
 #include "pipelines/kinds/soft_particle/stage.h"
 #include "pipelines/law/law_json.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run.h"
 
@@ -77,6 +79,7 @@ bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResul
 void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   if (!setup.macro || !run_macro_samples(setup, run, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
+  for (const std::string& r : first_point_remarks(setup.macro->spec, result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   result.usable = result.usable && all_carry_stress(result.curves);
   if (!has_twin(*setup.macro, Twin::shelled)) return;
@@ -171,6 +174,14 @@ void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
   check_macro(*setup.macro, content_of(trial), nullptr, out);
 }
 
+NextSteps next_of(const report::RunData& run) {
+  return {"Take the law in a scene of your own: `softgrain macrosim SCENE.toml --law " + run.directory +
+              "/law.toml`; values with 95 % intervals: `softgrain law eval " + run.directory +
+              "/law.toml --delta 0.1 0.2`.",
+          "It is measured with one contact, and too soft where neighbours are all around: laws for packings come from "
+          "`softgrain run pipelines/law_table.toml`, more packings from `--set packing.count=32`."};
+}
+
 }  // namespace
 
 SceneKind pipeline_kind() {
@@ -178,7 +189,8 @@ SceneKind pipeline_kind() {
           .command = "run",
           .run = run_pipeline,
           .check = check_pipeline,
-          .read = [](const Scene& scene) { (void)read_pipeline_setup(scene); }};
+          .read = [](const Scene& scene) { (void)read_pipeline_setup(scene); },
+          .results = {.next = next_of}};
 }
 
 }  // namespace softgrain

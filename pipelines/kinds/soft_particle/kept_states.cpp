@@ -10,13 +10,12 @@ namespace softgrain {
 
 namespace {
 
-constexpr std::int64_t kKeptStates = 4;
 constexpr std::int64_t kMostStates = 10'000;
 
 }  // namespace
 
-std::int64_t read_kept_states(const SceneTable& root) {
-  return root.table_or_empty("output").count("snapshots", 0, kMostStates, kKeptStates);
+std::int64_t read_kept_states(const SceneTable& root, std::int64_t fallback) {
+  return root.table_or_empty("output").count("snapshots", 0, kMostStates, fallback);
 }
 
 KeptStates::KeptStates(const TaskStore& store, const std::string& task, std::int64_t points, std::int64_t wanted)

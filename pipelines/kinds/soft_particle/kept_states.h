@@ -12,8 +12,10 @@
 
 namespace softgrain {
 
+inline constexpr std::int64_t kKeptStates = 4;
+
 /// What [output] says: how many recorded states of a series are kept, evenly spread; 0: none. Throws BadInput.
-std::int64_t read_kept_states(const SceneTable& root);
+std::int64_t read_kept_states(const SceneTable& root, std::int64_t fallback = kKeptStates);
 
 /// The states of one series under way. Each is in the store before the point it belongs to: a run that is resumed has
 /// those it needs, and makes later ones again.

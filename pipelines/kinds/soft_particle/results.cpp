@@ -61,6 +61,55 @@ std::vector<HeadLine> lines_of(const RunData& run) {
   return lines;
 }
 
+/// Measured forces of the relaxation that the law comes from.
+ValuesByDelta measured_forces(const RunData& run, PairKind kind) {
+  const std::string relaxation = run.relaxation(kind);
+  return relaxation.empty() ? ValuesByDelta{} : normal_forces(runs_of(*run.measurements, kind, relaxation));
+}
+
+std::vector<double> of_packings(const std::map<std::int64_t, double>& by_packing) {
+  std::vector<double> out;
+  for (const auto& [ignored, value] : by_packing) out.push_back(value);
+  return out;
+}
+
+/// The force at the largest overlap, and where it begins.
+std::vector<RunValue> values_of(const RunData& run) {
+  std::vector<RunValue> out;
+  for (const PairKind kind : kPairKinds) {
+    const ValuesByDelta forces = measured_forces(run, kind);
+    if (!forces.empty()) {
+      const MeanError m = mean_error(of_packings(forces.rbegin()->second));
+      out.push_back({fmt::format("Fn at Delta = {:g} ({})", key_delta(forces.rbegin()->first), to_string(kind)), "N",
+                     m.mean, m.error});
+    }
+    if (const PairLaw* law = run.law(kind))
+      out.push_back({fmt::format("threshold delta ({})", to_string(kind)), "", law->normal.delta.value,
+                     law->normal.delta.standard_error});
+  }
+  return out;
+}
+
+std::vector<RunCurve> curves_of_run(const RunData& run) {
+  std::vector<RunCurve> out;
+  for (const PairKind kind : kPairKinds) {
+    RunCurve curve{"Normal force", "overlap Delta = hn/Rs", "normal force Fn", "N", to_string(kind), {}, {}};
+    for (const auto& [key, by_packing] : measured_forces(run, kind)) {
+      curve.x.push_back(key_delta(key));
+      curve.y.push_back(mean_error(of_packings(by_packing)).mean);
+    }
+    if (!curve.x.empty()) out.push_back(std::move(curve));
+  }
+  return out;
+}
+
+NextSteps next_of(const RunData& run) {
+  return {
+      "Fit a law to it: `softgrain calibrate " + run.directory + "/measurements.h5`.",
+      "Whether more packings or overlaps are needed shows in its intervals; other grains: `softgrain sweep SCENE.toml "
+      "--over material.mu=0.1,0.3,0.5`."};
+}
+
 }  // namespace
 
 KindResults soft_particle_results() {
@@ -72,7 +121,10 @@ KindResults soft_particle_results() {
                        {Place::tangential, tangential_section},
                        {Place::stiffness, stiffness_section},
                        {Place::relaxations, relaxations_section}},
-          .lines = lines_of};
+          .lines = lines_of,
+          .values = values_of,
+          .curves = curves_of_run,
+          .next = next_of};
 }
 
 }  // namespace softgrain

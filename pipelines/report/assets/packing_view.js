@@ -46,13 +46,14 @@ class PackingView {
     this.moment = packingElement("input", { type: "range", min: 0, step: 1, name: "state" });
     this.momentText = packingElement("span", {});
     this.momentLabel = packingElement("label", {}, this.momentText, this.moment);
+    this.play = packingElement("button", { type: "button", name: "play", "aria-pressed": "false" }, "play");
     this.reset = packingElement("button", { type: "button" }, "reset view");
     const label = (text, ...rest) => packingElement("label", {}, text, ...rest);
     this.root.append(
       packingElement("div", { class: "bar" }, label("state of", this.which), label("colour by", this.coloring), label("grains", this.mode),
         label("force chains", this.chains)),
       this.stage,
-      packingElement("div", { class: "bar below" }, this.momentLabel, label("cut along", this.axis, this.place), this.reset));
+      packingElement("div", { class: "bar below" }, this.momentLabel, this.play, label("cut along", this.axis, this.place), this.reset));
   }
 
   listen() {
@@ -60,7 +61,11 @@ class PackingView {
     this.coloring.addEventListener("change", () => this.recolor());
     for (const input of [this.mode, this.chains, this.axis]) input.addEventListener("change", () => this.refill());
     this.place.addEventListener("input", () => this.refill());
-    this.moment.addEventListener("input", () => this.goTo(Number(this.moment.value)));
+    this.moment.addEventListener("input", () => {
+      this.stop();
+      this.goTo(Number(this.moment.value));
+    });
+    this.play.addEventListener("click", () => (this.timer ? this.stop() : this.start()));
     this.reset.addEventListener("click", () => this.lookAtAll());
     this.fingers = new Map();
     this.canvas.addEventListener("pointerdown", (e) => this.press(e));
@@ -71,7 +76,32 @@ class PackingView {
     this.canvas.addEventListener("keydown", (e) => this.key(e));
   }
 
+  /// Goes through the recorded states, from the first one where the last is shown, and stops at the last.
+  start() {
+    const pause = Math.max(120, 4000 / this.series.states); // [ms]
+    if (Number(this.moment.value) >= this.series.states - 1) this.show(0);
+    this.timer = setInterval(() => {
+      this.show(Number(this.moment.value) + 1);
+      if (Number(this.moment.value) >= this.series.states - 1) this.stop();
+    }, pause);
+    this.play.textContent = "stop";
+    this.play.setAttribute("aria-pressed", "true");
+  }
+
+  stop() {
+    clearInterval(this.timer);
+    this.timer = undefined;
+    this.play.textContent = "play";
+    this.play.setAttribute("aria-pressed", "false");
+  }
+
+  show(index) {
+    this.moment.value = index;
+    this.goTo(index);
+  }
+
   choose(index) {
+    this.stop();
     this.series = this.all[index];
     const ways = Object.entries(packingColorings).filter(([, way]) => way.there(this.series));
     const before = this.coloring.value;
@@ -80,7 +110,7 @@ class PackingView {
     this.box = this.series.box();
     this.moment.max = this.series.states - 1;
     this.moment.value = this.series.states - 1;
-    this.moment.hidden = this.series.states < 2;
+    this.moment.hidden = this.play.hidden = this.series.states < 2;
     this.chains.disabled = this.series.state(this.series.states - 1).contacts === 0;
     this.lookAtAll();
     this.goTo(this.series.states - 1);

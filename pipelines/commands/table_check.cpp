@@ -1,0 +1,90 @@
+#include "pipelines/commands/table_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/core/error.h"
+#include "common/data/force_curves.h"
+#include "common/data/force_scale.h"
+#include "common/io/csv_file.h"
+#include "common/packing/grading_scene.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr const char* kNoScene = "data, no scene: ";
+
+bool has_column(const CsvFile& table, std::initializer_list<const char*> begins) {
+  return std::any_of(table.columns().begin(), table.columns().end(), [&](const CsvColumn& c) {
+    return std::any_of(begins.begin(), begins.end(), [&](const char* word) { return c.name.starts_with(word); });
+  });
+}
+
+/// What the file may leave to the command line gets a value here, and a word about it.
+ForceCurveOptions stand_ins(const CsvFile& table, Findings& out) {
+  ForceCurveOptions options;
+  options.unloading = Unloading::drop;
+  const auto missing = [&](std::initializer_list<const char*> keys, const char* option) {
+    const bool said = table.setting({keys.begin(), keys.end()}).has_value();
+    if (!said) out.warn(fmt::format("the file does not say it: softgrain calibrate needs {}", option));
+    return !said;
+  };
+  if (missing({"kind"}, "--kind soft-solid or soft-soft")) options.kind = PairKind::soft_solid;
+  if (missing({"rs", "radius", "shell_radius"}, "--radius \"16 mm\"")) options.shell_radius = 1.0;
+  if (missing({"e", "modulus", "youngs_modulus"}, "--modulus \"0.5 MPa\"")) options.youngs_modulus = 1.0;
+  return options;
+}
+
+void check_force_curves(const CsvFile& table, Findings& out) {
+  const ForceCurveOptions options = stand_ins(table, out);
+  const ForceCurves curves = read_force_curves(table.path(), options);
+  std::size_t points = 0;
+  double largest_delta = 0.0;
+  double largest_force = 0.0;
+  for (const ForceCurve& s : curves.samples) {
+    points += s.normal.size() + s.tangential.size();
+    for (const ForcePoint& p : s.normal) {
+      largest_delta = std::max(largest_delta, p.delta);
+      largest_force = std::max(largest_force, p.force);
+    }
+  }
+  out.add("kind", "force curves",
+          fmt::format("{}force over overlap of an experiment; softgrain calibrate fits a law to it", kNoScene));
+  out.add("samples", curves.samples.size(), fmt::format("{} samples, {} points", curves.samples.size(), points));
+  out.facts["points"] = points;
+  if (!options.kind) out.add("contact", to_string(curves.kind), "contact: " + to_string(curves.kind));
+  if (!options.shell_radius)
+    out.add("largest_delta", largest_delta,
+            fmt::format("Rs = {:g} m: overlaps up to Delta = {:.3g}", curves.spec.shell_radius, largest_delta));
+  out.add("largest_force", largest_force, fmt::format("forces up to {:.4g} N", largest_force));
+  if (!options.shell_radius && !options.youngs_modulus)
+    for (const std::string& one : implausible_forces(curves)) out.warn(one);
+  for (const std::string& remark : curves.remarks) out.warn(remark);
+}
+
+void check_grading(const Grading& sizes, const char* what, Findings& out) {
+  out.add("kind", what, fmt::format("{}{}; the key `file` of a table `sizes` of a scene takes it", kNoScene, what));
+  out.add("radius", {sizes.smallest(), sizes.largest()},
+          fmt::format("radii {:.4g} to {:.4g} m", sizes.smallest(), sizes.largest()));
+}
+
+}  // namespace
+
+void check_table(const std::string& path, Findings& out) {
+  const CsvFile table = CsvFile::read(path);
+  if (has_column(table, {"fn", "f_n", "force", "normal force", "load"}))
+    check_force_curves(table, out);
+  else if (has_column(table, {"passing", "finer"}))
+    check_grading(read_sieve_curve(path), "a sieve curve", out);
+  else if (has_column(table, {"radius", "diameter"}))
+    check_grading(read_radii(path), "radii of grains", out);
+  else
+    throw BadInput(
+        path +
+        ": a table of data, no scene, and none of those that softgrain reads: force over overlap (columns hn "
+        "[mm], Fn [N]), a sieve curve (opening [mm], passing [%]), radii (radius [mm])");
+}
+
+}  // namespace softgrain

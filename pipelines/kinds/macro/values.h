@@ -1,0 +1,27 @@
+// Numbers and curves by which macro runs, and resolved materials, are set beside others.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/data/macro_result.h"
+#include "pipelines/results/run_values.h"
+
+namespace softgrain {
+
+/// Curves of all samples of one engine or material, and what it is called.
+struct NamedCurves {
+  std::string name;  ///< empty: there is nothing else
+  std::vector<MacroCurve> curves;
+};
+
+/// The curves of each engine, in the order of the run; without names where there is one.
+std::vector<NamedCurves> by_engine(const std::vector<MacroCurve>& curves);
+
+/// Over the usable samples: axial stress and lateral ratio at the end; of tests in stages also moduli and strength.
+std::vector<RunValue> stress_values(const std::vector<NamedCurves>& all);
+
+/// Axial stress over strain, mean over the usable samples that have all recorded points.
+std::vector<RunCurve> stress_curves(const std::vector<NamedCurves>& all);
+
+}  // namespace softgrain

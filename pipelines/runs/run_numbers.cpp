@@ -1,0 +1,18 @@
+#include "pipelines/runs/run_numbers.h"
+
+#include "pipelines/report/run_data.h"
+#include "pipelines/report/run_values.h"
+
+namespace softgrain {
+
+void read_numbers(const std::string& directory, RunEntry& entry) {
+  const report::RunData run = report::load_run(directory);
+  const auto summary = run.summary_as<AnySummary>();
+  entry.status = from_word<RunStatus>(summary.status).value_or(RunStatus::good);
+  if (summary.seconds) entry.seconds = *summary.seconds;
+  if (entry.status == RunStatus::not_usable && summary.remarks && !summary.remarks->empty())
+    entry.reason = summary.remarks->front();
+  entry.numbers = report::values_of(run);
+}
+
+}  // namespace softgrain

@@ -1,0 +1,242 @@
+#include "pipelines/runs/run_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "common/io/interrupt.h"
+#include "common/io/text_file.h"
+#include "pipelines/kinds/kinds.h"
+#include "pipelines/report/report.h"
+#include "pipelines/run/run_files.h"
+#include "pipelines/run/text_table.h"
+#include "pipelines/runs/run_numbers.h"
+#include "pipelines/runs/set_text.h"
+
+namespace softgrain {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRunsFile = ".runs";  ///< names of the directories of a set, one a line
+
+/// Everything about one run of the set but where it goes.
+struct ReadyRun {
+  const PlannedRun* planned = nullptr;
+  Scene scene;
+  CommonOptions options;
+};
+
+CommonOptions options_of(const CommonOptions& all, const RunPlan& plan, const PlannedRun& run) {
+  CommonOptions options = all;
+  const auto more = plan.overrides(run);
+  options.overrides.insert(options.overrides.end(), more.begin(), more.end());
+  if (run.seed) {
+    options.seed = *run.seed;
+    options.seed_given = true;
+  }
+  options.over.clear();
+  options.seeds.clear();
+  options.json = false;
+  options.member = true;
+  return options;
+}
+
+/// Mistakes of many scenes: each once, with the runs that have it where others do not.
+class AllMistakes {
+ public:
+  void add(const std::string& message, const std::string& run) {
+    std::istringstream lines(message);
+    for (std::string one; std::getline(lines, one);) {
+      if (!runs_.contains(one)) order_.push_back(one);
+      runs_[one].insert(run);
+    }
+  }
+  void throw_if_any(std::size_t all) const {
+    if (order_.empty()) return;
+    std::string text;
+    for (const std::string& one : order_) {
+      const std::set<std::string>& runs = runs_.at(one);
+      text += (text.empty() ? "" : "\n") + one;
+      if (runs.size() == all) continue;
+      text += fmt::format(" (in the run {}{})", *runs.begin(),
+                          runs.size() > 1 ? fmt::format(" and {} more", runs.size() - 1) : "");
+    }
+    throw BadInput(text);
+  }
+
+ private:
+  std::vector<std::string> order_;
+  std::map<std::string, std::set<std::string>> runs_;
+};
+
+void refuse_what_does_not_go(const SceneKind& kind, const CommonOptions& options) {
+  if (options.write_only) throw BadInput("--write-only: goes with one run; leave it out, or --over and --seeds");
+  if (!kind.takes_law && (!options.law.empty() || options.bands > 0))
+    throw BadInput("--law and --bands go with scenes of kind \"macro\"");
+  if (!kind.takes_engine && (!options.engine.empty() || options.ranks > 0))
+    throw BadInput("--engine and --ranks go with scenes of kinds \"macro\" and \"material\"");
+}
+
+/// What the kind refuses before it begins.
+void refuse_scene(const ReadyRun& run) {
+  const SceneKind& kind = kind_of(run.scene);
+  refuse_what_does_not_go(kind, run.options);
+  if (kind.refuse != nullptr)
+    kind.refuse(run.scene, run.options);
+  else
+    kind.read(run.scene);
+}
+
+/// All scenes, sound; nothing is made before that.
+std::vector<ReadyRun> ready_runs(const CommonOptions& options, const RunPlan& plan) {
+  AllMistakes mistakes;
+  std::vector<ReadyRun> ready;
+  for (const PlannedRun& planned : plan.runs) {
+    CommonOptions own = options_of(options, plan, planned);
+    try {
+      ready.push_back({&planned, Scene::load(options.inputs.front(), own.overrides), own});
+      refuse_scene(ready.back());
+    } catch (const BadInput& e) {
+      mistakes.add(e.what(), planned.name);
+    }
+  }
+  mistakes.throw_if_any(plan.runs.size());
+  return ready;
+}
+
+std::vector<std::string> lines_of(const std::string& path) {
+  std::vector<std::string> out;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return out;
+  std::istringstream lines(read_text(path));
+  for (std::string one; std::getline(lines, one);)
+    if (!one.empty()) out.push_back(one);
+  return out;
+}
+
+/// What a run leaves beside results.
+bool is_housekeeping(const fs::path& file) {
+  static const std::set<std::string> names{"log.txt", ".lock", "figures"};
+  return names.contains(file.filename().string());
+}
+
+/// Runs of an earlier set that the new one does not have: their results go, and the directory if nothing else is there.
+void remove_earlier_members(const std::string& directory, const std::vector<std::string>& before) {
+  for (const std::string& name : before) {
+    const fs::path member = fs::path(directory) / name;
+    std::error_code error;
+    if (name.find('/') != std::string::npos || !fs::is_directory(member, error)) continue;
+    remove_earlier_run(member.string(), "sweep", {});
+    const bool empty = std::all_of(fs::directory_iterator(member, error), fs::directory_iterator(),
+                                   [](const fs::directory_entry& entry) { return is_housekeeping(entry.path()); });
+    if (empty) fs::remove_all(member, error);
+  }
+}
+
+/// Says which directories belong to the set; those of an earlier one go unless it is resumed.
+void keep_names(const RunContext& context, const RunPlan& plan) {
+  const std::string path = context.path(kRunsFile);
+  std::vector<std::string> before = lines_of(path);
+  std::vector<std::string> names;
+  for (const PlannedRun& run : plan.runs) names.push_back(run.name);
+  std::erase_if(before,
+                [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); });
+  if (context.resume())
+    names.insert(names.end(), before.begin(), before.end());
+  else
+    remove_earlier_members(context.directory(), before);
+  std::string text;
+  for (const std::string& name : names) text += name + "\n";
+  write_text_atomic(path, text);
+}
+
+RunEntry entry_of(const RunPlan& plan, const PlannedRun& planned) {
+  RunEntry entry{.name = planned.name, .directory = planned.name};
+  for (std::size_t k = 0; k < plan.over.size(); ++k) entry.values[plan.over[k].key] = planned.values[k];
+  if (planned.seed) entry.seed = static_cast<std::int64_t>(*planned.seed);
+  return entry;
+}
+
+/// Runs it, or finds that it has ended. What it refuses or finds unusable only now is said in its entry, and the others
+/// go on.
+void make_run(ReadyRun run, const RunContext& context, RunEntry& entry) {
+  run.options.out = context.path(run.planned->name);
+  try {
+    (void)kind_of(run.scene).run(run.scene, run.options);
+  } catch (const HasEnded&) {
+    context.say(entry.name + ": has ended before");
+    std::error_code ignored;
+    if (!fs::exists(run.options.out + "/report.html", ignored)) write_report(run.options.out);
+  } catch (const NotUsable& e) {
+    entry.reason = e.what();
+  } catch (const OtherRun&) {
+    throw;
+  } catch (const BadInput& e) {
+    entry.reason = e.what();
+  }
+  if (!entry.reason.empty()) {
+    entry.status = RunStatus::not_usable;
+    return;
+  }
+  read_numbers(run.options.out, entry);
+}
+
+std::vector<RunEntry> make_runs(const std::vector<ReadyRun>& ready, const RunPlan& plan, const RunContext& context) {
+  std::vector<RunEntry> entries;
+  for (const ReadyRun& run : ready) {
+    stop_if_interrupted("going from run to run; --resume goes on");
+    entries.push_back(entry_of(plan, *run.planned));
+    context.say(fmt::format("run {} of {}: {}", entries.size(), ready.size(), run.planned->name));
+    make_run(run, context, entries.back());
+  }
+  return entries;
+}
+
+SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEntry> entries) {
+  SetSummary summary;
+  const std::string title = scene.root().text("title", "");
+  summary.kind = kind_of(scene).name;
+  summary.over = plan.over;
+  summary.seeds.assign(plan.seeds.begin(), plan.seeds.end());
+  summary.runs = std::move(entries);
+  summary.points = points_of(summary.over, summary.runs);
+  summary.head.title = (title.empty() ? fs::path(scene.path()).stem().string() : title) + ": " + varied_text(summary);
+  for (const RunEntry& run : summary.runs)
+    if (run.status != RunStatus::good)
+      summary.head.reject(
+          fmt::format("run {} is {}{}", run.name, to_string(run.status), run.reason.empty() ? "" : ": " + run.reason));
+  return summary;
+}
+
+std::uint64_t first_seed(const Scene& scene, const RunPlan& plan, const RunContext& context) {
+  if (!plan.seeds.empty()) return plan.seeds.front();
+  constexpr std::int64_t kMost = 1'000'000'000'000;
+  return context.seed(static_cast<std::uint64_t>(scene.root().count("seed", 0, kMost, 1)));
+}
+
+}  // namespace
+
+ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std::string& command,
+                   const std::string& suffix) {
+  const Scene scene = Scene::load(options.inputs.front(), options.overrides);
+  const std::vector<ReadyRun> ready = ready_runs(options, plan);
+  const RunContext context(options, command, fs::path(scene.path()).stem().string() + "_" + suffix);
+  keep_names(context, plan);
+  SetSummary summary = summarise(scene, plan, make_runs(ready, plan, context));
+  for (const char* file : {"report.html", "table.csv"}) summary.head.files[file] = context.path(file);
+  write_text_atomic(context.path("table.csv"), as_csv(table_of(summary)));
+  const bool good = summary.head.status == RunStatus::good;
+  context.finish(json_of(summary), context.provenance(scene, first_seed(scene, plan, context)),
+                 set_text(summary) + "report: " + context.path("report.html"));
+  write_report(context.directory());
+  return good ? ExitStatus::good : ExitStatus::not_usable;
+}
+
+}  // namespace softgrain

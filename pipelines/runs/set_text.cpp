@@ -1,0 +1,214 @@
+#include "pipelines/runs/set_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "pipelines/law/terminal_plot.h"
+#include "pipelines/report/run_values.h"
+
+namespace softgrain {
+
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " [" + unit + "]";
+}
+
+/// A, B, ..., Z, A2, B2, ...
+std::string letter(std::size_t k) {
+  constexpr std::size_t kLetters = 26;
+  const std::string one(1, static_cast<char>('A' + k % kLetters));
+  return k < kLetters ? one : one + std::to_string(k / kLetters + 1);
+}
+
+/// Every number that one of the runs has, in the order in which they first appear.
+std::vector<RunValue> all_numbers(const SetSummary& summary) {
+  std::vector<RunValue> out;
+  for (const RunEntry& run : summary.runs)
+    for (const RunValue& v : run.numbers)
+      if (std::none_of(out.begin(), out.end(), [&](const RunValue& known) { return known.name == v.name; }))
+        out.push_back(v);
+  return out;
+}
+
+std::string cell_of(const RunEntry& run, const std::string& number) {
+  for (const RunValue& v : run.numbers)
+    if (v.name == number) return number_text(v.value, v.error);
+  return "-";
+}
+
+std::string status_text(const RunEntry& run) { return run.status == RunStatus::good ? "" : to_string(run.status); }
+
+/// A letter for each run, its name, and what it is not like the others in.
+std::string legend(const SetSummary& summary) {
+  Rows rows;
+  for (std::size_t k = 0; k < summary.runs.size(); ++k)
+    rows.push_back({letter(k), summary.runs[k].name, status_text(summary.runs[k])});
+  return law::aligned(rows, 2, 3);
+}
+
+constexpr std::size_t kColumns = 5;  ///< runs beside each other; more stand below each other
+constexpr std::size_t kShown = 15;   ///< differences
+
+/// A row per number, a column per run.
+std::string runs_across(const SetSummary& summary, const std::vector<RunValue>& numbers) {
+  Rows rows(1, {""});
+  for (std::size_t k = 0; k < summary.runs.size(); ++k) rows.front().push_back(letter(k));
+  for (const RunValue& n : numbers) {
+    rows.push_back({with_unit(n.name, n.unit)});
+    for (const RunEntry& run : summary.runs) rows.back().push_back(cell_of(run, n.name));
+  }
+  return legend(summary) + law::aligned(rows, 2);
+}
+
+/// A row per run, a column per number; as many as fit.
+std::string runs_down(const SetSummary& summary, const std::vector<RunValue>& numbers) {
+  const std::size_t shown = std::min<std::size_t>(numbers.size(), 4);
+  std::string text;
+  Rows rows(1, {"run", "status"});
+  for (std::size_t k = 0; k < shown; ++k) {
+    text += fmt::format("  ({}) {}\n", k + 1, with_unit(numbers[k].name, numbers[k].unit));
+    rows.front().push_back(fmt::format("({})", k + 1));
+  }
+  for (const RunEntry& run : summary.runs) {
+    rows.push_back({run.name, to_string(run.status)});
+    for (std::size_t k = 0; k < shown; ++k) rows.back().push_back(cell_of(run, numbers[k].name));
+  }
+  if (numbers.size() > shown) text += fmt::format("  {} more numbers in summary and report\n", numbers.size() - shown);
+  return text + law::aligned(rows, 2, 2);
+}
+
+/// Mean, spread and standard error of every number over seeds.
+std::string over_seeds(const SetSummary& summary) {
+  Rows rows(1, {"", "mean", "spread", "standard error", "runs"});
+  for (const PointEntry& point : summary.points) {
+    if (summary.points.size() > 1) rows.push_back({point.name + ":"});
+    for (const NumberOverRuns& n : point.numbers)
+      rows.push_back({(summary.points.size() > 1 ? "  " : "") + with_unit(n.name, n.unit), number_text(n.mean, kNaN),
+                      number_text(n.spread, kNaN), number_text(n.error, kNaN), std::to_string(n.runs)});
+  }
+  return law::aligned(rows, 2);
+}
+
+}  // namespace
+
+std::string number_text(double value, double error) {
+  if (!std::isfinite(value)) return "-";
+  return std::isfinite(error) && error > 0.0 ? fmt::format("{:.4g} +- {:.2g}", value, error)
+                                             : fmt::format("{:.4g}", value);
+}
+
+std::string varied_text(const SetSummary& summary) {
+  std::string text;
+  for (const SweptKey& one : summary.over) text += (text.empty() ? "sweep over " : ", ") + one.key;
+  if (!summary.seeds.empty())
+    text += fmt::format("{}{} seed{}", text.empty() ? "" : "; ", summary.seeds.size(),
+                        summary.seeds.size() == 1 ? "" : "s");
+  return text;
+}
+
+std::string set_text(const SetSummary& summary) {
+  std::string text = differences_text(summary) + numbers_text(summary);
+  for (const std::string& remark : summary.head.remarks) text += "note: " + remark + "\n";
+  return text;
+}
+
+std::string differences_text(const SetSummary& summary) {
+  std::string text;
+  for (const SweptKey& one : summary.over) {
+    std::string values;
+    for (const std::string& value : one.values) values += (values.empty() ? "" : ", ") + value;
+    text += fmt::format("varied: {} = {}\n", one.key, values);
+  }
+  std::size_t shown = 0;
+  for (const SweptKey& one : summary.differences) {
+    if (++shown > kShown) continue;
+    std::string values;
+    for (std::size_t k = 0; k < one.values.size(); ++k)
+      values += fmt::format("{}{} {}", values.empty() ? "" : ", ", letter(k), one.values[k]);
+    text += fmt::format("differs: {}: {}\n", one.key, values);
+  }
+  if (shown > kShown) text += fmt::format("differs: {} more keys\n", shown - kShown);
+  return text;
+}
+
+std::string norms_text(const SetSummary& summary) {
+  if (summary.norms.empty()) return "";
+  std::string text = "against " + summary.reference + "\n";
+  std::size_t k = 0;
+  for (const RunEntry& run : summary.runs) {
+    const std::string mark = letter(k++);
+    for (const RunNorm& n : summary.norms)
+      if (n.run == run.name)
+        text += n.reason.empty() ? fmt::format("  {}  {}: off by {} %\n", mark, n.of, number_text(n.percent, n.error))
+                                 : fmt::format("  {}  no norm: {}\n", mark, n.reason);
+  }
+  return text;
+}
+
+std::string curves_text(const SetSummary& summary, const std::string& base) {
+  law::TerminalPlot plot;
+  plot.utf8 = law::terminal_is_utf8();
+  std::string title;
+  for (std::size_t k = 0; k < std::min(summary.runs.size(), kColumns); ++k) {
+    const std::filesystem::path directory = std::filesystem::path(base) / summary.runs[k].directory;
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(directory, ignored)) continue;
+    const std::vector<RunCurve> curves = report::curves_of(directory.string());
+    const auto at = std::find_if(curves.begin(), curves.end(), [&](const RunCurve& c) {
+      return !c.x.empty() && (title.empty() || c.plot + c.name == title);
+    });
+    if (at == curves.end()) continue;
+    title = at->plot + at->name;
+    plot.x_label = at->x_label;
+    plot.y_label =
+        at->y_label + (at->y_unit.empty() ? "" : " [" + at->y_unit + "]") + (at->name.empty() ? "" : ", " + at->name);
+    plot.curves.push_back({at->x, at->y, law::TerminalCurve::Look::line, 'o'});
+    plot.curves.push_back({{at->x.back()}, {at->y.back()}, law::TerminalCurve::Look::marks, letter(k).front()});
+  }
+  return law::draw(plot);
+}
+
+std::string numbers_text(const SetSummary& summary) {
+  std::string text;
+  const std::vector<RunValue> numbers = all_numbers(summary);
+  if (summary.seeds.size() > 1)
+    text += over_seeds(summary);
+  else
+    text += summary.runs.size() <= kColumns ? runs_across(summary, numbers) : runs_down(summary, numbers);
+  return text;
+}
+
+TextTable table_of(const SetSummary& summary) {
+  TextTable table;
+  const std::vector<RunValue> numbers = all_numbers(summary);
+  table.header = {"run"};
+  for (const SweptKey& one : summary.over) table.header.push_back(one.key);
+  table.header.insert(table.header.end(), {"seed", "status"});
+  for (const RunValue& n : numbers) {
+    table.header.push_back(with_unit(n.name, n.unit));
+    table.header.push_back("standard error of " + n.name);
+  }
+  const auto text = [](double x) { return std::isfinite(x) ? fmt::format("{:.10g}", x) : std::string(); };
+  for (const RunEntry& run : summary.runs) {
+    std::vector<std::string> row{run.name};
+    for (const SweptKey& one : summary.over) row.push_back(run.values.at(one.key));
+    row.push_back(run.seed ? std::to_string(*run.seed) : "");
+    row.push_back(to_string(run.status));
+    for (const RunValue& n : numbers) {
+      const auto at =
+          std::find_if(run.numbers.begin(), run.numbers.end(), [&](const RunValue& v) { return v.name == n.name; });
+      row.push_back(at == run.numbers.end() ? "" : text(at->value));
+      row.push_back(at == run.numbers.end() ? "" : text(at->error));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace softgrain

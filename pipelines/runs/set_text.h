@@ -1,0 +1,36 @@
+// Several runs in words and tables: for the terminal, and as CSV.
+#pragma once
+
+#include <string>
+
+#include "pipelines/results/set_summary.h"
+#include "pipelines/run/text_table.h"
+
+namespace softgrain {
+
+/// "sweep over macro.bodies, macro.mu; 4 seeds".
+std::string varied_text(const SetSummary& summary);
+
+/// Keys and values that were varied, or that differ.
+std::string differences_text(const SetSummary& summary);
+
+/// Every number of every run, or with several seeds its mean, spread and standard error.
+std::string numbers_text(const SetSummary& summary);
+
+/// How far runs are from the reference; empty without norms.
+std::string norms_text(const SetSummary& summary);
+
+/// What differs, the numbers, remarks.
+std::string set_text(const SetSummary& summary);
+
+/// The first curve of every run whose directory is there, in the terminal, with the letters of the table; empty
+/// without. `base`: what directories of runs are relative to.
+std::string curves_text(const SetSummary& summary, const std::string& base);
+
+/// One row per run: keys, seed, status, and every number with its standard error.
+TextTable table_of(const SetSummary& summary);
+
+/// "12.3 +- 0.4"; "-" for what is not there.
+std::string number_text(double value, double error);
+
+}  // namespace softgrain

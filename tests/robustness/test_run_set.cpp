@@ -1,0 +1,234 @@
+// Several runs at once: over seeds, over keys, compared; what is refused, what is resumed, and what the set says of a run
+// that failed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/io/text_file.h"
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+#include "tests/support/synthetic_run.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kMacro = R"(kind = "macro"
+title = "a macro scene"
+law = "law.toml"
+[macro]
+bodies = 6
+steps = 2
+strain = 0.15
+resolved = false
+)";
+
+class RunSet : public ::testing::Test {
+ protected:
+  RunSet() {
+    save_card(synthetic::card(), file("law.toml"));
+    write_text_atomic(file("macro.toml"), kMacro);
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
+  [[nodiscard]] std::string quoted(const std::string& name) const { return "'" + file(name) + "' "; }
+  [[nodiscard]] ProgramOutcome program(const std::string& command, const std::string& more) const {
+    return run_the_program(command + " " + quoted("macro.toml") + "--quiet --threads 1 " + more);
+  }
+  static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words = {}) {
+    EXPECT_EQ(outcome.status, status) << outcome.output;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in " << outcome.output;
+  }
+  /// A number of a run, or of a point, by its name.
+  static json number(const json& of, const std::string& name) {
+    for (const json& one : of["numbers"])
+      if (one["name"] == name) return one;
+    ADD_FAILURE() << "no " << name << " in " << of.dump(1);
+    return json::object();
+  }
+
+  TemporaryDirectory directory_;
+};
+
+constexpr const char* kStress = "axial stress at the end";
+
+TEST_F(RunSet, SeedsGiveMeanSpreadAndStandardErrorOfTheRunsThemselves) {
+  expect(program("macrosim", "--seeds 1..3 --out " + quoted("out")), 0, {"spread", "standard error", kStress});
+  const json summary = summary_of(file("out"));
+  ASSERT_EQ(summary["runs"].size(), 3U);
+  std::vector<double> stress;
+  for (const char* seed : {"1", "2", "3"}) {
+    // Each is the run that the seed gives alone.
+    expect(program("macrosim", std::string("--seed ") + seed + " --out " + quoted("alone")), 0);
+    const json alone = summary_of(file("alone"));
+    const json member = summary_of(file("out") + "/seed=" + seed);
+    EXPECT_EQ(member["macro"]["contact_evaluations"], alone["macro"]["contact_evaluations"]);
+    EXPECT_EQ(member["provenance"]["seed"], alone["provenance"]["seed"]);
+    stress.push_back(number(summary["runs"][stress.size()], kStress)["value"]);
+  }
+  EXPECT_NE(stress[0], stress[1]);
+  const double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
+  double squares = 0.0;
+  for (const double s : stress) squares += (s - mean) * (s - mean);
+  const json point = number(summary["points"][0], kStress);
+  EXPECT_NEAR(point["mean"], mean, 1e-9 * mean);
+  EXPECT_NEAR(point["spread"], std::sqrt(squares / 2.0), 1e-9 * mean);
+  EXPECT_NEAR(point["standard_error"], std::sqrt(squares / 6.0), 1e-9 * mean);
+  const std::string report = read_text(file("out") + "/report.html");
+  for (const char* words : {"Runs side by side", "Over seeds", "mean, and one standard deviation between seeds",
+                            "href=\"seed=2/report.html\""})
+    EXPECT_NE(report.find(words), std::string::npos) << words;
+}
+
+TEST_F(RunSet, ASweepHasADirectoryTableAndReportForEveryChoice) {
+  expect(program("sweep", "--over macro.bodies=6,9 --over macro.wall_mu=0,0.4 --out " + quoted("out")), 0,
+         {"varied: macro.bodies = 6, 9", "bodies=9_wall_mu=0.4"});
+  const json summary = summary_of(file("out"));
+  EXPECT_EQ(summary["status"], "good");
+  ASSERT_EQ(summary["runs"].size(), 4U);
+  for (const json& run : summary["runs"]) {
+    const std::string directory = file("out") + "/" + run["directory"].get<std::string>();
+    for (const char* name : {"summary.json", "report.html", "macro.h5", "log.txt"})
+      EXPECT_TRUE(fs::exists(directory + "/" + name)) << directory << " " << name;
+    EXPECT_EQ(std::to_string(summary_of(directory)["macro"]["bodies"].get<int>()), run["values"]["macro.bodies"]);
+  }
+  const std::string table = read_text(file("out") + "/table.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
+  EXPECT_EQ(table.find("run,macro.bodies,macro.wall_mu,seed,status,axial stress at the end [Pa],"), 0U) << table;
+  const std::string report = read_text(file("out") + "/report.html");
+  EXPECT_NE(report.find("data-x-label=\"macro.bodies\""), std::string::npos) << "no plot over the key";
+}
+
+TEST_F(RunSet, EverythingThatIsWrongIsSaidBeforeAnyRun) {
+  const std::string out = "--out " + quoted("out");
+  const ProgramOutcome outcome =
+      program("sweep", "--over macro.bodies=6,-1,0 --over macro.stepps=2 --over macro.strain=0.1,0.9 " + out);
+  expect(outcome, 2,
+         {"--set macro.bodies): bodies = -1: must be a whole number from 1 to", "bodies = 0: must be",
+          "unknown key 'stepps' in [macro]; nearest known key is 'steps'", "strain = 0.9: must be",
+          "(in the run bodies=-1_stepps=2_strain=0.1 and 1 more)"});
+  EXPECT_EQ(outcome.output.find("(in the run", outcome.output.find("stepps' in")),
+            outcome.output.find("(in the run", outcome.output.find("strain = 0.9")))
+      << "what is wrong with all is said once, and of none in particular";
+  EXPECT_FALSE(fs::exists(file("out")));
+  expect(program("sweep", "--over law=law.toml,nowhere.toml " + out), 4, {"nowhere.toml: no such file"});
+  EXPECT_FALSE(fs::exists(file("out") + "/law=law.toml"));
+  expect(program("sweep", out), 2, {"nothing is swept"});
+  expect(program("macrosim", "--seeds 3..1 " + out), 2, {"--seeds 3..1", "must rise"});
+  expect(program("macrosim", "--seeds 1..2 --seed 4 " + out), 2, {"--seeds: goes without --seed"});
+  expect(program("sweep", "--over macro.bodies=6,7 --ranks 2 " + out), 2, {"--ranks"});
+}
+
+TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
+  const std::string out = "--out " + quoted("out");
+  expect(program("sweep", "--over macro.bodies=6,7 " + out), 0);
+  const auto first = fs::last_write_time(file("out") + "/bodies=6/macro.h5");
+  fs::remove_all(file("out") + "/bodies=7");
+  expect(program("sweep", "--over macro.bodies=6,7,8 --resume " + out), 0, {"bodies=8"});
+  EXPECT_EQ(fs::last_write_time(file("out") + "/bodies=6/macro.h5"), first);
+  EXPECT_TRUE(fs::exists(file("out") + "/bodies=7/macro.h5"));
+  EXPECT_EQ(summary_of(file("out"))["runs"].size(), 3U);
+  // Not with another scene, nor with another law.
+  expect(program("sweep", "--over macro.bodies=6,7 --set macro.steps=3 --resume " + out), 2, {"another scene"});
+  LawCard stiffer = synthetic::card();
+  stiffer.pairs[0].normal.a.value *= 2.0;
+  save_card(stiffer, file("law.toml"));
+  expect(program("sweep", "--over macro.bodies=6,7 --resume " + out), 2, {"its law is another"});
+  // Anew: runs of the earlier sweep go, files of others stay.
+  write_text_atomic(file("out") + "/bodies=7/notes.txt", "mine");
+  expect(program("sweep", "--over macro.bodies=6 " + out), 0);
+  EXPECT_NE(fs::last_write_time(file("out") + "/bodies=6/macro.h5"), first);
+  EXPECT_FALSE(fs::exists(file("out") + "/bodies=8"));
+  EXPECT_FALSE(fs::exists(file("out") + "/bodies=7/macro.h5"));
+  EXPECT_EQ(read_text(file("out") + "/bodies=7/notes.txt"), "mine");
+}
+
+/// Stopped in the midst and gone on with: the same numbers as without a stop.
+TEST_F(RunSet, AnInterruptedSweepGoesOnWhereItWas) {
+  const std::vector<std::string> words{"sweep",  file("macro.toml"), "--over",  "macro.bodies=40,50", "--set", "macro.steps=20",
+                                       "--quiet", "--threads",        "1"};
+  const auto arguments = [&](const std::string& out, bool resume) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--out", file(out)});
+    if (resume) all.emplace_back("--resume");
+    return all;
+  };
+  ASSERT_TRUE(ended_with(wait_for(start_program(arguments("whole", false))), 0));
+  int stops = 0;
+  for (int part = 0; part < 200; ++part) {
+    const int ended = signal_after(start_program(arguments("parts", part > 0)), 0.15 + 0.05 * part, SIGTERM);
+    if (ended_with(ended, 0)) break;
+    ASSERT_TRUE(ended_with(ended, 130) || WIFSIGNALED(ended)) << ended;
+    EXPECT_FALSE(fs::exists(file("parts") + "/summary.json")) << "it looks as if it had ended";
+    ++stops;
+  }
+  EXPECT_GT(stops, 0);
+  const json whole = summary_of(file("whole"));
+  const json parts = summary_of(file("parts"));
+  ASSERT_EQ(parts["runs"].size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(parts["runs"][k]["numbers"], whole["runs"][k]["numbers"]);
+}
+
+/// Too few passes for one of them: status 3, the others stand, and means leave it out.
+TEST_F(RunSet, ARunThatDoesNotConvergeIsToldByStatusAndSummary) {
+  const std::string out = "--out " + quoted("out");
+  expect(program("sweep", "--over macro.max_passes=1,20000 " + out), 3, {"run max_passes=1 is not usable"});
+  const json summary = summary_of(file("out"));
+  EXPECT_EQ(summary["status"], "not usable");
+  EXPECT_EQ(summary["runs"][0]["status"], "not usable");
+  EXPECT_EQ(summary["runs"][1]["status"], "good");
+  EXPECT_TRUE(summary["points"][0]["numbers"].empty());
+  EXPECT_FALSE(summary["points"][1]["numbers"].empty());
+  EXPECT_NE(read_text(file("out") + "/report.html").find("Do not use this result as it is"), std::string::npos);
+}
+
+TEST_F(RunSet, ComparisonsSayFirstWhatDiffersAndMakeNoDirectoryUnasked) {
+  for (const char* bodies : {"6", "7", "8"})
+    expect(program("macrosim", std::string("--set macro.bodies=") + bodies + " --out " + quoted(bodies)), 0);
+  const fs::path here = fs::current_path();
+  fs::current_path(directory_.path());
+  const ProgramOutcome two = run_the_program("compare 6 7 --different");
+  expect(two, 0, {"differs: macro.bodies: A 6, B 7", "axial stress, relative L2 difference"});
+  EXPECT_EQ(two.output.find("differs: macro.bodies"), 0U) << two.output;
+  expect(run_the_program("compare 6 7"), 2, {"--different"});
+  const ProgramOutcome three = run_the_program("compare 6 7 8");
+  expect(three, 0, {"differs: macro.bodies: A 6, B 7, C 8", kStress, "A  no norm:", "bodies: 6 against 8"});
+  EXPECT_FALSE(fs::exists("results"));
+  const json summary = json::parse(run_the_program("compare 6 7 8 --different --json", "/dev/null").output);
+  EXPECT_EQ(summary["scene_differences"][0]["key"], "macro.bodies");
+  EXPECT_EQ(summary["norms"].size(), 2U);
+  EXPECT_GT(summary["norms"][0]["percent"].get<double>(), 0.0);
+  expect(run_the_program("compare 6 7 8 --out table --quiet"), 0);
+  const std::string report = read_text("table/report.html");
+  for (const char* words : {"differs in", "macro.bodies", "Axial stress", "href=\"../7/report.html\""})
+    EXPECT_NE(report.find(words), std::string::npos) << words;
+  fs::current_path(here);
+}
+
+/// Kinds without curves have numbers to be set side by side by.
+TEST_F(RunSet, RunsWithoutCurvesAreComparedByTheirNumbers) {
+  constexpr const char* kGrain =
+      "kind = \"particles\"\n[material.a]\ndensity = 1.0\nE = 1.0\nnu = 0.2\n[[particle]]\nmaterial = \"a\"\n"
+      "radius = 1.0\nposition = [0.0, 0.0, 0.0]\nvelocity = [1.0, 0.0, 0.0]\n[time]\nstep = 0.1\nend = 0.2\n";
+  write_text_atomic(file("grain.toml"), kGrain);
+  expect(run_the_program("sweep " + quoted("grain.toml") +
+                         "--over 'particle.0.velocity=[1.0, 0.0, 0.0],[2.0, 0.0, 0.0]' --quiet --out " + quoted("out")),
+         0, {"kinetic energy at the end"});
+  const json summary = summary_of(file("out"));
+  EXPECT_NEAR(number(summary["runs"][1], "kinetic energy at the end")["value"].get<double>() /
+                  number(summary["runs"][0], "kinetic energy at the end")["value"].get<double>(),
+              4.0, 1e-12);
+  const std::string a = file("out") + "/" + summary["runs"][0]["directory"].get<std::string>();
+  const std::string b = file("out") + "/" + summary["runs"][1]["directory"].get<std::string>();
+  expect(run_the_program("compare '" + a + "' '" + b + "'"), 0,
+         {"differs: particle.0.velocity: A [1, 0, 0], B [2, 0, 0]", "kinetic energy at the end"});
+  expect(run_the_program("microsim " + quoted("grain.toml") + "--seeds 1..2 --out " + quoted("seeds")), 2,
+         {"nothing is drawn at random"});
+}
+
+}  // namespace

@@ -1,0 +1,111 @@
+// Which runs a sweep has, how they are called, and what is wrong with one that is asked for wrongly; numbers over runs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/io/flat_scene.h"
+#include "pipelines/runs/run_plan.h"
+
+namespace softgrain {
+namespace {
+
+std::vector<std::string> names_of(const RunPlan& plan) {
+  std::vector<std::string> out;
+  for (const PlannedRun& run : plan.runs) out.push_back(run.name);
+  return out;
+}
+
+using Texts = std::vector<std::string>;
+
+TEST(RunPlan, IsTheProductOfKeysAndSeedsFirstKeySlowest) {
+  const RunPlan plan = make_plan({"macro.bodies=20,40", "material.mu=0.1"}, "3,5..6", {});
+  EXPECT_EQ(names_of(plan), (Texts{"bodies=20_mu=0.1_seed=3", "bodies=20_mu=0.1_seed=5", "bodies=20_mu=0.1_seed=6",
+                                   "bodies=40_mu=0.1_seed=3", "bodies=40_mu=0.1_seed=5", "bodies=40_mu=0.1_seed=6"}));
+  EXPECT_EQ(plan.overrides(plan.runs[3]), (Texts{"macro.bodies=40", "material.mu=0.1"}));
+  EXPECT_EQ(plan.runs[3].seed, 3U);
+}
+
+TEST(RunPlan, ValuesMayBeListsTextsAndRanges) {
+  const RunPlan plan = make_plan({"a.deltas=[0.1,0.2],[0.3]", "E=\"0.5 MPa\",1e6", "n=2..4"}, "", {});
+  EXPECT_EQ(plan.over[0].values, (Texts{"[0.1,0.2]", "[0.3]"}));
+  EXPECT_EQ(plan.over[1].values, (Texts{"\"0.5 MPa\"", "1e6"}));
+  EXPECT_EQ(plan.over[2].values, (Texts{"2", "3", "4"}));
+  EXPECT_EQ(plan.runs.size(), 12U);
+  EXPECT_EQ(plan.runs.front().name, "deltas=0.1-0.2-_E=0.5-MPa_n=2");
+  EXPECT_FALSE(plan.runs.front().seed.has_value());
+}
+
+/// A path is no range of numbers, and no directory of its own.
+TEST(RunPlan, PathsMakeOneDirectoryEach) {
+  const RunPlan plan = make_plan({"law=../a/law.toml,../b/law.toml,../a+law.toml"}, "", {});
+  EXPECT_EQ(names_of(plan), (Texts{"law=..-a-law.toml", "law=..-b-law.toml", "law=..-a+law.toml"}));
+}
+
+/// Other values that make the same word stay apart; keys with the same last part keep the rest.
+TEST(RunPlan, NamesAreUnique) {
+  EXPECT_EQ(names_of(make_plan({"law=a/b,a b"}, "", {})), (Texts{"law=a-b", "law=a-b-2"}));
+  EXPECT_EQ(names_of(make_plan({"macro.mu=0.1", "material.mu=0.2"}, "", {})), (Texts{"macro.mu=0.1_material.mu=0.2"}));
+}
+
+std::string complaint(const Texts& over, const std::string& seeds, const Texts& set = {}) {
+  try {
+    (void)make_plan(over, seeds, set);
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(RunPlan, SaysAllThatIsWrongAtOnce) {
+  EXPECT_EQ(complaint({"mu", "n=1,,2", "n=3,3", "E=5..2", "x=1"}, "1..3,two,-1", {"x=2"}),
+            "--over mu: must be of the form key=a,b,c\n"
+            "--over n=1,,2: a value is empty\n"
+            "--over n=3,3: the key is swept twice\n"
+            "--over n=3,3: 3 is given twice\n"
+            "--over E=5..2: 5..2: must rise\n"
+            "--over x=1: the key is set by --set as well\n"
+            "--seeds 1..3,two,-1: two: must be whole numbers, at least 0, such as 1..8 or 1,3,7\n"
+            "--seeds 1..3,two,-1: -1: must be whole numbers, at least 0, such as 1..8 or 1,3,7");
+  EXPECT_NE(complaint({}, "").find("nothing is swept"), std::string::npos);
+  EXPECT_NE(complaint({"seed=1,2"}, "1..2").find("the key seed is swept"), std::string::npos);
+  EXPECT_NE(complaint({"a=1..200", "b=1..200"}, "").find("40000 runs"), std::string::npos);
+  EXPECT_NE(complaint({"a=1..99999999999"}, "").find("more than 10000 values"), std::string::npos);
+}
+
+RunEntry entry(const std::string& mu, double stress, RunStatus status = RunStatus::good, double error = kNaN) {
+  return {.name = mu, .values = {{"mu", mu}}, .status = status, .numbers = {{"stress", "Pa", stress, error}}};
+}
+
+/// Mean 4, deviation sqrt(((-2)^2 + 0 + 2^2)/2) = 2, error 2/sqrt(3); the run that is not usable counts nowhere.
+TEST(RunPlan, NumbersOverRunsAreThoseOfTheGoodOnes) {
+  const std::vector<RunEntry> runs{entry("0.1", 2.0),
+                                   entry("0.2", 10.0, RunStatus::good, 0.5),
+                                   entry("0.1", 4.0),
+                                   entry("0.1", 6.0),
+                                   entry("0.1", 1e9, RunStatus::not_usable)};
+  const std::vector<PointEntry> points = points_of({{"mu", {"0.1", "0.2"}}}, runs);
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].name, "mu = 0.1");
+  EXPECT_EQ(points[0].runs, 4U);
+  const NumberOverRuns& n = points[0].numbers.at(0);
+  EXPECT_EQ(n.runs, 3U);
+  EXPECT_DOUBLE_EQ(n.mean, 4.0);
+  EXPECT_DOUBLE_EQ(n.spread, 2.0);
+  EXPECT_DOUBLE_EQ(n.error, 2.0 / std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(n.least, 2.0);
+  EXPECT_DOUBLE_EQ(n.largest, 6.0);
+  EXPECT_DOUBLE_EQ(points[1].numbers.at(0).error, 0.5) << "of a single run its own, over its samples";
+  EXPECT_TRUE(std::isnan(points[1].numbers.at(0).spread));
+}
+
+TEST(FlatScene, NamesKeysAsSetDoesAndWritesEqualNumbersAlike) {
+  const auto a = flat_scene("seed = 1\n[macro]\nmu = 0.30\nlist = [1, 2.0]\n[[contact]]\nmu = 0.5\n", "s");
+  EXPECT_EQ(a, (std::map<std::string, std::string>{
+                   {"seed", "1"}, {"macro.mu", "0.3"}, {"macro.list", "[1, 2]"}, {"contact.0.mu", "0.5"}}));
+  EXPECT_EQ(flat_scene("mu = 3e-1\n", "s"), flat_scene("mu = 0.3\n", "s"));
+  EXPECT_THROW((void)flat_scene("mu = = 3\n", "s"), BadInput);
+}
+
+}  // namespace
+}  // namespace softgrain
