@@ -56,7 +56,7 @@ NO_SCENES = {
     "common/data/card_text.cpp", "pipelines/law/law_file.cpp", "common/data/cell_card_io.cpp", "common/data/crowd_law_io.cpp", "common/data/law_card_read.cpp",
     "pipelines/commands/check.cpp", "pipelines/kinds/kinds.cpp", "pipelines/kinds/macro/run.cpp", "pipelines/kinds/pipeline/run.cpp",
     "pipelines/commands/calibrate_crowd.cpp", "pipelines/commands/observables.cpp", "pipelines/kinds/cohesive_powder/run.cpp",
-    "pipelines/kinds/cohesive_powder/variants_run.cpp",
+    "pipelines/kinds/cohesive_powder/variants_run.cpp", "pipelines/runs/run_set.cpp",
 }
 
 READERS = "has|is_text|is_list|number|count|flag|text|choice|vector3|numbers|texts|flags|table|table_or_empty|tables|named"

@@ -60,6 +60,16 @@ class Check:
         return f"{words[0]} check {next(w for w in words[2:] if w.endswith('.toml'))} --quiet"
 
 
+class OnBlock(Run):
+    """The program on my_scene.toml, which is the last scene of the page."""
+
+    def told(self):
+        return "default suite: on the scene of the page"
+
+    def quick(self, command):
+        return "cp block.toml my_scene.toml; " + command
+
+
 class Elsewhere:
     """Tested by something else."""
     slow = False
@@ -81,6 +91,7 @@ RULES = [
     (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/softgrain_\*\.deb"
      r"|softgrain run /usr/share/softgrain/pipelines/quickstart\.toml",
      Elsewhere("by hand, in a bare Debian root: pipelines/guide/installing.md")),
+    (r"\./softgrain (macrosim|sweep) my_scene\.toml .*|\./softgrain compare results/my_.*", OnBlock()),
     (r"\./softgrain export results/quickstart --to [\w-]+( --out \S+)?", Run()),
     (r"\./softgrain run pipelines/(law_table|macro_vs_resolved)\.toml --out results/my_\w+", Check(slow=True)),
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),

@@ -5,11 +5,11 @@
 #include "common/io/provenance.h"
 #include "common/io/text_file.h"
 #include "pipelines/compare/compare_inputs.h"
-#include "pipelines/compare/scene_differences.h"
 #include "pipelines/report/report.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/run/text_table.h"
 #include "pipelines/runs/run_numbers.h"
+#include "pipelines/runs/scene_differences.h"
 #include "pipelines/runs/set_text.h"
 
 namespace softgrain {

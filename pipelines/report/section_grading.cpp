@@ -22,7 +22,7 @@ struct Sieved {
   std::string label;
   std::string unit = "m";
   int dimension = 3;
-  std::vector<double> radii;
+  std::vector<double> radii{};
 };
 
 constexpr std::size_t kMostCurves = 8;

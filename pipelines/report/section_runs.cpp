@@ -20,20 +20,6 @@ constexpr std::size_t kColumns = 4;    ///< numbers in the table of runs
 constexpr std::size_t kDependent = 4;  ///< drawings of numbers over keys, for each key alike
 constexpr std::size_t kColours = 7;    ///< before dashes tell curves apart
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : name + " [" + unit + "]";
-}
-
-/// Every number that a run has, once.
-std::vector<RunValue> numbers_of(const SetSummary& set) {
-  std::vector<RunValue> out;
-  for (const RunEntry& run : set.runs)
-    for (const RunValue& v : run.numbers)
-      if (std::none_of(out.begin(), out.end(), [&](const RunValue& known) { return known.name == v.name; }))
-        out.push_back(v);
-  return out;
-}
-
 const RunValue* find(const RunEntry& run, const std::string& number) {
   const auto at =
       std::find_if(run.numbers.begin(), run.numbers.end(), [&](const RunValue& v) { return v.name == number; });
@@ -381,7 +367,7 @@ bool is_set(const RunData& run) { return !run.summary_as<SetSummary>().runs.empt
 std::string runs_section(const RunData& run) {
   const auto set = run.summary_as<SetSummary>();
   if (set.runs.empty()) return "";
-  const std::vector<RunValue> numbers = numbers_of(set);
+  const std::vector<RunValue> numbers = numbers_of(set.runs);
   std::vector<std::string> figures;
   for (const CurvePlot& plot : plots_of(run, set)) figures.push_back(curve_figure(set, plot, figures.size()));
   const std::vector<std::string> dependent = dependence_figures(set, numbers);

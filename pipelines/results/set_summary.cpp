@@ -10,22 +10,12 @@ namespace {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// As they first appear.
-std::vector<RunValue> numbers_of(const std::vector<const RunEntry*>& runs) {
-  std::vector<RunValue> out;
-  for (const RunEntry* run : runs)
-    for (const RunValue& v : run->numbers)
-      if (std::none_of(out.begin(), out.end(), [&](const RunValue& known) { return known.name == v.name; }))
-        out.push_back(v);
-  return out;
-}
-
-NumberOverRuns over_runs(const RunValue& of, const std::vector<const RunEntry*>& runs) {
+NumberOverRuns over_runs(const RunValue& of, const std::vector<RunEntry>& runs) {
   NumberOverRuns out{.name = of.name, .unit = of.unit};
   std::vector<double> values;
   double own_error = kNaN;
-  for (const RunEntry* run : runs)
-    for (const RunValue& v : run->numbers)
+  for (const RunEntry& run : runs)
+    for (const RunValue& v : run.numbers)
       if (v.name == of.name && std::isfinite(v.value)) {
         values.push_back(v.value);
         own_error = v.error;
@@ -43,6 +33,19 @@ NumberOverRuns over_runs(const RunValue& of, const std::vector<const RunEntry*>&
 }
 
 }  // namespace
+
+std::vector<RunValue> numbers_of(const std::vector<RunEntry>& runs) {
+  std::vector<RunValue> out;
+  for (const RunEntry& run : runs)
+    for (const RunValue& v : run.numbers)
+      if (std::none_of(out.begin(), out.end(), [&](const RunValue& known) { return known.name == v.name; }))
+        out.push_back(v);
+  return out;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " [" + unit + "]";
+}
 
 std::string short_key(const std::vector<SweptKey>& over, const std::string& key) {
   const auto same = std::count_if(over.begin(), over.end(),
@@ -63,11 +66,11 @@ std::vector<PointEntry> points_of(const std::vector<SweptKey>& over, const std::
   for (const RunEntry& run : runs) {
     if (std::any_of(out.begin(), out.end(), [&](const PointEntry& p) { return p.values == run.values; })) continue;
     PointEntry point{.name = point_name(over, run.values), .values = run.values};
-    std::vector<const RunEntry*> good;
+    std::vector<RunEntry> good;
     for (const RunEntry& other : runs) {
       if (other.values != run.values) continue;
       ++point.runs;
-      if (other.status == RunStatus::good) good.push_back(&other);
+      if (other.status == RunStatus::good) good.push_back(other);
     }
     for (const RunValue& number : numbers_of(good)) point.numbers.push_back(over_runs(number, good));
     out.push_back(std::move(point));

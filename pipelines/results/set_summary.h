@@ -25,14 +25,14 @@ void fields(auto&& visit, Of<SweptKey> auto& s) {
 
 /// One run of the set.
 struct RunEntry {
-  std::string name;
-  std::string directory;                      ///< within that of the set, or absolute
-  std::map<std::string, std::string> values;  ///< of the keys that were swept, or in which the runs differ
-  std::optional<std::int64_t> seed;
+  std::string name{};
+  std::string directory{};                      ///< within that of the set, or absolute
+  std::map<std::string, std::string> values{};  ///< of the keys that were swept, or in which the runs differ
+  std::optional<std::int64_t> seed{};
   RunStatus status = RunStatus::not_run;
-  std::string reason;  ///< why it is not usable
+  std::string reason{};  ///< why it is not usable
   double seconds = kNaN;
-  std::vector<RunValue> numbers;
+  std::vector<RunValue> numbers{};
 };
 
 void fields(auto&& visit, Of<RunEntry> auto& s) {
@@ -48,8 +48,8 @@ void fields(auto&& visit, Of<RunEntry> auto& s) {
 
 /// One number over the usable runs that share all values.
 struct NumberOverRuns {
-  std::string name;
-  std::string unit;
+  std::string name{};
+  std::string unit{};
   double mean = kNaN;
   double spread = kNaN;  ///< standard deviation between runs (n - 1); NaN with one run
   double error = kNaN;   ///< standard error of the mean; with one run that of the run itself
@@ -71,10 +71,10 @@ void fields(auto&& visit, Of<NumberOverRuns> auto& s) {
 
 /// One choice of values, whatever the seeds.
 struct PointEntry {
-  std::string name;
-  std::map<std::string, std::string> values;
+  std::string name{};
+  std::map<std::string, std::string> values{};
   std::size_t runs = 0;  ///< asked for
-  std::vector<NumberOverRuns> numbers;
+  std::vector<NumberOverRuns> numbers{};
 };
 
 void fields(auto&& visit, Of<PointEntry> auto& s) {
@@ -86,11 +86,11 @@ void fields(auto&& visit, Of<PointEntry> auto& s) {
 
 /// How far one run is from the reference.
 struct RunNorm {
-  std::string run;
-  std::string of;  ///< "axial stress, law against law"
+  std::string run{};
+  std::string of{};  ///< "axial stress, law against law"
   double percent = kNaN;
   double error = kNaN;  ///< standard error over samples
-  std::string reason;   ///< why there is none
+  std::string reason{};   ///< why there is none
 };
 
 void fields(auto&& visit, Of<RunNorm> auto& s) {
@@ -124,6 +124,12 @@ void fields(auto&& visit, Of<SetSummary> auto& s) {
   visit("reference", s.reference, kLeftOut);
   visit("norms", s.norms, kLeftOut);
 }
+
+/// Every number that one of the runs has, once, in the order in which they first appear.
+std::vector<RunValue> numbers_of(const std::vector<RunEntry>& runs);
+
+/// "axial stress [Pa]"
+std::string with_unit(const std::string& name, const std::string& unit);
 
 /// "bodies = 40, mu = 0.3": keys by their last parts where these tell them apart; "all runs" without any.
 std::string point_name(const std::vector<SweptKey>& over, const std::map<std::string, std::string>& values);

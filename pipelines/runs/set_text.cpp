@@ -15,25 +15,11 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : name + " [" + unit + "]";
-}
-
 /// A, B, ..., Z, A2, B2, ...
 std::string letter(std::size_t k) {
   constexpr std::size_t kLetters = 26;
   const std::string one(1, static_cast<char>('A' + k % kLetters));
   return k < kLetters ? one : one + std::to_string(k / kLetters + 1);
-}
-
-/// Every number that one of the runs has, in the order in which they first appear.
-std::vector<RunValue> all_numbers(const SetSummary& summary) {
-  std::vector<RunValue> out;
-  for (const RunEntry& run : summary.runs)
-    for (const RunValue& v : run.numbers)
-      if (std::none_of(out.begin(), out.end(), [&](const RunValue& known) { return known.name == v.name; }))
-        out.push_back(v);
-  return out;
 }
 
 std::string cell_of(const RunEntry& run, const std::string& number) {
@@ -176,7 +162,7 @@ std::string curves_text(const SetSummary& summary, const std::string& base) {
 
 std::string numbers_text(const SetSummary& summary) {
   std::string text;
-  const std::vector<RunValue> numbers = all_numbers(summary);
+  const std::vector<RunValue> numbers = numbers_of(summary.runs);
   if (summary.seeds.size() > 1)
     text += over_seeds(summary);
   else
@@ -186,7 +172,7 @@ std::string numbers_text(const SetSummary& summary) {
 
 TextTable table_of(const SetSummary& summary) {
   TextTable table;
-  const std::vector<RunValue> numbers = all_numbers(summary);
+  const std::vector<RunValue> numbers = numbers_of(summary.runs);
   table.header = {"run"};
   for (const SweptKey& one : summary.over) table.header.push_back(one.key);
   table.header.insert(table.header.end(), {"seed", "status"});

@@ -147,13 +147,15 @@ class ReportInABrowser(unittest.TestCase):
         share = self.script(PAINTED)
         ActionChains(self.browser).scroll_from_origin(ScrollOrigin.from_element(canvas), 0, -300).perform()
         self.wait_for(lambda: self.script(PAINTED) > 1.1 * share, "it does not zoom")
-        self.browser.find_element(By.CSS_SELECTOR, "#packing-view button").click()
+        self.browser.find_element(By.CSS_SELECTOR, "#packing-view button:not([name=play])").click()
         self.wait_for(lambda: self.script(PAINTED) < 1.1 * share, "the view is not reset")
         label = self.browser.find_element(By.CSS_SELECTOR, "#packing-view .below span")
         last = label.text
         self.script("const s = document.querySelector('#packing-view [name=state]'); s.value = 0; s.dispatchEvent(new Event('input'))")
         self.assertRegex(label.text, r"(Δ|strain) = ")
         self.assertNotEqual(label.text, last)
+        self.browser.find_element(By.CSS_SELECTOR, "#packing-view [name=play]").click()
+        self.wait_for(lambda: label.text == last, "it does not play to the last state")
 
     def test_7_every_state_colour_and_cut_can_be_shown(self):
         self.to_canvas()

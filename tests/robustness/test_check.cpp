@@ -202,7 +202,8 @@ steps = 1000
 
 TEST_F(Check, CardsAndTablesSayWhatToMind) {
   EXPECT_TRUE(warned(facts(kCard), "grains overlap by up to 0.81"));
-  EXPECT_TRUE(warned(facts(kRoot + "/tests/reference/law/two_fractions.toml"), "soft neighbours of ratio 1 are given back only to"));
+  EXPECT_TRUE(warned(facts(kRoot + "/tests/reference/law/two_fractions.toml"),
+                     "soft neighbours of ratio 1 are given back only to"));
 }
 
 TEST_F(Check, SummariesAndRunDirectories) {
@@ -227,6 +228,38 @@ TEST_F(Check, SummariesAndRunDirectories) {
   EXPECT_EQ(run_the_program("check '" + run + "/summary.json'").status, 2);
   write_text_atomic(run + "/summary.json", "{");
   EXPECT_EQ(run_the_program("check '" + run + "'").status, 2);
+}
+
+/// What people bring is told apart from scenes, and its units are looked at.
+TEST_F(Check, TablesOfDataSayWhatTheyAre) {
+  const json press = facts(kRoot + "/pipelines/press_test.csv");
+  EXPECT_EQ(press["kind"], "force curves");
+  EXPECT_EQ(press["samples"], 3);
+  EXPECT_EQ(press["points"], 45);
+  EXPECT_TRUE(press["warnings"].empty()) << press["warnings"];
+  const std::string data = directory_.file("data.csv");
+  const auto written = [&](const std::string& text) {
+    write_text_atomic(data, text);
+    return facts(data);
+  };
+  const std::string head = "# kind = soft-solid\n# Rs = 16 mm\n# E = 0.5 MPa\nhn [mm], Fn [N]\n";
+  EXPECT_TRUE(warned(written(head + "1, 10\n2, 100\n3, 500\n4, 1000\n5, 2600\n"), "check the units"));
+  EXPECT_TRUE(warned(written(head + "1, -.01\n2, -.1\n3, -.5\n4, -1\n5, -2\n"), "compression counts positive"));
+  EXPECT_TRUE(warned(written("hn [mm], Fn [N]\n1, 1\n2, 2\n3, 3\n4, 4\n5, 5\n"), "--radius"));
+  EXPECT_EQ(written("opening [mm], passing [%]\n1, 0\n2, 40\n4, 100\n")["kind"], "a sieve curve");
+  EXPECT_EQ(written("radius [mm]\n1\n2\n")["kind"], "radii of grains");
+  write_text_atomic(data, "colour, taste\n1, 2\n");
+  const test::ProgramOutcome other = run_the_program("check '" + data + "'");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.output.find("a table of data, no scene"), std::string::npos) << other.output;
+}
+
+TEST_F(Check, ARadiusOfMetresIsMinded) {
+  const std::string scene =
+      "kind = \"soft-particle\"\n[packing]\nshell_radius = 16\ntrials = 100\npolydispersity = 4.0\n"
+      "count = 2\nbeta = 8.0\n[measure]\nrelaxation = \"damped\"\n[measure.soft_solid]\ndeltas = [0.2]\n";
+  EXPECT_TRUE(warned(scene_facts(scene), "shell_radius is 16 m"));
+  EXPECT_FALSE(warned(scene_facts(scene, "--set 'packing.shell_radius=16 mm'"), "shell_radius is"));
 }
 
 TEST_F(Check, TakesAMoment) {

@@ -44,7 +44,7 @@ void expect(const std::string& arguments, int status, const std::string& words) 
 TEST(CommandLine, HelpAndVersionAreGood) {
   expect("--help", 0, "macrosim");
   expect("--version", 0, "softgrain 0.");
-  for (const char* command : {"run", "microsim", "calibrate", "macrosim", "compare", "report", "check"}) {
+  for (const char* command : {"run", "microsim", "calibrate", "macrosim", "sweep", "compare", "report", "check"}) {
     expect(std::string(command) + " --help", 0, "--threads");
     expect(std::string(command) + " --help", 0, "--resume");
   }
@@ -64,7 +64,10 @@ TEST(CommandLine, BadOptionsAreBadInput) {
   expect("run x.toml --bogus", 2, "--bogus");
   expect("run x.toml y.toml", 2, "run needs 1 PIPELINE.toml, 2 given");
   expect("run", 2, "run needs 1 PIPELINE.toml, 0 given");
-  expect("compare a b c", 2, "compare needs at most 2 RUN, 3 given");
+  expect("compare", 2, "compare needs at least 1 RUN, 0 given");
+  expect("compare absent_a absent_b absent_c", 4, "absent_a: no such file or directory");
+  expect("sweep x.toml y.toml --over a=1", 2, "sweep needs 1 SCENE.toml, 2 given");
+  expect("calibrate x.csv --seeds 1..2", 2, "--seeds");
   expect("run x.toml --law l.toml", 2, "--law");
 }
 

@@ -126,18 +126,26 @@ TEST(PythonReader, ReadsParticles) {
   }
 }
 
-TEST(PythonReader, ExampleRuns) {
+void expect_example(const KindScene& scene, const std::vector<std::string>& words) {
   const std::string python = python_with_h5py();
   if (python.empty()) GTEST_SKIP() << "no Python with h5py (Debian: python3-h5py python3-numpy)";
-  const KindRuns runs({"soft-particle", "microsim", kTinySoftParticle, 0});
+  const KindRuns runs(scene);
   ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a"))), 0));
   const std::string picture = runs.out("picture.png");
   const ProgramOutcome done = output_of("PYTHONDONTWRITEBYTECODE=1 " + python + " '" + kPackage + "/example.py' '" +
                                         runs.out("a") + "' '" + picture + "'");
-  EXPECT_NE(done.output.find("strongest"), std::string::npos) << done.output;
+  for (const std::string& word : words) EXPECT_NE(done.output.find(word), std::string::npos) << done.output;
   if (done.output.find("matplotlib is not installed") != std::string::npos) GTEST_SKIP() << done.output;
   EXPECT_EQ(done.status, 0) << done.output;
   EXPECT_GT(std::filesystem::file_size(picture), 10000U);
+}
+
+TEST(PythonReader, ExampleRuns) { expect_example({"soft-particle", "microsim", kTinySoftParticle, 0}, {"strongest"}); }
+
+/// A macro run has neither measurements nor a law of its own.
+TEST(PythonReader, ExampleRunsOnAMacroRun) {
+  expect_example({"macro", "macrosim", kTinyMacro, 0},
+                 {"law, sample 0: axial stress", "shelled, sample 0: axial stress", "no law in this run"});
 }
 
 }  // namespace

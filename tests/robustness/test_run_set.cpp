@@ -1,5 +1,5 @@
-// Several runs at once: over seeds, over keys, compared; what is refused, what is resumed, and what the set says of a run
-// that failed.
+// Several runs at once: over seeds, over keys, compared; what is refused, what is resumed, and what the set says of a
+// run that failed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -150,8 +150,9 @@ TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
 
 /// Stopped in the midst and gone on with: the same numbers as without a stop.
 TEST_F(RunSet, AnInterruptedSweepGoesOnWhereItWas) {
-  const std::vector<std::string> words{"sweep",  file("macro.toml"), "--over",  "macro.bodies=40,50", "--set", "macro.steps=20",
-                                       "--quiet", "--threads",        "1"};
+  const std::vector<std::string> words{"sweep", file("macro.toml"), "--over",  "macro.bodies=40,50",
+                                       "--set", "macro.steps=20",   "--quiet", "--threads",
+                                       "1"};
   const auto arguments = [&](const std::string& out, bool resume) {
     std::vector<std::string> all = words;
     all.insert(all.end(), {"--out", file(out)});

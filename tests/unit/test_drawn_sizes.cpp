@@ -134,6 +134,39 @@ TEST(DrawnSizes, OfSingleParticlesWithoutOverlapAcrossTheCell) {
   EXPECT_EQ(same.system.particles.sphere[30].x[0], p.sphere[30].x[0]);
   const ParticlesScene other = read_particles_scene<3>(Scene::parse(text, "s", {"particles.seed=2"}));
   EXPECT_NE(other.system.particles.sphere[30].x[0], p.sphere[30].x[0]);
+  // At the top level, as in scenes of all kinds; the command line goes first.
+  const auto place = [&](const std::vector<std::string>& set, const std::optional<std::uint64_t>& seed = {}) {
+    const ParticlesScene drawn = read_particles_scene<3>(Scene::parse(text, "s", set), seed);
+    EXPECT_EQ(drawn.seed, 2U);
+    return drawn.system.particles.sphere[30].x[0];
+  };
+  EXPECT_EQ(place({"seed=2"}), other.system.particles.sphere[30].x[0]);
+  EXPECT_EQ(place({"seed=3"}, 2), other.system.particles.sphere[30].x[0]);
+}
+
+/// Where nothing is drawn a seed would have no effect; two of them would be one too many.
+TEST(DrawnSizes, ASeedOfSingleParticlesNeedsSomethingToDraw) {
+  const std::string grain =
+      "kind = \"particles\"\n[material.a]\ndensity = 1.0\nE = 1.0\nnu = 0.2\n[[particle]]\nmaterial = \"a\"\nradius = "
+      "1.0\nposition = [0.0, 0.0, 0.0]\n[time]\nstep = 0.1\nend = 0.2\n";
+  const std::string drawn =
+      grain +
+      "[particles]\nmaterial = \"a\"\ncount = 2\nseed = 3\nlow = [2.0, 2.0, 2.0]\nhigh = [9.0, 9.0, 9.0]\nsizes = { "
+      "form = \"power-law\", exponent = 3.0, radius_min = 0.5, radius_max = 1.0 }\n[[contact]]\npair = [\"a\", "
+      "\"a\"]\nlaw = \"hertz-tsuji\"\nrestitution = 0.5\nmu = 0.5\n";
+  const auto complaint = [](const std::string& text, const std::vector<std::string>& set,
+                            const std::optional<std::uint64_t>& seed) -> std::string {
+    try {
+      (void)read_particles_scene<3>(Scene::parse(text, "s", set), seed);
+    } catch (const BadInput& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(complaint(grain, {"seed=1"}, {}).find("nothing is drawn at random"), std::string::npos);
+  EXPECT_NE(complaint(grain, {}, 1).find("--seed: nothing is drawn at random"), std::string::npos);
+  EXPECT_NE(complaint(drawn, {"seed=1"}, {}).find("seed = 3: is given at the top level too"), std::string::npos);
+  EXPECT_EQ(complaint(drawn, {}, {}), "");
 }
 
 TEST(DrawnSizes, OfPowdersAreKept) {

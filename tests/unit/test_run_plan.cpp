@@ -79,11 +79,8 @@ RunEntry entry(const std::string& mu, double stress, RunStatus status = RunStatu
 
 /// Mean 4, deviation sqrt(((-2)^2 + 0 + 2^2)/2) = 2, error 2/sqrt(3); the run that is not usable counts nowhere.
 TEST(RunPlan, NumbersOverRunsAreThoseOfTheGoodOnes) {
-  const std::vector<RunEntry> runs{entry("0.1", 2.0),
-                                   entry("0.2", 10.0, RunStatus::good, 0.5),
-                                   entry("0.1", 4.0),
-                                   entry("0.1", 6.0),
-                                   entry("0.1", 1e9, RunStatus::not_usable)};
+  const std::vector<RunEntry> runs{entry("0.1", 2.0), entry("0.2", 10.0, RunStatus::good, 0.5), entry("0.1", 4.0),
+                                   entry("0.1", 6.0), entry("0.1", 1e9, RunStatus::not_usable)};
   const std::vector<PointEntry> points = points_of({{"mu", {"0.1", "0.2"}}}, runs);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_EQ(points[0].name, "mu = 0.1");

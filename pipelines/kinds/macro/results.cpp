@@ -95,16 +95,21 @@ std::vector<RunValue> values_beside(const RunData& run) {
 std::vector<RunCurve> curves_beside(const RunData& run) { return stress_curves(by_engine(run.macro)); }
 
 NextSteps next_of(const RunData& run) {
-  const bool twin = !curves_of(run.macro, "shelled").empty();
-  const bool several =
-      std::any_of(run.macro.begin(), run.macro.end(), [](const MacroCurve& c) { return c.sample > 0; });
+  const auto any = [&](auto&& is) { return std::any_of(run.macro.begin(), run.macro.end(), is); };
+  const bool twin = any([](const MacroCurve& c) { return c.twin() == Twin::shelled; });
+  const bool pair = any([](const MacroCurve& c) { return c.law.form == Crowd::pair; });
+  const bool several = any([](const MacroCurve& c) { return c.sample > 0; });
+  const char* law = !twin ? "How far the law is off: the resolved twin of the same scene (`--set macro.resolved=true`; "
+                            "`softgrain check` says "
+                            "what it takes), or error bars from the law itself (`--bands 64`)."
+                    : pair ? "The pair law knows one contact: take one that knows all, `softgrain macrosim SCENE.toml "
+                             "--law LAW_TABLE.toml` (one "
+                             "comes along, `results/law_table`; `softgrain run pipelines/law_table.toml` measures one)."
+                           : "Where law and twin differ: `--bands 64` shows what the law is not sure of, `softgrain "
+                             "law plan LAW_TABLE.toml --for "
+                             "SCENE.toml` what to measure next.";
   return {
-      twin ? "Where law and twin differ, more of the law helps: `softgrain law plan LAW_TABLE.toml --for SCENE.toml` "
-             "says "
-             "which measurement; `--bands 64` draws what the law is not sure of."
-           : "How far the law is off: the resolved twin of the same scene (`--set macro.resolved=true`; `softgrain "
-             "check` "
-             "says what it takes), or error bars from the law itself (`--bands 64`).",
+      law,
       several
           ? "What the result depends on: `softgrain sweep SCENE.toml --over macro.bodies=40,80,160 --seeds 1..4`."
           : "One sample tells nothing of scatter: `softgrain macrosim SCENE.toml --seeds 1..8` gives mean, spread and "

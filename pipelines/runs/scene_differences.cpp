@@ -1,4 +1,4 @@
-#include "pipelines/compare/scene_differences.h"
+#include "pipelines/runs/scene_differences.h"
 
 #include <fmt/format.h>
 

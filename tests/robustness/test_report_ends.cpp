@@ -1,0 +1,41 @@
+// What the report of every kind has at its head and at its end, and the grading curve in between.
+#include <gtest/gtest.h>
+
+#include "tests/support/every_kind.h"
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+class ReportEnds : public ::testing::TestWithParam<KindScene> {};
+
+TEST_P(ReportEnds, EveryKindNamesItsMaterialAndSaysWhatToDoNext) {
+  const KindRuns runs(GetParam());
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("a"))), GetParam().status));
+  const std::string html = read_text(runs.out("a") + "/report.html");
+  const auto has = [&](const std::string& words) { return html.find(words) != std::string::npos; };
+  const std::size_t next = html.find("<h2>What to do next</h2>");
+  ASSERT_NE(next, std::string::npos);
+  EXPECT_GT(next, html.find("<section id=\"provenance\""));
+  const std::string steps = html.substr(next, html.find("</section>", next) - next);
+  std::size_t lines = 0;
+  for (std::size_t at = steps.find("<li>"); at != std::string::npos; at = steps.find("<li>", at + 1)) ++lines;
+  EXPECT_EQ(lines, 2U) << steps;
+  EXPECT_EQ(steps.find('`'), std::string::npos) << "commands are marked as such";
+  EXPECT_TRUE(has("<dt>Material</dt>") || has("Rs = ")) << "of what it is made";
+  if (runs.kind().name == "macro" || runs.kind().name == "macro-comparison") {
+    EXPECT_TRUE(has("<dt>Law taken</dt>"));
+    EXPECT_TRUE(has("numbers ")) << "the hash";
+  }
+  const std::set<std::string> bodies{"macro", "particles", "disks", "powder", "grain-box", "soft-particle"};
+  if (bodies.contains(runs.kind().name)) {
+    EXPECT_TRUE(has("Grading curve"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ReportEnds, ::testing::ValuesIn(quick_kinds()), name_of_kind);
+
+}  // namespace
