@@ -104,6 +104,9 @@ std::vector<HeadLine> material_lines(const RunData& run) {
   std::vector<HeadLine> lines;
   for (const MacroCurve& c : run.macro)
     if (c.start.youngs_modulus > 0.0) add_once(lines, "Material", started_with(c.start));
+  for (const ComparedCurves& scene : run.macro_scenes)
+    for (const MacroCurve& c : scene.curves)
+      if (c.start.youngs_modulus > 0.0) add_once(lines, "Material", started_with(c.start));
   if (!lines.empty()) return {lines.front()};
   const auto summary = run.summary_as<AnySummary>();
   if (!summary.provenance || summary.provenance->scene.empty() || is_set(run)) return {};

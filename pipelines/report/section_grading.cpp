@@ -112,9 +112,10 @@ std::string grading_section(const RunData& run) {
   for (std::size_t k = 0; k < curves.size(); ++k)
     if (curves[k].unit == curves.front().unit) plot.add(passing(curves[k], k));
   return section("grading", "Grading curve",
-                 figure_row({figure(plot.svg(),
-                                    "Share of the volume in grains smaller than the diameter, as a sieve analysis "
-                                    "gives it; numbers of grains behind the names.")}));
+                 figure_row({figure(
+                     plot.svg(),
+                     "Share of the volume (of disks the area) in grains smaller than the diameter, as a sieve analysis "
+                     "gives it; numbers of grains behind the names.")}));
 }
 
 }  // namespace softgrain::report

@@ -124,7 +124,7 @@ std::vector<std::string> lines_of(const std::string& path) {
 /// What a run leaves beside results.
 bool is_housekeeping(const fs::path& file) {
   static const std::set<std::string> names{"log.txt", ".lock", "figures"};
-  return names.contains(file.filename().string());
+  return names.contains(file.filename().string()) || file.extension() == ".xdmf";  // of states that are gone
 }
 
 /// Runs of an earlier set that the new one does not have: their results go, and the directory if nothing else is there.

@@ -18,7 +18,7 @@ using namespace softgrain::test;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kMacro = R"(kind = "macro"
+constexpr const char* kOfSets = R"(kind = "macro"
 title = "a macro scene"
 law = "law.toml"
 [macro]
@@ -32,7 +32,7 @@ class RunSet : public ::testing::Test {
  protected:
   RunSet() {
     save_card(synthetic::card(), file("law.toml"));
-    write_text_atomic(file("macro.toml"), kMacro);
+    write_text_atomic(file("macro.toml"), kOfSets);
   }
   [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
   [[nodiscard]] std::string quoted(const std::string& name) const { return "'" + file(name) + "' "; }
@@ -137,6 +137,7 @@ TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
   expect(program("sweep", "--over macro.bodies=6,7 --set macro.steps=3 --resume " + out), 2, {"another scene"});
   LawCard stiffer = synthetic::card();
   stiffer.pairs[0].normal.a.value *= 2.0;
+  stiffer.pairs[0].normal.c.value *= 2.0;
   save_card(stiffer, file("law.toml"));
   expect(program("sweep", "--over macro.bodies=6,7 --resume " + out), 2, {"its law is another"});
   // Anew: runs of the earlier sweep go, files of others stay.
@@ -178,7 +179,7 @@ TEST_F(RunSet, AnInterruptedSweepGoesOnWhereItWas) {
 /// Too few passes for one of them: status 3, the others stand, and means leave it out.
 TEST_F(RunSet, ARunThatDoesNotConvergeIsToldByStatusAndSummary) {
   const std::string out = "--out " + quoted("out");
-  expect(program("sweep", "--over macro.max_passes=1,20000 " + out), 3, {"run max_passes=1 is not usable"});
+  expect(program("sweep", "--over macro.max_passes=10,20000 " + out), 3, {"run max_passes=10 is not usable"});
   const json summary = summary_of(file("out"));
   EXPECT_EQ(summary["status"], "not usable");
   EXPECT_EQ(summary["runs"][0]["status"], "not usable");

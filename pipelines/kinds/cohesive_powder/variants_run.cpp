@@ -11,6 +11,7 @@
 #include "pipelines/kinds/cohesive_powder/variant_entry.h"
 #include "pipelines/kinds/cohesive_powder/variant_table.h"
 #include "pipelines/kinds/cohesive_powder/variants.h"
+#include "pipelines/report/report.h"
 
 namespace softgrain {
 
@@ -98,9 +99,13 @@ ExitStatus run_powder_variants(const Scene& scene, const CommonOptions& options)
   summary.head = {usable ? RunStatus::good : RunStatus::not_usable,
                   scene.root().text("title", ""),
                   remarks_on(entries),
-                  {{"table", context.path("table.csv")}, {"table for people", context.path("table.md")}}};
+                  {{"table", context.path("table.csv")},
+                   {"table for people", context.path("table.md")},
+                   {"report", context.path("report.html")}}};
   context.finish(json_of(summary), context.provenance(scene, seed),
-                 people + "tables: " + context.path("table.md") + ", " + context.path("table.csv"));
+                 people + "tables: " + context.path("table.md") + ", " + context.path("table.csv") +
+                     "; report: " + context.path("report.html"));
+  write_report(context.directory());
   return usable ? ExitStatus::good : ExitStatus::not_usable;
 }
 

@@ -18,18 +18,29 @@ void check_grain_box_file(const std::string& path, Findings& out) {
   out.add("kind", "grain boxes", fmt::format("grain boxes: {} packs", load_grain_boxes(path).size()));
 }
 
+/// "E = 70 GPa, nu = 0.2, radii 0.07 to 0.13 mm"
+HeadLine grains_line(const GrainBoxMaterial& m) {
+  return {"Grains",
+          fmt::format("E = {} GPa, nu = {:g}, radii {} to {} mm.", format_number(1e-9 * m.youngs_modulus),
+                      m.poisson_ratio, format_number(1e3 * m.radius_min, 3), format_number(1e3 * m.radius_max, 3))};
+}
+
 std::vector<HeadLine> lines_of(const RunData& run) {
   const auto* boxes = run.file("grain_box.h5", load_grain_boxes);
   if (boxes == nullptr) return {};
-  if (boxes->size() > 3) return {{"Packs", fmt::format("{} packs of grains.", boxes->size())}};
   std::vector<HeadLine> lines;
+  if (!boxes->empty()) lines.push_back(grains_line(boxes->front().spec.material));
+  if (boxes->size() > 3) {
+    lines.emplace_back("Packs", fmt::format("{} packs of grains.", boxes->size()));
+    return lines;
+  }
   for (const GrainBoxResult& r : *boxes) {
     const auto points = r.points_of(BoxPhase::loading);
     if (points.empty()) continue;
-    lines.emplace_back(
-        "Pack " + r.spec.name,
-        fmt::format("{} grains, {} loading to a confining stress of {} MPa; {} states.", format_count(r.spec.grains),
-                    r.spec.loading.test, format_number(points.back()->pressure * 1e-6, 4), r.state.points.size()));
+    lines.emplace_back("Pack " + r.spec.name,
+                       fmt::format("{} grains, mu = {:g}, {} loading to a confining stress of {} MPa; {} states.",
+                                   format_count(r.spec.grains), r.spec.friction, r.spec.loading.test,
+                                   format_number(points.back()->pressure * 1e-6, 4), r.state.points.size()));
   }
   return lines;
 }
