@@ -157,6 +157,12 @@ void keep_names(const RunContext& context, const RunPlan& plan) {
   write_text_atomic(path, text);
 }
 
+/// What an earlier part of a set that goes on said of all its runs: no longer true while runs are added.
+void forget_summary(const RunContext& context) {
+  std::error_code ignored;
+  for (const char* file : {"summary.json", "report.html", "table.csv"}) fs::remove(context.path(file), ignored);
+}
+
 RunEntry entry_of(const RunPlan& plan, const PlannedRun& planned) {
   RunEntry entry{.name = planned.name, .directory = planned.name};
   for (std::size_t k = 0; k < plan.over.size(); ++k) entry.values[plan.over[k].key] = planned.values[k];
@@ -229,6 +235,7 @@ ExitStatus run_set(const CommonOptions& options, const RunPlan& plan, const std:
   const std::vector<ReadyRun> ready = ready_runs(options, plan);
   const RunContext context(options, command, fs::path(scene.path()).stem().string() + "_" + suffix);
   keep_names(context, plan);
+  forget_summary(context);
   SetSummary summary = summarise(scene, plan, make_runs(ready, plan, context));
   for (const char* file : {"report.html", "table.csv"}) summary.head.files[file] = context.path(file);
   write_text_atomic(context.path("table.csv"), as_csv(table_of(summary)));

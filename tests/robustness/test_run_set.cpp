@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/io/directory_lock.h"
 #include "common/io/text_file.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
@@ -133,6 +134,14 @@ TEST_F(RunSet, FinishedRunsAreNotRepeatedAndMoreCanBeAdded) {
   EXPECT_EQ(fs::last_write_time(file("out") + "/bodies=6/macro.h5"), first);
   EXPECT_TRUE(fs::exists(file("out") + "/bodies=7/macro.h5"));
   EXPECT_EQ(summary_of(file("out"))["runs"].size(), 3U);
+  // While runs are added nothing looks as if all were there.
+  fs::create_directories(file("out") + "/bodies=9");
+  {
+    const DirectoryLock somebody(file("out") + "/bodies=9");
+    expect(program("sweep", "--over macro.bodies=6,9 --resume " + out), 4, {"bodies=9"});
+    EXPECT_FALSE(fs::exists(file("out") + "/summary.json"));
+    EXPECT_TRUE(fs::exists(file("out") + "/bodies=6/summary.json"));
+  }
   // Not with another scene, nor with another law.
   expect(program("sweep", "--over macro.bodies=6,7 --set macro.steps=3 --resume " + out), 2, {"another scene"});
   LawCard stiffer = synthetic::card();
