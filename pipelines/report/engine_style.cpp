@@ -19,8 +19,8 @@ struct Known {
 };
 
 constexpr Known kKnown[] = {
-    {"law", "soft particles with the fitted law", palette::blue, "", Marker::circle},
-    {"pair", "pair law", palette::blue, "", Marker::circle},
+    {"law", "soft particles with their law", palette::blue, "", Marker::circle},
+    {"pair", "pair law (one contact)", palette::green, "", Marker::triangle},
     {"bag", "bag law", palette::purple, "", Marker::diamond},
     {"directional", "directional law", palette::black, "", Marker::hollow},
     {"shelled", "resolved twin (shelled)", palette::vermillion, "6 3", Marker::square},

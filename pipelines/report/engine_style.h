@@ -9,7 +9,7 @@
 
 namespace softgrain::report {
 
-/// "soft particles with the fitted law" for "law" ...; the name itself when it is not known.
+/// "soft particles with their law" for "law" ...; the name itself when it is not known.
 std::string engine_name(const std::string& engine);
 
 SeriesStyle engine_style(const std::string& engine);

@@ -37,7 +37,8 @@ struct PipelineResult {
   LawCard card;
   std::vector<MacroCurve> curves;
   std::vector<BandRecord> bands;
-  std::optional<Comparison> comparison;
+  std::optional<Comparison> comparison;       ///< of engine "law" with its twin
+  std::optional<Comparison> pair_comparison;  ///< of engine "pair", where "law" is one of crowds
   std::vector<std::string> remarks;
   bool usable = true;
 };
@@ -60,11 +61,13 @@ void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
 bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   std::string why;
   try {
-    const NamedLaws law = pair_law_of(result.card, setup.macro->spec, "law");
-    LawSources sources;
-    sources.card = result.card;
-    result.curves = run_macro_stage(*setup.macro, {law}, result.measured.packings, run,
-                                    draws_for(*setup.macro, sources, {law}, 0.0), result.bands);
+    const double fraction = mean_solid_fraction(result.measured.packings);
+    LawSources sources = setup.crowd.value_or(LawSources{});
+    if (!setup.crowd) sources.card = result.card;
+    std::vector<NamedLaws> laws{pair_law_of(result.card, setup.macro->spec, setup.crowd ? "pair" : "law")};
+    if (setup.crowd) laws.insert(laws.begin(), scene_law(sources, setup.macro->spec, fraction, "law"));
+    result.curves = run_macro_stage(*setup.macro, laws, result.measured.packings, run,
+                                    draws_for(*setup.macro, sources, {laws.front()}, fraction), result.bands);
     return true;
   } catch (const BadInput& e) {  // a law that did not cross its threshold or could not be fitted
     why = e.what();
@@ -76,6 +79,22 @@ bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResul
   return false;
 }
 
+std::optional<Comparison> with_twin(const std::string& engine, PipelineResult& result) {
+  try {
+    Comparison c = compare_curves(curves_of(result.curves, engine), curves_of(result.curves, "shelled"));
+    for (const std::string& one : c.undefined) {
+      result.remarks.push_back(engine + " and twin: " + one);
+      result.usable = false;
+    }
+    return c;
+  } catch (const BadInput& e) {
+    // No sample with two usable curves: said in the summary, what was computed is kept.
+    result.remarks.push_back(engine + " and twin cannot be compared: " + e.what());
+    result.usable = false;
+    return std::nullopt;
+  }
+}
+
 void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   if (!setup.macro || !run_macro_samples(setup, run, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
@@ -83,17 +102,8 @@ void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& resul
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   result.usable = result.usable && all_carry_stress(result.curves);
   if (!has_twin(*setup.macro, Twin::shelled)) return;
-  try {
-    result.comparison = compare_curves(curves_of(result.curves, "law"), curves_of(result.curves, "shelled"));
-    for (const std::string& one : result.comparison->undefined) {
-      result.remarks.push_back("law and twin: " + one);
-      result.usable = false;
-    }
-  } catch (const BadInput& e) {
-    // No sample with two usable curves: said in the summary, what was computed is kept.
-    result.remarks.emplace_back(std::string("macro and twin cannot be compared: ") + e.what());
-    result.usable = false;
-  }
+  result.comparison = with_twin("law", result);
+  if (setup.crowd) result.pair_comparison = with_twin("pair", result);
 }
 
 struct PipelineSummary {
@@ -101,6 +111,7 @@ struct PipelineSummary {
   std::map<std::string, PairLawSummary> laws;
   MeasuredSummary measured;
   MacroSummary macro;
+  std::optional<MacroSummary> pair;  ///< by the pair law, where `macro` is by a law of crowds
   std::vector<BandRecord> bands;
   std::vector<BandedEnd> band_ends;
 };
@@ -110,6 +121,7 @@ void fields(auto&& visit, Of<PipelineSummary> auto& s) {
   visit("laws", s.laws);
   fields(visit, s.measured);
   fields(visit, s.macro);
+  visit("pair", s.pair, kLeftOut);
   visit("bands", s.bands);
   visit("band_ends", s.band_ends);
 }
@@ -133,6 +145,11 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.macro.resolved = summary_of(r.curves, "shelled");
   if (setup.macro && has_twin(*setup.macro, Twin::free)) s.macro.free = summary_of(r.curves, "free");
   if (r.comparison) s.macro.comparison = summary_of(*r.comparison);
+  if (setup.crowd) {
+    s.pair.emplace();
+    s.pair->macro = summary_of(r.curves, "pair");
+    if (r.pair_comparison) s.pair->comparison = summary_of(*r.pair_comparison);
+  }
   return s;
 }
 
@@ -141,12 +158,17 @@ std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", 
 std::string people_text(const PipelineResult& r) {
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
+  const bool crowd = r.pair_comparison.has_value();
   if (r.comparison)
     text += fmt::format(
-        "macro against its resolved twin: stress differs by {} %, {} times fewer contact evaluations, {} times less "
+        "macro{} against its resolved twin: stress differs by {} %, {} times fewer contact evaluations, {} times less "
         "time\n",
+        crowd ? ", law of all neighbours at once (from the table)," : "",
         rounded(100.0 * r.comparison->axial_difference.mean), rounded(r.comparison->speedup_contact_evaluations),
         rounded(r.comparison->speedup_seconds));
+  if (crowd)
+    text += fmt::format("macro, pair law (as published, measured above): stress differs by {} %\n",
+                        rounded(100.0 * r.pair_comparison->axial_difference.mean));
   for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
   return text;
 }
@@ -154,7 +176,9 @@ std::string people_text(const PipelineResult& r) {
 ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   const PipelineSetup setup = read_pipeline_setup(scene);
   const Run run(scene, options, "run", setup.measure.seed,
-                {.text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "")});
+                {.files = setup.crowd ? setup.crowd->files : std::vector<std::string>{},
+                 .text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
+                         (setup.crowd ? setup.crowd->text : "")});
   PipelineResult result;
   run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);

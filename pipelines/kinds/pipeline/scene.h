@@ -8,6 +8,7 @@
 #include "common/io/scene.h"
 #include "pipelines/kinds/macro/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"
+#include "pipelines/law/named_laws.h"
 #include "pipelines/run/scene_kind.h"
 
 namespace softgrain {
@@ -17,6 +18,9 @@ struct PipelineSetup {
   MeasureSetup measure;
   FitOptions fit;
   std::optional<MacroSetup> macro;  ///< without [macro]: measurement and fit only
+  /// [law]: a table from elsewhere, of which the macro scene takes the law of crowds too, beside the pair law measured
+  /// here.
+  std::optional<LawSources> crowd;
 };
 
 /// Reads a scene of kind "pipeline" to the last key. Throws BadInput.
