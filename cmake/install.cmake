@@ -53,11 +53,12 @@ install(FILES ${softgrain_generated}/softgrainConfig.cmake ${softgrain_generated
   DESTINATION ${package_dir})
 
 # Scenes keep their place relative to the laws that they name.
-file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/pipelines/*.toml)
+file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/pipelines/*.toml ${PROJECT_SOURCE_DIR}/pipelines/*.csv)
 install(FILES ${scenes} DESTINATION ${softgrain_scenes}/pipelines)
 install(FILES pipelines/grainlearning_example/soft_particle.toml
   DESTINATION ${softgrain_scenes}/pipelines/grainlearning_example)
-install(DIRECTORY pipelines/python DESTINATION ${softgrain_scenes} PATTERN __pycache__ EXCLUDE PATTERN "*.egg-info" EXCLUDE)
+install(DIRECTORY pipelines/python DESTINATION ${softgrain_scenes}/pipelines
+  PATTERN __pycache__ EXCLUDE PATTERN binding EXCLUDE PATTERN "*.egg-info" EXCLUDE)
 foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 hierarchy/law_table.toml)
   get_filename_component(folder ${law} DIRECTORY)
   install(FILES results/${law} DESTINATION ${softgrain_scenes}/results/${folder})

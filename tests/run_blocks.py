@@ -88,7 +88,7 @@ RULES = [
     (r"ctest --preset [\w-]+|cmake --(build )?--preset [\w-]+|cmake --build --preset [\w-]+|cmake --preset [\w-]+",
      Elsewhere(PRESETS)),
     (r"cmake --install build/release --prefix /usr/local", Elsewhere("default suite: the test install")),
-    (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/softgrain_\*\.deb"
+    (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/(python3-)?softgrain_\*\.deb"
      r"|softgrain run /usr/share/softgrain/pipelines/quickstart\.toml",
      Elsewhere("by hand, in a bare Debian root: pipelines/guide/installing.md")),
     (r"\./softgrain (macrosim|sweep) my_scene\.toml .*|\./softgrain compare results/my_.*", OnBlock()),

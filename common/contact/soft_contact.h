@@ -60,16 +60,39 @@ struct SoftContact {
   /// Overlap below which the pair cannot interact [m].
   [[nodiscard]] double onset(const PairBodies& bodies) const { return delta * reference_radius(bodies); }
 
+  /// Delta as the law takes it: no more than where it is clamped.
+  template <class T>
+  [[nodiscard]] T taken_ratio(const T& overlap, const T& radius) const {
+    return least<T>(overlap / radius, range.clamp_at());
+  }
+  /// Whether nothing is felt at this Delta.
+  template <class T>
+  [[nodiscard]] Mask<T> idle_at(const T& ratio) const {
+    return ratio < delta || ratio <= 0.0;
+  }
+  /// The elastic part along the normal.
+  template <class T>
+  struct Elastic {
+    T force{};      ///< [N]
+    T stiffness{};  ///< [N/m]
+  };
+  /// At a Delta that is not idle.
+  template <class T>
+  [[nodiscard]] Elastic<T> elastic_at(const T& ratio, const T& radius) const {
+    const auto [force, slope] = normal.at(ratio);
+    return {modulus * radius * radius * force, modulus * radius * slope};
+  }
+
   template <int D, class T>
   [[nodiscard]] ContactResponse<D, T> evaluate(const ContactState<D, T>& s) const {
     ContactResponse<D, T> out;
     const T radius = s.constants.a;
-    const T ratio = least<T>(s.overlap / radius, range.clamp_at());
-    const Mask<T> idle = ratio < delta || ratio <= 0.0;
+    const T ratio = taken_ratio<T>(s.overlap, radius);
+    const Mask<T> idle = idle_at(ratio);
     if (!any(!idle)) return out;
-    const auto [force, slope] = normal.at(ratio);
-    out.elastic_force = modulus * radius * radius * force;
-    out.normal_stiffness = modulus * radius * slope;
+    const auto [force, stiffness_now] = elastic_at<T>(ratio, radius);
+    out.elastic_force = force;
+    out.normal_stiffness = stiffness_now;
     const T eta = s.constants.b * root(out.normal_stiffness);
     out.normal_force = out.elastic_force - eta * s.normal_speed;
     const T stiffness = modulus * radius * largest<T>(tangential.value(ratio), 0.0);

@@ -1,7 +1,11 @@
 // softgrain check: is this file sound, and what follows from it. Runs nothing that takes more than a moment.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
@@ -43,6 +47,14 @@ void check_file(const std::string& path, const CommonOptions& options, Findings&
     check_scene(path, options, out);
 }
 
+/// What people read, without the indentation.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line.substr(std::min<std::size_t>(2, line.size())));
+  return lines;
+}
+
 }  // namespace
 
 ExitStatus command_check(const CommonOptions& options) {
@@ -54,6 +66,7 @@ ExitStatus command_check(const CommonOptions& options) {
   out.facts["status"] = "good";
   out.facts["warnings"] = out.warnings();
   if (options.json) {
+    out.facts["lines"] = lines_of(out.lines);
     write_standard_output(out.facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return ExitStatus::good;
   }

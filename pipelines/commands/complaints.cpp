@@ -7,6 +7,7 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "common/core/words.h"
 
@@ -23,26 +24,59 @@ namespace {
 
 using nlohmann::json;
 
+/// What the parts of our messages are: "key = value: what is wrong, what is allowed; nearest is ...".
+struct Form {
+  const char* name;
+  std::regex text;
+};
+
+const std::vector<Form>& forms() {
+  static const std::vector<Form> known{
+      {"setting", std::regex("\\(--set ([^)]+)\\)")},
+      {"key", std::regex("^(?:unknown key |missing key )'([^']+)'")},
+      {"key", std::regex("^([A-Za-z_][A-Za-z0-9_.-]*)(?: = [^:]*)?: ")},
+      {"value", std::regex("^[A-Za-z_][A-Za-z0-9_.-]* = (\"[^\"]*\"|[^:]*): ")},
+      {"table", std::regex("^(?:unknown key|missing key) '[^']+' in \\[+([^\\]]+)\\]")},
+      {"allowed", std::regex("(known (?:keys )?are [^;]+)")},
+      {"allowed", std::regex("(must be [^;]+)")},
+      {"nearest", std::regex("nearest (?:known key )?is ['\"]([^'\"]+)['\"]")},
+      {"nearest", std::regex("did '([^']+)' at .* mean it\\?")}};
+  return known;
+}
+
 json error_object(const std::string& text) {
   static const std::regex placed("^([^:]+):([0-9]+): (.*)$");
+  static const std::regex set("^([^:]+ \\(--set [^)]+\\)): (.*)$");
   std::smatch parts;
-  if (!std::regex_match(text, parts, placed)) return {{"message", text}};
-  return {{"file", parts[1].str()}, {"line", std::stol(parts[2].str())}, {"message", parts[3].str()}};
+  json out;
+  if (std::regex_match(text, parts, placed))
+    out = {{"file", parts[1].str()}, {"line", std::stol(parts[2].str())}, {"message", parts[3].str()}};
+  else
+    out = {{"message", text}};
+  const std::string message = std::regex_match(text, parts, set) ? parts[2].str() : out["message"].get<std::string>();
+  for (const Form& form : forms()) {
+    const std::string& where = form.name == std::string("setting") ? text : message;
+    if (!out.contains(form.name) && std::regex_search(where, parts, form.text)) out[form.name] = parts[1].str();
+  }
+  return out;
 }
 
 }  // namespace
 
-int complain(ExitStatus status, const std::string& messages, bool as_json) {
-  const int number = static_cast<int>(status);
+nlohmann::json error_objects(const std::string& messages) {
   json errors = json::array();
   std::istringstream lines(messages);
-  for (std::string one; std::getline(lines, one);) {
-    // Not by fmt: it throws where standard error cannot be written, and the status is what is left to tell then.
-    (void)std::fputs(("softgrain: " + one + "\n").c_str(), stderr);
-    errors.push_back(error_object(one));
-  }
+  for (std::string one; std::getline(lines, one);) errors.push_back(error_object(one));
+  return errors;
+}
+
+int complain(ExitStatus status, const std::string& messages, bool as_json) {
+  const int number = static_cast<int>(status);
+  std::istringstream lines(messages);
+  // Not by fmt: it throws where standard error cannot be written, and the status is what is left to tell then.
+  for (std::string one; std::getline(lines, one);) (void)std::fputs(("softgrain: " + one + "\n").c_str(), stderr);
   if (!as_json) return number;
-  const json all{{"status", to_string(status)}, {"exit_status", number}, {"errors", errors}};
+  const json all{{"status", to_string(status)}, {"exit_status", number}, {"errors", error_objects(messages)}};
   const std::string text = all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   (void)std::fputs(text.c_str(), stdout);
   (void)std::fflush(stdout);

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "calibrate/bootstrap.h"
-#include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
 #include "common/data/crowd_replicates.h"
+#include "pipelines/law/crowd_middle.h"
 #include "pipelines/law/law_values.h"
 
 namespace softgrain::law {
@@ -16,70 +16,9 @@ namespace {
 
 constexpr std::size_t kEnough = 10;  ///< replicates for an interval
 
-template <class Law>
-concept CrowdContact = requires(const Law& law) {
-  law.form;
-  law.partner;
-};
-
 struct Neighbours {
-  PartnerKind kind = PartnerKind::plane;
-  double ratio = 0.0;
-  std::vector<Vec3> direction;
+  std::vector<CrowdNeighbour> around;
   std::vector<double> share;  ///< of Delta
-};
-
-/// What the loop would find at these overlaps: all contacts of the particle in the middle, one of each soft neighbour.
-template <class Law>
-class Middle {
- public:
-  Middle(const Law& law, const Neighbours& around, double delta) : law_(law) {
-    const double radius = around.kind == PartnerKind::plane ? 0.0 : around.ratio;
-    const PairConstants constants = law.pair_constants({1.0, radius, 0.0, 0.0});
-    for (std::size_t k = 0; k < around.direction.size(); ++k) {
-      ContactState<3> s;
-      s.overlap = delta * around.share[k];
-      s.normal = -around.direction[k];
-      s.constants = constants;
-      s.radius_i = 1.0;
-      s.radius_j = radius;
-      states_.push_back(s);
-      if (s.overlap > 0.0) law.share(s, true, own_);
-    }
-    if constexpr (Law::traits.needs_particle_pass) law.finish(own_);
-  }
-
-  [[nodiscard]] ContactResponse<3> response(std::size_t k) const {
-    ContactState<3> s = states_[k];
-    if (!(s.overlap > 0.0)) return {};
-    CrowdSum<3> other;
-    if constexpr (Law::traits.needs_particle_pass) {
-      law_.share(s, false, other);
-      law_.finish(other);
-      s.sum_i = &own_;
-      s.sum_j = &other;
-    }
-    return law_.evaluate(s);
-  }
-
-  /// Equivalent volume of the particle in the middle; of the pair law the largest of its contacts.
-  [[nodiscard]] double volume() const {
-    if constexpr (Law::traits.needs_particle_pass) return is_bag_ ? own_.volume : law_.form.equivalent_volume(own_);
-    double largest = 0.0;
-    for (const ContactState<3>& s : states_) {
-      CrowdSum<3> one;
-      if (s.overlap > 0.0) law_.share(s, true, one);
-      largest = std::max(largest, one.volume);
-    }
-    return largest;
-  }
-
- private:
-  static constexpr bool is_bag_ = Law::kForm == Crowd::bag;
-
-  const Law& law_;
-  CrowdSum<3> own_;
-  std::vector<ContactState<3>> states_;
 };
 
 struct Raw {
@@ -90,36 +29,36 @@ struct Raw {
   double volume = 0.0;
 };
 
-Raw ask(const AnyLaw& any, const Neighbours& around, double delta) {
+Raw ask(const CrowdLaws& laws, const Neighbours& neighbours, double delta) {
   Raw out;
-  std::visit(
-      [&]<class Law>(const Law& law) {
-        if constexpr (CrowdContact<Law>) {
-          const Middle<Law> middle(law, around, delta);
-          for (std::size_t k = 0; k < around.direction.size(); ++k)
-            out.force.push_back(middle.response(k).elastic_force);
-          const ContactResponse<3> first = middle.response(0);
-          out.stiffness = first.normal_stiffness;
-          out.tangential = law.kt_ratio * first.normal_stiffness;
-          out.friction = law.friction;
-          out.volume = middle.volume();
-        }
-      },
-      any);
+  with_crowd_contacts(laws, [&]<class Law>(const CrowdContacts<Law>& contacts) {
+    std::vector<double> overlap;
+    for (const double share : neighbours.share) overlap.push_back(delta * share);
+    const CrowdMiddle<Law> middle(contacts, neighbours.around, overlap);
+    for (std::size_t k = 0; k < overlap.size(); ++k) out.force.push_back(middle.response(k).elastic_force);
+    const Law& law = contacts.with(neighbours.around.front().kind);
+    const ContactResponse<3> first = middle.response(0);
+    out.stiffness = first.normal_stiffness;
+    out.tangential = law.kt_ratio * first.normal_stiffness;
+    out.friction = law.friction;
+    out.volume = middle.volume();
+  });
   return out;
 }
 
-const AnyLaw& law_for(const CrowdLaws& laws, PartnerKind kind) {
-  if (kind == PartnerKind::plane) return laws.soft_plane;
-  return kind == PartnerKind::solid ? laws.soft_solid : laws.soft_soft;
+Neighbours neighbours_of(const CrowdQuestion& q) {
+  Neighbours out;
+  for (const Vec3& direction : directions_of(q.arrangement)) out.around.push_back({q.partner, q.ratio, direction});
+  out.share = depth_shares(q.arrangement, q.shallow);
+  return out;
 }
 
-AnyLaw contact_of(const LawTableEntry& entry, const CrowdQuestion& q, Crowd form) {
+CrowdLaws laws_of(const LawTableEntry& entry, const CrowdQuestion& q, Crowd form) {
   CrowdChoices choices;
   choices.form = form;
   choices.modulus = 1.0;
   choices.beyond = q.beyond;
-  return law_for(make_crowd_laws(entry, choices), q.partner);
+  return make_crowd_laws(entry, choices);
 }
 
 const SlideLaw& slide_for(const LawTableEntry& entry, PartnerKind kind) {
@@ -171,12 +110,12 @@ Where place(const CrowdAnswer& answer, const LawPoint& p) {
 }
 
 /// One law for every replicate, at the solid fraction that was asked for.
-std::vector<AnyLaw> replicate_laws(const LawTable& table, const CrowdQuestion& q, Crowd form) {
-  std::vector<AnyLaw> out;
+std::vector<CrowdLaws> replicate_laws(const LawTable& table, const CrowdQuestion& q, Crowd form) {
+  std::vector<CrowdLaws> out;
   std::string ignored;
   const std::size_t n = replicate_count(table, form);
   for (std::size_t r = 0; r < n; ++r)
-    out.push_back(contact_of(entry_of(replicate_of(table, form, r), q, ignored), q, form));
+    out.push_back(laws_of(entry_of(replicate_of(table, form, r), q, ignored), q, form));
   return out;
 }
 
@@ -202,20 +141,21 @@ LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, c
 
 CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const std::vector<double>& deltas) {
   if (q.arrangement == Arrangement::scattered)
-    throw BadInput("--arrangement scattered: neighbours that are drawn are for measurements; ask for another arrangement");
+    throw BadInput(
+        "--arrangement scattered: neighbours that are drawn are for measurements; ask for another arrangement");
   CrowdAnswer out;
   out.entry = entry_of(table, q, out.remark);
   out.form = q.form.value_or(out.entry.best);
-  const AnyLaw contact = contact_of(out.entry, q, out.form);
+  const CrowdLaws laws = laws_of(out.entry, q, out.form);
   out.overlap_max = overlap_max(out, q, out.remark);
-  const Neighbours around{q.partner, q.ratio, directions_of(q.arrangement), depth_shares(q.arrangement, q.shallow)};
-  const std::vector<AnyLaw> drawn = replicate_laws(table, q, out.form);
+  const Neighbours around = neighbours_of(q);
+  const std::vector<CrowdLaws> drawn = replicate_laws(table, q, out.form);
   out.replicates = drawn.size() < kEnough ? 0 : drawn.size();
   const Beyond beyond = q.beyond.value_or(out.entry.beyond);
   for (const double delta : deltas) {
     std::vector<Raw> raws;
-    for (const AnyLaw& law : drawn) raws.push_back(ask(law, around, delta));
-    LawPoint p = point_of(ask(contact, around, delta), delta, raws, slide_for(out.entry, q.partner).kt_ratio);
+    for (const CrowdLaws& draw : drawn) raws.push_back(ask(draw, around, delta));
+    LawPoint p = point_of(ask(laws, around, delta), delta, raws, slide_for(out.entry, q.partner).kt_ratio);
     p.where = place(out, p);
     p.refused = p.where == Where::beyond && beyond == Beyond::error;
     out.points.push_back(std::move(p));

@@ -5,7 +5,7 @@
 #include "common/core/error.h"
 #include "common/data/crowd_replicates.h"
 #include "common/io/scene.h"
-#include "pipelines/law/named_laws.h"
+#include "pipelines/law/law_file_kind.h"
 
 namespace softgrain::law {
 

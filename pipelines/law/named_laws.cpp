@@ -260,16 +260,6 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   return out;
 }
 
-LawFileKind law_file_kind(const std::string& path) {
-  const Scene file = Scene::load(path);
-  if (file.root().has("pair")) return LawFileKind::card;
-  if (file.root().has("entry")) return LawFileKind::table;
-  if (file.root().has("cell")) return LawFileKind::cells;
-  throw BadInput(path +
-                 ": neither a law card (it has no [[pair]]) nor a law table (it has no [[entry]]) nor a card of "
-                 "the cell law (it has no [cell])");
-}
-
 void read_law_choices(const SceneTable& root, LawSources& out) {
   out.forms = {from_word<Crowd>(root.choice("form", {"pair", "bag", "directional", "cell", "best"}, "best"))};
   read_table_choices(root, out);

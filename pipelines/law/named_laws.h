@@ -13,6 +13,7 @@
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 #include "macrosim/macro_system.h"
+#include "pipelines/law/law_file_kind.h"
 
 namespace softgrain {
 
@@ -60,13 +61,6 @@ const SoftParticleSpec& measured_spec(const LawSources& sources);
 
 /// Reads [law]; paths are relative to the scene. Throws BadInput, FileTrouble.
 LawSources read_law_sources(const Scene& scene, const SceneTable& law);
-
-/// What a file with laws holds.
-enum class LawFileKind { card, table, cells };
-
-/// Tells them apart by content: a card has [[pair]], a table [[entry]], a card of the cell law [cell]. Throws BadInput
-/// for anything else, FileTrouble.
-LawFileKind law_file_kind(const std::string& path);
 
 /// The one law of a macro scene: key `beyond`, and keys `form` (default the best of the table; a card has the pair law
 /// only, a card of the cell law "cell"), `solid_fraction`, `range`, `mu` and `unloading` of `root`, which go with

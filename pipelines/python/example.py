@@ -33,14 +33,19 @@ for curve in curves:
     print(f"packing {curve.packing}, {curve.relaxation}: Fn/(E Rs^2) = {curve.force[-1] / scale:.4g} at Delta = "
           f"{curve.delta[-1]:.3g}")
 
-# %% The law, when there is one
+# %% The law, when there is one; evaluated by the compiled laws of the simulation, dimensionless with radius and modulus 1
 try:
-    law = run.law().pair("soft-solid")
-    print(f"law ({law.status}): F = {law.normal.a:.4g} Delta^{law.normal.b:.3g} {law.normal.c:+.3g} from Delta = "
-          f"{law.normal.delta:.3g} on; fitted for {law.delta_min:.3g} to {law.delta_max:.3g}")
-except (FileNotFoundError, KeyError):
+    law = run.law()
+    pair = law.pair("soft-solid")
+    numbers = pair.normal
+    print(f"law ({pair.status}): F = {numbers.a:.4g} Delta^{numbers.b:.3g} {numbers.c:+.3g} from Delta = "
+          f"{numbers.delta:.3g} on; fitted for {pair.delta_min:.3g} to {pair.delta_max:.3g}")
+except (softgrain.BadInput, KeyError):
     law = None
     print("no law in this run")
+except ImportError as e:
+    law = None
+    print(e)
 
 # %% Stress over strain of macro runs, by law and of resolved twins
 macro = run.macro() if holds("macro.h5") else []
@@ -76,7 +81,7 @@ def draw_forces(axes):
         axes.plot(curve.delta, curve.force / scale, "o", markersize=3, alpha=0.6)
     if law is not None:
         delta = np.linspace(0.0, max(c.delta[-1] for c in curves), 200)
-        axes.plot(delta, law.normal(delta), "k-", label="law")
+        axes.plot(delta, law.force(delta, radius=1, modulus=1), "k-", label="law")
         axes.legend()
     axes.set_xlabel("Delta = hn/Rs")
     axes.set_ylabel("Fn/(E Rs²)")

@@ -1,17 +1,21 @@
-"""Reads what runs of softgrain leave behind.
+"""softgrain in Python: runs scenes, evaluates laws, reads what runs leave behind.
 
     import softgrain
-    run = softgrain.Run("results/quickstart")
-    run.summary["status"]
-    law = run.law().pair("soft-solid")
-    law.normal(0.2)                          # Fn/(E Rs^2) at Delta = 0.2
+    run = softgrain.run("pipelines/quickstart.toml", set={"macro.count": 40})
+    run.summary["status"], run.names(), run.array("macro/...")
+    softgrain.check({"kind": "particles", ...}).warnings
+    law = softgrain.Law.load("law.toml")
+    law.force(delta), law.stiffness(delta), law.force_interval(delta)      # arrays
     state = run.snapshots(last=True)[0]
     state.position, state.contacts.normal_force
 """
-from softgrain.law import Law, PairLaw, ThresholdPowerLaw, read_law
-from softgrain.run import MacroCurve, MeasuredRun, Run, read_macro, read_measurements, read_summary
+from softgrain.errors import BadInput, FileTrouble, Interrupted, Mistake, NotUsable, SoftgrainError
+from softgrain.law import CardLaw, Law, PairLaw, TableLaw, ThresholdPowerLaw
+from softgrain.results import (MacroCurve, MeasuredRun, Quantity, Run, read_macro, read_measurements, read_summary)
+from softgrain.running import Findings, check, command_of, run
 from softgrain.snapshot import Contacts, Snapshot, read_snapshots
 
-__all__ = ["Contacts", "Law", "MacroCurve", "MeasuredRun", "PairLaw", "Run", "Snapshot", "ThresholdPowerLaw", "read_law",
-           "read_macro", "read_measurements", "read_snapshots", "read_summary"]
+__all__ = ["BadInput", "CardLaw", "Contacts", "FileTrouble", "Findings", "Interrupted", "Law", "MacroCurve", "MeasuredRun", "Mistake",
+           "NotUsable", "PairLaw", "Quantity", "Run", "Snapshot", "SoftgrainError", "TableLaw", "ThresholdPowerLaw", "check",
+           "command_of", "read_macro", "read_measurements", "read_snapshots", "read_summary", "run"]
 __version__ = "0.1.0"

@@ -1,27 +1,30 @@
-"""Law cards (law.toml): fitted threshold power laws of soft contacts. Everything dimensionless, as in the card."""
+"""Laws of soft particles: cards (law.toml) and tables (law_table.toml), evaluated by the compiled laws of the simulation.
+
+Delta = h/R is the overlap over the radius of the soft particle (of two the smaller). Forces are in newtons for a soft particle of
+`radius` [m] whose grains have Young's modulus `modulus` [Pa]; both are those that were measured unless said otherwise. With
+radius=1, modulus=1 numbers are dimensionless: F/(E R^2), stiffness/(E R).
+"""
+import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from softgrain import installation
+from softgrain.errors import BadInput
+from softgrain.figures import Drawn, new_figure
+
 
 @dataclass(frozen=True)
 class ThresholdPowerLaw:
-    """F(Delta) = 0 below delta, a Delta^b + c from there on."""
+    """The numbers of F(Delta) = 0 below delta, a (Delta^b - delta^b) from there on; c = -a delta^b."""
 
     a: float
     b: float
     c: float
     delta: float
     intervals: dict  # parameter: (low, high) at 95 %, of those that the card states
-
-    def __call__(self, overlap):
-        """F at one overlap Delta = hn/Rs or an array of them."""
-        overlap = np.asarray(overlap, dtype=float)
-        above = overlap >= self.delta
-        value = np.where(above, self.a * np.power(np.where(above, overlap, 1.0), self.b) + self.c, 0.0)
-        return float(value) if value.ndim == 0 else value
 
 
 @dataclass(frozen=True)
@@ -37,25 +40,231 @@ class PairLaw:
     delta_max: float
 
 
-@dataclass(frozen=True)
-class Law:
+def _scalar_or_array(values, shape):
+    return float(values) if shape == () else values.reshape(shape)
+
+
+class Law(Drawn):
+    """A law that was fitted. Law.load() gives a CardLaw or a TableLaw."""
+
+    path: Path
     shell_radius: float  # Rs of what was measured [m]
     youngs_modulus: float  # E [Pa]
-    pairs: tuple
     card: dict  # all that the file says
 
+    @staticmethod
+    def load(path):
+        """A card (law.toml) or a table (law_table.toml), or that of a run directory. BadInput with file and line for wrong content,
+        and for a card of the cell law, which has no forces at contacts; FileTrouble for files."""
+        path = Path(os.fspath(path))
+        if path.is_dir():
+            names = [n for n in ("law_table.toml", "law.toml", "cell_law.toml") if (path / n).is_file()]
+            if not names:
+                raise BadInput([f"{path}: a directory without law_table.toml, law.toml or cell_law.toml"])
+            path = path / names[0]
+        kind = installation.laws().kind_of_file(str(path))
+        if kind == "cells":
+            raise BadInput([f"{path}: a card of the cell law has no forces at contacts: softgrain law show tells its numbers"])
+        return CardLaw(path) if kind == "card" else TableLaw(path)
+
+    def _units(self, radius, modulus):
+        radius = self.shell_radius if radius is None else float(radius)
+        modulus = self.youngs_modulus if modulus is None else float(modulus)
+        for name, value in (("radius", radius), ("modulus", modulus)):
+            if not (np.isfinite(value) and value > 0.0):
+                raise BadInput([f"{name} = {value}: must be above 0"])
+        return {"force": modulus * radius**2, "stiffness": modulus * radius, "tangential": modulus * radius, "volume": 1.0}
+
+
+class CardLaw(Law):
+    """The law of single contacts: F = E R^2 a (Delta^b - delta^b) above the threshold delta [law card]."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self._laws = installation.laws().Card(str(path))
+        self.card = tomllib.loads(self.path.read_text(encoding="utf-8"))
+        self.pairs = _pairs(self.card)
+        self.shell_radius = float(self.card["measurement"]["shell_radius"])
+        self.youngs_modulus = float(self.card["measurement"]["youngs_modulus"])
+
     def pair(self, kind):
-        """The law of a kind, "soft-solid" or "soft-soft". KeyError when the card has none."""
+        """The numbers of a kind, "soft-solid" or "soft-soft". KeyError when the card has none."""
         for pair in self.pairs:
             if pair.kind == kind:
                 return pair
         raise KeyError(f"the card has no law of kind {kind!r}; it has {[p.kind for p in self.pairs]}")
 
-    def force(self, kind, overlap, radius=None, modulus=None):
-        """Normal force [N] at an overlap Delta, of soft particles as measured unless radius [m] and modulus [Pa] say else."""
-        radius = self.shell_radius if radius is None else radius
-        modulus = self.youngs_modulus if modulus is None else modulus
-        return modulus * radius**2 * self.pair(kind).normal(overlap)
+    def force(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
+        """Normal force [N] at Delta, a number or an array of any shape; 0 below the threshold.
+
+        beyond: above the largest Delta that was measured "clamp" it, "extrapolate" or refuse ("error": BadInput); as the card says
+        unless given. BadInput too when the card has no usable law of this kind."""
+        return self._values(kind, "force", delta, radius, modulus, False, beyond)
+
+    def stiffness(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
+        """dF/dh [N/m], the derivative of force() by the overlap h = Delta R. By Delta itself: times R."""
+        return self._values(kind, "stiffness", delta, radius, modulus, False, beyond)
+
+    def tangential_stiffness(self, delta, kind="soft-solid", *, slope="initial", radius=None, modulus=None, beyond=None):
+        """kt [N/m]: slope at no rotation ("initial") or the secant at 1 degree ("secant")."""
+        return self._values(kind, "tangential", delta, radius, modulus, _is_secant(slope), beyond)
+
+    def force_interval(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
+        """95 % interval of force(): (low, high), from the bootstrap beside the card, else linearised from its covariance; None when
+        the card keeps neither."""
+        return self._interval(kind, "force", delta, radius, modulus, False, beyond)
+
+    def stiffness_interval(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
+        """95 % interval of stiffness(): (low, high), linearised from the covariance; None without one."""
+        return self._interval(kind, "stiffness", delta, radius, modulus, False, beyond)
+
+    def tangential_interval(self, delta, kind="soft-solid", *, slope="initial", radius=None, modulus=None, beyond=None):
+        """95 % interval of tangential_stiffness(): (low, high), or None."""
+        return self._interval(kind, "tangential", delta, radius, modulus, _is_secant(slope), beyond)
+
+    def inside(self, delta, kind="soft-solid"):
+        """Whether Delta lies in what was measured (an array of flags)."""
+        pair = self.pair(kind)
+        delta = np.asarray(delta, dtype=float)
+        return (delta >= pair.delta_min * (1 - 1e-12)) & (delta <= pair.delta_max * (1 + 1e-12))
+
+    def _values(self, kind, what, delta, radius, modulus, secant, beyond):
+        delta = np.asarray(delta, dtype=float)
+        out = self._laws.values(kind, what, delta, self._units(radius, modulus)[what], secant, beyond)
+        return _scalar_or_array(out, delta.shape)
+
+    def _interval(self, kind, what, delta, radius, modulus, secant, beyond):
+        delta = np.asarray(delta, dtype=float)
+        found = self._laws.interval(kind, what, delta, self._units(radius, modulus)[what], secant, beyond)
+        return None if found is None else tuple(_scalar_or_array(side, delta.shape) for side in found)
+
+    def figure(self, kind="soft-solid"):
+        """Force over Delta with its 95 % band, as a matplotlib figure."""
+        pair = self.pair(kind)
+        delta = np.linspace(0.0, pair.delta_max, 200)
+        figure, axes = new_figure()
+        band = self.force_interval(delta, kind)
+        if band is not None:
+            axes.fill_between(delta, *band, alpha=0.25, linewidth=0, label="95 %")
+        axes.plot(delta, self.force(delta, kind), label=f"{kind} law ({pair.status})")
+        axes.axvline(pair.delta_min, color="0.6", linewidth=0.8, linestyle=":", label="measured from here")
+        axes.set_xlabel("overlap h/R")
+        axes.set_ylabel(f"normal force [N], R = {1e3 * self.shell_radius:.4g} mm")
+        axes.legend(frameon=False)
+        return figure
+
+    def __repr__(self):
+        return f"<law card {self.path}: {', '.join(f'{p.kind} ({p.status})' for p in self.pairs)}>"
+
+
+class TableLaw(Law):
+    """Laws of soft particles that know about all their contacts [law table].
+
+    form: "pair", "bag" or "directional"; the best of the table unless given. solid_fraction: that of the contents; of the main packing
+    unless given. range: outside the measured solid fractions "reject" or "clamp". partner: "plane", "solid" or "soft" neighbours of
+    `ratio` times the radius. arrangement: how neighbours of one kind stand around the particle, all pressed in by Delta: "one",
+    "opposite", "cube"... (softgrain law eval --help lists them).
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self._laws = installation.laws().Table(str(path))
+        self.card = tomllib.loads(self.path.read_text(encoding="utf-8"))
+        main = self.about()
+        self.shell_radius = main["shell_radius"]
+        self.youngs_modulus = main["youngs_modulus"]
+
+    def about(self, form=None, solid_fraction=None, range="reject"):  # pylint: disable=redefined-builtin
+        """What a choice comes to: form, status, solid_fraction, where it was measured (volume_max, overlap_max), remark."""
+        return self._laws.about(_choice(form, solid_fraction, range, None))
+
+    def force(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
+        """Normal force [N] on the first of the neighbours, all pressed in by Delta = h/R: a number or an array of any shape.
+
+        choice: form, solid_fraction, range, beyond. BadInput for a solid fraction that was not measured, or no such law."""
+        return self._even("force", delta, partner, ratio, arrangement, radius, modulus, choice)
+
+    def stiffness(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
+        """dF/dh [N/m] of the first neighbour when it alone moves. With arrangement "one": the derivative of force()."""
+        return self._even("stiffness", delta, partner, ratio, arrangement, radius, modulus, choice)
+
+    def tangential_stiffness(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
+        """kt [N/m] of the first neighbour."""
+        return self._even("tangential", delta, partner, ratio, arrangement, radius, modulus, choice)
+
+    def volume(self, delta, partner="plane", *, ratio=1.0, arrangement="one", **choice):
+        """Equivalent volume S of the particle, over its own; about()["volume_max"] is the end of what was measured."""
+        return self._even("volume", delta, partner, ratio, arrangement, None, None, choice)
+
+    def force_interval(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
+        """95 % interval of force(): (low, high), from the refits beside the table; None when it keeps none."""
+        return self._even_interval("force", delta, partner, ratio, arrangement, radius, modulus, choice)
+
+    def stiffness_interval(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
+        """95 % interval of stiffness(): (low, high), or None."""
+        return self._even_interval("stiffness", delta, partner, ratio, arrangement, radius, modulus, choice)
+
+    def forces(self, overlap, direction, partner="plane", ratio=1.0, *, radius=None, modulus=None, **choice):
+        """Normal forces [N] on K neighbours that stand anywhere and are pressed in by different overlaps.
+
+        overlap: (..., K), h/R of each, not above 0 where it does not touch; direction: (K, 3), from the centre to the neighbours (need
+        not be of length 1); partner and ratio: one for all or one for each. Gives (..., K)."""
+        overlap = np.asarray(overlap, dtype=float)
+        direction = np.atleast_2d(np.asarray(direction, dtype=float))
+        count = len(direction)
+        kinds = [partner] * count if isinstance(partner, str) else list(partner)
+        ratios = np.broadcast_to(np.asarray(ratio, dtype=float), count).tolist()
+        around = installation.laws().Neighbours(kinds, ratios, direction.tolist())
+        states = overlap.reshape(-1, overlap.shape[-1] if overlap.ndim else 1)
+        scale = self._units(radius, modulus)["force"]
+        return self._laws.values(_choice(**choice), around, "force", -1, states, scale).reshape(overlap.shape)
+
+    def _question(self, delta, partner, ratio, arrangement):
+        directions, shares = installation.laws().arrangement(arrangement, 0.5)
+        around = installation.laws().Neighbours([partner] * len(shares), [float(ratio)] * len(shares), directions)
+        delta = np.asarray(delta, dtype=float)
+        return around, delta.reshape(-1, 1) * np.asarray(shares)
+
+    def _even(self, what, delta, partner, ratio, arrangement, radius, modulus, choice):
+        around, overlap = self._question(delta, partner, ratio, arrangement)
+        out = self._laws.values(_choice(**choice), around, what, 0, overlap, self._units(radius, modulus)[what])
+        return _scalar_or_array(out if np.ndim(delta) else out[0], np.shape(delta))
+
+    def _even_interval(self, what, delta, partner, ratio, arrangement, radius, modulus, choice):
+        around, overlap = self._question(delta, partner, ratio, arrangement)
+        found = self._laws.interval(_choice(**choice), around, what, 0, overlap, self._units(radius, modulus)[what])
+        return None if found is None else tuple(_scalar_or_array(s if np.ndim(delta) else s[0], np.shape(delta)) for s in found)
+
+    def figure(self, partner="plane", arrangements=("one", "opposite", "cube"), **choice):
+        """Force on the first neighbour over Delta for several arrangements, with 95 % bands, as a matplotlib figure."""
+        about = self.about(**{k: v for k, v in choice.items() if k != "beyond"})
+        delta = np.linspace(0.0, about["overlap_max"], 120)
+        figure, axes = new_figure()
+        for arrangement in arrangements:
+            force = self.force(delta, partner, arrangement=arrangement, **choice)
+            line, = axes.plot(delta, force, label=f"{arrangement}")
+            band = self.force_interval(delta, partner, arrangement=arrangement, **choice)
+            if band is not None:
+                axes.fill_between(delta, *band, alpha=0.2, linewidth=0, color=line.get_color())
+        axes.set_xlabel("overlap h/R")
+        axes.set_ylabel(f"force on one neighbour [N], R = {1e3 * self.shell_radius:.4g} mm")
+        axes.set_title(f"{about['form']} law, solid fraction {about['solid_fraction']:.3f}", fontsize=10)
+        axes.legend(frameon=False, title=f"neighbours: {partner}")
+        return figure
+
+    def __repr__(self):
+        about = self.about()
+        return f"<law table {self.path}: {len(self.card['entry'])} packing(s), best form {about['form']} ({about['status']})>"
+
+
+def _choice(form=None, solid_fraction=None, range="reject", beyond=None):  # pylint: disable=redefined-builtin
+    return installation.laws().TableChoice(form, solid_fraction, range, beyond)
+
+
+def _is_secant(slope):
+    if slope not in ("initial", "secant"):
+        raise BadInput([f'slope = "{slope}": must be "initial" or "secant"'])
+    return slope == "secant"
 
 
 def _estimates(table):
@@ -70,14 +279,7 @@ def _tangential(pair, name):
     return _estimates(table) if table is not None and table.get("fitted", False) else None
 
 
-def read_law(path):
-    """A law card. ValueError when the file is none."""
-    with open(Path(path), "rb") as file:
-        card = tomllib.load(file)
-    if "pair" not in card or "measurement" not in card:
-        raise ValueError(f"{path}: is no law card (it has no [measurement] or no [[pair]])")
-    pairs = tuple(PairLaw(p["kind"], p["status"], _estimates(p["normal"]), _tangential(p, "tangential_initial"),
-                          _tangential(p, "tangential_secant"), p["validity"]["delta_min"], p["validity"]["delta_max"])
-                  for p in card["pair"])
-    measured = card["measurement"]
-    return Law(float(measured["shell_radius"]), float(measured["youngs_modulus"]), pairs, card)
+def _pairs(card):
+    return tuple(PairLaw(p["kind"], p["status"], _estimates(p["normal"]), _tangential(p, "tangential_initial"),
+                         _tangential(p, "tangential_secant"), p["validity"]["delta_min"], p["validity"]["delta_max"])
+                 for p in card["pair"])

@@ -5,8 +5,10 @@ powder.h5 and grain_box.h5 keep states in forms of their own: `softgrain export 
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import numpy as np
+
+from softgrain.figures import Drawn, new_figure
+from softgrain.hdf5 import open_file, text_attribute
 
 KINDS = ("particles", "soft-particle", "macro", "twin", "powder", "grain-box")
 ROLES = ("solid", "soft", "inner")
@@ -27,8 +29,8 @@ class Contacts:
         return len(self.pair)
 
 
-@dataclass
-class Snapshot:
+@dataclass(repr=False)
+class Snapshot(Drawn):
     kind: str
     series: str
     label: str
@@ -46,9 +48,28 @@ class Snapshot:
     periodic: np.ndarray = None
     contacts: Contacts | None = None  # None: not kept for this state
 
+    def __repr__(self):
+        contacts = "" if self.contacts is None else f", {len(self.contacts)} contacts"
+        return f"<{self.label}: {len(self.radius)} particles{contacts}>"
 
-def _text(value):
-    return value.decode() if isinstance(value, bytes) else str(value)
+    def figure(self, along=2):
+        """The state seen along an axis (0, 1, 2), lines between touching grains as thick as their force: a matplotlib figure."""
+        from matplotlib.collections import LineCollection, PatchCollection
+        from matplotlib.patches import Circle
+        figure, axes = new_figure(height=5.0)
+        seen = [k for k in range(3) if k != along]
+        grains = [Circle(x[seen], r) for x, r in zip(self.position, self.radius)]
+        axes.add_collection(PatchCollection(grains, facecolor="0.8", edgecolor="0.5", linewidth=0.4, alpha=0.35))
+        if self.contacts is not None and len(self.contacts):
+            strongest = max(float(np.abs(self.contacts.normal_force).max()), np.finfo(float).tiny)
+            ends = np.stack([self.contacts.start[:, seen], self.contacts.end[:, seen]], axis=1)
+            axes.add_collection(LineCollection(ends, linewidths=6.0 * np.abs(self.contacts.normal_force) / strongest, colors="C3"))
+        axes.set_aspect("equal")
+        axes.autoscale_view()
+        for one, name in zip((axes.set_xlabel, axes.set_ylabel), seen):
+            one(f"{'xyz'[name]} [m]")
+        axes.set_title(self.label, fontsize=9)
+        return figure
 
 
 def _contacts(group, part=slice(None)):
@@ -60,7 +81,7 @@ def _contacts(group, part=slice(None)):
 def _state(group):
     p = group["particles"]
     return Snapshot(
-        KINDS[int(group.attrs["kind"])], _text(group.attrs["series"]), _text(group.attrs["label"]),
+        KINDS[int(group.attrs["kind"])], text_attribute(group, "series"), text_attribute(group, "label"),
         int(group.attrs["frame"]), *(float(group.attrs.get(name, np.nan)) for name in ("time", "strain", "overlap")),
         position=p["position"][()], radius=p["radius"][()], role=p["role"][()], body=p["body"][()],
         velocity=p["velocity"][()] if "velocity" in p else None,
@@ -70,16 +91,16 @@ def _state(group):
 
 
 def _states(path, last):
-    with h5py.File(path, "r") as file:
+    with open_file(path) as file:
         groups = [file["states"][name] for name in sorted(file["states"])]
         if last:
-            groups = list({_text(g.attrs["series"]): g for g in groups}.values())
+            groups = list({text_attribute(g, "series"): g for g in groups}.values())
         return [_state(g) for g in groups]
 
 
 def _particles(path, last):
     """run.h5: every recorded frame, with the contacts of those that kept them."""
-    with h5py.File(path, "r") as file:
+    with open_file(path) as file:
         bodies, trajectory, final = file["bodies"], file["trajectory"], file["final"]
         radius = bodies["radius"][()]
         time = trajectory["time"][()]

@@ -1,0 +1,29 @@
+// Laws at arrays of overlaps, through the laws of the contact loop. All is linear in the modulus of a law: with E R^2
+// in its place forces come in newtons, with E R stiffnesses in newtons per metre.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/contact/soft_contact.h"
+#include "pipelines/law/crowd_middle.h"
+
+namespace softgrain::python {
+
+/// What is wanted of a law.
+enum class LawOutput {
+  force,       ///< elastic, along the normal
+  stiffness,   ///< d force / d overlap
+  tangential,  ///< stiffness of the tangential spring
+  volume       ///< of crowds: the equivalent volume S, whatever the modulus
+};
+
+/// A law of a card at overlaps Delta = h/R; `out` has as many.
+void card_array(const SoftContact& contact, LawOutput what, std::span<const double> delta, std::span<double> out);
+
+/// Of one neighbour of a soft particle among others: overlaps [state][neighbour] over R in, one number per state out;
+/// of all neighbours (`which` < 0) [state][neighbour]. Laws without unloading and rolling.
+void crowd_array(const CrowdLaws& laws, const std::vector<law::CrowdNeighbour>& around, LawOutput what, int which,
+                 std::span<const double> overlap, std::span<double> out);
+
+}  // namespace softgrain::python

@@ -1,0 +1,345 @@
+"""Runs of scenes and checks of them: the program in a process of its own, so that Ctrl-C, a crash or a full memory end the run and
+not Python."""
+import html
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import tomllib
+from collections.abc import Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from softgrain import installation
+from softgrain.errors import BadInput, FileTrouble, Interrupted, NotUsable, SoftgrainError, error_of
+from softgrain.figures import Drawn
+from softgrain.results import Run
+from softgrain.toml_text import scene_text, settings
+
+# Kinds that the program runs by another command than `run` (a test holds this to the program's own table).
+_COMMANDS = {"soft-particle": "microsim", "grain-box": "microsim", "cohesive-powder": "microsim", "particles": "microsim",
+             "macro": "macrosim"}
+
+
+def command_of(kind):
+    """The command that runs scenes of a kind."""
+    return _COMMANDS.get(kind, "run")
+
+
+@contextmanager
+def _scene_file(scene):
+    """Path of the scene, and what stands in its lines. A dict goes into a file in the working directory for the while, so that paths
+    in it are relative to that."""
+    if not isinstance(scene, Mapping):
+        yield os.fspath(scene), None
+        return
+    text, paths = scene_text(scene)
+    try:
+        file = tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=".", prefix=".softgrain-", suffix=".toml", delete=False)
+    except OSError as e:
+        raise FileTrouble([f"a scene that is a dict needs a file in the working directory: {e}"]) from e
+    try:
+        with file:
+            file.write(text)
+        yield os.path.relpath(file.name), paths
+    finally:
+        with suppress(OSError):
+            os.unlink(file.name)
+
+
+def _kind(scene, overrides):
+    """Of a scene; what is wrong with it the program says better."""
+    if overrides and "kind" in overrides:
+        return overrides["kind"]
+    if isinstance(scene, Mapping):
+        return scene.get("kind")
+    try:
+        return tomllib.loads(Path(scene).read_text(encoding="utf-8")).get("kind")
+    except (OSError, ValueError):
+        return None
+
+
+def _directory(scene, kind):
+    """results/NAME of the scene, of a dict results/KIND; not a folder with a page that is kept (as the program chooses)."""
+    name = str(kind or "scene") if isinstance(scene, Mapping) else Path(scene).stem
+    directory = Path("results") / name
+    return directory.with_name(name + "_run") if (directory / "README.md").exists() else directory
+
+
+# ---- what the program says while it runs
+
+_COMPLAINT = re.compile(r"softgrain: (?!mind:)")  # what the exception will say
+_BAR = re.compile(r"^(?P<what>.*?)(?: \[[#.]*\])? +(?P<percent>\d+) %, (?P<rest>.*)$")
+
+
+class Teller:
+    """Gets what a run says: tell(share, text), share from 0 to 1 of what it is at now, None for a line of its log."""
+
+    def __init__(self, progress):
+        self.callback = progress if callable(progress) else None
+        self.quiet = not progress
+        self.live = sys.stderr is not None and (sys.stderr.isatty() or "ipykernel" in sys.modules)
+        self.width = 0
+        self.last_line = time.monotonic()
+
+    def __call__(self, text):
+        bar = _BAR.match(text)
+        share = int(bar["percent"]) / 100.0 if bar else None
+        if bar:
+            text = f"{bar['what']}: {bar['percent']} %, {bar['rest']}"
+        if self.callback is not None:
+            self.callback(share, text)
+        elif not self.quiet and sys.stderr is not None:
+            self._show(share, text)
+
+    def _show(self, share, text):
+        if share is None:
+            print("\r" + text.ljust(self.width) if self.width else text, file=sys.stderr, flush=True)
+            self.width = 0
+        elif self.live:
+            print("\r" + text.ljust(self.width), end="", file=sys.stderr, flush=True)
+            self.width = len(text)
+        elif time.monotonic() - self.last_line > 30.0:
+            print(text, file=sys.stderr, flush=True)
+            self.last_line = time.monotonic()
+
+    def end(self):
+        """No half line is left."""
+        if self.width:
+            print(file=sys.stderr, flush=True)
+            self.width = 0
+
+
+def _follow(terminal, teller):
+    """Hands on what the program writes to its terminal, line by line; a bar is a line that another one replaces."""
+    buffer = ""
+    trouble = None
+    while True:
+        try:
+            data = os.read(terminal, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not data:
+            break
+        *whole, buffer = re.split(r"[\r\n]+", buffer + data.decode(errors="replace"))
+        for line in whole:
+            line = line.replace("\033[K", "").rstrip()
+            try:
+                if line and trouble is None and not _COMPLAINT.match(line):
+                    teller(line)
+            except Exception as e:  # of the callback: told when the run has ended  # pylint: disable=broad-except
+                trouble = e
+    return trouble
+
+
+def _stop(child):
+    """Asks for an orderly end, as often as somebody presses Ctrl-C ever less politely."""
+    for wish in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+        with suppress(ProcessLookupError):
+            child.send_signal(wish)
+        try:
+            child.wait()
+            return
+        except KeyboardInterrupt:
+            continue
+    child.wait()
+
+
+@dataclass
+class _Ended:
+    status: int
+    objects: list  # JSON objects on standard output, in turn
+    stopped: bool = False
+
+
+def _objects(text):
+    out = []
+    decoder = json.JSONDecoder()
+    at = 0
+    while (begin := text.find("{", at)) >= 0:
+        try:
+            one, at = decoder.raw_decode(text, begin)
+            out.append(one)
+        except ValueError:
+            break
+    return out
+
+
+def execute(arguments, progress=False):
+    """The program with these arguments and --json. Its progress goes through a terminal of our own, as there it says most."""
+    teller = Teller(progress)
+    ours, theirs = pty.openpty()
+    try:
+        # A process group of its own: Ctrl-C in a terminal comes to Python alone, which passes it on.
+        child = subprocess.Popen([installation.program(), *arguments, "--json"], stdin=subprocess.DEVNULL,
+                                 stdout=subprocess.PIPE, stderr=theirs, process_group=0)
+    except BaseException:
+        os.close(ours)
+        raise
+    finally:
+        os.close(theirs)
+    told = []
+    follower = threading.Thread(target=lambda: told.append(_follow(ours, teller)), daemon=True)
+    follower.start()
+    printed = []
+    reader = threading.Thread(target=lambda: printed.append(child.stdout.read()), daemon=True)
+    reader.start()
+    stopped = False
+    try:
+        child.wait()
+    except KeyboardInterrupt:
+        stopped = True
+        _stop(child)
+    except BaseException:
+        _stop(child)
+        raise
+    finally:
+        if child.poll() is not None:
+            reader.join()
+            follower.join(2.0)
+            teller.end()
+        child.stdout.close()
+        os.close(ours)
+    if told and told[0] is not None:
+        raise told[0]
+    return _Ended(child.returncode, _objects(printed[0].decode(errors="replace")), stopped)
+
+
+def _raise_for(ended, given, paths, directory=None):
+    """The exception for a status that is not good."""
+    if ended.status == 130 or (ended.stopped and ended.status != 0):
+        raise Interrupted("stopped; what was computed is saved" +
+                          (f" in {directory}: run(..., resume=True) goes on" if directory else ""), directory)
+    errors = next((o["errors"] for o in reversed(ended.objects) if "errors" in o), None)
+    if errors is None:
+        how = f"by signal {-ended.status}" if ended.status < 0 else f"with status {ended.status}"
+        if ended.status == 3:
+            remarks = next((o.get("remarks") for o in ended.objects), None)
+            raise NotUsable([f"not usable: {r}" for r in remarks or []] or ["ran, but the result is not usable as it is"])
+        raise SoftgrainError([f"the program ended {how}" + (f"; see {directory}/log.txt" if directory else "")])
+    error = error_of(ended.status, errors)
+    if paths is not None:
+        error = type(error)(tuple(_of_dict(m, given, paths) for m in error.mistakes))
+    raise error
+
+
+def _of_dict(mistake, given, paths):
+    """A mistake in a scene that was a dict: its place there."""
+    message = mistake.message.replace(f"{given}:1 ", "").replace(given, "<scene>")
+    if mistake.file != given:
+        return replace(mistake, message=message)
+    path = paths.get(mistake.line)
+    return replace(mistake, message=message, file="<scene>", path=path if path and mistake.key in (None, _last(path)) else
+                   f"{path}.{mistake.key}" if path and mistake.key else mistake.key)
+
+
+def _last(path):
+    return re.sub(r"\[\d+\]$", "", path.rpartition(".")[2])
+
+
+def _option(name, value):
+    return [] if value is None else [name, str(value)]
+
+
+def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=False,  # pylint: disable=redefined-builtin
+        bands=None, progress=True, unusable="raise", options=()):
+    """Runs a scene and gives what came out, a Run.
+
+    scene: a file, or a dict of what would stand in one (numbers, texts with units, lists, dicts; numpy arrays are lists). Paths in a
+    dict are relative to the working directory.
+    set: changes to it, {"packing.count": 4} or {"packing": {"count": 4}}.
+    out: run directory; results/NAME of the file, results/KIND of a dict. One that another run has written is written anew, unless
+    resume, which goes on there (same scene, seed and law).
+    law, bands: of macro scenes. threads: all cores unless given; results do not depend on it. options: further ones of the command
+    line, ["--law-cache", DIR].
+    progress: True shows it, False does not, and a function gets (share, text) as it goes: share from 0 to 1 of what the run is at, None
+    with a line of its log. It is called from another thread.
+    unusable: "raise" NotUsable for a result that must not be used as it is (its attribute `run` has what was written), or "return" it.
+
+    Raises BadInput before anything runs, with all mistakes at once; FileTrouble; Interrupted (a KeyboardInterrupt) after Ctrl-C, once
+    what was computed is saved."""
+    if unusable not in ("raise", "return"):
+        raise BadInput([f'unusable = "{unusable}": must be "raise" or "return"'])
+    kind = _kind(scene, set)
+    directory = Path(out) if out is not None else _directory(scene, kind)
+    with _scene_file(scene) as (file, paths):
+        arguments = [command_of(kind), file, "--out", str(directory), *settings(set), *_option("--law", law),
+                     *_option("--threads", threads), *_option("--seed", seed), *_option("--bands", bands),
+                     *(["--resume"] if resume else []), *map(str, options)]
+        ended = execute(arguments, progress)
+        if ended.status == 0:
+            return Run(directory)
+        try:
+            _raise_for(ended, file, paths, directory)
+        except BadInput as e:
+            if e.key == "kind":
+                check(scene, set=set)  # knows all kinds, not those of one command alone
+            raise
+        except NotUsable as e:
+            if (directory / "summary.json").exists():
+                e.run = Run(directory)
+            if unusable == "raise" or e.run is None:
+                raise
+            return e.run
+
+
+class Findings(Drawn):
+    """What check() found out. findings["time_step"]: a fact by name; kind; warnings: what to mind; core_seconds: time that a run would
+    take on one core, None where it is not known."""
+
+    def __init__(self, facts):
+        self.facts = {k: v for k, v in facts.items() if k not in ("status", "warnings", "lines")}
+        self.warnings = tuple(facts.get("warnings", ()))
+        self.lines = tuple(facts.get("lines", ()))
+
+    kind = property(lambda self: self.facts.get("kind"))
+    core_seconds = property(lambda self: self.facts.get("core_seconds"))
+
+    def __getitem__(self, name):
+        return self.facts[name]
+
+    def __contains__(self, name):
+        return name in self.facts
+
+    def __iter__(self):
+        return iter(self.facts)
+
+    def __len__(self):
+        return len(self.facts)
+
+    def __str__(self):
+        return "\n".join([*self.lines, *(f"mind: {w}" for w in self.warnings)])
+
+    __repr__ = __str__
+
+    def _repr_html_(self):
+        return f"<pre>{html.escape(str(self))}</pre>{self._image()}"
+
+    def figure(self):
+        """Where the time of a run goes, as a matplotlib figure; None where that is not known."""
+        from softgrain.figures import new_figure
+        parts = self.facts.get("core_seconds_parts")
+        if not parts:
+            return None
+        names = sorted(parts, key=parts.get)
+        figure, axes = new_figure(height=0.9 + 0.35 * len(names))
+        axes.barh(names, [parts[n] for n in names])
+        axes.set_xlabel("time on one core [s]")
+        return figure
+
+
+def check(scene, *, set=None, law=None):  # pylint: disable=redefined-builtin
+    """What follows from a scene, a law, a result or a run directory, without running it: Findings. Raises BadInput with all mistakes at
+    once, FileTrouble."""
+    with _scene_file(scene) as (file, paths):
+        ended = execute(["check", file, *settings(set), *_option("--law", law)])
+        if ended.status != 0:
+            _raise_for(ended, file, paths)
+        return Findings(ended.objects[0])
