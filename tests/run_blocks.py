@@ -7,7 +7,7 @@
 
 A command that RULES do not know fails: say there how it is tested. Blocks: sh (commands), toml (scenes, run by the program),
 cpp (compiled against the law header in DIR; a comment `// 0.634 N` behind the last line is what must come out), cmake (those of the
-test `install`).
+test `install`), python (those of the test `python_examples`).
 """
 import argparse
 import os
@@ -222,7 +222,7 @@ class Session:
         if language == "sh":
             for command in commands(text):
                 self.command(where, command)
-        elif self.slow or language in ("", "cmake"):
+        elif self.slow or language in ("", "cmake", "python"):
             pass
         elif language == "toml":
             self.scene(where, text)

@@ -1,5 +1,7 @@
 """The examples of pipelines/python, and the Python of the guide, as somebody would run them."""
+import contextlib
 import importlib.util
+import io
 import json
 import os
 import re
@@ -7,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +31,11 @@ def output_of(*words, **environment):
     if done.returncode != 0:
         raise AssertionError(f"{words} ended with status {done.returncode}:\n{done.stdout}")
     return done.stdout
+
+
+def python_of(page):
+    """The Python blocks of a page."""
+    return re.findall(r"^```python\n(.*?)^```$", page.read_text(encoding="utf-8"), re.M | re.S)
 
 
 def numbers(text):
@@ -89,15 +97,26 @@ class ExamplesTest(InEmptyFolder):
             for entry in (ROOT / name).iterdir():
                 if name == "pipelines" or (entry / "README.md").exists():
                     os.symlink(entry, Path(name) / entry.name)
-        text = (ROOT / "pipelines/guide/python.md").read_text(encoding="utf-8")
-        blocks = re.findall(r"^```python\n(.*?)^```$", text, re.M | re.S)
+        blocks = python_of(ROOT / "pipelines/guide/python.md")
         self.assertGreater(len(blocks), 4)
         space = {}
-        for block in blocks:
-            with self.subTest(block=block.splitlines()[0]):
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            for block in blocks:
                 if missing("matplotlib") and "figure(" in block:
                     continue
                 exec(compile(block, "guide", "exec"), space)  # pylint: disable=exec-used
+        for told in re.findall(r"^ +# (time\.end .*|materal .*)$", "".join(blocks), re.M):
+            self.assertIn(told, printed.getvalue())
+        self.assertIn("m/s (32, 2, 3)", printed.getvalue())
+
+    def test_the_readme(self):
+        """Its block, with a law in the place of three minutes."""
+        block, = python_of(ROOT / "README.md")
+        seen = {}
+        published = softgrain.Run(CARD.parent)
+        with unittest.mock.patch("softgrain.run", lambda scene, set: seen.update(scene=scene, set=set) or published):
+            exec(compile(block, "README", "exec"), {})  # pylint: disable=exec-used
+        self.assertEqual(softgrain.check(ROOT / seen["scene"], set=seen["set"]).kind, "pipeline")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
@@ -42,6 +44,24 @@ TEST(Complaints, JsonIsAnObjectWithEveryMistake) {
   }
   EXPECT_TRUE(density) << refused.output;
   EXPECT_NE(read_text(errors).find("softgrain: " + scene + ":3"), std::string::npos) << read_text(errors);
+}
+
+TEST(Complaints, JsonSaysKeyValueAllowedAndNearest) {
+  const TemporaryDirectory directory;
+  const std::string scene = directory.file("scene.toml");
+  write_text_atomic(scene, std::string(kWrong) + "densty = 2.0\n");
+  const ProgramOutcome refused = run_the_program("check " + scene + " --json --set material.grain.nu=0.7", "/dev/null");
+  const json told = json::parse(refused.output);
+  std::map<std::string, json> by_key;
+  for (const json& one : told.at("errors"))
+    if (one.contains("key")) by_key[one["key"]] = one;
+  ASSERT_TRUE(by_key.contains("density") && by_key.contains("densty") && by_key.contains("nu")) << refused.output;
+  EXPECT_EQ(by_key["density"]["value"], "-1");
+  EXPECT_EQ(by_key["density"]["allowed"], "must be above 0");
+  EXPECT_EQ(by_key["densty"]["nearest"], "density");
+  EXPECT_EQ(by_key["densty"]["table"], "material.grain");
+  EXPECT_EQ(by_key["nu"]["setting"], "material.grain.nu");
+  EXPECT_FALSE(by_key["nu"].contains("line"));
 }
 
 TEST(Complaints, JsonAlsoForTheCommandLine) {

@@ -102,6 +102,22 @@ missing_with_sudo() {
   check "leaves out what only LAMMPS needs" called 0 'liblammps-dev'
 }
 
+with_python() {
+  fresh
+  stub dpkg-query ''
+  start setup
+  check "setup installs what the Python package needs" called 1 '^apt-get .* install .*pybind11-dev'
+  check "builds the program alone where that is not to be found" called 1 '^cmake --build .* --target softgrain$'
+  echo 'pybind11_DIR:PATH=pybind11_DIR-NOTFOUND' >>"$repo/build/release/CMakeCache.txt"
+  start setup
+  check "looks for it anew" called 1 '^cmake --preset release'
+  echo 'pybind11_DIR:PATH=/usr/lib/cmake/pybind11' >>"$repo/build/release/CMakeCache.txt"
+  start setup
+  check "builds the package too" called 1 '^cmake --build .* --target softgrain softgrain_python$'
+  start check x
+  check "other starts do without" called 0 'pybind11-dev\|softgrain_python'
+}
+
 with_lammps() {
   fresh
   start setup --with-lammps
@@ -190,7 +206,7 @@ moved_copy() {
 for script_file in softgrain .ci/run; do
   "$real_bash" -n "$root/$script_file" || failures=$((failures + 1))
 done
-for group in nothing_missing missing_as_root missing_with_sudo with_lammps missing_without_rights other_system failing_steps unwritable tests_command moved_copy; do
+for group in nothing_missing missing_as_root missing_with_sudo with_python with_lammps missing_without_rights other_system failing_steps unwritable tests_command moved_copy; do
   printf -- '-- %s\n' "$group"
   "$group"
 done

@@ -40,7 +40,7 @@ LawPart part_for(LawOutput what, bool secant) {
 
 Array CardBinding::values(const std::string& kind, const std::string& what, const Array& delta, double scale,
                           bool secant, const std::optional<std::string>& beyond) const {
-  const LawOutput output = output_of(what);
+  const LawOutput output = word_of<LawOutput>("what", what);
   const PairKind pair = word_of<PairKind>("kind", kind);
   const SoftContact contact = contact_of(card_, pair, scale, secant, beyond_of(beyond));
   if (output == LawOutput::tangential && !has_part(*card_.find(pair), part_for(output, secant)))
@@ -58,7 +58,7 @@ Array CardBinding::values(const std::string& kind, const std::string& what, cons
 std::optional<std::pair<Array, Array>> CardBinding::interval(const std::string& kind, const std::string& what,
                                                              const Array& delta, double scale, bool secant,
                                                              const std::optional<std::string>& beyond) const {
-  const LawOutput output = output_of(what);
+  const LawOutput output = word_of<LawOutput>("what", what);
   const PairKind pair = word_of<PairKind>("kind", kind);
   const SoftContact contact = contact_of(card_, pair, scale, secant, beyond_of(beyond));
   const PairLaw& law = *card_.find(pair);

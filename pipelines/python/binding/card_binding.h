@@ -15,8 +15,6 @@ namespace softgrain::python {
 
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// What of a law: its outputs by name. Throws BadInput.
-LawOutput output_of(const std::string& name);
 /// A policy by name, none for none. Throws BadInput.
 std::optional<Beyond> beyond_of(const std::optional<std::string>& name);
 

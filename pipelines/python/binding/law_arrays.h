@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/contact/soft_contact.h"
+#include "common/core/words.h"
 #include "pipelines/law/crowd_middle.h"
 
 namespace softgrain::python {
@@ -17,6 +18,21 @@ enum class LawOutput {
   tangential,  ///< stiffness of the tangential spring
   volume       ///< of crowds: the equivalent volume S, whatever the modulus
 };
+
+}  // namespace softgrain::python
+
+namespace softgrain {
+
+template <>
+inline constexpr auto words<python::LawOutput> =
+    word_list<python::LawOutput>({{python::LawOutput::force, "force"},
+                                  {python::LawOutput::stiffness, "stiffness"},
+                                  {python::LawOutput::tangential, "tangential"},
+                                  {python::LawOutput::volume, "volume"}});
+
+}  // namespace softgrain
+
+namespace softgrain::python {
 
 /// A law of a card at overlaps Delta = h/R; `out` has as many.
 void card_array(const SoftContact& contact, LawOutput what, std::span<const double> delta, std::span<double> out);

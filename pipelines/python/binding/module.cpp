@@ -17,13 +17,6 @@
 
 namespace softgrain::python {
 
-LawOutput output_of(const std::string& name) {
-  if (name == "force") return LawOutput::force;
-  if (name == "stiffness") return LawOutput::stiffness;
-  if (name == "volume") return LawOutput::volume;
-  return LawOutput::tangential;
-}
-
 std::optional<Beyond> beyond_of(const std::optional<std::string>& name) {
   if (!name) return std::nullopt;
   return word_of<Beyond>("beyond", *name);

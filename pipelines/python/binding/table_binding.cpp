@@ -125,7 +125,7 @@ pybind11::dict TableBinding::about(const TableChoice& choice) const {
 
 Array TableBinding::values(const TableChoice& choice, const NeighbourChoice& neighbours, const std::string& what,
                            int which, const Array& overlap, double scale) const {
-  const LawOutput output = output_of(what);
+  const LawOutput output = word_of<LawOutput>("what", what);
   const std::vector<law::CrowdNeighbour> around = neighbours_of(neighbours);
   require_columns(overlap, around.size(), which);
   std::string remark;
@@ -144,7 +144,7 @@ std::optional<std::pair<Array, Array>> TableBinding::interval(const TableChoice&
                                                               const NeighbourChoice& neighbours,
                                                               const std::string& what, int which, const Array& overlap,
                                                               double scale) const {
-  const LawOutput output = output_of(what);
+  const LawOutput output = word_of<LawOutput>("what", what);
   const std::vector<law::CrowdNeighbour> around = neighbours_of(neighbours);
   require_columns(overlap, around.size(), which);
   std::string remark;

@@ -342,4 +342,8 @@ def check(scene, *, set=None, law=None):  # pylint: disable=redefined-builtin
         ended = execute(["check", file, *settings(set), *_option("--law", law)])
         if ended.status != 0:
             _raise_for(ended, file, paths)
-        return Findings(ended.objects[0])
+        facts = ended.objects[0]
+        if paths is not None:
+            for key in ("lines", "warnings"):
+                facts[key] = [text.replace(file, "<scene>") for text in facts.get(key, [])]
+        return Findings(facts)
