@@ -41,5 +41,8 @@ class CMakeBuild(build_ext):
         shutil.copy2(build / "softgrain", module.parent / "bin" / "softgrain")
 
 
-setup(packages=["softgrain"], package_dir={"softgrain": "pipelines/python/softgrain"},
+# What setuptools notes on the way goes where everything that is built goes.
+(ROOT / "build").mkdir(exist_ok=True)
+setup(options={"egg_info": {"egg_base": "build"}},
+      packages=["softgrain"], package_dir={"softgrain": "pipelines/python/softgrain"},
       ext_modules=[Extension("softgrain._laws", sources=[])], cmdclass={"build_ext": CMakeBuild})

@@ -57,8 +57,8 @@ file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/pipelines/*.toml ${PROJ
 install(FILES ${scenes} DESTINATION ${softgrain_scenes}/pipelines)
 install(FILES pipelines/grainlearning_example/soft_particle.toml
   DESTINATION ${softgrain_scenes}/pipelines/grainlearning_example)
-install(DIRECTORY pipelines/python DESTINATION ${softgrain_scenes}/pipelines
-  PATTERN __pycache__ EXCLUDE PATTERN binding EXCLUDE PATTERN "*.egg-info" EXCLUDE)
+file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/pipelines/python/*.py)
+install(FILES ${examples} DESTINATION ${softgrain_scenes}/pipelines/python)
 foreach(law published/law.toml law_table/law_table.toml law_table/law_table.h5 hierarchy/law_table.toml)
   get_filename_component(folder ${law} DIRECTORY)
   install(FILES results/${law} DESTINATION ${softgrain_scenes}/results/${folder})

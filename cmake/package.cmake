@@ -22,17 +22,16 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL softgrain)
 set(CPACK_DEBIAN_SOFTGRAIN_PACKAGE_NAME softgrain)
-set(CPACK_COMPONENT_SOFTGRAIN_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION_SUMMARY}\n${CPACK_PACKAGE_DESCRIPTION}")
+set(CPACK_COMPONENT_SOFTGRAIN_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION}")
 # The report shows packings in 3D with the JavaScript of this package, and says so when it is not there.
 set(CPACK_DEBIAN_SOFTGRAIN_PACKAGE_RECOMMENDS "libjs-three")
 if(softgrain_python_built)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-softgrain)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "contact laws and runs of softgrain in Python
-Runs scenes from Python and reads what they leave behind as numpy arrays with
-their units, evaluates fitted contact laws at arrays of overlaps with the very
-code of the simulation, and shows both in notebooks.")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python package: runs scenes and reads what they leave behind as numpy
+arrays with their units, evaluates fitted contact laws at arrays of overlaps
+with the very code of the simulation, and shows both in notebooks.")
   # The module is one for this version of Python alone.
   math(EXPR softgrain_next_python "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "softgrain (= ${PROJECT_VERSION}-1), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), \

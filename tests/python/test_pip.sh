@@ -25,3 +25,5 @@ law = softgrain.Law.load(f"{source}/results/published/law.toml")
 assert abs(law.force(0.2) / 0.6339576601001288 - 1.0) < 1e-12, law.force(0.2)
 assert softgrain.check(f"{source}/pipelines/quickstart.toml").kind == "pipeline"
 PYTHON
+"$work/venv/bin/softgrain" law eval "$source/results/published/law.toml" --delta 0.2 --json >/dev/null
+[[ ! -e "$source/softgrain.egg-info" ]]

@@ -6,6 +6,7 @@ import importlib
 import importlib.util
 import os
 import shutil
+import sys
 from functools import lru_cache
 from pathlib import Path
 
@@ -43,6 +44,12 @@ def program():
             return str(path)
     raise FileTrouble(["the program softgrain was not found" + (f" (tried {', '.join(map(str, tried))})" if tried else "")
                        + ": install it, build it (./softgrain setup), or name it in SOFTGRAIN_PROGRAM"])
+
+
+def main():
+    """The command softgrain of an environment that pip installed into: becomes the program."""
+    path = program()
+    os.execv(path, [path, *sys.argv[1:]])
 
 
 @lru_cache(maxsize=None)
