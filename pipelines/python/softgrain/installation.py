@@ -19,6 +19,7 @@ def _builds():
     """Build directories to look in."""
     if "SOFTGRAIN_BUILD" in os.environ:
         yield Path(os.environ["SOFTGRAIN_BUILD"])
+        return
     root = _HERE.parents[2]  # of the source tree, when this is pipelines/python/softgrain
     if (root / "CMakePresets.json").is_file():
         yield root / "build" / "release"
