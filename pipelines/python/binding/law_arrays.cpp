@@ -57,23 +57,26 @@ class CrowdPass {
 
 void card_array(const SoftContact& contact, LawOutput what, std::span<const double> delta, std::span<double> out) {
   const Wide one(1.0);
-  const auto elastic = [&](const Wide& overlap) {
-    const Wide ratio = contact.taken_ratio<Wide>(overlap, one);
-    const auto [force, stiffness] = contact.elastic_at<Wide>(ratio, one);
-    return choose<Wide>(contact.idle_at(ratio), 0.0, what == LawOutput::force ? force : stiffness);
+  const auto fill = [&](const auto& answer) {
+    in_stretches(delta.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t at = begin; at < end; at += kWide) store(answer(load(delta, at)), out, at);
+    });
   };
-  const auto tangential = [&](const Wide& overlap) {
+  // What is not asked for is not worked out.
+  const auto elastic = [&]<auto kPart>() {
+    return [&contact, &one](const Wide& overlap) {
+      const Wide ratio = contact.taken_ratio<Wide>(overlap, one);
+      return choose<Wide>(contact.idle_at(ratio), 0.0, contact.elastic_at<Wide>(ratio, one).*kPart);
+    };
+  };
+  if (what == LawOutput::force) return fill(elastic.template operator()<&SoftContact::Elastic<Wide>::force>());
+  if (what == LawOutput::stiffness) return fill(elastic.template operator()<&SoftContact::Elastic<Wide>::stiffness>());
+  fill([&](const Wide& overlap) {
     ContactState<3, Wide> state;
     state.normal[0] = one;
     state.constants.a = one;
     state.overlap = overlap;
     return contact.evaluate(state).tangential_stiffness;
-  };
-  in_stretches(delta.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t at = begin; at < end; at += kWide) {
-      const Wide overlap = load(delta, at);
-      store(what == LawOutput::tangential ? tangential(overlap) : elastic(overlap), out, at);
-    }
   });
 }
 
