@@ -1,6 +1,7 @@
 """Laws at arrays: the numbers of the program, derivatives that are derivatives, speed."""
 import multiprocessing
 import os
+import pickle
 import sys
 import threading
 import time
@@ -137,6 +138,10 @@ class CardTest(unittest.TestCase):
         with multiprocessing.get_context("fork").Pool(2) as pool:
             for there in pool.map_async(at_child, [delta, delta]).get(timeout=60):
                 np.testing.assert_array_equal(there, here)
+
+    def test_goes_to_another_process(self):
+        again = pickle.loads(pickle.dumps(self.law))
+        self.assertEqual(again.force(0.2), self.law.force(0.2))
 
     def test_speed_of_a_million_overlaps(self):
         """As fast as numpy's ** by itself, where that has no vector code; measured figures are in the guide. The bound is generous:

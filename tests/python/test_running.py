@@ -1,6 +1,7 @@
 """Scenes that run and those that are refused, as exceptions and objects."""
 import importlib.util
 import os
+import pickle
 import re
 import signal
 import threading
@@ -139,6 +140,8 @@ class RefusedTest(InEmptyFolder):
             self.assertIn("at most 0.5", found["material.glass.nu"].allowed)
             self.assertEqual({m.file for m in caught.exception.mistakes if m.path}, {"<scene>"})
             self.assertNotIn(".softgrain-", str(caught.exception))
+            again = pickle.loads(pickle.dumps(caught.exception))
+            self.assertEqual((str(again), again.mistakes), (str(caught.exception), caught.exception.mistakes))
             self.assertEqual(os.listdir("."), [])
 
     def test_a_file_names_its_line(self):
@@ -161,8 +164,9 @@ class RefusedTest(InEmptyFolder):
         self.assertIn('"particles"', caught.exception.allowed)  # of all commands
 
     def test_missing_files(self):
-        with self.assertRaises(softgrain.FileTrouble):
+        with self.assertRaises(softgrain.FileTrouble) as caught:
             softgrain.run("nothing.toml", progress=False)
+        self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), "nothing.toml: no such file")
         before = os.environ.get("SOFTGRAIN_PROGRAM")
         os.environ["SOFTGRAIN_PROGRAM"] = "/nowhere/softgrain"
         try:

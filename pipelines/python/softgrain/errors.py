@@ -31,6 +31,9 @@ class SoftgrainError(Exception):
         self.mistakes = tuple(Mistake(m) if isinstance(m, str) else m for m in mistakes)
         super().__init__("\n".join(map(str, self.mistakes)))
 
+    def __reduce__(self):  # comes whole out of another process
+        return type(self), (self.mistakes,), self.__dict__
+
     def _first(self, name):
         return getattr(self.mistakes[0], name) if self.mistakes else None
 
@@ -64,6 +67,9 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, message, directory=None):
         super().__init__(message)
         self.directory = directory
+
+    def __reduce__(self):
+        return type(self), (str(self), self.directory)
 
 
 _OF_STATUS = {2: BadInput, 3: NotUsable, 4: FileTrouble}

@@ -67,6 +67,9 @@ class Law(Drawn):
             raise BadInput([f"{path}: a card of the cell law has no forces at contacts: softgrain law show tells its numbers"])
         return CardLaw(path) if kind == "card" else TableLaw(path)
 
+    def __reduce__(self):  # in another process the file is read again
+        return Law.load, (str(self.path.resolve()),)
+
     def _units(self, radius, modulus):
         radius = self.shell_radius if radius is None else float(radius)
         modulus = self.youngs_modulus if modulus is None else float(modulus)
