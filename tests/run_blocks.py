@@ -272,7 +272,7 @@ def self_test():
         assert "no rule" in problems("```sh\n./softgrain dance\n```\n")[0]
         assert "status 1" in problems("```sh\n./softgrain run pipelines/quickstart.toml\n```\n")[0]
         assert "status 1" in problems('```toml\nkind = "particles"\n```\n')[0]
-        assert "cannot run" in problems("```python\nprint(1)\n```\n")[0]
+        assert "cannot run" in problems("```ruby\nputs 1\n```\n")[0]
 
 
 def main():

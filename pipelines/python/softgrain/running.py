@@ -117,8 +117,9 @@ class Teller:
             self.width = 0
 
 
-def _follow(terminal, teller):
-    """Hands on what the program writes to its terminal, line by line; a bar is a line that another one replaces."""
+def _follow(terminal, teller, child):
+    """Hands on what the program writes to its terminal, line by line; a bar is a line that another one replaces. An error of the callback
+    stops the run and is given back."""
     buffer = ""
     trouble = None
     while True:
@@ -134,8 +135,9 @@ def _follow(terminal, teller):
             try:
                 if line and trouble is None and not _COMPLAINT.match(line):
                     teller(line)
-            except Exception as e:  # of the callback: told when the run has ended  # pylint: disable=broad-except
+            except Exception as e:  # pylint: disable=broad-except
                 trouble = e
+                child.send_signal(signal.SIGINT)
     return trouble
 
 
@@ -186,7 +188,7 @@ def execute(arguments, progress=False):
     finally:
         os.close(theirs)
     told = []
-    follower = threading.Thread(target=lambda: told.append(_follow(ours, teller)), daemon=True)
+    follower = threading.Thread(target=lambda: told.append(_follow(ours, teller, child)), daemon=True)
     follower.start()
     printed = []
     reader = threading.Thread(target=lambda: printed.append(child.stdout.read()), daemon=True)
