@@ -35,12 +35,12 @@ for curve in curves:
 
 # %% The law, when there is one; evaluated by the compiled laws of the simulation, dimensionless with radius and modulus 1
 try:
-    law = run.law()
+    law = softgrain.CardLaw(run.directory / "law.toml")
     pair = law.pair("soft-solid")
     numbers = pair.normal
     print(f"law ({pair.status}): F = {numbers.a:.4g} Delta^{numbers.b:.3g} {numbers.c:+.3g} from Delta = "
           f"{numbers.delta:.3g} on; fitted for {pair.delta_min:.3g} to {pair.delta_max:.3g}")
-except (softgrain.BadInput, KeyError):
+except (softgrain.FileTrouble, KeyError):
     law = None
     print("no law in this run")
 except ImportError as e:
