@@ -26,7 +26,7 @@ SMALL_PIPELINE = [
     "measure.soft_soft.angles_deg=[-0.05,0.05]", "reference.relaxation=least-work",
     "reference.soft_solid.deltas=[0.4]", "reference.count=1", "measure.least_work.settle_time=8",
     "calibrate.min_packings=2", "calibrate.replicates=20", "macro.bodies=8", "macro.samples=1", "macro.steps=4",
-    "macro.strain=0.3"]
+    "macro.strain=0.3", "law.range=clamp"]
 
 
 class Run:
@@ -61,12 +61,18 @@ class Check:
 
 
 class OnBlock(Run):
-    """The program on my_scene.toml, which is the last scene of the page."""
+    """The program on my_scene.toml, which is the last scene of the page; with `instead` of what would take long."""
+
+    def __init__(self, instead=()):
+        super().__init__()
+        self.instead = instead
 
     def told(self):
-        return "default suite: on the scene of the page"
+        return "default suite: on the scene of the page" + (", smaller" if self.instead else "")
 
     def quick(self, command):
+        for long, short in self.instead:
+            command = command.replace(long, short)
         return "cp block.toml my_scene.toml; " + command
 
 
@@ -91,7 +97,9 @@ RULES = [
     (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/(python3-)?softgrain_\*\.deb"
      r"|softgrain run /usr/share/softgrain/pipelines/quickstart\.toml",
      Elsewhere("by hand, in a bare Debian root: pipelines/guide/installing.md")),
-    (r"\./softgrain (macrosim|sweep) my_scene\.toml .*|\./softgrain compare results/my_.*", OnBlock()),
+    (r"\./softgrain sweep my_scene\.toml --over grains\.count=500.*", OnBlock([("500,1000,2000,4000", "150,200")])),
+    (r"\./softgrain (check|run|macrosim|sweep) my_scene\.toml.*|\./softgrain compare results/my_.*", OnBlock()),
+    (r"\./softgrain check pipelines/sieve_analysis\.csv", Run()),
     (r"\./softgrain export results/quickstart --to [\w-]+( --out \S+)?", Run()),
     (r"\./softgrain run pipelines/(law_table|macro_vs_resolved)\.toml --out results/my_\w+", Check(slow=True)),
     (r"\./softgrain run pipelines/four_decades\.toml", Check()),

@@ -15,6 +15,7 @@
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_comparison.h"
 #include "tests/support/tiny_law_table.h"
+#include "tests/support/tiny_pipeline.h"
 
 namespace {
 
@@ -361,6 +362,32 @@ TEST_F(LawTableUse, LawTableScenesThatCannotEndInALawAreRefused) {
           {"depth = 1.5"});
   refused("points = 4", "points = 4\norientations = 0", {"orientations = 0"});
   refused("min_packings = 2", "min_packings = 3\n[[variant]]\nbeta = 4\npackings = 2", {"packings", "min_packings"});
+}
+
+/// The law of all neighbours at once stands beside the pair law of the run, each on the same bodies, and it is the one
+/// that the macro command takes from the same table.
+TEST_F(LawTableUse, APipelineShowsTheLawOfATableBesideItsOwn) {
+  std::string text = kTinyPipeline;
+  text += "samples = 2\nresolved = false\n";
+  write_text_atomic(file("alone.toml"), text);
+  write_text_atomic(file("both.toml"), text + "[law]\ntable = \"law_table.toml\"\nrange = \"clamp\"\n");
+  for (const std::string name : {"alone", "both"})
+    expect(run_the_program("run '" + file(name + ".toml") + "' --quiet --out '" + file(name) + "'"), 3, {});
+  const auto alone = load_macro(file("alone") + "/macro.h5");
+  const auto both = load_macro(file("both") + "/macro.h5");
+  const auto axial = [](const std::vector<MacroCurve>& curves, const std::string& engine) {
+    std::vector<std::vector<double>> out;
+    for (const MacroCurve& c : curves)
+      if (c.engine == engine) out.push_back(c.stress_axial);
+    return out;
+  };
+  ASSERT_EQ(axial(both, "law").size(), 2U);
+  EXPECT_EQ(axial(both, "pair"), axial(alone, "law"));
+  EXPECT_NE(axial(both, "law"), axial(alone, "law"));
+  EXPECT_TRUE(summary("both").contains("pair"));
+  EXPECT_FALSE(summary("alone").contains("pair"));
+  for (const MacroCurve& c : both)
+    EXPECT_EQ(c.law.form, c.engine == "pair" ? Crowd::pair : law_entry(0.70).best) << c.engine;
 }
 
 }  // namespace

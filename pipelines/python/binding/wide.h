@@ -1,6 +1,5 @@
 // The number type with which the laws of common/contact are asked at whole arrays: as many overlaps side by side as the
-// processor takes. The laws are templates of the number type, and those of the contact loop are the same; only x^y has
-// a way of its own here.
+// processor takes. The laws are templates of the number type, and those of the contact loop are the same.
 #pragma once
 
 #include <algorithm>
@@ -11,47 +10,12 @@
 
 #include "common/core/lanes.h"
 
-#if defined(__x86_64__) && defined(__GLIBC__)
-#include <immintrin.h>
-
-// Names of the vector ABI of x86-64 (libmvec of glibc): two, four and eight numbers per call.
-extern "C" {
-__m128d _ZGVbN2vv_pow(__m128d, __m128d);
-__m256d _ZGVdN4vv_pow(__m256d, __m256d);
-__m512d _ZGVeN8vv_pow(__m512d, __m512d);
-}
-#endif
-
 namespace softgrain {
 
 namespace python {
 
 using Wide = std::experimental::native_simd<double>;
 inline constexpr std::size_t kWide = Wide::size();
-
-/// x^y by the vector mathematics library of glibc, which differs from std::pow by at most one unit in the last place
-/// (measured; it promises four); by std::pow where there is none.
-inline Wide vector_power(const Wide& x, const Wide& y) {
-#if defined(__x86_64__) && defined(__GLIBC__)
-#if defined(__AVX512F__)
-  return Wide(_ZGVeN8vv_pow(static_cast<__m512d>(x), static_cast<__m512d>(y)));
-#elif defined(__AVX2__)
-  return Wide(_ZGVdN4vv_pow(static_cast<__m256d>(x), static_cast<__m256d>(y)));
-#elif !defined(__AVX__)
-  return Wide(_ZGVbN2vv_pow(static_cast<__m128d>(x), static_cast<__m128d>(y)));
-#endif
-#endif
-  return Wide([&](auto k) { return std::pow(static_cast<double>(x[k]), static_cast<double>(y[k])); });
-}
-
-}  // namespace python
-
-template <>
-inline python::Wide power<python::Wide>(const python::Wide& x, const python::Wide& y) {
-  return all_of(y == 1.0) ? x : python::vector_power(x, y);  // 1: of a law without this part
-}
-
-namespace python {
 
 /// f(begin, end) over 0 .. n - 1 in stretches of whole Wides on the cores there are. Threads of its own: those of
 /// OpenMP do not survive a fork, which Python's multiprocessing is fond of. f must not throw.
