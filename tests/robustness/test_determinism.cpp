@@ -44,7 +44,7 @@ std::vector<SmallForm> small_forms() {
                                          "measure.soft_solid.angles_deg=[-1.0,0.05]"};
   const std::vector<std::string> soft_rotated{"measure.soft_soft.tangential_deltas=[0.3]",
                                               "measure.soft_soft.angles_deg=[0.05]"};
-  const std::vector<std::string> crowd{"law.range=clamp", "macro.bands=8"};
+  const std::vector<std::string> table_law{"law.range=clamp", "macro.bands=8"};
   const std::vector<std::string> quick_rest{"measure.least_work.settle_time=5", "measure.least_work.path_settle_time=5",
                                             "measure.least_work.settle_time_rotated=2"};
   // Deep enough for laws, so that a macro run follows.
@@ -167,7 +167,7 @@ std::vector<SmallForm> small_forms() {
                    unrotated_reference,
                    {"reference.soft_soft.deltas=[0.3]", "reference.soft_soft.tangential_deltas=[]"}}),
        3},
-      {"quickstart.toml", "run", with(deep, {kSmallMacro, quick_rest, reference, crowd}), 3},
+      {"quickstart.toml", "run", with(deep, {kSmallMacro, quick_rest, reference, table_law}), 3},
       {"relaxation_check.toml", "microsim",
        with(kSmallPacking, {kTwoDeltas, reference, {"reference.soft_soft.deltas=[0.2]"}}), 0},
       {"relaxation_study.toml", "microsim", with(kSmallPacking, {kTwoDeltas, quick_rest, rotated, soft_rotated}), 0},
