@@ -97,7 +97,7 @@ RULES = [
     (r"\(cd build/package|cpack -G DEB\)|apt-get install \./build/package/(python3-)?softgrain_\*\.deb"
      r"|softgrain run /usr/share/softgrain/pipelines/quickstart\.toml",
      Elsewhere("by hand, in a bare Debian root: pipelines/guide/installing.md")),
-    (r"\./softgrain sweep my_scene\.toml --over grains\.count=500.*", OnBlock([("500,1000,2000,4000", "150,200")])),
+    (r"\./softgrain sweep my_scene\.toml --over grains\.count=500.*", OnBlock([("500,1000,2000,4000", "400,500")])),
     (r"\./softgrain (check|run|macrosim|sweep) my_scene\.toml.*|\./softgrain compare results/my_.*", OnBlock()),
     (r"\./softgrain check pipelines/sieve_analysis\.csv", Run()),
     (r"\./softgrain export results/quickstart --to [\w-]+( --out \S+)?", Run()),

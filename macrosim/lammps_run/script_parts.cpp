@@ -73,8 +73,8 @@ std::string column_names(const MacroSpec& spec) {
 }  // namespace
 
 std::string kept_states() {
-  return variable("share", "(v_states-1)/v_last") +
-         variable("kept", "floor(v_point*v_share) > floor((v_point-1)*v_share)");
+  // Products of whole numbers first: what they are over `last` is exact where it is whole, as in is_snapshot().
+  return variable("kept", "floor(v_point*(v_states-1)/v_last) > floor((v_point-1)*(v_states-1)/v_last)");
 }
 
 std::string counting() {

@@ -50,11 +50,11 @@ class PipelineBadInput : public ::testing::Test {
 TEST_F(PipelineBadInput, ATableOfLawsIsOneAndGoesWithAMacroScene) {
   const std::string card = SOFTGRAIN_SOURCE_DIR "/results/published/law.toml";
   const std::string table = SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml";
-  expect("[macro]", "[law]\ntable = \"" + card + "\"\n[macro]", {"scene.toml:28", "'table'", "is no law table"});
+  expect("[macro]", "[law]\ntable = \"" + card + "\"\n[macro]", {"scene.toml:28", "table = ", "is no law table"});
   expect("[macro]", "[law]\ntable = \"" + table + "\"\nform = \"pair\"\n[macro]",
-         {"scene.toml:29", "'form'", "the one that this run measures"});
+         {"scene.toml:29", "form = ", "the one that this run measures"});
   expect("[macro]\nbodies = 8\nsteps = 4\nstrain = 0.3\n", "[law]\ntable = \"" + table + "\"\n",
-         {"scene.toml:27", "'law'", "goes with [macro]"});
+         {"scene.toml:27", "law: ", "goes with [macro]"});
   expect("[macro]", "[law]\ntabel = \"" + table + "\"\n[macro]", {"'table'"});
 }
 

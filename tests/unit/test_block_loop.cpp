@@ -1,8 +1,10 @@
-// The vectorised contact loop against the scalar one: the same bits, whatever the law, the cell and the history.
+// The vectorised contact loop against the scalar one: the same bits, whatever the cell and the history, for every law
+// without x^y; with it the same to rounding.
 #include "common/dynamics/block_loop.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/contact/threshold_term.h"
@@ -102,14 +104,48 @@ Sums<D> fast_pass(System<D>& s, double dt, History history) {
   return sums;
 }
 
-template <int D>
-void expect_same(const Sums<D>& a, const Sums<D>& b) {
-  EXPECT_EQ(a.stiffness.translation, b.stiffness.translation);
-  EXPECT_EQ(a.stiffness.rotation, b.stiffness.rotation);
-  EXPECT_EQ(a.stiffness.force, b.stiffness.force);
-  EXPECT_EQ(a.stiffness.contacts, b.stiffness.contacts);
-  EXPECT_EQ(a.virial, b.virial);
+/// Numbers of a kind, as they are compared.
+using Group = std::vector<double>;
+
+template <class Vectors>
+Group group_of(const Vectors& vectors, int many) {
+  Group out;
+  for (const auto& v : vectors)
+    for (int a = 0; a < many; ++a) out.push_back(v[a]);
+  return out;
 }
+
+template <int D>
+std::vector<Group> groups_of(const Sums<D>& s) {
+  return {s.stiffness.translation, s.stiffness.rotation, s.stiffness.force,
+          Group(s.stiffness.contacts.begin(), s.stiffness.contacts.end()), group_of(std::vector{s.virial}, D)};
+}
+
+template <int D>
+std::vector<Group> groups_of(const System<D>& s) {
+  return {group_of(s.particles.force, D), group_of(s.particles.torque, kRot<D>), group_of(s.contacts.spring, D),
+          s.contacts.memory, group_of(s.contacts.roll, D)};
+}
+
+/// The same bits; or, with x^y in the law, which lanes take from other functions than single numbers
+/// (common/core/lane_power.h), the same to a few units in the last place of the largest number of a kind.
+template <class Thing>
+void expect_same(const Thing& a, const Thing& b, bool powers) {
+  const std::vector<Group> left = groups_of(a), right = groups_of(b);
+  for (std::size_t g = 0; g < left.size(); ++g) {
+    ASSERT_EQ(left[g].size(), right[g].size()) << "kind " << g;
+    double largest = 0.0;
+    for (const double x : left[g]) largest = std::max(largest, std::abs(x));
+    for (std::size_t k = 0; k < left[g].size(); ++k) {
+      if (powers)
+        ASSERT_NEAR(left[g][k], right[g][k], 1e-12 * largest) << "kind " << g << ", number " << k;
+      else
+        ASSERT_EQ(left[g][k], right[g][k]) << "kind " << g << ", number " << k;
+    }
+  }
+}
+
+bool has_powers(const AnyLaw& law) { return traits_of(law).is_fitted || traits_of(law).is_crowd; }
 
 struct Case {
   AnyLaw law;
@@ -253,21 +289,6 @@ System<D> crowd(const Case& c, int grains) {
 }
 
 template <int D>
-void expect_same(const System<D>& a, const System<D>& b) {
-  for (std::size_t u = 0; u < a.particles.force.size(); ++u) {
-    ASSERT_EQ(a.particles.force[u], b.particles.force[u]) << "body " << u;
-    ASSERT_EQ(a.particles.torque[u], b.particles.torque[u]) << "body " << u;
-  }
-  ASSERT_EQ(a.contacts.spring.size(), b.contacts.spring.size());
-  for (std::size_t c = 0; c < a.contacts.spring.size(); ++c)
-    ASSERT_EQ(a.contacts.spring[c], b.contacts.spring[c]) << "contact " << c;
-  ASSERT_EQ(a.contacts.memory, b.contacts.memory);
-  ASSERT_EQ(a.contacts.roll.size(), b.contacts.roll.size());
-  for (std::size_t c = 0; c < a.contacts.roll.size(); ++c)
-    ASSERT_EQ(a.contacts.roll[c], b.contacts.roll[c]) << "contact " << c;
-}
-
-template <int D>
 void shake(System<D>& s, double dt) {
   for (std::size_t u = 0; u < s.particles.sphere.size(); ++u) s.particles.sphere[u].x += s.particles.velocity[u] * dt;
 }
@@ -279,14 +300,15 @@ void compare(const Case& c) {
   System<D> in_place = plain;
   constexpr double kStep = 0.01;
   bool any = false;
+  const bool powers = has_powers(c.law);
   for (int k = 0; k < 12; ++k) {
     const Sums<D> sums = scalar_pass(plain, kStep, History::next);
     plain.contacts.commit();
-    expect_same(sums, fast_pass(trying, kStep, History::next));
+    expect_same(sums, fast_pass(trying, kStep, History::next), powers);
     trying.contacts.commit();
     fast_pass(in_place, kStep, History::advance);
-    expect_same(plain, trying);
-    expect_same(plain, in_place);
+    expect_same(plain, trying, powers);
+    expect_same(trying, in_place, false);
     for (const auto& f : plain.particles.force) any = any || f != Vec<D>{};
     for (auto* s : {&plain, &trying, &in_place}) {
       shake(*s, kStep);
@@ -324,7 +346,7 @@ TEST(BlockLoopParts, TakesPartsOfAList) {
     ASSERT_GT(section.end, cut);
     block_loop<3>(parts, section, {section.begin, section.begin + cut}, {.dt = 0.01, .history = History::advance});
     block_loop<3>(parts, section, {section.begin + cut, section.end}, {.dt = 0.01, .history = History::advance});
-    expect_same(whole, parts);
+    expect_same(whole, parts, false);
   }
 }
 
