@@ -12,6 +12,7 @@
 #include "common/dynamics/residual.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
+#include "common/neighbours/verlet_list.h"
 #include "microsim/crowd_experiment.h"
 #include "microsim/protocol.h"
 

@@ -55,8 +55,8 @@ CASES = {  # benchmark: words, work
 OTHERS = {  # no count by hand: what they are compared with
     "ContactLoopScalar/full": ("scalar loop, full", "ContactLoop/full"),
     "ContactLoopScalar/frictionless_undamped": ("scalar loop, neither", "ContactLoop/frictionless_undamped"),
-    "ContactLoopWalls/full": ("walls only (scalar), full", "ContactLoopScalar/full"),
-    "ContactLoopWalls/frictionless_undamped": ("walls only (scalar), neither", "ContactLoopScalar/frictionless_undamped"),
+    "ContactLoopWalls/full": ("walls only, full", "ContactLoopScalar/full"),
+    "ContactLoopWalls/frictionless_undamped": ("walls only, neither", "ContactLoopScalar/frictionless_undamped"),
     "ContactLoopOutput/full": ("pass and records of all contacts", "ContactLoop/full"),
     "ContactLoopStiffnessOff/full": ("pass, list looked at, forces set to zero", "ContactLoop/full"),
     "ContactLoopStiffnessOn/full": ("the same with sums of stiffness", "ContactLoopStiffnessOff/full"),
@@ -351,7 +351,7 @@ def growth_picture(of):
     out.append(f'<text x="{left + width / 2}" y="{top + height + 36}" text-anchor="middle">grains or bodies</text>')
     out.append(f'<text x="16" y="{top + height / 2}" text-anchor="middle" transform="rotate(-90 16 {top + height / 2})">'
                'ns per body and step or pass, on the wall</text>')
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + width + 240}" height="{top + height + 48}" '
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + width + 280}" height="{top + height + 48}" '
             'font-family="sans-serif" font-size="12">\n<title>Cost per body over the number of bodies</title>\n'
             '<rect width="100%" height="100%" fill="#fff"/>\n' + "\n".join(out) + "\n</svg>\n")
 

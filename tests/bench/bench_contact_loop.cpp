@@ -9,6 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include "common/dynamics/pair_loop.h"
+#include "common/neighbours/verlet_list.h"
 #include "tests/bench/roofline_scene.h"
 
 namespace {

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "common/contact/hertz_mindlin.h"
+#include "common/neighbours/verlet_list.h"
 #include "tests/property/random_cloud.h"
 
 namespace {

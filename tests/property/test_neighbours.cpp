@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/contact/hertz_mindlin.h"
+#include "common/neighbours/verlet_list.h"
 #include "tests/property/random_cloud.h"
 
 namespace {

@@ -7,6 +7,7 @@
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/verlet.h"
 #include "common/neighbours/spatial_order.h"
+#include "common/neighbours/verlet_list.h"
 #include "tests/support/small_packing.h"
 
 namespace {
