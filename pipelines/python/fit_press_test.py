@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import curve_fit
 
 TREE = Path(__file__).resolve().parents[2]
 try:
@@ -32,6 +31,8 @@ def read_press_test(path):
 def fit(law, overlap, force, radius, kind="soft-solid"):
     """E [MPa] and where the plate first touched [mm], with their standard errors: the roots of curve_fit's covariance. Of a test
     bench the first is wanted and the second never quite known: the plate was there `shift` before the zero of its reading."""
+
+    from scipy.optimize import curve_fit  # here: the GrainLearning example shares the rest and needs numpy alone
 
     def model(h, megapascals, shift):
         return law.force((h + 1e-3 * shift) / radius, kind, radius=radius, modulus=1e6 * megapascals)

@@ -119,7 +119,8 @@ class RunTest(InEmptyFolder):
         curve = run.macro()[0]
         self.assertEqual((curve.units["stress_axial"], curve.units["strain"]), ("Pa", "1"))
         self.assertEqual(len(curve["strain"]), len(curve["stress_axial"]))
-        self.assertIsNotNone(run.figure())
+        if importlib.util.find_spec("matplotlib") is not None:
+            self.assertIsNotNone(run.figure())
         again = softgrain.run(ROOT / "pipelines/quickstart.toml", out="few", options=options, progress=False, resume=True,
                               unusable="return")
         self.assertEqual(again.status, "not usable")
