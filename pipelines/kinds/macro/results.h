@@ -1,6 +1,7 @@
 // What macro runs leave behind.
 #pragma once
 
+#include "common/data/macro_result.h"
 #include "pipelines/results/kind_results.h"
 
 namespace softgrain {
