@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <experimental/simd>
 #include <type_traits>
 #include <utility>
 
@@ -78,11 +77,13 @@ T power(const T& x, const std::type_identity_t<T>& y) {
   if constexpr (std::is_same_v<Mask<T>, bool>)
     return std::pow(x, y);
   else {
-    alignas(64) std::array<double, T::size()> base, exponent;
-    x.copy_to(base.data(), std::experimental::element_aligned);
-    y.copy_to(exponent.data(), std::experimental::element_aligned);
+    std::array<double, T::size()> base, exponent;
+    for (std::size_t l = 0; l < T::size(); ++l) {
+      base[l] = x[l];
+      exponent[l] = y[l];
+    }
     powers_of(base.data(), exponent.data(), base.data(), T::size());
-    return T(base.data(), std::experimental::element_aligned);
+    return T([&](auto lane) { return base[lane]; });
   }
 }
 

@@ -9,9 +9,12 @@ template <int D>
 void ListWatch<D>::require_list(System<D>& s) {
   constexpr double kTrusted = 0.999;  // the rest covers rounding of the sums of bounds
   if (build_ != 0 && build_ == s.contacts.build && used_ < kTrusted) return;
-  update_neighbours(s);
-  build_ = s.contacts.build;
   used_ = skin_used(s);
+  if (!(used_ <= 1.0)) {
+    rebuild_neighbours(s);
+    used_ = 0.0;
+  }
+  build_ = s.contacts.build;
 }
 
 template class ListWatch<2>;

@@ -169,13 +169,14 @@ class UsedUp {
   }
 
  private:
-  static constexpr double kShareOfOthers = 0.99;  // of a class that does not fly, at least
+  static constexpr double kShareOfOthers = 0.99;  // of a class that does not fly, at least: none flies of less than 100
   static constexpr double kAhead = 2.0;           // of those, from which on one flies
 
   /// The largest number that does not stand out.
   static double most_of_the_others(std::vector<double>& used) {
     if (used.empty()) return 0.0;
-    const auto place = static_cast<std::ptrdiff_t>(kShareOfOthers * static_cast<double>(used.size() - 1));
+    const auto flying = static_cast<std::size_t>((1.0 - kShareOfOthers) * static_cast<double>(used.size()) + 1e-9);
+    const auto place = static_cast<std::ptrdiff_t>(used.size() - 1 - flying);
     std::nth_element(used.begin(), used.begin() + place, used.end());
     const double limit = kAhead * used[static_cast<std::size_t>(place)];
     double most = 0.0;
@@ -206,7 +207,7 @@ constexpr double kFastestChange = 2.0;
 constexpr double kWidest = 0.5;            // of the radius ...
 constexpr double kWidestInSmallest = 1.0;  // ... and of the smallest one
 // A grain that flies has few neighbours, and few grains fly: wide margins cost little there.
-constexpr double kWidestOfFlyers = 8.0;  // of the radius
+constexpr double kWidestOfFlyers = 8.0;  // of the smallest radius
 constexpr double kFastestOfFlyers = 16.0;
 constexpr double kNarrowest = 0.01;  // of the radius of the smallest
 
@@ -221,8 +222,8 @@ void set_margins(System<D>& s, const UsedUp<D>& used, double stretch) {
       const bool flies = used.flies(u, r);
       const double up = flies ? kFastestOfFlyers : kFastestChange;
       const double limited = std::clamp(used.of(u, r) * stretch, n.skin[u] / kFastestChange, n.skin[u] * up);
-      const double widest =
-          flies ? kWidestOfFlyers * r : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
+      const double widest = flies ? kWidestOfFlyers * used.smallest()
+                                  : std::min(r > 0.0 ? kWidest * r : kNever, kWidestInSmallest * used.smallest());
       n.skin[u] = std::max(std::min(limited, widest), kNarrowest * used.smallest());
     }
   });

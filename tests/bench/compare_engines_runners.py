@@ -120,7 +120,7 @@ class Lammps:
         for key, value in values.items():
             command += ["-var", key, str(value)]
         output, memory = run(command, cores, self.ENVIRONMENT, directory)
-        return {**self.read(output), "peak_memory": memory * self.threads}
+        return {**self.read(output), "peak_memory": memory * self.threads}  # of the largest rank, times ranks
 
     @staticmethod
     def read(output):

@@ -11,22 +11,13 @@
 #include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_macro.h"
 
 namespace {
 
 using namespace softgrain;
 using namespace softgrain::test;
 namespace fs = std::filesystem;
-
-constexpr const char* kMacro = R"(kind = "macro"
-title = "a macro scene"
-law = "law.toml"
-[macro]
-bodies = 6
-steps = 2
-strain = 0.15
-resolved = false
-)";
 
 constexpr const char* kParticles = R"(kind = "particles"
 title = "one grain"
@@ -52,7 +43,7 @@ class RunDirectory : public ::testing::Test {
  protected:
   RunDirectory() {
     save_card(synthetic::card(), file("law.toml"));
-    write_text_atomic(file("macro.toml"), kMacro);
+    write_text_atomic(file("macro.toml"), kMacroOfAMoment);
     write_text_atomic(file("particles.toml"), kParticles);
   }
   [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
@@ -114,8 +105,9 @@ TEST_F(RunDirectory, WhatARunReadsStaysWhereItIs) {
     EXPECT_TRUE(fs::exists(out("law.h5")));
   }
   // The key of a scene counts as much as the command line.
-  write_text_atomic(file("macro.toml"),
-                    std::string(kMacro).replace(std::string(kMacro).find("law.toml"), 8, "out/law.toml"));
+  write_text_atomic(
+      file("macro.toml"),
+      std::string(kMacroOfAMoment).replace(std::string(kMacroOfAMoment).find("law.toml"), 8, "out/law.toml"));
   expect(macro(), 0);
   EXPECT_EQ(read_text(out("law.toml")), law);
 }

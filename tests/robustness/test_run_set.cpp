@@ -11,6 +11,7 @@
 #include "tests/support/program.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/tiny_macro.h"
 
 namespace {
 
@@ -19,21 +20,11 @@ using namespace softgrain::test;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kOfSets = R"(kind = "macro"
-title = "a macro scene"
-law = "law.toml"
-[macro]
-bodies = 6
-steps = 2
-strain = 0.15
-resolved = false
-)";
-
 class RunSet : public ::testing::Test {
  protected:
   RunSet() {
     save_card(synthetic::card(), file("law.toml"));
-    write_text_atomic(file("macro.toml"), kOfSets);
+    write_text_atomic(file("macro.toml"), kMacroOfAMoment);
   }
   [[nodiscard]] std::string file(const std::string& name) const { return directory_.file(name); }
   [[nodiscard]] std::string quoted(const std::string& name) const { return "'" + file(name) + "' "; }

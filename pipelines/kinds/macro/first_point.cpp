@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/core/statistics.h"
 #include "pipelines/kinds/macro/values.h"
 
@@ -27,11 +29,19 @@ const char* why(const MacroCurve& c) {
          "nothing before their threshold";
 }
 
+/// Engines that begin too low for the same reason.
+struct Below {
+  std::string reason;
+  double asked = 0.0;  ///< [Pa]
+  std::string engines;
+  std::string stresses;
+};
+
 }  // namespace
 
 std::vector<std::string> first_point_remarks(const MacroSpec& spec, const std::vector<MacroCurve>& curves) {
   constexpr double kFarBelow = 0.5;
-  std::vector<std::string> out;
+  std::vector<Below> below;
   for (const NamedCurves& one : by_engine(curves)) {
     Tally stress;
     for (const MacroCurve& c : one.curves)
@@ -40,9 +50,16 @@ std::vector<std::string> first_point_remarks(const MacroSpec& spec, const std::v
     const double asked = spec.start_pressure * c.start.youngs_modulus;
     const double mean = stress.mean();
     if (!(mean < kFarBelow * asked)) continue;
-    out.push_back(fmt::format("the first point of '{}' bears {:.3g} Pa, below start_pressure E = {:.3g} Pa: {}",
-                              c.engine, mean, asked, why(c)));
+    const std::string reason = why(c);
+    auto at = std::find_if(below.begin(), below.end(), [&](const Below& b) { return b.reason == reason; });
+    if (at == below.end()) at = below.insert(below.end(), {reason, asked, "", ""});
+    at->engines += (at->engines.empty() ? "'" : ", '") + c.engine + "'";
+    at->stresses += (at->stresses.empty() ? "" : ", ") + fmt::format("{:.3g}", mean);
   }
+  std::vector<std::string> out;
+  for (const Below& b : below)
+    out.push_back(fmt::format("the first point of {} bears {} Pa, below start_pressure E = {:.3g} Pa: {}", b.engines,
+                              b.stresses, b.asked, b.reason));
   return out;
 }
 
