@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_spline.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 
 #include "calibrate/bootstrap.h"
 #include "calibrate/rod_packing.h"
@@ -24,46 +22,13 @@ struct Onsets {
   std::vector<double> error;
 };
 
-/// phi_J of one span by rods, over their gap.
-class RodCurve {
- public:
-  RodCurve(double exponent, double span) {
-    constexpr std::size_t kRods = 5000;
-    constexpr int kKnots = 28;
-    constexpr double kSmallest = 0.25;
-    constexpr double kStep = 1.1;  // of the gap: up to 3.3
-    const auto sizes = Grading::classes({{1.0 / span, 1.0, exponent, 1.0}});
-    const std::vector<double> chords = chords_of(sizes, kRods);
-    std::vector<double> log_gap;
-    std::vector<double> log_void_ratio;
-    for (int k = 0; k < kKnots; ++k) {
-      const double gap = kSmallest * std::pow(kStep, k);
-      log_gap.push_back(std::log(gap));
-      log_void_ratio.push_back(std::log(1.0 / rod_packing(chords, gap) - 1.0));
-    }
-    spline_.reset(gsl_spline_alloc(gsl_interp_cspline, log_gap.size()));
-    gsl_spline_init(spline_.get(), log_gap.data(), log_void_ratio.data(), log_gap.size());
-  }
-
-  [[nodiscard]] double at(double gap) const {
-    const double log_gap = std::clamp(std::log(gap), spline_->interp->xmin, spline_->interp->xmax);
-    return 1.0 / (1.0 + std::exp(gsl_spline_eval(spline_.get(), log_gap, nullptr)));
-  }
-
- private:
-  struct Free {
-    void operator()(gsl_spline* s) const { gsl_spline_free(s); }
-  };
-  std::unique_ptr<gsl_spline, Free> spline_;
-};
-
 /// A form and what it needs to be evaluated at the spans that occur.
 class OnsetModel {
  public:
   OnsetModel(OnsetForm form, const std::vector<double>& spans, double exponent) : form_(form) {
     if (form != OnsetForm::rods) return;
     for (const double r : spans)
-      if (!rods_.contains(r)) rods_.try_emplace(r, exponent, r);
+      if (!rods_.contains(r)) rods_.try_emplace(r, Grading::classes({{1.0 / r, 1.0, exponent, 1.0}}));
   }
 
   [[nodiscard]] OnsetForm form() const { return form_; }
@@ -95,7 +60,7 @@ class OnsetModel {
       case OnsetForm::rods:
         break;
     }
-    return {{0.25, 3.27}};
+    return {{RodCurve::kLeastGap, RodCurve::kLargestGap}};
   }
 
  private:

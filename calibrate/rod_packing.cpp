@@ -1,5 +1,7 @@
 #include "calibrate/rod_packing.h"
 
+#include <gsl/gsl_spline.h>
+
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -70,6 +72,39 @@ double rod_packing(const std::vector<double>& chords, double gap) {
     rods += chords[k];
   }
   return rods / (rods + space);
+}
+
+struct RodCurve::Spline {
+  explicit Spline(std::size_t knots) : spline(gsl_spline_alloc(gsl_interp_cspline, knots)) {}
+  Spline(const Spline&) = delete;
+  Spline& operator=(const Spline&) = delete;
+  ~Spline() { gsl_spline_free(spline); }
+  gsl_spline* spline;
+};
+
+RodCurve::RodCurve(const Grading& sizes, std::size_t rods) {
+  constexpr std::size_t kKnots = 28;
+  constexpr double kStep = 1.1;  // of the gap
+  const std::vector<double> chords = chords_of(sizes, rods);
+  std::vector<double> log_gap;
+  std::vector<double> log_void_ratio;
+  for (std::size_t k = 0; k < kKnots; ++k) {
+    const double gap = kLeastGap * std::pow(kStep, k);
+    log_gap.push_back(std::log(gap));
+    log_void_ratio.push_back(std::log(1.0 / rod_packing(chords, gap) - 1.0));
+  }
+  spline_ = std::make_unique<Spline>(kKnots);
+  gsl_spline_init(spline_->spline, log_gap.data(), log_void_ratio.data(), kKnots);
+}
+
+RodCurve::~RodCurve() = default;
+RodCurve::RodCurve(RodCurve&&) noexcept = default;
+RodCurve& RodCurve::operator=(RodCurve&&) noexcept = default;
+
+double RodCurve::at(double gap) const {
+  const gsl_interp* knots = spline_->spline->interp;
+  const double log_gap = std::clamp(std::log(gap), knots->xmin, knots->xmax);
+  return 1.0 / (1.0 + std::exp(gsl_spline_eval(spline_->spline, log_gap, nullptr)));
 }
 
 }  // namespace softgrain

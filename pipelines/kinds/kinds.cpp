@@ -16,6 +16,7 @@
 #include "pipelines/kinds/material_models/scene.h"
 #include "pipelines/kinds/particles/scene.h"
 #include "pipelines/kinds/pipeline/scene.h"
+#include "pipelines/kinds/recipe/scene.h"
 #include "pipelines/kinds/soft_particle/scene.h"
 
 namespace softgrain {
@@ -43,7 +44,7 @@ std::span<const SceneKind> scene_kinds() {
   static const std::array kinds{
       pipeline_kind(),      macro_comparison_kind(), law_table_kind(),      hierarchy_kind(),       inverse_kind(),
       soft_particle_kind(), particles_kind(),        grain_box_kind(),      cohesive_powder_kind(), macro_kind(),
-      material_kind(),      material_law_kind(),     material_models_kind()};
+      material_kind(),      material_law_kind(),     material_models_kind(), recipe_kind()};
   return kinds;
 }
 

@@ -276,6 +276,31 @@ strain = 0.05
 preload_steps = 1
 )";
 
+inline constexpr const char* kTinyRecipe = R"(kind = "recipe"
+seed = 1
+[grains]
+count = 150
+ratio = 2.2
+[levels]
+ratio = 1.6
+mixtures = [0.25, 0.5, 0.75]
+[law]
+cells = 40
+shear_strain = 0.04
+[packing]
+preparation = "fast"
+[test]
+steps = 4
+increments_per_step = 2
+strain = 0.05
+preload_steps = 1
+[check]
+grains = 300
+[macro]
+grains = 40
+samples = 1
+)";
+
 inline constexpr const char* kTinyMaterialModels = R"(kind = "material-models"
 seed = 1
 samples = 2
@@ -314,6 +339,7 @@ inline std::vector<KindScene> every_kind() {
                                {"macro", "", kTinyMacro, 0},
                                {"material", "", kTinyMaterial, 0},
                                {"material-law", "", kTinyMaterialLaw, 3},
+                               {"recipe", "", kTinyRecipe, 0},
                                {"material-models", "", kTinyMaterialModels, 0},
                                {"macro-comparison", "", kTinyComparison, 0},
                                {"law-table", "", std::string(kTinyLawTable) + kTinyLawFit, 0},
@@ -335,7 +361,7 @@ inline std::vector<KindScene> every_kind() {
 }
 
 inline bool is_slow(const KindScene& k) {
-  return k.name == "law-table" || k.name == "hierarchy" || k.name == "material-law";
+  return k.name == "law-table" || k.name == "hierarchy" || k.name == "material-law" || k.name == "recipe";
 }
 
 /// Those that take about a second.

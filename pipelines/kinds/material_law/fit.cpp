@@ -88,7 +88,7 @@ class MaterialLawFit {
   }
 
   void fit_excess() {
-    MixtureGroups groups{"fines", "coarse", {}};
+    MixtureGroups groups{result(LawVariant::fines).variant->name, result(LawVariant::coarse).variant->name, {}};
     std::vector<GrainShares> shares;
     for (std::size_t k = kFirstMixture; k < results_.size(); ++k) {
       shares.push_back(grains_of(*results_[k].variant));

@@ -24,7 +24,9 @@ constexpr std::size_t kLeastMixtures = 3;
 /// Fewer sites are their own neighbours.
 constexpr std::int64_t kLeastCells = 40;
 
-MacroSetup law_defaults() {
+}  // namespace
+
+MacroSetup material_law_defaults() {
   MacroSetup setup = material_defaults();
   MacroSpec& spec = setup.spec;
   spec.strain_end = 0.08;
@@ -33,6 +35,8 @@ MacroSetup law_defaults() {
   spec.preload = 0.02;
   return setup;
 }
+
+namespace {
 
 MaterialVariant variant_of(const std::string& name, const MacroSetup& base, const Grading& sizes) {
   MaterialVariant v{name, base};
@@ -111,7 +115,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     MaterialLawScene out{{}, Grading::power_law(3.5, 1.0, 2.0), 1.0 / 3.0, {}, 100};
     out.material.title = root.text("title", "");
     out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
-    MacroSetup base = law_defaults();
+    MacroSetup base = material_law_defaults();
     read_material_tables(root, base);
     const SceneTable test = root.table_or_empty("test");
     if (base.spec.test != MacroTest::oedometric)

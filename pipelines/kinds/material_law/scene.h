@@ -24,6 +24,9 @@ struct MaterialLawScene {
   std::int64_t cells = 100;      ///< sites of the cells that friction is fitted with
 };
 
+/// What its tables mean where they say nothing.
+MacroSetup material_law_defaults();
+
 /// Coarse and fine grains of a drawn sample, and their solid volumes [m^3].
 struct GrainShares {
   std::int64_t coarse = 0;

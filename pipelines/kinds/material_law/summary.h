@@ -6,6 +6,12 @@
 
 namespace softgrain {
 
+void fields(auto&& visit, Of<Estimate> auto& e) {
+  visit("value", e.value);
+  visit("standard_error", e.standard_error);
+  range_field(visit, "interval", e.low, e.high);
+}
+
 /// A number of the law under its name in the card.
 struct LawNumber {
   std::string name;
@@ -14,9 +20,7 @@ struct LawNumber {
 
 void fields(auto&& visit, Of<LawNumber> auto& s) {
   visit("name", s.name);
-  visit("value", s.estimate.value);
-  visit("standard_error", s.estimate.standard_error);
-  range_field(visit, "interval", s.estimate.low, s.estimate.high);
+  fields(visit, s.estimate);
 }
 
 /// W/V_c of a mixture.

@@ -142,23 +142,6 @@ MacroCurve stand_in_of(const OneSample& one, std::size_t sample) {
   return c;
 }
 
-/// Coarse grains and shells of this volume, largest first.
-std::vector<MacroBody> with_shells(const OneSample& one, std::vector<MacroBody> bodies, double shells,
-                                   std::size_t sample) {
-  const MaterialModel& m = one.model;
-  const MacroSpec& truth = spec_of(one.truth);
-  const Grading sizes =
-      Grading::power_law(truth.exponent, m.radii[0] * truth.solid_radius_max, m.radii[1] * truth.solid_radius_max);
-  RandomStream random(one.run.seed, kShellRadii, sample);
-  const double mean = kSphereVolume * sizes.mean_volume();
-  std::vector<double> radii = sizes.draw(static_cast<std::size_t>(std::max(1.0, std::round(shells / mean))), random);
-  double drawn = 0.0;
-  for (const double r : radii) drawn += kSphereVolume * cube(r);
-  for (const double r : radii) bodies.push_back({{}, r * std::cbrt(shells / drawn), true});
-  std::stable_sort(bodies.begin(), bodies.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
-  return bodies;
-}
-
 /// The fines' volume in shells of the solid fraction that the law was measured with; packed with the coarse grains as
 /// hard spheres, brought into the box of the truth, shells then scaled.
 MacroCurve shells_of(const OneSample& one, std::size_t sample) {
@@ -167,22 +150,18 @@ MacroCurve shells_of(const OneSample& one, std::size_t sample) {
   const CoarseAndFine parts = parted_or_refused(whole, cut_of(m, one.truth));
   const double inside = law_fraction(*m.law, 0.0) > 0.0 ? law_fraction(*m.law, 0.0) : 1.0;
   MacroSetup setup = one.truth.variant->setup;
+  const double largest = setup.spec.solid_radius_max;
+  const Grading shells = Grading::power_law(setup.spec.exponent, m.radii[0] * largest, m.radii[1] * largest);
   const std::string key =
       fmt::format("{}shells for fines below {:.17g}, radii {:.17g} to {:.17g}, solid inside {:.17g}\n",
                   packing_key(setup.spec, one.run.seed, sample), m.split, m.radii[0], m.radii[1], inside);
   MacroPacking packing = one.own_packing(key, [&] {
-    return pack_bodies(setup.spec, with_shells(one, parts.coarse, parts.fines_volume / inside, sample), one.run.seed,
-                       sample);
+    return pack_bodies(setup.spec,
+                       with_shells(parts.coarse, shells, parts.fines_volume / inside, one.run.seed, sample),
+                       one.run.seed, sample);
   });
   setup.spec.bodies = static_cast<std::int64_t>(packing.bodies.size());
-  packing.springs.clear();
-  const double factor = std::cbrt((whole.size()[0] * whole.size()[1] * whole.size()[2]) /
-                                  (packing.size()[0] * packing.size()[1] * packing.size()[2]));
-  for (MacroBody& b : packing.bodies) {
-    b.x = packing.low + (b.x - packing.low) * factor;
-    if (b.soft) b.r *= m.scale;
-  }
-  packing.high = packing.low + packing.size() * factor;
+  bring_into_volume(packing, whole.size()[0] * whole.size()[1] * whole.size()[2], m.scale);
   const NamedLaws law = scene_law(*m.law, setup.spec, inside, m.name);
   return one.test(setup, packing, sample, &law);
 }
@@ -221,6 +200,28 @@ MacroCurve curve_of(const OneSample& one, std::size_t sample) {
 }
 
 }  // namespace
+
+std::vector<MacroBody> with_shells(std::vector<MacroBody> coarse, const Grading& shells, double volume,
+                                   std::uint64_t seed, std::size_t sample) {
+  RandomStream random(seed, kShellRadii, sample);
+  const double mean = kSphereVolume * shells.mean_volume();
+  std::vector<double> radii = shells.draw(static_cast<std::size_t>(std::max(1.0, std::round(volume / mean))), random);
+  double drawn = 0.0;
+  for (const double r : radii) drawn += kSphereVolume * cube(r);
+  for (const double r : radii) coarse.push_back({{}, r * std::cbrt(volume / drawn), true});
+  std::stable_sort(coarse.begin(), coarse.end(), [](const MacroBody& a, const MacroBody& b) { return a.r > b.r; });
+  return coarse;
+}
+
+void bring_into_volume(MacroPacking& packing, double volume, double scale) {
+  packing.springs.clear();
+  const double factor = std::cbrt(volume / (packing.size()[0] * packing.size()[1] * packing.size()[2]));
+  for (MacroBody& b : packing.bodies) {
+    b.x = packing.low + (b.x - packing.low) * factor;
+    if (b.soft) b.r *= scale;
+  }
+  packing.high = packing.low + packing.size() * factor;
+}
 
 CoarseAndFine parted(const MacroPacking& packing, double cut) {
   CoarseAndFine out;

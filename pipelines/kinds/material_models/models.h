@@ -36,6 +36,13 @@ struct CoarseAndFine {
 };
 CoarseAndFine parted(const MacroPacking& packing, double cut);
 
+/// Coarse grains and soft particles that hold `volume` together, with radii of this distribution, largest first.
+std::vector<MacroBody> with_shells(std::vector<MacroBody> coarse, const Grading& shells, double volume,
+                                   std::uint64_t seed, std::size_t sample);
+
+/// Places in a box of this volume, the radii of soft bodies times `scale`; springs are gone.
+void bring_into_volume(MacroPacking& packing, double volume, double scale);
+
 /// Whether the fines are not those of the card: their span, form and preparation; empty when they are.
 std::string other_fines(const MaterialModel& model, const MacroSpec& spec);
 

@@ -1,0 +1,43 @@
+// Where pressure begins in matter that nobody packs: from the onsets of its levels and of mixtures of two.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calibrate/equation_of_state_fit.h"
+#include "pipelines/kinds/recipe/scene.h"
+#include "pipelines/kinds/recipe/summary.h"
+
+namespace softgrain {
+
+/// phi_J of joined levels by two forms, each fitted to all packings that were measured (the check apart):
+/// - levels: from the finest up, a level of solid volume V_c added to finer ones of V_f and void ratio e_f leaves
+///   e = e_f (w + r)/(1 + r), r = V_f/V_c. w, the pores beside the coarse grains in units of e_f V_c, is that of the
+///   level's mixtures with the next finer level alone, straight between their shares of fines (at 0 the coarse level by
+///   itself), the last one beyond: pores that fines leave beside larger grains go with their own;
+/// - rods: of all chords of all grains on a line (rod_packing.h), with one gap fitted to all onsets; widened by how far
+///   these are about it.
+/// The interval reaches from the lowest to the highest end of both.
+class LevelForms {
+ public:
+  /// `fit`: groups by the names of the variants. Throws NotUsable where a packing is not among them.
+  LevelForms(const RecipeScene& scene, const StateFit& fit);
+  ~LevelForms();
+  LevelForms(const LevelForms&) = delete;
+  LevelForms& operator=(const LevelForms&) = delete;
+
+  /// `count` levels from `first` on, as they are in the whole; `widen`: both ends of the interval by as much. One
+  /// alone is as it was measured.
+  [[nodiscard]] OnsetByForms joined_onset(std::size_t first, std::size_t count, double widen = 0.0) const;
+  /// Of a level alone, as measured.
+  [[nodiscard]] double own_onset(std::size_t level) const;
+  [[nodiscard]] double gap() const;
+  [[nodiscard]] double rods_deviation() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace softgrain

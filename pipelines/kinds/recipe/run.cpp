@@ -1,0 +1,284 @@
+#include "pipelines/kinds/recipe/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/stopwatch.h"
+#include "common/io/text_file.h"
+#include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/material_law/results.h"
+#include "pipelines/kinds/recipe/law.h"
+#include "pipelines/kinds/recipe/macro.h"
+#include "pipelines/kinds/recipe/shells.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Everything that a run of a recipe makes, step by step.
+class RecipeRun {
+ public:
+  RecipeRun(const RecipeScene& scene, const Run& run) : scene_(scene), run_(run) {}
+
+  RecipeSummary finish() {
+    const Stopwatch watch;
+    results_ = run_variants(scene_.material, run_);
+    packing_seconds_ = watch.seconds();
+    MaterialOutcome measured = summarise(scene_.material, results_, run_);
+    summary_.material = std::move(measured.summary);
+    describe();
+    write_text_atomic(run_.path("material.csv"), as_csv(points_of(results_)));
+    run_.context.guard([&] { put_together(measured.states); });
+    return std::move(summary_);
+  }
+
+ private:
+  RecipeOutcome& out() { return summary_.recipe; }
+  SummaryHead& head() { return summary_.material.head; }
+
+  void describe() {
+    for (const Constituent& c : scene_.constituents)
+      out().constituents.push_back({c.name, c.mass_share, c.density, c.volume_share});
+    out().span = scene_.sizes.largest() / scene_.sizes.smallest();
+  }
+
+  void put_together(const std::optional<StateFit>& states) {
+    if (!states || !states->usable) return head().reject("no law: the equation of state is not usable");
+    const LevelForms forms(scene_, *states);
+    out().gap = forms.gap();
+    out().rods_deviation = forms.rods_deviation();
+    const double widen = check(forms, *states);
+    add_levels(forms, widen);
+    law_ = whole_law(*states, widen, forms);
+    write_material_card(scene_, law_, run_.path(kMaterialCardFile), run_.provenance);
+    head().files["material_card"] = run_.path(kMaterialCardFile);
+    out().onset = law_.onset;
+    out().solid_fraction = solid_fraction_of(law_);
+    count_grains();
+    load(forms, *states, widen);
+  }
+
+  /// The coarsest levels with all their grains; what intervals are widened by.
+  double check(const LevelForms& forms, const StateFit& states) {
+    if (!scene_.checked) return 0.0;
+    const MaterialVariant& v = scene_.material.variants[*scene_.checked];
+    const auto group = std::find_if(states.groups.begin(), states.groups.end(),
+                                    [&](const StateGroup& g) { return g.name == v.name; });
+    if (group == states.groups.end()) return 0.0;
+    RecipeCheckSummary c;
+    c.levels = static_cast<std::int64_t>(scene_.checked_levels);
+    c.grains = v.setup.spec.bodies;
+    c.span = v.setup.spec.solid_polydispersity;
+    c.measured = {group->onset.value, group->onset.error, group->onset.low, group->onset.high};
+    c.predicted = forms.joined_onset(0, scene_.checked_levels);
+    c.outside = std::max({0.0, c.predicted.onset.low - c.measured.value, c.measured.value - c.predicted.onset.high});
+    if (c.outside > 0.0)
+      head().remarks.push_back(fmt::format(
+          "the check of {} levels lies {:.4f} outside the interval of its prediction: the interval of the whole is "
+          "widened by as much at both ends",
+          c.levels, c.outside));
+    out().check = c;
+    return c.outside;
+  }
+
+  void add_levels(const LevelForms& forms, double widen) {
+    for (std::size_t k = 0; k < scene_.levels.size(); ++k) {
+      const RecipeLevel& level = scene_.levels[k];
+      RecipeLevelSummary s;
+      s.level = static_cast<std::int64_t>(k) + 1;
+      s.diameter_low = 2.0 * level.low;
+      s.diameter_high = 2.0 * level.high;
+      s.share = level.share;
+      s.packing = scene_.material.variants[scene_.slice[k]].name;
+      s.onset = forms.own_onset(k);
+      s.with_finer = forms.joined_onset(k, scene_.levels.size() - k, widen);
+      out().levels.push_back(s);
+    }
+    for (std::size_t k = 0; k + 1 < out().levels.size(); ++k) {
+      const double fines = fines_over_coarse(scene_, k) / out().levels[k + 1].with_finer.onset.value;
+      out().levels[k].filling = fines / (1.0 / out().levels[k].onset - 1.0);
+    }
+  }
+
+  WholeLaw whole_law(const StateFit& states, double widen, const LevelForms& forms) {
+    WholeLaw law;
+    law.form = scene_.material.equation.form;
+    law.modulus = {states.modulus.value, states.modulus.error, states.modulus.low, states.modulus.high};
+    law.exponent = {states.exponent.value, states.exponent.error, states.exponent.low, states.exponent.high};
+    law.onset = forms.joined_onset(0, scene_.levels.size(), widen).onset;
+    law.modulus_scatter = states.modulus_scatter;
+    law.lateral = lateral_ratio(scene_, results_);
+    law.start_pressure = scene_.material.variants.front().setup.spec.start_pressure;
+    law.pressure_low = kInfinity;
+    for (const VariantResult& r : results_)
+      for (const MacroCurve& c : r.curves)
+        for (const double p : state_curve(c, r.variant->name, 1.0).pressure) {
+          if (p > 0.0) law.pressure_low = std::min(law.pressure_low, p);
+          law.pressure_high = std::max(law.pressure_high, p);
+        }
+    out().lateral_ratio = law.lateral.value;
+    out().lateral_low = law.lateral.low;
+    out().lateral_high = law.lateral.high;
+    return law;
+  }
+
+  /// What the law stands for, and what it would take to resolve it.
+  void count_grains() {
+    const double solid = out().solid_fraction->value;
+    for (std::size_t k = 0; k < scene_.levels.size(); ++k) {
+      const double volume = mean_grain_volume(scene_.levels[k].pieces);
+      out().levels[k].grains = solid * scene_.levels[k].share / volume;
+      out().grains_per_cubic_metre += out().levels[k].grains;
+    }
+    constexpr double kCoarse = 100.0;
+    const double third = scene_.sizes.largest() / 3.0;
+    double number = 0.0;
+    for (const RecipeLevel& level : levels_of(scene_.sizes, {third}))
+      if (level.low >= third * (1.0 - 1e-9)) number += level.share / mean_grain_volume(level.pieces);
+    const double all = 1.0 / mean_grain_volume(scene_.sizes.pieces());
+    out().resolved_grains = kCoarse * all / number;
+    double grains = 0.0;
+    for (const VariantResult& r : results_)
+      grains += static_cast<double>(r.variant->setup.spec.bodies) * static_cast<double>(r.curves.size());
+    out().resolved_hours = packing_seconds_ * run_.context.threads() / grains * out().resolved_grains / 3600.0;
+  }
+
+  /// So far that pores do not vanish.
+  [[nodiscard]] double strain() const {
+    if (scene_.macro.strain > 0.0) return scene_.macro.strain;
+    return std::min(scene_.material.variants.front().setup.spec.strain_end,
+                    0.5 * (1.0 - summary_.recipe.solid_fraction->value));
+  }
+
+  void load(const LevelForms& forms, const StateFit& states, double widen) {
+    const double end = strain();
+    out().curves.push_back(curve_of(law_, end, 16));
+    if (scene_.checked && scene_.checked_levels == scene_.levels.size())
+      out().curves.push_back(mean_curve("all grains", results_[*scene_.checked].curves));
+    const MaterialLaw fitted = fit_coarsest(scene_, results_, states, run_.seed);
+    summary_.law = fitted.summary;
+    for (const std::string& problem : fitted.problems) head().remarks.push_back("no cell law: " + problem);
+    ShellLevels shells;
+    if (scene_.shells.levels > 0) shells = run_shells_();
+    if (fitted.problems.empty()) {
+      const CellCard card =
+          among_all_fines(scene_, fitted.card, forms.joined_onset(1, scene_.levels.size() - 1, widen));
+      write_cell_card(card, run_.path(kCellLawFile), run_.provenance);
+      head().files["cell_law"] = run_.path(kCellLawFile);
+      std::vector<MacroCurve> kept;
+      out().curves.push_back(press_in_cells(scene_, card, end, run_, kept));
+      if (!shells.table.entries.empty())
+        out().curves.push_back(press_with_shells(scene_, card, shells.table, end, run_, kept));
+      if (!kept.empty()) {
+        save_macro(kept, run_.path("recipe_macro.h5"), run_.provenance);
+        head().files["macro"] = run_.path("recipe_macro.h5");
+      }
+    }
+    judge(end);
+    write_text_atomic(run_.path("recipe.csv"), as_csv(table()));
+    head().files["curves"] = run_.path("recipe.csv");
+  }
+
+  ShellLevels run_shells_() {
+    try {
+      ShellLevels shells = run_shells(scene_, run_);
+      out().shells = shells.levels;
+      head().files["shell_law"] = run_.path("law_table.toml");
+      for (const std::string& remark : shells.remarks) head().remarks.push_back(remark);
+      return shells;
+    } catch (const NotUsable& e) {
+      head().reject("no shell law: " + std::string(e.what()));
+      return {};
+    }
+  }
+
+  /// What a reader must not overlook.
+  void judge(double end) {
+    for (const RecipeCurve& c : out().curves)
+      if (!c.problem.empty()) head().remarks.push_back(c.name + ": " + c.problem);
+    if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
+    const RecipeCurve& whole = out().curves.front();
+    const double p = whole.axial.back() * (1.0 + 2.0 * law_.lateral.value) / 3.0;
+    if (p > law_.pressure_high)
+      head().remarks.push_back(fmt::format("at a strain of {:.3g} the pressure is {:.2g} E, above all that the equation "
+                                           "of state was fitted to ({:.2g} E): it is extrapolated there",
+                                           end, p, law_.pressure_high));
+  }
+
+  [[nodiscard]] TextTable table() const {
+    TextTable t{{"curve", "strain", "axial/E", "lateral/E", "axial_low/E", "axial_high/E"}, {}};
+    for (const RecipeCurve& c : summary_.recipe.curves)
+      for (std::size_t k = 0; k < c.strain.size(); ++k)
+        t.rows.push_back({c.name, fmt::format("{:.6g}", c.strain[k]), fmt::format("{:.8g}", c.axial[k]),
+                          fmt::format("{:.8g}", c.lateral[k]), c.low.empty() ? "" : fmt::format("{:.8g}", c.low[k]),
+                          c.high.empty() ? "" : fmt::format("{:.8g}", c.high[k])});
+    return t;
+  }
+
+  const RecipeScene& scene_;
+  const Run& run_;
+  std::vector<VariantResult> results_;
+  double packing_seconds_ = 0.0;
+  WholeLaw law_;
+  RecipeSummary summary_;
+};
+
+std::string text_of(const Estimate& e) { return interval_text(e.value, e.low, e.high); }
+
+std::string recipe_text(const RecipeSummary& s) {
+  const RecipeOutcome& r = s.recipe;
+  std::string text;
+  for (const RecipeLevelSummary& level : r.levels) {
+    text += fmt::format("  level {}: {:.3g} to {:.3g} mm, {:.3g} % of the volume, phi_J alone {:.4f}, with all finer {}",
+                        level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, 100.0 * level.share,
+                        level.onset, text_of(level.with_finer.onset));
+    if (level.filling)
+      text += fmt::format("; finer grains take up {:.2g} times its voids{}", *level.filling,
+                          *level.filling > 1.0 ? ": it floats" : ": it bears");
+    text += "\n";
+  }
+  if (r.check)
+    text += fmt::format("  check: {} levels with all grains ({}, span {:.3g}): phi_J = {:.4f}, predicted {}{}\n",
+                        r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
+                        text_of(r.check->predicted.onset), r.check->outside > 0.0 ? ": OUTSIDE" : "");
+  if (!r.onset) return text;
+  text += fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
+                      r.span, text_of(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
+                      text_of(*r.solid_fraction));
+  for (const RecipeCurve& c : r.curves)
+    if (!c.axial.empty())
+      text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}\n", c.name, c.axial.back(),
+                          c.low.empty() ? "" : fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back()),
+                          c.strain.back());
+  for (const ShellLevelSummary& level : r.shells)
+    text += fmt::format("  shell hierarchy, level {}: {:.3g} to {:.3g} mm, one plane {:.3g} E Rs^2 at h/Rs = 0.2, {:.3g} "
+                        "grains\n",
+                        level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, level.force, level.grains);
+  text += fmt::format("a cubic metre holds {:.2g} grains; a sample with all of them: {:.2g}, about {:.2g} core hours\n",
+                      r.grains_per_cubic_metre, r.resolved_grains, r.resolved_hours);
+  for (const std::string& remark : s.material.head.remarks) text += "note: " + remark + "\n";
+  return text;
+}
+
+ExitStatus run_recipe(const Scene& scene, const CommonOptions& options) {
+  const RecipeScene recipe = read_recipe_scene(scene);
+  const Run run(scene, options, "run", recipe.material.seed, {.text = sizes_text(recipe.material)});
+  const RecipeSummary summary = RecipeRun(recipe, run).finish();
+  return run.finish(json_of(summary), recipe_text(summary));
+}
+
+}  // namespace
+
+SceneKind recipe_kind() {
+  return {.name = "recipe",
+          .command = "run",
+          .run = run_recipe,
+          .check = [](const Scene& scene, const std::string&, Findings& out) { check_recipe(scene, out); },
+          .read = [](const Scene& scene) { (void)read_recipe_scene(scene); },
+          .results = recipe_results()};
+}
+
+}  // namespace softgrain

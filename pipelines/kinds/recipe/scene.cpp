@@ -1,0 +1,324 @@
+#include "pipelines/kinds/recipe/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "common/packing/grading_parts.h"
+#include "common/packing/grading_scene.h"
+#include "macrosim/preparation.h"
+#include "pipelines/kinds/material/run.h"
+#include "pipelines/kinds/material_law/fines_in_cells.h"
+#include "pipelines/kinds/recipe/run.h"
+
+namespace softgrain {
+
+namespace {
+
+/// A mixture with fewer coarse or fine grains than this tells nothing; with fewer than the second it scatters.
+constexpr double kLeastGrains = 8.0;
+constexpr double kFewGrains = 30.0;
+/// Least volume of a level, of all.
+constexpr double kLeastShare = 0.005;
+/// A sample should have so many grains above a third of the largest radius.
+constexpr double kCoarseGrains = 60.0;
+
+/// One E, nu and mu: packings of one material are measured, and the equation of state is over its E.
+void refuse_own_material(const SceneTable& t) {
+  for (const char* key : {"E", "nu", "mu"})
+    if (t.has(key))
+      t.mistake(key, "goes into [material]: contacts between constituents of different stiffness or friction are not "
+                     "measured, all grains have one E, nu and mu (their mean, by volume)");
+}
+
+Constituent read_constituent(const SceneTable& t, double density) {
+  Constituent c;
+  t.part([&] {
+    c.name = t.text("name");
+    c.mass_share = t.number("mass_share", Unit::none, Range{0.0, 1.0, true, false});
+    c.density = t.number("density", Unit::density, Range::positive(), density);
+    refuse_own_material(t);
+    c.sizes = read_sizes(t, "sizes", {});
+    if (!t.has("sizes")) t.mistake("sizes", "is missing: a sieve curve, or another law of sizes");
+  });
+  return c;
+}
+
+std::vector<Constituent> read_constituents(const SceneTable& root, double density) {
+  std::vector<Constituent> out;
+  double sum = 0.0;
+  for (const SceneTable& t : root.tables("constituent")) {
+    out.push_back(read_constituent(t, density));
+    sum += out.back().mass_share;
+    if (std::count_if(out.begin(), out.end(), [&](const Constituent& c) { return c.name == out.back().name; }) > 1)
+      t.mistake("name", "is used twice");
+  }
+  if (out.empty() || !root.sound()) return out;
+  if (std::abs(sum - 1.0) > 1e-6)
+    root.mistake("constituent", fmt::format("the mass shares add up to {:g}; they must add up to 1", sum));
+  double volume = 0.0;
+  for (const Constituent& c : out) volume += c.mass_share / c.density;
+  for (Constituent& c : out) c.volume_share = c.mass_share / c.density / volume;
+  return out;
+}
+
+/// Of all constituents together, by solid volume.
+Grading mixed_sizes(const std::vector<Constituent>& constituents) {
+  std::vector<SizePiece> pieces;
+  for (const Constituent& c : constituents)
+    for (SizePiece p : c.sizes->pieces()) {
+      p.volume *= c.volume_share;
+      pieces.push_back(p);
+    }
+  return Grading::classes(std::move(pieces));
+}
+
+/// [levels]: where the curve is cut.
+std::vector<double> read_cuts(const SceneTable& t, const Grading& sizes) {
+  const double ratio = t.number("ratio", Unit::none, Range::closed(1.5, 10.0), 3.2);
+  if (!t.has("cut_diameters")) return find_cuts(sizes, ratio, kLeastShare);
+  if (t.has("ratio")) t.mistake("ratio", "goes without cut_diameters, which say where the curve is cut");
+  std::vector<double> cuts = t.numbers("cut_diameters", Unit::length, Range::positive());
+  for (double& cut : cuts) cut *= 0.5;
+  std::sort(cuts.begin(), cuts.end(), std::greater<>());
+  for (const double cut : cuts)
+    if (!(cut > sizes.smallest() && cut < sizes.largest()))
+      t.mistake("cut_diameters", fmt::format("{:g} mm cuts off no level: diameters go from {:g} to {:g} mm", 2e3 * cut,
+                                             2e3 * sizes.smallest(), 2e3 * sizes.largest()));
+  if (std::adjacent_find(cuts.begin(), cuts.end()) != cuts.end()) t.mistake("cut_diameters", "one is there twice");
+  return cuts;
+}
+
+std::string text_of(const RecipeLevel& level) {
+  return fmt::format("diameters {:.3g} to {:.3g} mm", 2e3 * level.low, 2e3 * level.high);
+}
+
+/// Levels that hold something, and neighbours that a packing can hold together.
+void require_levels(const SceneTable& t, const RecipeScene& scene, std::int64_t grains) {
+  const auto& levels = scene.levels;
+  if (levels.size() < 2)
+    t.reject("ratio", fmt::format("the sizes make one level ({}): resolve all grains, with kind = \"material\", or cut "
+                                  "closer",
+                                  text_of(levels.front())));
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    if (levels[k].share < kLeastShare)
+      t.mistake("cut_diameters",
+                fmt::format("level {} ({}) holds {:.2g} % of the volume; {:g} % at least: cut elsewhere", k + 1,
+                            text_of(levels[k]), 100.0 * levels[k].share, 100.0 * kLeastShare));
+  for (std::size_t k = 0; k + 1 < levels.size(); ++k)
+    for (const double share : scene.mixtures) {
+      const double coarse = (1.0 - share) / mean_grain_volume(levels[k].pieces);
+      const double fine = share / mean_grain_volume(levels[k + 1].pieces);
+      const double least = static_cast<double>(grains) * std::min(coarse, fine) / (coarse + fine);
+      if (least >= kLeastGrains) continue;
+      t.mistake(t.has("cut_diameters") ? "cut_diameters" : "ratio",
+                fmt::format("levels {} and {} ({}; {}) are too far apart for a packing of {} grains: with a share of "
+                            "fines of {:g} about {:.2g} would be {}: more grains ([grains] count), or levels closer to "
+                            "each other",
+                            k + 1, k + 2, text_of(levels[k]), text_of(levels[k + 1]), grains, share, least,
+                            coarse < fine ? "coarse" : "fine"));
+      break;
+    }
+}
+
+MaterialVariant variant_of(const std::string& name, const MacroSetup& base, const Grading& sizes) {
+  MaterialVariant v{name, base};
+  take_sizes(v.setup.spec, sizes);
+  return v;
+}
+
+/// Adds a packing unless one of the same shape is there; its place.
+std::size_t place_of(std::vector<MaterialVariant>& variants, MaterialVariant v) {
+  const Grading& sizes = *v.setup.spec.solid_sizes;
+  for (std::size_t k = 0; k < variants.size(); ++k)
+    if (!variants[k].same_packings && variants[k].setup.spec.solid_sizes->same_shape(1.0, sizes, 1.0)) return k;
+  variants.push_back(std::move(v));
+  return variants.size() - 1;
+}
+
+/// So many of the coarsest levels as the packing of the check has grains for.
+std::size_t levels_in_check(const RecipeScene& scene) {
+  std::size_t most = 0;
+  for (std::size_t n = 2; n <= scene.levels.size(); ++n) {
+    const Grading sizes = joined(scene.levels, 0, n);
+    const double third = sizes.largest() / 3.0;
+    const std::vector<SizePiece> large = pieces_between(sizes, third, 2.0 * sizes.largest());
+    double volume = 0.0;
+    for (const SizePiece& p : large) volume += p.volume;
+    const double coarse = static_cast<double>(scene.check.grains) * volume * mean_grain_volume(sizes.pieces()) /
+                          mean_grain_volume(large);
+    if (coarse >= kCoarseGrains) most = n;
+  }
+  return most;
+}
+
+void make_variants(const MacroSetup& base, double shear_strain, RecipeScene& out) {
+  auto& variants = out.material.variants;
+  const auto& levels = out.levels;
+  MacroSetup still = base;
+  still.spec.preload = 0.0;
+  // What is sheared follows the packings that it shares.
+  MaterialVariant fines = variant_of("level-2", still, slice_of(levels[1]));
+  variants.push_back(fines);
+  MaterialVariant sheared = variant_of("level-2-shear", base, slice_of(levels[1]));
+  sheared.same_packings = true;
+  sheared.packings = fines.name;
+  sheared.setup.spec.test = MacroTest::shear;
+  sheared.setup.spec.strain_end = shear_strain;
+  variants.push_back(std::move(sheared));
+  out.sheared = 1;
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    out.slice.push_back(place_of(variants, variant_of(fmt::format("level-{}", k + 1), still, slice_of(levels[k]))));
+  for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+    out.mixed.emplace_back();
+    for (const double share : out.mixtures)
+      out.mixed.back().push_back(
+          place_of(variants, variant_of(fmt::format("levels-{}-{}-{:.6g}", k + 1, k + 2, 100.0 * share), still,
+                                        pair_of(levels[k], levels[k + 1], share))));
+  }
+  if (out.check.grains == 0) return;
+  out.checked_levels = levels_in_check(out);
+  if (out.checked_levels < 2) return;
+  still.spec.bodies = out.check.grains;
+  still.samples = out.check.samples;
+  out.checked = variants.size();
+  variants.push_back(
+      variant_of(fmt::format("check-{}-levels", out.checked_levels), still, joined(levels, 0, out.checked_levels)));
+}
+
+/// Of every packing, as far as its bodies are drawn before the run.
+void require_room(const SceneTable& root, const RecipeScene& scene) {
+  constexpr std::int64_t kMany = 1000000;  // have room
+  const auto require = [&](const MacroSpec& spec, const char* table, const char* key, const std::string& what) {
+    if (spec.bodies > kMany) return;
+    try {
+      require_room_for_images(drawn_bodies(spec, scene.material.seed, 0));
+    } catch (const BadInput& e) {
+      root.table_or_empty(table).reject(key, fmt::format("{}: {}", what, e.what()));
+    }
+  };
+  for (std::size_t v = 0; v < scene.material.variants.size(); ++v)
+    require(scene.material.variants[v].setup.spec, scene.checked == v ? "check" : "grains",
+            scene.checked == v ? "grains" : "count", "packing " + scene.material.variants[v].name);
+  MacroSpec coarsest = scene.material.variants.front().setup.spec;
+  take_sizes(coarsest, Grading::classes(scene.levels[0].pieces));
+  coarsest.bodies = scene.macro.grains;
+  require(coarsest, "macro", "grains", "the coarsest level under load");
+}
+
+void read_mixtures(const SceneTable& t, RecipeScene& out) {
+  out.mixtures = t.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
+  if (out.mixtures.size() < 3) t.mistake("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
+  if (std::adjacent_find(out.mixtures.begin(), out.mixtures.end(), std::greater_equal<>()) != out.mixtures.end())
+    t.mistake("mixtures", "shares must ascend");
+}
+
+void read_rest(const SceneTable& root, RecipeScene& out) {
+  const SceneTable check = root.table_or_empty("check");
+  out.check.grains = check.count("grains", 0, 10000000, out.check.grains);
+  out.check.samples = check.count("samples", 1, 1000, out.check.samples);
+  const SceneTable macro = root.table_or_empty("macro");
+  out.macro.grains = macro.count("grains", 40, 100000, out.macro.grains);
+  out.macro.samples = macro.count("samples", 1, 1000, out.macro.samples);
+  out.macro.strain = macro.number("strain", Unit::none, Range{0.0, 0.5, true, false}, out.macro.strain);
+  if (!root.has("shells")) return;
+  const SceneTable shells = root.table("shells");
+  out.shells.levels = shells.count("levels", 2, 20, 4);
+  out.shells.packings = shells.count("packings", 4, 1000, out.shells.packings);
+  out.shells.ratio = shells.number("ratio", Unit::none, Range::closed(2.0, 20.0), out.shells.ratio);
+  if (shells.has("form"))
+    out.shells.form = shells.choice<Crowd>("form", {Crowd::bag, Crowd::directional, Crowd::pair});
+}
+
+/// [law]: form of the equation of state, replicates, cells, shear.
+double read_law(const SceneTable& law, RecipeScene& out) {
+  out.material.equation.form = law.choice<StateForm>("form", StateForm::porosity);
+  out.material.equation.replicates = law.count("replicates", 40, 100000, 400);
+  out.cells = law.count("cells", 40, 100000, out.cells);
+  return law.number("shear_strain", Unit::none, Range{0.0, 0.5, true, false}, 0.06);
+}
+
+MacroSetup recipe_defaults() {
+  MacroSetup setup = material_law_defaults();
+  setup.samples = 2;
+  return setup;
+}
+
+}  // namespace
+
+double fines_over_coarse(const RecipeScene& scene, std::size_t level) {
+  double finer = 0.0;
+  for (std::size_t k = level + 1; k < scene.levels.size(); ++k) finer += scene.levels[k].share;
+  return finer / scene.levels[level].share;
+}
+
+RecipeScene read_recipe_scene(const Scene& scene) {
+  return scene.read([](const SceneTable& root) {
+    (void)root.choice("kind", {"recipe"});
+    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, 0, {}, 0, {}, {}, {}, 100};
+    out.material.title = root.text("title", "");
+    out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
+    MacroSetup base = recipe_defaults();
+    read_material_tables(root, base);
+    const SceneTable grains = root.table("grains");
+    if (base.spec.test != MacroTest::oedometric)
+      root.table("test").mistake("test", "levels are measured in oedometric compression (and one of them in shear)");
+    base.samples = root.count("samples", 1, 10000, base.samples);
+    out.constituents = read_constituents(root, base.spec.density);
+    if (!out.constituents.empty())
+      for (const char* key : {"sizes", "exponent", "radius_max", "ratio"})
+        if (grains.has(key)) grains.mistake(key, "goes without [[constituent]], which have sizes of their own");
+    const double shear = read_law(root.table_or_empty("law"), out);
+    read_rest(root, out);
+    const SceneTable levels = root.table_or_empty("levels");
+    read_mixtures(levels, out);
+    if (!root.sound()) return out;
+    out.sizes = out.constituents.empty() ? sizes_of(base.spec) : mixed_sizes(out.constituents);
+    const std::vector<double> cuts = read_cuts(levels, out.sizes);
+    if (!root.sound()) return out;
+    out.levels = levels_of(out.sizes, cuts);
+    require_levels(levels, out, base.spec.bodies);
+    if (!root.sound()) return out;
+    make_variants(base, shear, out);
+    require_material_memory(grains, base);
+    require_room(root, out);
+    if (out.checked) require_material_memory(root.table_or_empty("check"), out.material.variants[*out.checked].setup);
+    return out;
+  });
+}
+
+void check_recipe(const Scene& scene, Findings& out) {
+  const RecipeScene recipe = read_recipe_scene(scene);
+  for (const Constituent& c : recipe.constituents)
+    out.lines += fmt::format("  {}: {:.3g} % of the mass, {:.3g} % of the solid volume\n", c.name, 100.0 * c.mass_share,
+                             100.0 * c.volume_share);
+  for (std::size_t k = 0; k < recipe.levels.size(); ++k)
+    out.lines += fmt::format("  level {}: {}, {:.3g} % of the solid volume\n", k + 1, text_of(recipe.levels[k]),
+                             100.0 * recipe.levels[k].share);
+  Findings variants;  // a dozen lines for every packing: their number is enough here
+  check_variants(recipe.material, variants);
+  const auto packings = std::count_if(recipe.material.variants.begin(), recipe.material.variants.end(),
+                                      [](const MaterialVariant& v) { return !v.same_packings; });
+  out.add("packings", packings, fmt::format("{} different packings are measured, {} samples of each", packings,
+                                            recipe.material.variants.front().setup.samples));
+  if (recipe.checked)
+    out.add("checked_levels", recipe.checked_levels,
+            fmt::format("the {} coarsest levels are checked with all their grains, {} a sample", recipe.checked_levels,
+                        recipe.check.grains));
+  const auto grains = static_cast<double>(recipe.material.variants.front().setup.spec.bodies);
+  for (std::size_t k = 0; k + 1 < recipe.levels.size(); ++k) {
+    const double share = recipe.mixtures.back();
+    const double coarse = (1.0 - share) / mean_grain_volume(recipe.levels[k].pieces);
+    const double fine = share / mean_grain_volume(recipe.levels[k + 1].pieces);
+    if (grains * coarse / (coarse + fine) < kFewGrains)
+      out.warn(fmt::format("levels {} and {}: a mixture has about {:.0f} coarse grains: its onset will scatter", k + 1,
+                           k + 2, grains * coarse / (coarse + fine)));
+  }
+  if (recipe.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
+  if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
+  out.spend("friction of cells", friction_seconds(recipe.cells));
+}
+
+}  // namespace softgrain

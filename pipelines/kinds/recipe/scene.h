@@ -1,0 +1,75 @@
+// Scenes of kind "recipe": from a sieve curve, or a list of constituents, to the law of the matter.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/data/crowd_measurements.h"
+#include "pipelines/kinds/material_law/scene.h"
+#include "pipelines/kinds/recipe/levels.h"
+#include "pipelines/run/scene_kind.h"
+
+namespace softgrain {
+
+/// One [[constituent]]: powder, sand, gravel.
+struct Constituent {
+  std::string name;
+  double mass_share = 0.0;    ///< of all
+  double density = 0.0;       ///< of its grains [kg/m^3]
+  double volume_share = 0.0;  ///< of the solid volume of all
+  std::optional<Grading> sizes;
+};
+
+/// The coarsest levels with all their grains, as they are in the whole: what laws of it are held against.
+struct RecipeCheck {
+  std::int64_t grains = 8000;  ///< 0: none
+  std::int64_t samples = 2;
+};
+
+/// The coarsest level in cells of everything finer, pressed.
+struct RecipeMacro {
+  std::int64_t grains = 150;
+  std::int64_t samples = 2;
+  double strain = 0.0;  ///< 0: that of the test, or half of the pores if that is less
+};
+
+/// The hierarchy of soft particles beside it.
+struct RecipeShells {
+  std::int64_t levels = 0;  ///< 0: none
+  std::int64_t packings = 4;
+  double ratio = 10.0;  ///< largest over smallest radius of the grains of a level
+  Crowd form = Crowd::bag;
+};
+
+/// What a level measured together with the next finer one, place by place in RecipeScene::mixtures.
+using MixtureVariants = std::vector<std::size_t>;
+
+struct RecipeScene {
+  MaterialScene material;  ///< all packings that are measured, none twice
+  std::vector<Constituent> constituents;
+  Grading sizes;                              ///< of the whole
+  std::vector<RecipeLevel> levels;            ///< the coarsest first
+  std::vector<double> mixtures;               ///< shares of the finer level by solid volume, ascending
+  std::vector<std::size_t> slice;             ///< of every level: its variant in `material`
+  std::vector<MixtureVariants> mixed;         ///< of every level but the finest
+  std::size_t sheared = 0;                    ///< variant: the second level, sheared at constant volume
+  std::optional<std::size_t> checked;         ///< variant of the check
+  std::size_t checked_levels = 0;             ///< that it holds
+  RecipeCheck check;
+  RecipeMacro macro;
+  RecipeShells shells;
+  std::int64_t cells = 100;  ///< sites of the cells that friction is fitted with
+};
+
+/// Reads the whole scene. Throws BadInput, FileTrouble.
+RecipeScene read_recipe_scene(const Scene& scene);
+
+/// Solid volume of everything finer than a level, over that of the level.
+double fines_over_coarse(const RecipeScene& scene, std::size_t level);
+
+/// Measures levels and mixtures, puts them together, loads the coarsest level by both laws; writes recipe.csv,
+/// material_card.toml, cell_law.toml, law_table.toml (with [shells]), the files of kind "material" and the report.
+SceneKind recipe_kind();
+
+}  // namespace softgrain

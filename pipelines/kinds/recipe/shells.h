@@ -1,0 +1,23 @@
+// The hierarchy of soft particles of a recipe: decade by decade from the finest, each in the voids of the next.
+#pragma once
+
+#include <vector>
+
+#include "common/data/crowd_law.h"
+#include "pipelines/kinds/recipe/scene.h"
+#include "pipelines/kinds/recipe/summary.h"
+#include "pipelines/run/run.h"
+
+namespace softgrain {
+
+struct ShellLevels {
+  std::vector<ShellLevelSummary> levels;  ///< the finest first
+  LawTable table;                         ///< of the coarsest
+  std::vector<std::string> remarks;
+};
+
+/// Measures and fits all levels, each with its slice of the curve; writes law_table_level_K.toml, crowd_level_K.h5 and
+/// law_table.toml. Throws NotUsable when a level has no law.
+ShellLevels run_shells(const RecipeScene& scene, const Run& run);
+
+}  // namespace softgrain

@@ -1,0 +1,169 @@
+// What a recipe came to: summary.json of its run, which the report reads back.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipelines/kinds/material_law/summary.h"
+
+namespace softgrain {
+
+struct ConstituentSummary {
+  std::string name;
+  double mass_share = 0.0;
+  double density = 0.0;
+  double volume_share = 0.0;
+};
+
+void fields(auto&& visit, Of<ConstituentSummary> auto& s) {
+  visit("name", s.name);
+  visit("mass_share", s.mass_share);
+  visit("density", s.density);
+  visit("volume_share", s.volume_share);
+}
+
+/// Estimates by both forms, see LevelForms.
+struct OnsetByForms {
+  double levels = 0.0;
+  double rods = 0.0;
+  Estimate onset;  ///< the middle, and an interval that holds both
+};
+
+void fields(auto&& visit, Of<OnsetByForms> auto& s) {
+  visit("levels", s.levels);
+  visit("rods", s.rods);
+  fields(visit, s.onset);
+}
+
+struct RecipeLevelSummary {
+  std::int64_t level = 1;
+  double diameter_low = 0.0;  ///< [m]
+  double diameter_high = 0.0;
+  double share = 0.0;       ///< of the solid volume of all
+  double grains = 0.0;      ///< in a cubic metre of the whole
+  std::string packing;      ///< that was measured
+  double onset = 0.0;       ///< phi_J of the level alone
+  OnsetByForms with_finer;  ///< phi_J of it and everything finer
+  /// Volume that everything finer takes up where it jams, over the voids of this level alone: above 1 its grains float
+  /// in fines, below they bear and the fines have room. None for the finest.
+  std::optional<double> filling;
+};
+
+void fields(auto&& visit, Of<RecipeLevelSummary> auto& s) {
+  visit("level", s.level);
+  visit("diameter_low", s.diameter_low);
+  visit("diameter_high", s.diameter_high);
+  visit("volume_share", s.share);
+  visit("grains_per_cubic_metre", s.grains);
+  visit("packing", s.packing);
+  visit("onset", s.onset);
+  visit("onset_with_finer", s.with_finer);
+  visit("filling", s.filling, kLeftOut);
+}
+
+/// The coarsest levels with all their grains.
+struct RecipeCheckSummary {
+  std::int64_t levels = 0;
+  std::int64_t grains = 0;
+  double span = 1.0;
+  Estimate measured;  ///< phi_J
+  OnsetByForms predicted;
+  double outside = 0.0;  ///< how far the measured one lies outside the interval, which intervals are widened by
+};
+
+void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
+  visit("levels", s.levels);
+  visit("grains", s.grains);
+  visit("span", s.span);
+  visit("measured", s.measured.value);
+  visit("measured_standard_error", s.measured.standard_error);
+  visit("predicted", s.predicted);
+  visit("outside", s.outside);
+}
+
+/// Oedometric compression from the start pressure; stresses over E.
+struct RecipeCurve {
+  std::string name;
+  std::vector<double> strain, axial, lateral;
+  std::vector<double> low, high;  ///< of the axial stress; empty: not known
+  std::string problem;            ///< why it ends, or is not there
+};
+
+void fields(auto&& visit, Of<RecipeCurve> auto& s) {
+  visit("name", s.name);
+  visit("strain", s.strain);
+  visit("axial", s.axial);
+  visit("lateral", s.lateral);
+  visit("axial_low", s.low);
+  visit("axial_high", s.high);
+  visit("problem", s.problem);
+}
+
+/// A level of the shell hierarchy.
+struct ShellLevelSummary {
+  std::int64_t level = 0;  ///< 0: the finest
+  double diameter_low = 0.0;
+  double diameter_high = 0.0;
+  double force = 0.0;   ///< of one plane at h/Rs = 0.2, over E Rs^2
+  double grains = 0.0;  ///< that one soft particle stands for
+};
+
+void fields(auto&& visit, Of<ShellLevelSummary> auto& s) {
+  visit("level", s.level);
+  visit("diameter_low", s.diameter_low);
+  visit("diameter_high", s.diameter_high);
+  visit("force_over_E_Rs2", s.force);
+  visit("grains", s.grains);
+}
+
+struct RecipeOutcome {
+  std::vector<ConstituentSummary> constituents;
+  std::vector<RecipeLevelSummary> levels;
+  double span = 1.0;
+  double gap = 0.0;            ///< of the rods
+  double rods_deviation = 0.0; ///< root mean square of the onsets about them
+  std::optional<Estimate> onset;
+  std::optional<Estimate> solid_fraction;  ///< at the start pressure
+  double lateral_ratio = 0.0;              ///< K0, and its range over the packings that were measured
+  double lateral_low = 0.0;
+  double lateral_high = 0.0;
+  double grains_per_cubic_metre = 0.0;
+  double resolved_grains = 0.0;   ///< of a sample with a hundred grains above a third of the largest radius
+  double resolved_hours = 0.0;    ///< of one core, by what grains took here
+  std::optional<RecipeCheckSummary> check;
+  std::vector<RecipeCurve> curves;
+  std::vector<ShellLevelSummary> shells;
+};
+
+void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
+  visit("constituents", s.constituents);
+  visit("levels", s.levels);
+  visit("span", s.span);
+  visit("rods_gap", s.gap);
+  visit("rods_deviation", s.rods_deviation);
+  visit("onset", s.onset, kLeftOut);
+  visit("solid_fraction_start", s.solid_fraction, kLeftOut);
+  visit("K0", s.lateral_ratio);
+  range_field(visit, "K0_range", s.lateral_low, s.lateral_high);
+  visit("grains_per_cubic_metre", s.grains_per_cubic_metre);
+  visit("resolved_grains", s.resolved_grains);
+  visit("resolved_core_hours", s.resolved_hours);
+  visit("check", s.check, kLeftOut);
+  visit("curves", s.curves);
+  visit("shells", s.shells);
+}
+
+struct RecipeSummary {
+  MaterialSummary material;
+  CellLawSummary law;
+  RecipeOutcome recipe;
+};
+
+void fields(auto&& visit, Of<RecipeSummary> auto& s) {
+  fields(visit, s.material);
+  visit("cell_law", s.law);
+  visit("recipe", s.recipe);
+}
+
+}  // namespace softgrain

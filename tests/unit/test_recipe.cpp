@@ -1,0 +1,246 @@
+// Scenes of kind "recipe": where the curve is cut, what is packed, how levels are put together, what is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "calibrate/rod_packing.h"
+#include "calibrate/state_curves.h"
+#include "common/core/error.h"
+#include "pipelines/kinds/recipe/law.h"
+#include "pipelines/kinds/recipe/onset.h"
+#include "pipelines/kinds/recipe/scene.h"
+
+namespace softgrain {
+namespace {
+
+double total(const std::vector<RecipeLevel>& levels) {
+  double sum = 0.0;
+  for (const RecipeLevel& level : levels) sum += level.share;
+  return sum;
+}
+
+TEST(RecipeLevels, FollowEachOtherAndHoldAllOfTheVolume) {
+  const auto whole = Grading::fuller(0.23, 5e-8, 5e-4);
+  const auto levels = levels_of(whole, find_cuts(whole, 3.2, 0.005));
+  ASSERT_EQ(levels.size(), 8U);
+  EXPECT_NEAR(total(levels), 1.0, 1e-12);
+  double above = 0.0;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    EXPECT_NEAR(levels[k].high / levels[k].low, std::sqrt(10.0), 1e-9) << k;
+    if (k > 0) {
+      EXPECT_NEAR(levels[k].high, levels[k - 1].low, 1e-12 * levels[k].high) << k;
+    }
+    above += levels[k].share;
+    EXPECT_NEAR(above, 1.0 - whole.passing(levels[k].low), 1e-9) << k;
+  }
+}
+
+TEST(RecipeLevels, WithNextToNothingGoToTheirNeighbour) {
+  // Of three slices of equal ratio the middle one holds 0.1 % and the last 0.2 %.
+  const auto whole = Grading::classes({{0.1, 1.0, 4.0, 0.997}, {0.01, 0.1, 4.0, 0.001}, {0.001, 0.01, 4.0, 0.002}});
+  const auto levels = levels_of(whole, find_cuts(whole, 10.0, 0.005));
+  ASSERT_EQ(levels.size(), 1U);
+  EXPECT_NEAR(levels[0].share, 1.0, 1e-12);
+  EXPECT_NEAR(levels[0].low, 0.001, 1e-12);
+}
+
+TEST(RecipeLevels, OfOneShapeAreOnePackingWhereverTheyAre) {
+  const auto whole = Grading::power_law(3.77, 1e-6, 1e-3);
+  const auto levels = levels_of(whole, find_cuts(whole, 3.2, 0.005));
+  ASSERT_EQ(levels.size(), 6U);
+  for (std::size_t k = 1; k < levels.size(); ++k) EXPECT_EQ(slice_of(levels[k]), slice_of(levels[0])) << k;
+  EXPECT_EQ(pair_of(levels[0], levels[1], 0.4), pair_of(levels[3], levels[4], 0.4));
+  EXPECT_NEAR(pair_of(levels[0], levels[1], 0.4).passing(0.01 * cut_of_pair(levels[0], levels[1])), 0.4, 1e-9);
+  const Grading three = joined(levels, 0, 3);
+  EXPECT_NEAR(three.largest(), 0.01, 1e-12);
+  EXPECT_NEAR(three.passing(0.01 * std::pow(10.0, -0.5)),
+              (levels[1].share + levels[2].share) / (levels[0].share + levels[1].share + levels[2].share), 1e-9);
+}
+
+TEST(RecipeLevels, CountGrainsByTheirMeanVolume) {
+  const double volume = mean_grain_volume({{1.0, 1.0, 4.0, 0.5}, {2.0, 2.0, 4.0, 0.5}});
+  // Eight small grains for a large one of equal volume: nine grains of 16 units of 4/3 pi.
+  EXPECT_NEAR(volume, 16.0 / 9.0 * 4.18879020478639, 1e-9);
+}
+
+RecipeScene read_recipe(const std::string& more, const std::string& grains = "count = 600\nratio = 6") {
+  return read_recipe_scene(Scene::parse(
+      "kind = \"recipe\"\n[grains]\n" + grains + "\n[packing]\npreparation = \"fast\"\n" + more, "s"));
+}
+
+std::string refusal(const std::string& more, const std::string& grains = "count = 600\nratio = 6") {
+  try {
+    (void)read_recipe(more, grains);
+  } catch (const BadInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(RecipeScene, PacksNothingTwice) {
+  const RecipeScene scene = read_recipe("[levels]\nratio = 2\n[check]\ngrains = 0\n", "count = 900\nratio = 8\nexponent = 3.7");
+  ASSERT_EQ(scene.levels.size(), 3U);
+  EXPECT_EQ(scene.slice, (std::vector<std::size_t>{0, 0, 0}));
+  ASSERT_EQ(scene.mixed.size(), 2U);
+  EXPECT_EQ(scene.mixed[0], scene.mixed[1]);
+  EXPECT_EQ(scene.material.variants.size(), 2U + scene.mixtures.size());
+  EXPECT_TRUE(scene.material.variants[scene.sheared].same_packings);
+  EXPECT_FALSE(scene.checked);
+}
+
+TEST(RecipeScene, TakesConstituentsByVolume) {
+  const RecipeScene scene = read_recipe(R"(
+[[constituent]]
+name = "sand"
+mass_share = 0.6
+density = 2000
+sizes = { form = "power-law", exponent = 3.5, radius_min = "1 mm", radius_max = "3 mm" }
+[[constituent]]
+name = "filler"
+mass_share = 0.4
+density = 4000
+sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max = "1 mm" }
+)",
+                                        "count = 900");
+  ASSERT_EQ(scene.constituents.size(), 2U);
+  EXPECT_NEAR(scene.constituents[0].volume_share, 0.75, 1e-12);
+  EXPECT_NEAR(scene.sizes.passing(1e-3), 0.25, 1e-9);
+  EXPECT_NEAR(fines_over_coarse(scene, 0), scene.sizes.passing(scene.levels[0].low) /
+                                               (1.0 - scene.sizes.passing(scene.levels[0].low)),
+              1e-9);
+}
+
+TEST(RecipeScene, SaysAllThatIsWrongWithConstituentsAtOnce) {
+  const std::string text = refusal(R"(
+[[constituent]]
+name = "sand"
+mass_share = 0.6
+E = 5e9
+sizes = { form = "power-law", exponent = 3.5, radius_min = "3 mm", radius_max = "1 mm" }
+[[constituent]]
+name = "sand"
+mass_share = 0.3
+densty = 4000
+sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max = "1 mm" }
+)",
+                                   "count = 900\nratio = 3");
+  for (const char* part : {"goes into [material]: contacts between constituents of different stiffness", "must be above radius_min",
+                           "is used twice", "nearest known key is 'density'", "goes without [[constituent]]"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(RecipeScene, RefusesSharesThatDoNotAddUp) {
+  const std::string text = refusal(R"(
+[[constituent]]
+name = "sand"
+mass_share = 0.6
+sizes = { form = "power-law", exponent = 3.5, radius_min = "1 mm", radius_max = "3 mm" }
+[[constituent]]
+name = "filler"
+mass_share = 0.3
+sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max = "1 mm" }
+)",
+                                   "count = 900");
+  EXPECT_NE(text.find("the mass shares add up to 0.9; they must add up to 1"), std::string::npos) << text;
+}
+
+TEST(RecipeScene, RefusesLevelsThatNoPackingHolds) {
+  EXPECT_NE(refusal("", "count = 600\nratio = 2").find("the sizes make one level"), std::string::npos);
+  EXPECT_NE(refusal("", "count = 100\nratio = 60").find("are too far apart for a packing of 100 grains"),
+            std::string::npos);
+  EXPECT_NE(refusal("[levels]\ncut_diameters = [\"40 mm\"]\n").find("cuts off no level"), std::string::npos);
+  EXPECT_NE(refusal("[levels]\ncut_diameters = [\"5.34 mm\", \"12 mm\"]\n").find("of the volume; 0.5 % at least"),
+            std::string::npos);
+  EXPECT_NE(refusal("[macro]\ngrains = 40\n", "count = 2000\nratio = 9").find("the coarsest level under load"),
+            std::string::npos);
+  EXPECT_NE(refusal("[levels]\nmixtures = [0.2, 0.1, 0.4]\n").find("shares must ascend"), std::string::npos);
+}
+
+/// A fit whose onsets are these, by variant; replicates all alike.
+StateFit fit_of(const RecipeScene& scene, const std::vector<double>& onsets) {
+  StateFit fit;
+  fit.usable = true;
+  std::vector<double> replicate{0.0, 2.0};
+  for (std::size_t v = 0; v < scene.material.variants.size(); ++v) {
+    if (scene.material.variants[v].same_packings) continue;
+    StateGroup group;
+    group.name = scene.material.variants[v].name;
+    group.onset = {onsets[v], 0.001, onsets[v], onsets[v]};
+    fit.groups.push_back(group);
+    replicate.push_back(onsets[v]);
+  }
+  fit.replicates.assign(40, replicate);
+  return fit;
+}
+
+RecipeScene three_levels() {
+  return read_recipe("[levels]\nratio = 2\nmixtures = [0.25, 0.5, 0.75]\n[check]\ngrains = 0\n",
+                     "count = 900\nratio = 8\nexponent = 3.7");
+}
+
+TEST(LevelForms, RodsFindTheGapThatOnsetsWereMadeWith) {
+  const RecipeScene scene = three_levels();
+  constexpr double kGap = 1.1;
+  std::vector<double> onsets;
+  for (const MaterialVariant& v : scene.material.variants)
+    onsets.push_back(RodCurve(*v.setup.spec.solid_sizes).at(kGap));
+  const LevelForms forms(scene, fit_of(scene, onsets));
+  EXPECT_NEAR(forms.gap(), kGap, 1e-4);
+  EXPECT_LT(forms.rods_deviation(), 1e-6);
+  const OnsetByForms whole = forms.joined_onset(0, 3);
+  EXPECT_NEAR(whole.rods, RodCurve(joined(scene.levels, 0, 3), 20000).at(kGap), 1e-6);
+  EXPECT_LE(whole.onset.low, std::min(whole.rods, whole.levels) + 1e-12);
+  EXPECT_GE(whole.onset.high, std::max(whole.rods, whole.levels) - 1e-12);
+  EXPECT_NEAR(forms.joined_onset(0, 3, 0.02).onset.low, whole.onset.low - 0.02, 1e-12);
+}
+
+/// By hand: w of the mixtures is 0.6 at every share, so that e = e_f (0.6 + r)/(1 + r) level by level.
+TEST(LevelForms, PoresOfLevelsGoWithThoseOfTheirFines) {
+  const RecipeScene scene = three_levels();
+  constexpr double kAlone = 0.7;  // void ratio of every level
+  constexpr double kBeside = 0.6;
+  std::vector<double> onsets(scene.material.variants.size(), 1.0 / (1.0 + kAlone));
+  for (std::size_t m = 0; m < scene.mixtures.size(); ++m) {
+    const double r = scene.mixtures[m] / (1.0 - scene.mixtures[m]);
+    onsets[scene.mixed[0][m]] = 1.0 / (1.0 + kAlone * (kBeside + r) / (1.0 + r));
+  }
+  const LevelForms forms(scene, fit_of(scene, onsets));
+  double e = kAlone;
+  double volume = scene.levels[2].share;
+  for (std::size_t k = 2; k-- > 0;) {
+    const double r = volume / scene.levels[k].share;
+    ASSERT_GT(r / (1.0 + r), scene.mixtures.front());  // below, w rises to that of the level alone
+    e *= (kBeside + r) / (1.0 + r);
+    volume += scene.levels[k].share;
+    EXPECT_NEAR(forms.joined_onset(k, 3 - k).levels, 1.0 / (1.0 + e), 1e-12) << k;
+  }
+  EXPECT_NEAR(forms.own_onset(1), 1.0 / (1.0 + kAlone), 1e-12);
+}
+
+TEST(RecipeLaw, FollowsTheEquationOfStateFromTheStartPressure) {
+  WholeLaw law;
+  law.modulus = {0.05, 0.0, 0.05, 0.05};
+  law.exponent = {2.0, 0.0, 2.0, 2.0};
+  law.onset = {0.8, 0.005, 0.79, 0.81};
+  law.modulus_scatter = 0.04;
+  law.lateral = {0.5, 0.45, 0.55};
+  law.start_pressure = 1e-4;
+  const Estimate start = solid_fraction_of(law);
+  EXPECT_NEAR(start.value, 0.8 + 0.2 * std::sqrt(1e-4 / 0.05), 1e-12);
+  const RecipeCurve c = curve_of(law, 0.04, 8);
+  ASSERT_EQ(c.strain.size(), 9U);
+  EXPECT_NEAR(c.axial.front(), 3e-4 / 2.0, 1e-12);
+  const double phi = start.value / (1.0 - c.strain[8]);
+  const double p = 0.05 * std::pow((phi - 0.8) / 0.2, 2);
+  EXPECT_NEAR(c.axial.back(), 3.0 * p / 2.0, 1e-9);
+  EXPECT_NEAR(c.lateral.back(), 0.5 * c.axial.back(), 1e-12);
+  for (std::size_t k = 1; k < c.strain.size(); ++k) {
+    EXPECT_LT(c.low[k], c.axial[k]);
+    EXPECT_GT(c.high[k], c.axial[k]);
+  }
+}
+
+}  // namespace
+}  // namespace softgrain
