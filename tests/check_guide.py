@@ -48,7 +48,7 @@ PAGES = {
                 "packing", "output", "snapshots", "count", "test"}, set()),
     "scene_recipe.md": (
         ["pipelines/kinds/recipe/scene.cpp"],
-        {"material", "packing", "test", "output", "snapshots", "exponent", "radius_max"}, set()),
+        {"material", "packing", "test", "output", "snapshots", "exponent", "radius_max", "count"}, set()),
     "stages.md": (["pipelines/kinds/macro/stages.cpp"], {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"}, {"stage", "macro"}),
     "sizes.md": (["common/packing/grading_scene.cpp"], set(), {"solid_sizes", "soft_sizes", "disks", "material", "packing", "macro"}),
     "scene_grain_box.md": (["pipelines/kinds/grain_box/scene.cpp", "pipelines/run/variant_name.cpp"], set(), set()),

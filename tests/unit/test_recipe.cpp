@@ -224,17 +224,18 @@ TEST(RecipeLaw, FollowsTheEquationOfStateFromTheStartPressure) {
   law.modulus = {0.05, 0.0, 0.05, 0.05};
   law.exponent = {2.0, 0.0, 2.0, 2.0};
   law.onset = {0.8, 0.005, 0.79, 0.81};
-  law.modulus_scatter = 0.04;
-  law.lateral = {0.5, 0.45, 0.55};
+  law.shape = {{0.0, 0.02}, {1.0, 0.8}, {0.0, 0.04}, {1.0, 0.5}, {0.0, 0.02}};
   law.start_pressure = 1e-4;
   const Estimate start = solid_fraction_of(law);
   EXPECT_NEAR(start.value, 0.8 + 0.2 * std::sqrt(1e-4 / 0.05), 1e-12);
   const RecipeCurve c = curve_of(law, 0.04, 8);
   ASSERT_EQ(c.strain.size(), 9U);
-  EXPECT_NEAR(c.axial.front(), 3e-4 / 2.0, 1e-12);
+  EXPECT_NEAR(c.axial.front(), 1e-4, 1e-12);  // at rest, alike on all sides
+  const double early = (start.value / (1.0 - c.strain[2]) - 0.8) / 0.2;  // at 0.01: factor 0.9, ratio 0.75
+  EXPECT_NEAR(c.axial[2], 3.0 * 0.9 * 0.05 * early * early / 2.5, 1e-9);
   const double phi = start.value / (1.0 - c.strain[8]);
   const double p = 0.05 * std::pow((phi - 0.8) / 0.2, 2);
-  EXPECT_NEAR(c.axial.back(), 3.0 * p / 2.0, 1e-9);
+  EXPECT_NEAR(c.axial.back(), 3.0 * 0.8 * p / 2.0, 1e-9);
   EXPECT_NEAR(c.lateral.back(), 0.5 * c.axial.back(), 1e-12);
   for (std::size_t k = 1; k < c.strain.size(); ++k) {
     EXPECT_LT(c.low[k], c.axial[k]);

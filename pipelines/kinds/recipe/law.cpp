@@ -38,36 +38,82 @@ CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, con
   return card;
 }
 
-LateralRatio lateral_ratio(const RecipeScene& scene, const std::vector<VariantResult>& results) {
-  const auto mean_of = [](const VariantResult& r) {
-    Tally at_end;
-    for (const MacroCurve& c : r.curves)
-      if (c.usable && !c.stress_axial.empty() && c.stress_axial.back() > 0.0)
-        at_end.add(c.stress_lateral.back() / c.stress_axial.back());
-    return at_end.mean();
-  };
-  LateralRatio out;
-  std::vector<double> all;
-  for (const VariantResult& r : results) {
-    if (r.variant->setup.spec.test != MacroTest::oedometric) continue;
-    const double one = mean_of(r);
-    if (std::isfinite(one)) all.push_back(one);
+namespace {
+
+/// One packing, mean over its usable samples; empty where one has none.
+struct OneShape {
+  std::vector<double> factor;
+  std::vector<double> ratio;
+};
+
+OneShape shape_of_packing(const VariantResult& r, StateForm form, const StateFit& states) {
+  const auto group = std::find_if(states.groups.begin(), states.groups.end(),
+                                  [&](const StateGroup& g) { return g.name == r.variant->name; });
+  const MacroSpec& spec = r.variant->setup.spec;
+  if (group == states.groups.end()) return {};
+  const double k = states.modulus.value;
+  const double n = states.exponent.value;
+  const double start = state_phi(form, k, n, group->onset.value, spec.start_pressure);
+  OneShape out;
+  for (std::size_t point = 0; point < r.curves.front().strain.size(); ++point) {
+    Tally factor;
+    Tally ratio;
+    for (const MacroCurve& c : r.curves) {
+      if (!c.usable || point >= c.strain.size() || !(c.stress_axial[point] > 0.0)) continue;
+      const double p = (c.stress_axial[point] + 2.0 * c.stress_lateral[point]) / 3.0 / c.start.youngs_modulus;
+      factor.add(p / state_pressure(form, k, n, group->onset.value,
+                                    std::min(1.0, start / (1.0 - c.strain[point]))));
+      ratio.add(c.stress_lateral[point] / c.stress_axial[point]);
+    }
+    if (!std::isfinite(factor.mean())) return {};
+    out.factor.push_back(factor.mean());
+    out.ratio.push_back(ratio.mean());
   }
-  if (all.empty()) return out;
-  const double share = 1.0 - scene.levels[0].share;
-  std::size_t nearest = scene.mixed[0].front();
-  for (std::size_t m = 0; m < scene.mixtures.size(); ++m)
-    if (std::abs(scene.mixtures[m] - share) <
-        std::abs(scene.mixtures[static_cast<std::size_t>(
-                     std::find(scene.mixed[0].begin(), scene.mixed[0].end(), nearest) - scene.mixed[0].begin())] -
-                 share))
-      nearest = scene.mixed[0][m];
-  out.value = mean_of(results[scene.checked ? *scene.checked : nearest]);
-  if (!std::isfinite(out.value)) out.value = mean_error(all).mean;
-  const auto [low, high] = std::minmax_element(all.begin(), all.end());
-  out.low = *low;
-  out.high = *high;
   return out;
+}
+
+/// Of the mixtures of the two coarsest levels the one whose share of fines is nearest to that of the whole.
+std::size_t nearest_mixture(const RecipeScene& scene) {
+  const double share = 1.0 - scene.levels[0].share;
+  std::size_t best = 0;
+  for (std::size_t m = 1; m < scene.mixtures.size(); ++m)
+    if (std::abs(scene.mixtures[m] - share) < std::abs(scene.mixtures[best] - share)) best = m;
+  return scene.mixed[0][best];
+}
+
+}  // namespace
+
+ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states) {
+  std::vector<OneShape> all;
+  const std::size_t chosen = scene.checked ? *scene.checked : nearest_mixture(scene);
+  ResponseShape out;
+  for (std::size_t v = 0; v < results.size(); ++v) {
+    if (results[v].variant->setup.spec.test != MacroTest::oedometric) continue;
+    OneShape one = shape_of_packing(results[v], scene.material.equation.form, states);
+    if (one.factor.empty()) continue;
+    if (v == chosen) out.ratio = one.ratio;
+    if (out.strain.empty()) out.strain = results[v].curves.front().strain;
+    if (one.factor.size() == out.strain.size()) all.push_back(std::move(one));
+  }
+  for (std::size_t k = 0; k < out.strain.size(); ++k) {
+    Tally factor;
+    Tally ratio;
+    for (const OneShape& one : all) {
+      factor.add(one.factor[k]);
+      ratio.add(one.ratio[k]);
+    }
+    out.factor.push_back(factor.mean());
+    out.factor_deviation.push_back(factor.statistics().deviation_or_zero());
+    out.ratio_deviation.push_back(ratio.statistics().deviation_or_zero());
+    if (out.ratio.size() == k) out.ratio.push_back(ratio.mean());
+  }
+  return out;
+}
+
+Estimate lateral_ratio(const ResponseShape& shape) {
+  if (shape.ratio.empty()) return {};
+  const double half = kNormal95 * shape.ratio_deviation.back();
+  return {shape.ratio.back(), shape.ratio_deviation.back(), shape.ratio.back() - half, shape.ratio.back() + half};
 }
 
 Estimate solid_fraction_of(const WholeLaw& law) {
@@ -86,17 +132,20 @@ RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps) {
     return state_pressure(law.form, law.modulus.value, law.exponent.value, onset, std::min(from / (1.0 - e), 1.0));
   };
   const auto axial = [](double p, double ratio) { return 3.0 * p / (1.0 + 2.0 * ratio); };
-  const double scatter = kNormal95 * law.modulus_scatter;
+  const ResponseShape& shape = law.shape;
   for (std::int64_t k = 0; k <= steps; ++k) {
     const double e = strain * static_cast<double>(k) / static_cast<double>(steps);
-    const double p = pressure(law.onset.value, start.value, e);
+    const double factor = straight(shape.strain, shape.factor, e);
+    const double ratio = straight(shape.strain, shape.ratio, e);
+    const double of_factor = kNormal95 * straight(shape.strain, shape.factor_deviation, e);
+    const double of_ratio = kNormal95 * straight(shape.strain, shape.ratio_deviation, e);
     out.strain.push_back(e);
-    out.axial.push_back(axial(p, law.lateral.value));
-    out.lateral.push_back(law.lateral.value * out.axial.back());
-    const bool moved = k > 0;  // the start pressure is given
-    out.low.push_back(axial(moved ? pressure(law.onset.low, start.low, e) * std::max(0.0, 1.0 - scatter) : p,
-                            law.lateral.high));
-    out.high.push_back(axial(moved ? pressure(law.onset.high, start.high, e) * (1.0 + scatter) : p, law.lateral.low));
+    out.axial.push_back(axial(factor * pressure(law.onset.value, start.value, e), ratio));
+    out.lateral.push_back(ratio * out.axial.back());
+    out.low.push_back(axial(std::max(0.0, factor - of_factor) * pressure(law.onset.low, start.low, e),
+                            std::min(1.0, ratio + of_ratio)));
+    out.high.push_back(
+        axial((factor + of_factor) * pressure(law.onset.high, start.high, e), std::max(0.0, ratio - of_ratio)));
   }
   return out;
 }
@@ -114,8 +163,7 @@ void write_material_card(const RecipeScene& scene, const WholeLaw& law, const st
                  "schema = {}\n\n[provenance]\nversion = {}\ncommit = {}\ncommand = {}\nseed = {}\n",
                  kSchemaVersion, quoted(provenance.version), quoted(provenance.commit), quoted(provenance.command),
                  quoted(fmt::format("{}", provenance.seed)));
-  const Estimate ratio{law.lateral.value, (law.lateral.high - law.lateral.low) / 4.0, law.lateral.low,
-                       law.lateral.high};
+  const Estimate ratio = lateral_ratio(law.shape);
   fmt::format_to(out, "\n[material]\nform = {}\nK = {}\nn = {}\nphi_J = {}\nK0 = {}\n", quoted(to_string(law.form)),
                  estimate_text(law.modulus), estimate_text(law.exponent), estimate_text(law.onset),
                  estimate_text(ratio));

@@ -17,13 +17,16 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
 /// The same among everything finer: e_J is theirs by `fines`, and w_inf goes with it, as pores of LevelForms do.
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines);
 
-/// K0 at the end of the compression: of the check, or of the packings whose shares come nearest; and its range over all.
-struct LateralRatio {
-  double value = 0.0;
-  double low = 0.0;
-  double high = 0.0;
+/// How packings answer the test, beside the equation of state: over the strain the pressure of each over that of its own
+/// onset from the start pressure on (a packing at rest is softer at first), and lateral over axial stress.
+struct ResponseShape {
+  std::vector<double> strain;
+  std::vector<double> factor;            ///< mean over packings
+  std::vector<double> factor_deviation;  ///< standard deviation over them
+  std::vector<double> ratio;             ///< of the check, or of the mixture whose share comes nearest
+  std::vector<double> ratio_deviation;   ///< over all
 };
-LateralRatio lateral_ratio(const RecipeScene& scene, const std::vector<VariantResult>& results);
+ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult>& results, const StateFit& states);
 
 /// What the whole is: for the card and the curve.
 struct WholeLaw {
@@ -31,8 +34,7 @@ struct WholeLaw {
   Estimate modulus;   ///< K
   Estimate exponent;  ///< n
   Estimate onset;     ///< phi_J
-  double modulus_scatter = 0.0;  ///< of K among packings, over K
-  LateralRatio lateral;
+  ResponseShape shape;
   double start_pressure = 0.0;  ///< over E
   double pressure_low = 0.0;    ///< over E, of the fit
   double pressure_high = 0.0;
@@ -41,9 +43,13 @@ struct WholeLaw {
 /// phi at the start pressure, by the onset and its ends.
 Estimate solid_fraction_of(const WholeLaw& law);
 
-/// Oedometric compression from the start pressure, `steps` points to `strain`: p by phi = phi_0/(1 - strain), axial
-/// stress 3 p/(1 + 2 K0). The band holds the ends of the onset, twice the scatter of K and the range of K0.
+/// Oedometric compression from the start pressure, `steps` points to `strain`: p by phi = phi_0/(1 - strain) times the
+/// factor of the shape, axial stress 3 p/(1 + 2 K0); beyond the strain that was measured the shape stays. The band holds
+/// the ends of the onset, and of factor and ratio twice their deviations among packings.
 RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps);
+
+/// Lateral over axial stress where the shape ends.
+Estimate lateral_ratio(const ResponseShape& shape);
 
 /// Writes the card as TOML, for people and programs. Atomic. Throws FileTrouble.
 void write_material_card(const RecipeScene& scene, const WholeLaw& law, const std::string& path,

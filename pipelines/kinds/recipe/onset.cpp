@@ -19,15 +19,6 @@ namespace {
 
 double void_ratio(double onset) { return 1.0 / onset - 1.0; }
 
-/// Of a curve through rising x; the last value beyond.
-double straight(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  const auto above = std::upper_bound(x.begin(), x.end(), at);
-  if (above == x.begin()) return y.front();
-  if (above == x.end()) return y.back();
-  const auto k = static_cast<std::size_t>(above - x.begin());
-  return y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]);
-}
-
 /// The least of f over [low, high], by Brent's method from the best of some points.
 double least_of(const std::function<double(double)>& f, double low, double high) {
   constexpr int kPoints = 40;
@@ -129,6 +120,14 @@ struct LevelForms::Parts {
   std::vector<double> gaps;
   double deviation = 0.0;
 };
+
+double straight(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto above = std::upper_bound(x.begin(), x.end(), at);
+  if (above == x.begin()) return y.front();
+  if (above == x.end()) return y.back();
+  const auto k = static_cast<std::size_t>(above - x.begin());
+  return y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]);
+}
 
 LevelForms::LevelForms(const RecipeScene& scene, const StateFit& fit) : parts_(std::make_unique<Parts>(scene, fit)) {}
 LevelForms::~LevelForms() = default;

@@ -11,6 +11,9 @@
 
 namespace softgrain {
 
+/// Of a curve through rising x, straight between; the first or last value beyond.
+double straight(const std::vector<double>& x, const std::vector<double>& y, double at);
+
 /// phi_J of joined levels by two forms, each fitted to all packings that were measured (the check apart):
 /// - levels: from the finest up, a level of solid volume V_c added to finer ones of V_f and void ratio e_f leaves
 ///   e = e_f (w + r)/(1 + r), r = V_f/V_c. w, the pores beside the coarse grains in units of e_f V_c, is that of the

@@ -109,8 +109,7 @@ class RecipeRun {
     law.modulus = {states.modulus.value, states.modulus.error, states.modulus.low, states.modulus.high};
     law.exponent = {states.exponent.value, states.exponent.error, states.exponent.low, states.exponent.high};
     law.onset = forms.joined_onset(0, scene_.levels.size(), widen).onset;
-    law.modulus_scatter = states.modulus_scatter;
-    law.lateral = lateral_ratio(scene_, results_);
+    law.shape = shape_of(scene_, results_, states);
     law.start_pressure = scene_.material.variants.front().setup.spec.start_pressure;
     law.pressure_low = kInfinity;
     for (const VariantResult& r : results_)
@@ -119,9 +118,7 @@ class RecipeRun {
           if (p > 0.0) law.pressure_low = std::min(law.pressure_low, p);
           law.pressure_high = std::max(law.pressure_high, p);
         }
-    out().lateral_ratio = law.lateral.value;
-    out().lateral_low = law.lateral.low;
-    out().lateral_high = law.lateral.high;
+    out().lateral_ratio = lateral_ratio(law.shape);
     return law;
   }
 
@@ -201,8 +198,9 @@ class RecipeRun {
       if (!c.problem.empty()) head().remarks.push_back(c.name + ": " + c.problem);
     if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
-    const double p = whole.axial.back() * (1.0 + 2.0 * law_.lateral.value) / 3.0;
-    if (p > law_.pressure_high)
+    const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;
+    constexpr double kHardly = 1.05;
+    if (p > kHardly * law_.pressure_high)
       head().remarks.push_back(fmt::format("at a strain of {:.3g} the pressure is {:.2g} E, above all that the equation "
                                            "of state was fitted to ({:.2g} E): it is extrapolated there",
                                            end, p, law_.pressure_high));

@@ -246,6 +246,15 @@ MacroSetup recipe_defaults() {
   return setup;
 }
 
+/// Preparing and pressing, by the three recipes of pipelines/ [s of one core].
+double packing_seconds(const RecipeScene& scene) {
+  constexpr double kSecondsPerGrain = 1.5e-3;
+  double grains = 0.0;
+  for (const MaterialVariant& v : scene.material.variants)
+    grains += static_cast<double>(v.setup.spec.bodies) * static_cast<double>(v.setup.samples);
+  return kSecondsPerGrain * grains;
+}
+
 }  // namespace
 
 double fines_over_coarse(const RecipeScene& scene, std::size_t level) {
@@ -318,7 +327,9 @@ void check_recipe(const Scene& scene, Findings& out) {
   }
   if (recipe.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
   if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
+  out.spend("packings", packing_seconds(recipe));
   out.spend("friction of cells", friction_seconds(recipe.cells));
+  out.spend("shells", 10.0 * static_cast<double>(recipe.shells.levels * recipe.shells.packings));
 }
 
 }  // namespace softgrain

@@ -106,12 +106,12 @@ std::string shell_table(const RecipeOutcome& r) {
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
       "The whole begins to bear at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings lie {} about "
-      "them). At the start pressure it is {} ({}). Lateral over axial stress: {} (packings here: {}).",
+      "them). At the start pressure it is {} ({}). Lateral over axial stress where the test ends: {} ({}).",
       format_number(r.onset->value, 4), range_of(r.onset->low, r.onset->high, 4),
       format_number(r.levels.front().with_finer.levels, 4), format_number(r.levels.front().with_finer.rods, 4),
       format_number(r.gap, 3), format_number(r.rods_deviation, 2), format_number(r.solid_fraction->value, 4),
-      range_of(r.solid_fraction->low, r.solid_fraction->high, 4), format_number(r.lateral_ratio, 3),
-      range_of(r.lateral_low, r.lateral_high));
+      range_of(r.solid_fraction->low, r.solid_fraction->high, 4), format_number(r.lateral_ratio.value, 3),
+      range_of(r.lateral_ratio.low, r.lateral_ratio.high));
   text += fmt::format(
       " A cubic metre holds {} grains; a sample with a hundred of them above a third of the largest diameter {}, which "
       "would take about {} hours of one core, by what grains took here.",

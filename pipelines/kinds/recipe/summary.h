@@ -125,9 +125,7 @@ struct RecipeOutcome {
   double rods_deviation = 0.0; ///< root mean square of the onsets about them
   std::optional<Estimate> onset;
   std::optional<Estimate> solid_fraction;  ///< at the start pressure
-  double lateral_ratio = 0.0;              ///< K0, and its range over the packings that were measured
-  double lateral_low = 0.0;
-  double lateral_high = 0.0;
+  Estimate lateral_ratio;  ///< K0 at the end of the test
   double grains_per_cubic_metre = 0.0;
   double resolved_grains = 0.0;   ///< of a sample with a hundred grains above a third of the largest radius
   double resolved_hours = 0.0;    ///< of one core, by what grains took here
@@ -145,7 +143,6 @@ void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
   visit("onset", s.onset, kLeftOut);
   visit("solid_fraction_start", s.solid_fraction, kLeftOut);
   visit("K0", s.lateral_ratio);
-  range_field(visit, "K0_range", s.lateral_low, s.lateral_high);
   visit("grains_per_cubic_metre", s.grains_per_cubic_metre);
   visit("resolved_grains", s.resolved_grains);
   visit("resolved_core_hours", s.resolved_hours);

@@ -18,4 +18,4 @@ from softgrain.snapshot import Contacts, Snapshot, read_snapshots
 __all__ = ["BadInput", "CardLaw", "Contacts", "FileTrouble", "Findings", "Interrupted", "Law", "MacroCurve", "MeasuredRun", "Mistake",
            "NotUsable", "PairLaw", "Quantity", "Run", "Snapshot", "SoftgrainError", "TableLaw", "ThresholdPowerLaw", "check",
            "command_of", "read_macro", "read_measurements", "read_snapshots", "read_summary", "run"]
-__version__ = "0.1.0"
+__version__ = "0.2.0"
