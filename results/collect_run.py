@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes a committed results folder of a run: collect_run.py RUN_DIR RESULTS_DIR FIGURE... Standard library only.
 
-Copies law_table.toml (with its .h5, from which intervals follow), cell_law.toml and table.csv where the run has them and the named figures of its report, and writes README.md: the
-hand-written notes (RESULTS_DIR/notes.md) after a heading with command, version and seed, then the tables of the run.
+Copies the laws (law_table.toml with its .h5, from which intervals follow, cell_law.toml, material_card.toml), table.csv and recipe.csv where the run has
+them and the named figures of its report, and writes README.md: the hand-written notes (RESULTS_DIR/notes.md) after a heading with command, version and seed, then the tables of the run.
 """
 import json
 import os
@@ -87,15 +87,40 @@ def hierarchy_tables(summary):
     return text
 
 
+def interval(e, digits=4):
+    low, high = e["interval"]
+    return f"{number(e['value'], digits)} ({number(low, digits)} to {number(high, digits)})"
+
+
+def recipe_tables(summary):
+    r = summary.get("recipe")
+    if not r or not r["levels"]:
+        return ""
+    rows = []
+    for level in r["levels"]:
+        mm = f"{number(1e3 * level['diameter_low'])} to {number(1e3 * level['diameter_high'])}"
+        rows.append([str(level["level"]), mm, number(100 * level["volume_share"]), number(level["onset"], 4), interval(level["onset_with_finer"]),
+                     number(level.get("filling"), 2), number(level["grains_per_cubic_metre"], 2)])
+    text = table(["level", "diameters [mm]", "share of the volume [%]", "phi_J alone", "phi_J with all finer", "finer grains over its voids", "grains in a cubic metre"], rows)
+    rows = [[c["name"], number(c["strain"][-1]), number(c["axial"][-1]),
+             f"{number(c['axial_low'][-1])} to {number(c['axial_high'][-1])}" if c["axial_low"] else "-", number(c["lateral"][-1])]
+            for c in r["curves"] if c["strain"]]
+    text += table(["curve", "strain", "axial stress over E", "band", "lateral stress over E"], rows)
+    rows = [[str(s["level"]), f"{number(1e3 * s['diameter_low'])} to {number(1e3 * s['diameter_high'])}", number(s["force_over_E_Rs2"]), number(s["grains"])] for s in r["shells"]]
+    return text + (table(["level of the shell hierarchy", "diameters [mm]", "one plane at h/Rs = 0.2 [F/(E Rs²)]", "grains in a soft particle"], rows) if rows else "")
+
+
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     run, out, figures = sys.argv[1], sys.argv[2], sys.argv[3:]
     with open(os.path.join(run, "summary.json"), encoding="utf-8") as file:
         summary = json.load(file)
-    if os.path.exists(os.path.join(run, "table.csv")):
-        shutil.copy(os.path.join(run, "table.csv"), out)
-    for name in ("law_table.toml", "cell_law.toml"):
+    os.makedirs(out, exist_ok=True)
+    for name in ("table.csv", "recipe.csv"):
+        if os.path.exists(os.path.join(run, name)):
+            shutil.copy(os.path.join(run, name), out)
+    for name in ("law_table.toml", "cell_law.toml", "material_card.toml"):
         if not os.path.exists(os.path.join(run, name)):
             continue
         with open(os.path.join(run, name), encoding="utf-8") as file:
@@ -120,7 +145,7 @@ def main():
             text += file.read() + "\n"
     for name in figures:
         text += f"![{name.replace('-', ' ')}]({name}.svg)\n\n"
-    text += law_tables(summary) + hierarchy_tables(summary)
+    text += law_tables(summary) + hierarchy_tables(summary) + recipe_tables(summary)
     if os.path.exists(os.path.join(run, "table.md")):
         with open(os.path.join(run, "table.md"), encoding="utf-8") as file:
             text += file.read() + "\n"

@@ -134,8 +134,10 @@ void add_options(CLI::App& app, const Command& command, CommonOptions& o, std::s
                    "standard error")
         ->option_text("1..8");
   if (sweeps || command.function == command_run)
-    app.add_option("--law-cache", o.law_cache,
-                   "Keeps finished measurements of law tables here and takes from here what is known already")
+    app.add_option(
+           "--law-cache", o.law_cache,
+           "Keeps finished measurements of law tables and tests of materials here and takes from here what is known "
+           "already")
         ->option_text("DIR");
   if (runs_scenes && command.function != command_microsim) {
     app.add_option("--packing-cache", o.packing_cache,

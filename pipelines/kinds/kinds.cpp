@@ -42,8 +42,8 @@ std::vector<const char*> names_of(const std::string& command) {
 
 std::span<const SceneKind> scene_kinds() {
   static const std::array kinds{
-      pipeline_kind(),      macro_comparison_kind(), law_table_kind(),      hierarchy_kind(),       inverse_kind(),
-      soft_particle_kind(), particles_kind(),        grain_box_kind(),      cohesive_powder_kind(), macro_kind(),
+      pipeline_kind(),      macro_comparison_kind(), law_table_kind(),       hierarchy_kind(),       inverse_kind(),
+      soft_particle_kind(), particles_kind(),        grain_box_kind(),       cohesive_powder_kind(), macro_kind(),
       material_kind(),      material_law_kind(),     material_models_kind(), recipe_kind()};
   return kinds;
 }

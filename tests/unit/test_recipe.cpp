@@ -66,8 +66,8 @@ TEST(RecipeLevels, CountGrainsByTheirMeanVolume) {
 }
 
 RecipeScene read_recipe(const std::string& more, const std::string& grains = "count = 600\nratio = 6") {
-  return read_recipe_scene(Scene::parse(
-      "kind = \"recipe\"\n[grains]\n" + grains + "\n[packing]\npreparation = \"fast\"\n" + more, "s"));
+  return read_recipe_scene(
+      Scene::parse("kind = \"recipe\"\n[grains]\n" + grains + "\n[packing]\npreparation = \"fast\"\n" + more, "s"));
 }
 
 std::string refusal(const std::string& more, const std::string& grains = "count = 600\nratio = 6") {
@@ -80,7 +80,8 @@ std::string refusal(const std::string& more, const std::string& grains = "count 
 }
 
 TEST(RecipeScene, PacksNothingTwice) {
-  const RecipeScene scene = read_recipe("[levels]\nratio = 2\n[check]\ngrains = 0\n", "count = 900\nratio = 8\nexponent = 3.7");
+  const RecipeScene scene =
+      read_recipe("[levels]\nratio = 2\n[check]\ngrains = 0\n", "count = 900\nratio = 8\nexponent = 3.7");
   ASSERT_EQ(scene.levels.size(), 3U);
   EXPECT_EQ(scene.slice, (std::vector<std::size_t>{0, 0, 0}));
   ASSERT_EQ(scene.mixed.size(), 2U);
@@ -107,9 +108,8 @@ sizes = { form = "power-law", exponent = 3.5, radius_min = "0.4 mm", radius_max 
   ASSERT_EQ(scene.constituents.size(), 2U);
   EXPECT_NEAR(scene.constituents[0].volume_share, 0.75, 1e-12);
   EXPECT_NEAR(scene.sizes.passing(1e-3), 0.25, 1e-9);
-  EXPECT_NEAR(fines_over_coarse(scene, 0), scene.sizes.passing(scene.levels[0].low) /
-                                               (1.0 - scene.sizes.passing(scene.levels[0].low)),
-              1e-9);
+  EXPECT_NEAR(fines_over_coarse(scene, 0),
+              scene.sizes.passing(scene.levels[0].low) / (1.0 - scene.sizes.passing(scene.levels[0].low)), 1e-9);
 }
 
 TEST(RecipeScene, SaysAllThatIsWrongWithConstituentsAtOnce) {
@@ -126,8 +126,9 @@ densty = 4000
 sizes = { form = "power-law", exponent = 3.5, radius_min = "0.3 mm", radius_max = "1 mm" }
 )",
                                    "count = 900\nratio = 3");
-  for (const char* part : {"goes into [material]: contacts between constituents of different stiffness", "must be above radius_min",
-                           "is used twice", "nearest known key is 'density'", "goes without [[constituent]]"})
+  for (const char* part :
+       {"goes into [material]: contacts between constituents of different stiffness", "must be above radius_min",
+        "is used twice", "nearest known key is 'density'", "goes without [[constituent]]"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
@@ -230,7 +231,7 @@ TEST(RecipeLaw, FollowsTheEquationOfStateFromTheStartPressure) {
   EXPECT_NEAR(start.value, 0.8 + 0.2 * std::sqrt(1e-4 / 0.05), 1e-12);
   const RecipeCurve c = curve_of(law, 0.04, 8);
   ASSERT_EQ(c.strain.size(), 9U);
-  EXPECT_NEAR(c.axial.front(), 1e-4, 1e-12);  // at rest, alike on all sides
+  EXPECT_NEAR(c.axial.front(), 1e-4, 1e-12);                             // at rest, alike on all sides
   const double early = (start.value / (1.0 - c.strain[2]) - 0.8) / 0.2;  // at 0.01: factor 0.9, ratio 0.75
   EXPECT_NEAR(c.axial[2], 3.0 * 0.9 * 0.05 * early * early / 2.5, 1e-9);
   const double phi = start.value / (1.0 - c.strain[8]);

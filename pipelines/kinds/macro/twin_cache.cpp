@@ -30,6 +30,14 @@ class Bytes {
   std::string bytes_;
 };
 
+void add_springs(Bytes& bytes, const MacroPacking& packing) {
+  for (const BodySpring& s : packing.springs) {
+    bytes.add(s.i);
+    bytes.add(s.j);
+    bytes.add(s.spring);
+  }
+}
+
 /// Every grain and shell, whom it belongs to, and the springs that the packing was prepared with.
 std::string hash_of(const MacroSystem& macro, const MacroPacking& packing) {
   Bytes bytes;
@@ -41,11 +49,7 @@ std::string hash_of(const MacroSystem& macro, const MacroPacking& packing) {
     bytes.add(p.sphere[at(u)].r);
     bytes.add(macro.body[at(u)]);
   }
-  for (const BodySpring& s : packing.springs) {
-    bytes.add(s.i);
-    bytes.add(s.j);
-    bytes.add(s.spring);
-  }
+  add_springs(bytes, packing);
   return bytes.hash();
 }
 
@@ -57,7 +61,34 @@ std::string stage_text(const MacroStage& s) {
   return text + "\n";
 }
 
+/// Material and test.
+std::string spec_text(const MacroSpec& spec, const std::vector<double>& more) {
+  std::string text;
+  for (const double x : {spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.wall_friction, spec.density,
+                         spec.start_pressure, spec.tolerance, spec.force_floor, spec.preload})
+    text += fmt::format(" {:.17g}", x);
+  for (const double x : more) text += fmt::format(" {:.17g}", x);
+  for (const double x : spec.splits) text += fmt::format(" split {:.17g}", x);
+  text += fmt::format(" {}\n", spec.max_passes);
+  for (const MacroStage& s : stages_of(spec)) text += stage_text(s);
+  return text;
+}
+
 }  // namespace
+
+std::string test_key(const MacroSpec& spec, const MacroPacking& packing) {
+  Bytes bytes;
+  bytes.add(packing.low);
+  bytes.add(packing.high);
+  for (const MacroBody& b : packing.bodies) {
+    bytes.add(b.x);
+    bytes.add(b.r);
+  }
+  add_springs(bytes, packing);
+  return fmt::format("test, schema {}\n{} {} {}\n", kTwinSchema, bytes.hash(), to_string(spec.boundary),
+                     to_string(spec.test)) +
+         spec_text(spec, {});
+}
 
 std::string twin_key(const MacroSpec& spec, const MacroSetup& setup, const MacroPacking& packing,
                      const MacroSystem& macro, const std::string& engine, std::int64_t sample,
@@ -66,13 +97,7 @@ std::string twin_key(const MacroSpec& spec, const MacroSetup& setup, const Macro
       fmt::format("twin, schema {}\n{} {} {} of {}\n{} {} {}\n", kTwinSchema, engine, sample, hash_of(macro, packing),
                   runs, to_string(spec.boundary), to_string(spec.test), to_string(spec.twin.relaxation));
   const TwinMotion& m = spec.twin;
-  for (const double x :
-       {spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.wall_friction, spec.density, spec.start_pressure,
-        spec.tolerance, spec.force_floor, spec.preload, m.speed, m.step_factor, m.settle_time, m.restitution})
-    text += fmt::format(" {:.17g}", x);
-  for (const double x : spec.splits) text += fmt::format(" split {:.17g}", x);
-  text += fmt::format(" {}\n", spec.max_passes);
-  for (const MacroStage& s : stages_of(spec)) text += stage_text(s);
+  text += spec_text(spec, {m.speed, m.step_factor, m.settle_time, m.restitution});
   return text + fmt::format("again {} states {}\n", sample < setup.noise_samples, sample == 0 ? setup.kept_states : 0);
 }
 

@@ -14,6 +14,9 @@ namespace softgrain {
 std::string twin_key(const MacroSpec& spec, const MacroSetup& setup, const MacroPacking& packing,
                      const MacroSystem& macro, const std::string& engine, std::int64_t sample, const std::string& runs);
 
+/// The text of all that determines how a packing of grains without soft particles answers its test.
+std::string test_key(const MacroSpec& spec, const MacroPacking& packing);
+
 /// Taken from --twin-cache, or run now and kept there; one that is not usable is not kept.
 RunOutcome kept_twin(const std::string& key, const Run& run, const std::function<RunOutcome()>& go);
 

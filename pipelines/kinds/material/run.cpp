@@ -9,7 +9,9 @@
 #include "common/io/text_file.h"
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/stage.h"
+#include "pipelines/kinds/macro/twin_cache.h"
 #include "pipelines/kinds/material/results.h"
+#include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 
@@ -64,6 +66,30 @@ std::vector<RunOutcome> outcomes_of_lammps(const MaterialScene& scene, const Mat
   return outcomes;
 }
 
+/// Curves of all samples: from --law-cache, or run now and kept there when all are usable; pictures want a run.
+std::vector<MacroCurve> kept_tests(const MacroRuns& runs, const Run& run,
+                                   const std::function<std::vector<MacroCurve>()>& go) {
+  const std::string& directory = run.context.law_cache();
+  if (directory.empty() || runs.setup.kept_states > 0) return go();
+  const ResultCache cache(directory, "material test", "material", "tested again",
+                          [&](const std::string& remark) { run.context.say(remark); });
+  std::string key;
+  for (const MacroPacking& packing : runs.packings) key += test_key(runs.setup.spec, packing);
+  std::vector<MacroCurve> curves;
+  const bool found = cache.find(key, [&](const h5::Group& g) {
+    for (std::size_t k = 0; k < runs.packings.size(); ++k)
+      curves.push_back(read_macro_curve(g.open(fmt::format("sample_{}", k))));
+  });
+  if (found) return curves;
+  curves = go();
+  if (std::all_of(curves.begin(), curves.end(), [](const MacroCurve& c) { return c.usable; }))
+    cache.keep(key, [&](const h5::Group& g) {
+      for (std::size_t k = 0; k < curves.size(); ++k)
+        write_macro_curve(g.create(fmt::format("sample_{}", k)), curves[k]);
+    });
+  return curves;
+}
+
 VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,
                           const std::optional<LammpsEngine>& lammps, const Run& run,
                           const std::vector<MacroPacking>& packings) {
@@ -71,7 +97,7 @@ VariantResult run_variant(const MaterialScene& scene, const MaterialVariant& v,
   const MacroRuns runs{v.setup, packings, {}, run.seed, v.name};
   const std::string states = file_of(v.name, "states_material");
   r.curves = lammps ? run_engines(runs, {}, run, states, outcomes_of_lammps(scene, v, *lammps, run, packings))
-                    : run_engines(runs, {no_soft_laws()}, run, states);
+                    : kept_tests(runs, run, [&] { return run_engines(runs, {no_soft_laws()}, run, states); });
   for (MacroCurve& c : r.curves) c.law = {};
   save_macro(r.curves, run.path(r.file), run.provenance);
   return r;

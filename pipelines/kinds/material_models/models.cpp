@@ -156,8 +156,7 @@ MacroCurve shells_of(const OneSample& one, std::size_t sample) {
       fmt::format("{}shells for fines below {:.17g}, radii {:.17g} to {:.17g}, solid inside {:.17g}\n",
                   packing_key(setup.spec, one.run.seed, sample), m.split, m.radii[0], m.radii[1], inside);
   MacroPacking packing = one.own_packing(key, [&] {
-    return pack_bodies(setup.spec,
-                       with_shells(parts.coarse, shells, parts.fines_volume / inside, one.run.seed, sample),
+    return pack_bodies(setup.spec, with_shells(parts.coarse, shells, parts.fines_volume / inside, one.run.seed, sample),
                        one.run.seed, sample);
   });
   setup.spec.bodies = static_cast<std::int64_t>(packing.bodies.size());

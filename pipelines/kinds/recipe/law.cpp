@@ -15,10 +15,10 @@ namespace softgrain {
 
 MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResult>& results,
                          const std::optional<StateFit>& states, std::uint64_t seed) {
-  MaterialLawScene law{scene.material,
-                       pair_of(scene.levels[0], scene.levels[1], fines_over_coarse(scene, 0) /
-                                                                     (1.0 + fines_over_coarse(scene, 0))),
-                       cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells};
+  MaterialLawScene law{
+      scene.material,
+      pair_of(scene.levels[0], scene.levels[1], fines_over_coarse(scene, 0) / (1.0 + fines_over_coarse(scene, 0))),
+      cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells};
   std::vector<VariantResult> some{results[scene.slice[1]], results[scene.sheared], results[scene.slice[0]]};
   for (const std::size_t v : scene.mixed[0]) some.push_back(results[v]);
   return fit_material_law(law, some, states, seed);
@@ -61,8 +61,7 @@ OneShape shape_of_packing(const VariantResult& r, StateForm form, const StateFit
     for (const MacroCurve& c : r.curves) {
       if (!c.usable || point >= c.strain.size() || !(c.stress_axial[point] > 0.0)) continue;
       const double p = (c.stress_axial[point] + 2.0 * c.stress_lateral[point]) / 3.0 / c.start.youngs_modulus;
-      factor.add(p / state_pressure(form, k, n, group->onset.value,
-                                    std::min(1.0, start / (1.0 - c.strain[point]))));
+      factor.add(p / state_pressure(form, k, n, group->onset.value, std::min(1.0, start / (1.0 - c.strain[point]))));
       ratio.add(c.stress_lateral[point] / c.stress_axial[point]);
     }
     if (!std::isfinite(factor.mean())) return {};
@@ -155,14 +154,15 @@ void write_material_card(const RecipeScene& scene, const WholeLaw& law, const st
   const MacroSpec& spec = scene.material.variants.front().setup.spec;
   std::string text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out,
-                 "# The law of a material without shells, put together from its levels (softgrain, kind \"recipe\").\n"
-                 "# p/E = K x^n. \"porosity\": x = (phi - phi_J)/(1 - phi_J), \"pores\": x = 1 - Vp/Vp_J. phi counts the\n"
-                 "# full volume of all grains. K0: lateral over axial stress in oedometric compression.\n"
-                 "# Ends of intervals: 95 %; that of phi_J holds two ways of putting levels together.\n"
-                 "schema = {}\n\n[provenance]\nversion = {}\ncommit = {}\ncommand = {}\nseed = {}\n",
-                 kSchemaVersion, quoted(provenance.version), quoted(provenance.commit), quoted(provenance.command),
-                 quoted(fmt::format("{}", provenance.seed)));
+  fmt::format_to(
+      out,
+      "# The law of a material without shells, put together from its levels (softgrain, kind \"recipe\").\n"
+      "# p/E = K x^n. \"porosity\": x = (phi - phi_J)/(1 - phi_J), \"pores\": x = 1 - Vp/Vp_J. phi counts the\n"
+      "# full volume of all grains. K0: lateral over axial stress in oedometric compression.\n"
+      "# Ends of intervals: 95 %; that of phi_J holds two ways of putting levels together.\n"
+      "schema = {}\n\n[provenance]\nversion = {}\ncommit = {}\ncommand = {}\nseed = {}\n",
+      kSchemaVersion, quoted(provenance.version), quoted(provenance.commit), quoted(provenance.command),
+      quoted(fmt::format("{}", provenance.seed)));
   const Estimate ratio = lateral_ratio(law.shape);
   fmt::format_to(out, "\n[material]\nform = {}\nK = {}\nn = {}\nphi_J = {}\nK0 = {}\n", quoted(to_string(law.form)),
                  estimate_text(law.modulus), estimate_text(law.exponent), estimate_text(law.onset),

@@ -17,8 +17,8 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
 /// The same among everything finer: e_J is theirs by `fines`, and w_inf goes with it, as pores of LevelForms do.
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines);
 
-/// How packings answer the test, beside the equation of state: over the strain the pressure of each over that of its own
-/// onset from the start pressure on (a packing at rest is softer at first), and lateral over axial stress.
+/// How packings answer the test, beside the equation of state: over the strain the pressure of each over that of its
+/// own onset from the start pressure on (a packing at rest is softer at first), and lateral over axial stress.
 struct ResponseShape {
   std::vector<double> strain;
   std::vector<double> factor;            ///< mean over packings
@@ -44,8 +44,8 @@ struct WholeLaw {
 Estimate solid_fraction_of(const WholeLaw& law);
 
 /// Oedometric compression from the start pressure, `steps` points to `strain`: p by phi = phi_0/(1 - strain) times the
-/// factor of the shape, axial stress 3 p/(1 + 2 K0); beyond the strain that was measured the shape stays. The band holds
-/// the ends of the onset, and of factor and ratio twice their deviations among packings.
+/// factor of the shape, axial stress 3 p/(1 + 2 K0); beyond the strain that was measured the shape stays. The band
+/// holds the ends of the onset, and of factor and ratio twice their deviations among packings.
 RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps);
 
 /// Lateral over axial stress where the shape ends.

@@ -8,9 +8,9 @@
 namespace softgrain {
 
 struct RecipeLevel {
-  double low = 0.0;   ///< smallest radius in it [m]
-  double high = 0.0;  ///< largest
-  double share = 0.0; ///< of the solid volume of all
+  double low = 0.0;    ///< smallest radius in it [m]
+  double high = 0.0;   ///< largest
+  double share = 0.0;  ///< of the solid volume of all
   std::vector<SizePiece> pieces;
 };
 

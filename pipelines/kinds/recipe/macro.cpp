@@ -137,8 +137,8 @@ RecipeCurve press_with_shells(const RecipeScene& scene, const CellCard& card, co
       double coarse = 0.0;
       for (const MacroBody& b : cells[k].bodies) coarse += kSphereVolume * b.r * b.r * b.r;
       const double fines = coarse * fines_over_coarse(scene, 0) / inside;
-      const std::string key = fmt::format("{}shells of a recipe, volume {:.17g}\n",
-                                          packing_key(setup.spec, run.seed, k), fines);
+      const std::string key =
+          fmt::format("{}shells of a recipe, volume {:.17g}\n", packing_key(setup.spec, run.seed, k), fines);
       packings.push_back(kept_packing(key, ResultCache::name("recipe_shells", key), run, [&] {
         return pack_bodies(setup.spec, with_shells(cells[k].bodies, shells, fines, run.seed, k), run.seed, k);
       }));

@@ -60,8 +60,7 @@ struct LevelForms::Parts {
       if (variants[v].same_packings) continue;
       const auto group = std::find_if(fit.groups.begin(), fit.groups.end(),
                                       [&](const StateGroup& g) { return g.name == variants[v].name; });
-      if (group == fit.groups.end())
-        throw NotUsable(variants[v].name + " bears at too few points to tell its onset");
+      if (group == fit.groups.end()) throw NotUsable(variants[v].name + " bears at too few points to tell its onset");
       estimate[v] = group->onset.value;
       measured[v] = {group->onset.value, group->onset.error, group->onset.low, group->onset.high};
       error[v] = std::isfinite(group->onset.error) && group->onset.error > 0.0 ? group->onset.error : 1.0;

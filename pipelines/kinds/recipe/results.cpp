@@ -12,12 +12,13 @@ namespace {
 std::vector<HeadLine> lines_of(const report::RunData& run) {
   const auto r = run.summary_as<RecipeSummary>().recipe;
   if (r.levels.empty() || !r.onset) return {};
-  return {{"Recipe",
-           fmt::format("{} levels, largest over smallest {}; begins to bear at a solid fraction of {} ({} to {}); a cubic "
-                       "metre holds {} grains.",
-                       r.levels.size(), report::format_number(r.span, 3), report::format_number(r.onset->value, 4),
-                       report::format_number(r.onset->low, 4), report::format_number(r.onset->high, 4),
-                       report::format_number(r.grains_per_cubic_metre, 2))}};
+  return {
+      {"Recipe",
+       fmt::format("{} levels, largest over smallest {}; begins to bear at a solid fraction of {} ({} to {}); a cubic "
+                   "metre holds {} grains.",
+                   r.levels.size(), report::format_number(r.span, 3), report::format_number(r.onset->value, 4),
+                   report::format_number(r.onset->low, 4), report::format_number(r.onset->high, 4),
+                   report::format_number(r.grains_per_cubic_metre, 2))}};
 }
 
 std::vector<RunValue> values_of(const report::RunData& run) {

@@ -29,6 +29,8 @@ class RecipeRun {
     packing_seconds_ = watch.seconds();
     MaterialOutcome measured = summarise(scene_.material, results_, run_);
     summary_.material = std::move(measured.summary);
+    // Of dozens of packings the one that holds most of the curve.
+    std::erase_if(head().sizes, [](const SizesSummary& sizes) { return !sizes.of.starts_with("check"); });
     describe();
     write_text_atomic(run_.path("material.csv"), as_csv(points_of(results_)));
     run_.context.guard([&] { put_together(measured.states); });
@@ -65,8 +67,8 @@ class RecipeRun {
   double check(const LevelForms& forms, const StateFit& states) {
     if (!scene_.checked) return 0.0;
     const MaterialVariant& v = scene_.material.variants[*scene_.checked];
-    const auto group = std::find_if(states.groups.begin(), states.groups.end(),
-                                    [&](const StateGroup& g) { return g.name == v.name; });
+    const auto group =
+        std::find_if(states.groups.begin(), states.groups.end(), [&](const StateGroup& g) { return g.name == v.name; });
     if (group == states.groups.end()) return 0.0;
     RecipeCheckSummary c;
     c.levels = static_cast<std::int64_t>(scene_.checked_levels);
@@ -201,9 +203,10 @@ class RecipeRun {
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;
     constexpr double kHardly = 1.05;
     if (p > kHardly * law_.pressure_high)
-      head().remarks.push_back(fmt::format("at a strain of {:.3g} the pressure is {:.2g} E, above all that the equation "
-                                           "of state was fitted to ({:.2g} E): it is extrapolated there",
-                                           end, p, law_.pressure_high));
+      head().remarks.push_back(
+          fmt::format("at a strain of {:.3g} the pressure is {:.2g} E, above all that the equation "
+                      "of state was fitted to ({:.2g} E): it is extrapolated there",
+                      end, p, law_.pressure_high));
   }
 
   [[nodiscard]] TextTable table() const {
@@ -230,9 +233,10 @@ std::string recipe_text(const RecipeSummary& s) {
   const RecipeOutcome& r = s.recipe;
   std::string text;
   for (const RecipeLevelSummary& level : r.levels) {
-    text += fmt::format("  level {}: {:.3g} to {:.3g} mm, {:.3g} % of the volume, phi_J alone {:.4f}, with all finer {}",
-                        level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, 100.0 * level.share,
-                        level.onset, text_of(level.with_finer.onset));
+    text +=
+        fmt::format("  level {}: {:.3g} to {:.3g} mm, {:.3g} % of the volume, phi_J alone {:.4f}, with all finer {}",
+                    level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, 100.0 * level.share, level.onset,
+                    text_of(level.with_finer.onset));
     if (level.filling)
       text += fmt::format("; finer grains take up {:.2g} times its voids{}", *level.filling,
                           *level.filling > 1.0 ? ": it floats" : ": it bears");
@@ -243,18 +247,20 @@ std::string recipe_text(const RecipeSummary& s) {
                         r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
                         text_of(r.check->predicted.onset), r.check->outside > 0.0 ? ": OUTSIDE" : "");
   if (!r.onset) return text;
-  text += fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
-                      r.span, text_of(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
-                      text_of(*r.solid_fraction));
+  text +=
+      fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
+                  r.span, text_of(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
+                  text_of(*r.solid_fraction));
   for (const RecipeCurve& c : r.curves)
     if (!c.axial.empty())
       text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}\n", c.name, c.axial.back(),
                           c.low.empty() ? "" : fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back()),
                           c.strain.back());
   for (const ShellLevelSummary& level : r.shells)
-    text += fmt::format("  shell hierarchy, level {}: {:.3g} to {:.3g} mm, one plane {:.3g} E Rs^2 at h/Rs = 0.2, {:.3g} "
-                        "grains\n",
-                        level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, level.force, level.grains);
+    text += fmt::format(
+        "  shell hierarchy, level {}: {:.3g} to {:.3g} mm, one plane {:.3g} E Rs^2 at h/Rs = 0.2, {:.3g} "
+        "grains\n",
+        level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, level.force, level.grains);
   text += fmt::format("a cubic metre holds {:.2g} grains; a sample with all of them: {:.2g}, about {:.2g} core hours\n",
                       r.grains_per_cubic_metre, r.resolved_grains, r.resolved_hours);
   for (const std::string& remark : s.material.head.remarks) text += "note: " + remark + "\n";

@@ -29,8 +29,9 @@ constexpr double kCoarseGrains = 60.0;
 void refuse_own_material(const SceneTable& t) {
   for (const char* key : {"E", "nu", "mu"})
     if (t.has(key))
-      t.mistake(key, "goes into [material]: contacts between constituents of different stiffness or friction are not "
-                     "measured, all grains have one E, nu and mu (their mean, by volume)");
+      t.mistake(key,
+                "goes into [material]: contacts between constituents of different stiffness or friction are not "
+                "measured, all grains have one E, nu and mu (their mean, by volume)");
 }
 
 Constituent read_constituent(const SceneTable& t, double density) {
@@ -147,8 +148,8 @@ std::size_t levels_in_check(const RecipeScene& scene) {
     const std::vector<SizePiece> large = pieces_between(sizes, third, 2.0 * sizes.largest());
     double volume = 0.0;
     for (const SizePiece& p : large) volume += p.volume;
-    const double coarse = static_cast<double>(scene.check.grains) * volume * mean_grain_volume(sizes.pieces()) /
-                          mean_grain_volume(large);
+    const double coarse =
+        static_cast<double>(scene.check.grains) * volume * mean_grain_volume(sizes.pieces()) / mean_grain_volume(large);
     if (coarse >= kCoarseGrains) most = n;
   }
   return most;
@@ -210,7 +211,8 @@ void require_room(const SceneTable& root, const RecipeScene& scene) {
 
 void read_mixtures(const SceneTable& t, RecipeScene& out) {
   out.mixtures = t.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
-  if (out.mixtures.size() < 3) t.mistake("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
+  if (out.mixtures.size() < 3)
+    t.mistake("mixtures", "at least three shares are needed: w_inf and xi are fitted to them");
   if (std::adjacent_find(out.mixtures.begin(), out.mixtures.end(), std::greater_equal<>()) != out.mixtures.end())
     t.mistake("mixtures", "shares must ascend");
 }
@@ -228,8 +230,7 @@ void read_rest(const SceneTable& root, RecipeScene& out) {
   out.shells.levels = shells.count("levels", 2, 20, 4);
   out.shells.packings = shells.count("packings", 4, 1000, out.shells.packings);
   out.shells.ratio = shells.number("ratio", Unit::none, Range::closed(2.0, 20.0), out.shells.ratio);
-  if (shells.has("form"))
-    out.shells.form = shells.choice<Crowd>("form", {Crowd::bag, Crowd::directional, Crowd::pair});
+  if (shells.has("form")) out.shells.form = shells.choice<Crowd>("form", {Crowd::bag, Crowd::directional, Crowd::pair});
 }
 
 /// [law]: form of the equation of state, replicates, cells, shear.
@@ -310,8 +311,9 @@ void check_recipe(const Scene& scene, Findings& out) {
   check_variants(recipe.material, variants);
   const auto packings = std::count_if(recipe.material.variants.begin(), recipe.material.variants.end(),
                                       [](const MaterialVariant& v) { return !v.same_packings; });
-  out.add("packings", packings, fmt::format("{} different packings are measured, {} samples of each", packings,
-                                            recipe.material.variants.front().setup.samples));
+  out.add("packings", packings,
+          fmt::format("{} different packings are measured, {} samples of each", packings,
+                      recipe.material.variants.front().setup.samples));
   if (recipe.checked)
     out.add("checked_levels", recipe.checked_levels,
             fmt::format("the {} coarsest levels are checked with all their grains, {} a sample", recipe.checked_levels,

@@ -48,14 +48,14 @@ using MixtureVariants = std::vector<std::size_t>;
 struct RecipeScene {
   MaterialScene material;  ///< all packings that are measured, none twice
   std::vector<Constituent> constituents;
-  Grading sizes;                              ///< of the whole
-  std::vector<RecipeLevel> levels;            ///< the coarsest first
-  std::vector<double> mixtures;               ///< shares of the finer level by solid volume, ascending
-  std::vector<std::size_t> slice;             ///< of every level: its variant in `material`
-  std::vector<MixtureVariants> mixed;         ///< of every level but the finest
-  std::size_t sheared = 0;                    ///< variant: the second level, sheared at constant volume
-  std::optional<std::size_t> checked;         ///< variant of the check
-  std::size_t checked_levels = 0;             ///< that it holds
+  Grading sizes;                       ///< of the whole
+  std::vector<RecipeLevel> levels;     ///< the coarsest first
+  std::vector<double> mixtures;        ///< shares of the finer level by solid volume, ascending
+  std::vector<std::size_t> slice;      ///< of every level: its variant in `material`
+  std::vector<MixtureVariants> mixed;  ///< of every level but the finest
+  std::size_t sheared = 0;             ///< variant: the second level, sheared at constant volume
+  std::optional<std::size_t> checked;  ///< variant of the check
+  std::size_t checked_levels = 0;      ///< that it holds
   RecipeCheck check;
   RecipeMacro macro;
   RecipeShells shells;

@@ -63,14 +63,17 @@ std::string onset_figure(const RecipeOutcome& r) {
   alone.style = {.color = palette::vermillion, .width = 0.0, .marker = Marker::circle};
   for (Series* s : {&band, &levels, &rods, &alone}) plot.add(std::move(*s));
   if (r.check) {
-    Series check{.label = "check, all its grains", .hover = "", .x = {1e3 * r.levels.front().diameter_high},
+    Series check{.label = "check, all its grains",
+                 .hover = "",
+                 .x = {1e3 * r.levels.front().diameter_high},
                  .y = {r.check->measured.value}};
     check.style = {.color = palette::black, .width = 0.0, .marker = Marker::diamond, .marker_size = 5.0};
     plot.add(std::move(check));
   }
-  return figure(plot.svg(),
-                "From the finest level (left) up: each with everything finer, by two ways of putting levels together. The "
-                "check holds the coarsest levels alone, and lies below the whole where finer ones are missing in it.");
+  return figure(
+      plot.svg(),
+      "From the finest level (left) up: each with everything finer, by two ways of putting levels together. The "
+      "check holds the coarsest levels alone, and lies below the whole where finer ones are missing in it.");
 }
 
 std::string load_figure(const RecipeOutcome& r) {
@@ -88,24 +91,26 @@ std::string load_figure(const RecipeOutcome& r) {
     plot.add(std::move(s));
   }
   if (plot.empty()) return "";
-  return figure(plot.svg(),
-                "Material law: the equation of state from its onset. Cell law: grains of the coarsest level in cells of "
-                "everything finer. Shell law, where there is one: the same grains with soft particles that keep their "
-                "shells between them: another matter, whose fines cannot leave the room that they were given.");
+  return figure(
+      plot.svg(),
+      "Material law: the equation of state from its onset. Cell law: grains of the coarsest level in cells of "
+      "everything finer. Shell law, where there is one: the same grains with soft particles that keep their "
+      "shells between them: another matter, whose fines cannot leave the room that they were given.");
 }
 
 std::string shell_table(const RecipeOutcome& r) {
   HtmlTable table({"level of the shell hierarchy", "diameters [mm]", "one plane at h/Rs = 0.2 [F/(E Rs²)]",
                    "grains that a soft particle stands for"});
   for (const ShellLevelSummary& l : r.shells)
-    table.row({std::to_string(l.level), range_of(1e3 * l.diameter_low, 1e3 * l.diameter_high), format_number(l.force, 3),
-               format_number(l.grains, 3)});
+    table.row({std::to_string(l.level), range_of(1e3 * l.diameter_low, 1e3 * l.diameter_high),
+               format_number(l.force, 3), format_number(l.grains, 3)});
   return table.empty() ? "" : table.html();
 }
 
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
-      "The whole begins to bear at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings lie {} about "
+      "The whole begins to bear at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings lie {} "
+      "about "
       "them). At the start pressure it is {} ({}). Lateral over axial stress where the test ends: {} ({}).",
       format_number(r.onset->value, 4), range_of(r.onset->low, r.onset->high, 4),
       format_number(r.levels.front().with_finer.levels, 4), format_number(r.levels.front().with_finer.rods, 4),
@@ -122,7 +127,8 @@ std::string whole_text(const RecipeOutcome& r) {
 
 std::string check_text(const RecipeCheckSummary& c) {
   return fmt::format(
-      "Check: the {} coarsest levels with all their grains ({} of span {}) begin to bear at {}; put together from levels "
+      "Check: the {} coarsest levels with all their grains ({} of span {}) begin to bear at {}; put together from "
+      "levels "
       "{} ({}): {}.",
       c.levels, format_count(c.grains), format_number(c.span, 3), format_number(c.measured.value, 4),
       format_number(c.predicted.onset.value, 4), range_of(c.predicted.onset.low, c.predicted.onset.high, 4),

@@ -60,8 +60,8 @@ HierarchySetup setup_of(const RecipeScene& scene, const RecipeLevel& level) {
       "inner_radius_max = {}\n[crowd]\nincrement = 0.005\ntolerance = 1e-2\npackings_min = {}\npackings_max = {}\n"
       "target = 0.05\npoints = 10\n",
       scene.material.seed, spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.density, kShell,
-      sizes_text_of(level), to_string(scene.shells.form), std::min(0.2, 1.0 / scene.shells.ratio), scene.shells.packings,
-      scene.shells.packings);
+      sizes_text_of(level), to_string(scene.shells.form), std::min(0.2, 1.0 / scene.shells.ratio),
+      scene.shells.packings, scene.shells.packings);
   const auto add = [&](const char* arrangement, const char* partner, double overlap) {
     text += fmt::format("[[configuration]]\narrangement = \"{}\"\npartner = \"{}\"\noverlap = {}\n{}", arrangement,
                         partner, overlap, std::string(partner) == "plane" ? "" : "ratio = 1.0\n");
@@ -96,8 +96,7 @@ ShellLevels run_shells(const RecipeScene& scene, const Run& run) {
     CrowdMeasurements data;
     HierarchyLevel level = run_level(setup, contents, static_cast<std::int64_t>(k),
                                      levels.empty() ? nullptr : &levels.back(), &below, data, run);
-    for (const std::string& text : level.left_out)
-      out.remarks.push_back(fmt::format("shells, level {}: {}", k, text));
+    for (const std::string& text : level.left_out) out.remarks.push_back(fmt::format("shells, level {}: {}", k, text));
     const CrowdLaw* law = level.entry.find(scene.shells.form);
     if (law == nullptr || law->status == LawStatus::no_threshold_crossing)
       throw NotUsable(fmt::format("shells, level {}: its law never crosses its threshold", k));

@@ -121,14 +121,14 @@ struct RecipeOutcome {
   std::vector<ConstituentSummary> constituents;
   std::vector<RecipeLevelSummary> levels;
   double span = 1.0;
-  double gap = 0.0;            ///< of the rods
-  double rods_deviation = 0.0; ///< root mean square of the onsets about them
+  double gap = 0.0;             ///< of the rods
+  double rods_deviation = 0.0;  ///< root mean square of the onsets about them
   std::optional<Estimate> onset;
   std::optional<Estimate> solid_fraction;  ///< at the start pressure
-  Estimate lateral_ratio;  ///< K0 at the end of the test
+  Estimate lateral_ratio;                  ///< K0 at the end of the test
   double grains_per_cubic_metre = 0.0;
-  double resolved_grains = 0.0;   ///< of a sample with a hundred grains above a third of the largest radius
-  double resolved_hours = 0.0;    ///< of one core, by what grains took here
+  double resolved_grains = 0.0;  ///< of a sample with a hundred grains above a third of the largest radius
+  double resolved_hours = 0.0;   ///< of one core, by what grains took here
   std::optional<RecipeCheckSummary> check;
   std::vector<RecipeCurve> curves;
   std::vector<ShellLevelSummary> shells;

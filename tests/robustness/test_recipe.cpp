@@ -1,0 +1,74 @@
+// The kind "recipe" as a whole: files, the check with all grains, and a second run out of the caches.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "common/data/cell_card.h"
+#include "common/io/text_file.h"
+#include "tests/support/every_kind.h"
+#include "tests/support/program.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+std::string run_tiny(const TemporaryDirectory& directory, const std::string& out, const std::string& more) {
+  const std::string path = directory.file(out);
+  const ProgramOutcome outcome =
+      run_the_program("run '" + directory.file("scene.toml") + "' --out '" + path + "' " + more);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  return path;
+}
+
+std::size_t files_named(const std::string& directory, const std::string& prefix) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(directory))
+    count += entry.path().filename().string().starts_with(prefix) ? 1 : 0;
+  return count;
+}
+
+TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
+  const TemporaryDirectory directory;
+  write_text_atomic(directory.file("scene.toml"), kTinyRecipe);
+  const std::string caches =
+      "--packing-cache '" + directory.file("packings") + "' --law-cache '" + directory.file("tests") + "' ";
+  const std::string first = run_tiny(directory, "first", caches);
+  const nlohmann::json summary = summary_of(first);
+  const nlohmann::json& r = summary["recipe"];
+  EXPECT_EQ(r["levels"].size(), 2U);
+  EXPECT_NEAR(r["levels"][0]["volume_share"].get<double>() + r["levels"][1]["volume_share"].get<double>(), 1.0, 1e-9);
+  const double onset = r["onset"]["value"];
+  EXPECT_GE(onset, r["onset"]["interval"][0]);
+  EXPECT_LE(onset, r["onset"]["interval"][1]);
+  // All grains, 300 of them, two samples: they scatter by a few per cent.
+  EXPECT_NEAR(r["check"]["measured"], onset, 0.02);
+  EXPECT_EQ(r["check"]["levels"], 2);
+  for (const char* file :
+       {"material_card.toml", "cell_law.toml", "recipe.csv", "recipe_macro.h5", "material.csv", "report.html"})
+    EXPECT_TRUE(std::filesystem::exists(first + "/" + file)) << file;
+  EXPECT_GT(read_cell_card(first + "/cell_law.toml").void_ratio.value, 0.0);
+  ASSERT_EQ(r["curves"].size(), 3U);
+  EXPECT_EQ(r["curves"][1]["name"], "all grains");
+  const double law = r["curves"][0]["axial"].back();
+  EXPECT_NEAR(r["curves"][1]["axial"].back().get<double>() / law, 1.0, 0.3);
+  EXPECT_NEAR(r["curves"][2]["axial"].back().get<double>() / law, 1.0, 0.5);
+  const std::string page = read_text(first + "/report.html");
+  for (const char* part : {"recipe-onset", "recipe-load", "From the recipe to the law"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+
+  const std::size_t kept = files_named(directory.file("tests"), "material-");
+  EXPECT_EQ(kept, 6U);  // one level and its shear, three mixtures, the check
+  const std::string second = run_tiny(directory, "second", caches);
+  EXPECT_EQ(read_text(first + "/recipe.csv"), read_text(second + "/recipe.csv"));
+  EXPECT_EQ(read_text(first + "/material.csv"), read_text(second + "/material.csv"));
+  EXPECT_EQ(files_named(directory.file("tests"), "material-"), kept);
+  // Other grains are other tests.
+  (void)run_tiny(directory, "third", caches + "--set material.mu=0.31");
+  EXPECT_EQ(files_named(directory.file("tests"), "material-"), 2 * kept);
+}
+
+}  // namespace
