@@ -197,6 +197,29 @@ TEST(LevelForms, RodsFindTheGapThatOnsetsWereMadeWith) {
   EXPECT_NEAR(forms.joined_onset(0, 3, 0.02).onset.low, whole.onset.low - 0.02, 1e-12);
 }
 
+TEST(LevelForms, LeanToTheFormThatTheCheckIsNearer) {
+  const RecipeScene scene = three_levels();
+  std::vector<double> onsets;
+  for (const MaterialVariant& v : scene.material.variants)
+    onsets.push_back(RodCurve(*v.setup.spec.solid_sizes).at(1.1));
+  onsets[scene.mixed[0][2]] -= 0.02;  // levels fall below the rods
+  const auto value_for = [&](double share, double error) {
+    LevelForms forms(scene, fit_of(scene, onsets));
+    const OnsetByForms before = forms.joined_onset(0, 3);
+    EXPECT_NEAR(before.onset.value, 0.5 * (before.levels + before.rods), 1e-12);
+    EXPECT_GT(before.rods - before.levels, 0.01);
+    forms.lean(3, before.levels + share * (before.rods - before.levels), error);
+    EXPECT_NEAR(forms.joined_onset(0, 3).onset.value,
+                before.levels + forms.share_of_rods() * (before.rods - before.levels), 1e-12);
+    return forms.share_of_rods();
+  };
+  EXPECT_NEAR(value_for(0.5, 0.001), 0.5, 1e-12);
+  EXPECT_GT(value_for(1.0, 0.001), 0.55);
+  EXPECT_LT(value_for(0.0, 0.001), 0.45);
+  EXPECT_GT(value_for(1.0, 0.001), value_for(1.0, 0.02));  // less is learned from what is known less
+  EXPECT_EQ(value_for(9.0, 0.001), 1.0);
+}
+
 /// By hand: w of the mixtures is 0.6 at every share, so that e = e_f (0.6 + r)/(1 + r) level by level.
 TEST(LevelForms, PoresOfLevelsGoWithThoseOfTheirFines) {
   const RecipeScene scene = three_levels();

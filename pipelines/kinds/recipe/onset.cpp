@@ -118,6 +118,7 @@ struct LevelForms::Parts {
   double gap = 0.0;
   std::vector<double> gaps;
   double deviation = 0.0;
+  double share_of_rods = 0.5;
 };
 
 double straight(const std::vector<double>& x, const std::vector<double>& y, double at) {
@@ -147,7 +148,7 @@ OnsetByForms LevelForms::joined_onset(std::size_t first, std::size_t count, doub
     by_rods.push_back(rods.at(parts_->gaps[r]));
   }
   Estimate& e = out.onset;
-  e.value = 0.5 * (out.levels + out.rods);
+  e.value = out.levels + parts_->share_of_rods * (out.rods - out.levels);
   if (levels.empty()) {
     e = {e.value, kInfinity, -kInfinity, kInfinity};
     return out;
@@ -161,6 +162,19 @@ OnsetByForms LevelForms::joined_onset(std::size_t first, std::size_t count, doub
   return out;
 }
 
+void LevelForms::lean(std::size_t count, double measured, double error) {
+  constexpr double kTau = 0.3;
+  const OnsetByForms forms = joined_onset(0, count);
+  const double apart = forms.rods - forms.levels;
+  const double known = std::isfinite(error) ? error : 0.0;
+  const double noise = known * known + parts_->deviation * parts_->deviation;
+  const double off = measured - 0.5 * (forms.rods + forms.levels);
+  const double pull = kTau * kTau * apart;
+  if (pull * apart + noise > 0.0)
+    parts_->share_of_rods = std::clamp(0.5 + pull * off / (pull * apart + noise), 0.0, 1.0);
+}
+
+double LevelForms::share_of_rods() const { return parts_->share_of_rods; }
 double LevelForms::own_onset(std::size_t level) const { return parts_->estimate[parts_->scene.slice[level]]; }
 double LevelForms::gap() const { return parts_->gap; }
 double LevelForms::rods_deviation() const { return parts_->deviation; }

@@ -21,7 +21,8 @@ double straight(const std::vector<double>& x, const std::vector<double>& y, doub
 ///   itself), the last one beyond: pores that fines leave beside larger grains go with their own;
 /// - rods: of all chords of all grains on a line (rod_packing.h), with one gap fitted to all onsets; widened by how far
 ///   these are about it.
-/// The interval reaches from the lowest to the highest end of both.
+/// The interval reaches from the lowest to the highest end of both; the value lies between them, in the middle until
+/// lean() knows better.
 class LevelForms {
  public:
   /// `fit`: groups by the names of the variants. Throws NotUsable where a packing is not among them.
@@ -33,6 +34,11 @@ class LevelForms {
   /// `count` levels from `first` on, as they are in the whole; `widen`: both ends of the interval by as much. One
   /// alone is as it was measured.
   [[nodiscard]] OnsetByForms joined_onset(std::size_t first, std::size_t count, double widen = 0.0) const;
+  /// Moves the value of all that follows towards the form that comes nearer to what `count` levels from the coarsest on
+  /// were measured to be: the share t of rods is the least of (phi - phi_levels - t (phi_rods - phi_levels))^2/s^2 + (t
+  /// - 1/2)^2/tau^2, within 0 and 1, s the error of the measurement and the deviation of rods together, tau = 0.3.
+  void lean(std::size_t count, double measured, double error);
+  [[nodiscard]] double share_of_rods() const;
   /// Of a level alone, as measured.
   [[nodiscard]] double own_onset(std::size_t level) const;
   [[nodiscard]] double gap() const;

@@ -49,7 +49,7 @@ class RecipeRun {
 
   void put_together(const std::optional<StateFit>& states) {
     if (!states || !states->usable) return head().reject("no law: the equation of state is not usable");
-    const LevelForms forms(scene_, *states);
+    LevelForms forms(scene_, *states);
     out().gap = forms.gap();
     out().rods_deviation = forms.rods_deviation();
     const double widen = check(forms, *states);
@@ -63,8 +63,8 @@ class RecipeRun {
     load(forms, *states, widen);
   }
 
-  /// The coarsest levels with all their grains; what intervals are widened by.
-  double check(const LevelForms& forms, const StateFit& states) {
+  /// The coarsest levels with all their grains, which say what form the rest leans to; what intervals are widened by.
+  double check(LevelForms& forms, const StateFit& states) {
     if (!scene_.checked) return 0.0;
     const MaterialVariant& v = scene_.material.variants[*scene_.checked];
     const auto group =
@@ -82,6 +82,8 @@ class RecipeRun {
           "the check of {} levels lies {:.4f} outside the interval of its prediction: the interval of the whole is "
           "widened by as much at both ends",
           c.levels, c.outside));
+    forms.lean(scene_.checked_levels, c.measured.value, c.measured.standard_error);
+    c.share_of_rods = forms.share_of_rods();
     out().check = c;
     return c.outside;
   }
@@ -245,7 +247,8 @@ std::string recipe_text(const RecipeSummary& s) {
   if (r.check)
     text += fmt::format("  check: {} levels with all grains ({}, span {:.3g}): phi_J = {:.4f}, predicted {}{}\n",
                         r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
-                        text_of(r.check->predicted.onset), r.check->outside > 0.0 ? ": OUTSIDE" : "");
+                        text_of(r.check->predicted.onset), r.check->predicted.levels, r.check->predicted.rods,
+                        r.check->outside > 0.0 ? ": OUTSIDE" : "");
   if (!r.onset) return text;
   text +=
       fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",

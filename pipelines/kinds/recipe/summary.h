@@ -69,7 +69,8 @@ struct RecipeCheckSummary {
   double span = 1.0;
   Estimate measured;  ///< phi_J
   OnsetByForms predicted;
-  double outside = 0.0;  ///< how far the measured one lies outside the interval, which intervals are widened by
+  double share_of_rods = 0.5;  ///< in the value of the whole, see LevelForms::lean
+  double outside = 0.0;        ///< how far the measured one lies outside the interval, which intervals are widened by
 };
 
 void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
@@ -79,6 +80,7 @@ void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
   visit("measured", s.measured.value);
   visit("measured_standard_error", s.measured.standard_error);
   visit("predicted", s.predicted);
+  visit("share_of_rods", s.share_of_rods);
   visit("outside", s.outside);
 }
 
