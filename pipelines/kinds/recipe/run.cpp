@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/core/error.h"
-#include "common/core/stopwatch.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/results.h"
@@ -24,9 +23,7 @@ class RecipeRun {
   RecipeRun(const RecipeScene& scene, const Run& run) : scene_(scene), run_(run) {}
 
   RecipeSummary finish() {
-    const Stopwatch watch;
     results_ = run_variants(scene_.material, run_);
-    packing_seconds_ = watch.seconds();
     MaterialOutcome measured = summarise(scene_.material, results_, run_);
     summary_.material = std::move(measured.summary);
     // Of dozens of packings the one that holds most of the curve.
@@ -142,9 +139,14 @@ class RecipeRun {
     const double all = 1.0 / mean_grain_volume(scene_.sizes.pieces());
     out().resolved_grains = kCoarse * all / number;
     double grains = 0.0;
+    double evaluations = 0.0;
     for (const VariantResult& r : results_)
-      grains += static_cast<double>(r.variant->setup.spec.bodies) * static_cast<double>(r.curves.size());
-    out().resolved_hours = packing_seconds_ * run_.context.threads() / grains * out().resolved_grains / 3600.0;
+      for (const MacroCurve& c : r.curves) {
+        if (!r.variant->same_packings) grains += static_cast<double>(r.variant->setup.spec.bodies);
+        evaluations += static_cast<double>(c.cost.contact_evaluations);
+        if (!r.variant->same_packings) evaluations += static_cast<double>(c.preparation.contact_evaluations);
+      }
+    out().resolved_evaluations = evaluations / grains * out().resolved_grains;
   }
 
   /// So far that pores do not vanish.
@@ -192,8 +194,10 @@ class RecipeRun {
       return shells;
     } catch (const NotUsable& e) {
       head().reject("no shell law: " + std::string(e.what()));
-      return {};
+    } catch (const BadInput& e) {  // a law that misses what the next level asks of it
+      head().reject("no shell law: " + std::string(e.what()));
     }
+    return {};
   }
 
   /// What a reader must not overlook.
@@ -224,7 +228,6 @@ class RecipeRun {
   const RecipeScene& scene_;
   const Run& run_;
   std::vector<VariantResult> results_;
-  double packing_seconds_ = 0.0;
   WholeLaw law_;
   RecipeSummary summary_;
 };
@@ -264,8 +267,9 @@ std::string recipe_text(const RecipeSummary& s) {
         "  shell hierarchy, level {}: {:.3g} to {:.3g} mm, one plane {:.3g} E Rs^2 at h/Rs = 0.2, {:.3g} "
         "grains\n",
         level.level, 1e3 * level.diameter_low, 1e3 * level.diameter_high, level.force, level.grains);
-  text += fmt::format("a cubic metre holds {:.2g} grains; a sample with all of them: {:.2g}, about {:.2g} core hours\n",
-                      r.grains_per_cubic_metre, r.resolved_grains, r.resolved_hours);
+  text += fmt::format(
+      "a cubic metre holds {:.2g} grains; a sample with all of them: {:.2g}, about {:.2g} contact evaluations\n",
+      r.grains_per_cubic_metre, r.resolved_grains, r.resolved_evaluations);
   for (const std::string& remark : s.material.head.remarks) text += "note: " + remark + "\n";
   return text;
 }

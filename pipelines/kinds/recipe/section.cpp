@@ -119,9 +119,9 @@ std::string whole_text(const RecipeOutcome& r) {
       range_of(r.lateral_ratio.low, r.lateral_ratio.high));
   text += fmt::format(
       " A cubic metre holds {} grains; a sample with a hundred of them above a third of the largest diameter {}, which "
-      "would take about {} hours of one core, by what grains took here.",
+      "would take about {} contact evaluations, by what grains took here.",
       format_number(r.grains_per_cubic_metre, 2), format_number(r.resolved_grains, 2),
-      format_number(r.resolved_hours, 2));
+      format_number(r.resolved_evaluations, 2));
   return text;
 }
 

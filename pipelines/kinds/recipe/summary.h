@@ -129,8 +129,8 @@ struct RecipeOutcome {
   std::optional<Estimate> solid_fraction;  ///< at the start pressure
   Estimate lateral_ratio;                  ///< K0 at the end of the test
   double grains_per_cubic_metre = 0.0;
-  double resolved_grains = 0.0;  ///< of a sample with a hundred grains above a third of the largest radius
-  double resolved_hours = 0.0;   ///< of one core, by what grains took here
+  double resolved_grains = 0.0;       ///< of a sample with a hundred grains above a third of the largest radius
+  double resolved_evaluations = 0.0;  ///< of contacts, by what grains took here to be prepared and pressed
   std::optional<RecipeCheckSummary> check;
   std::vector<RecipeCurve> curves;
   std::vector<ShellLevelSummary> shells;
@@ -147,7 +147,7 @@ void fields(auto&& visit, Of<RecipeOutcome> auto& s) {
   visit("K0", s.lateral_ratio);
   visit("grains_per_cubic_metre", s.grains_per_cubic_metre);
   visit("resolved_grains", s.resolved_grains);
-  visit("resolved_core_hours", s.resolved_hours);
+  visit("resolved_contact_evaluations", s.resolved_evaluations);
   visit("check", s.check, kLeftOut);
   visit("curves", s.curves);
   visit("shells", s.shells);
