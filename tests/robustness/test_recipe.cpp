@@ -50,6 +50,14 @@ TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
   for (const char* file :
        {"material_card.toml", "cell_law.toml", "recipe.csv", "recipe_macro.h5", "material.csv", "report.html"})
     EXPECT_TRUE(std::filesystem::exists(first + "/" + file)) << file;
+  const ProgramOutcome checked = run_the_program("check '" + first + "/material_card.toml'");
+  EXPECT_EQ(checked.status, 0) << checked.output;
+  EXPECT_NE(checked.output.find("card of a whole material of 2 levels"), std::string::npos) << checked.output;
+  write_text_atomic(directory.file("macro.toml"), "kind = \"macro\"\n[macro]\nbodies = 20\n");
+  const ProgramOutcome refused = run_the_program("macrosim '" + directory.file("macro.toml") + "' --law '" + first +
+                                                 "/material_card.toml' --out '" + directory.file("none") + "'");
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("take the card of the cell law"), std::string::npos) << refused.output;
   EXPECT_GT(read_cell_card(first + "/cell_law.toml").void_ratio.value, 0.0);
   ASSERT_EQ(r["curves"].size(), 3U);
   EXPECT_EQ(r["curves"][1]["name"], "all grains");

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/data/card_text.h"
 #include "common/data/crowd_replicates.h"
 #include "common/data/law_band.h"
 #include "common/data/law_remarks.h"
@@ -131,9 +132,32 @@ void check_cell_card(const std::string& path, Findings& out) {
                          100.0 * (card.modulus.high - card.modulus.low) / card.modulus.value));
 }
 
+/// The card of a whole material, as a recipe writes it.
+void check_material_card(const std::string& path, Findings& out) {
+  const Scene scene = Scene::load(path);
+  const SceneTable root = scene.root();
+  const SceneTable material = root.table("material");
+  const Estimate onset = read_estimate_text(material.table("phi_J"), Range{0.0, 1.0, true, true});
+  const Estimate modulus = read_estimate_text(material.table("K"), Range::positive());
+  const Estimate exponent = read_estimate_text(material.table("n"), Range::positive());
+  const auto levels = root.tables("level").size();
+  out.add(
+      "kind", "material",
+      fmt::format("card of a whole material of {} levels, {} form: begins to bear at a solid fraction of {:.4g} "
+                  "({:.4g} to {:.4g}), p/E = {:.4g} x^{:.4g}",
+                  levels, material.text("form"), onset.value, onset.low, onset.high, modulus.value, exponent.value));
+  constexpr double kWide = 0.05;
+  if (onset.high - onset.low > kWide)
+    out.warn(
+        fmt::format("the interval of the solid fraction is {:.2g} wide: stresses are known to a factor, not to per "
+                    "cent",
+                    onset.high - onset.low));
+}
+
 }  // namespace
 
 void check_laws(const std::string& path, Findings& out) {
+  if (is_material_card(path)) return check_material_card(path, out);
   switch (law_file_kind(path)) {
     case LawFileKind::card:
       return check_card(path, out);

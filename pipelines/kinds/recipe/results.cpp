@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/recipe/run.h"
 #include "pipelines/report/number_format.h"
@@ -56,7 +57,7 @@ NextSteps next_of(const report::RunData& run) {
 }  // namespace
 
 KindResults recipe_results() {
-  return {.files = {{.names = "recipe(\\.csv|_macro\\.h5)"}, {.names = "material_card\\.toml"}},
+  return {.files = {{.names = "recipe(\\.csv|_macro\\.h5)"}, {.names = "material_card\\.toml", .check = check_laws}},
           .sections = {{Place::levels, report::recipe_section}},
           .lines = lines_of,
           .values = values_of,

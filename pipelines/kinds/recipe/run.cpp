@@ -248,10 +248,11 @@ std::string recipe_text(const RecipeSummary& s) {
     text += "\n";
   }
   if (r.check)
-    text += fmt::format("  check: {} levels with all grains ({}, span {:.3g}): phi_J = {:.4f}, predicted {}{}\n",
-                        r.check->levels, r.check->grains, r.check->span, r.check->measured.value,
-                        text_of(r.check->predicted.onset), r.check->predicted.levels, r.check->predicted.rods,
-                        r.check->outside > 0.0 ? ": OUTSIDE" : "");
+    text += fmt::format(
+        "  check: {} levels with all grains ({}, span {:.3g}): phi_J = {:.4f}, predicted {} (levels {:.4f}, rods "
+        "{:.4f}){}\n",
+        r.check->levels, r.check->grains, r.check->span, r.check->measured.value, text_of(r.check->predicted.onset),
+        r.check->predicted.levels, r.check->predicted.rods, r.check->outside > 0.0 ? ": OUTSIDE" : "");
   if (!r.onset) return text;
   text +=
       fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
