@@ -48,7 +48,7 @@ close "${forces[1]}" 1.086977489062398 || fail "force of the glass beads: ${forc
 ! close "${forces[0]}" 0.6339576601 || fail "the comparison takes anything"
 
 # Another minor version is not what was asked for.
-mkdir other && sed 's/find_package(softgrain 0.1/find_package(softgrain 0.99/' "$here/CMakeLists.txt" >other/CMakeLists.txt
+mkdir other && sed 's/find_package(softgrain 0.2/find_package(softgrain 0.99/' "$here/CMakeLists.txt" >other/CMakeLists.txt
 cp "$here/consumer.cpp" other/
 ! "$cmake" -S other -B other/build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >other.log 2>&1 ||
   fail "version 0.99 was found"

@@ -26,7 +26,7 @@ TEST(Kinds, EveryOneIsWholeAndNamedOnce) {
     EXPECT_EQ(complaint(k.name, k.command), "") << k.name;
     EXPECT_STREQ(kind_of(Scene::parse("kind = \"" + std::string(k.name) + "\"\n", "s.toml")).name, k.name);
   }
-  EXPECT_EQ(names.size(), 13U);
+  EXPECT_EQ(names.size(), 14U);
 }
 
 TEST(Kinds, TheCommandThatRunsAKindIsNamed) {
@@ -208,6 +208,24 @@ s:5: unknown key 'ratoi' in [grains]; nearest known key is 'ratio'
 s:7: split = 1: must be above 0 and below 1
 s:8: form = "pore": must be "porosity" or "pores"; nearest is "pores"
 s:10: test = "shear": the law is measured in oedometric compression (and the fines in shear))"},
+    {R"(kind = "recipe"
+samples = 0
+[grains]
+count = 2000
+ratio = 6
+[levels]
+ratio = 20
+mixtures = [0.5]
+[test]
+test = "shear"
+[shells]
+form = "bog"
+)",
+     R"(s:2: samples = 0: must be a whole number from 1 to 10000
+s:7: ratio = 20: must be from 1.5 to 10
+s:8: mixtures = [ 0.5 ]: at least three shares are needed: w_inf and xi are fitted to them
+s:10: test = "shear": levels are measured in oedometric compression (and one of them in shear)
+s:12: form = "bog": must be "pair", "bag" or "directional"; nearest is "bag")"},
     {R"(kind = "material-models"
 blind = ["gap"]
 [grains]

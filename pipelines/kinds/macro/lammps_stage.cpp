@@ -218,7 +218,7 @@ class Sample {
 
 }  // namespace
 
-std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
+std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64_t bodies) {
   const auto engine = options.engine.empty() ? MacroEngine::softgrain : from_word<MacroEngine>(options.engine);
   if (!engine) {
     const std::string near = nearest_word(options.engine, {"softgrain", "lammps"});
@@ -236,14 +236,11 @@ std::optional<LammpsEngine> read_engine(const CommonOptions& options) {
   if (lammps.write_only) return lammps;
   lammps.program = lammps::find_program();
   if (lammps.program.empty()) throw BadInput(lammps::missing_text());
+  if (lammps.ranks > bodies)
+    throw BadInput(fmt::format("--ranks {}: the scene has {} bodies, and a rank needs one at least; allowed: 1 to {}",
+                               lammps.ranks, bodies, bodies));
   (void)lammps::command_words(lammps.program, lammps.ranks, {});  // mpirun must be there
   return lammps;
-}
-
-void require_bodies_for_ranks(const std::optional<LammpsEngine>& lammps, std::int64_t bodies) {
-  if (lammps && lammps->ranks > bodies)
-    throw BadInput(fmt::format("--ranks {}: the scene has {} bodies, and a rank needs one at least; allowed: 1 to {}",
-                               lammps->ranks, bodies, bodies));
 }
 
 std::string lammps_directory(const RunContext& context, std::int64_t sample, const std::string& folder) {

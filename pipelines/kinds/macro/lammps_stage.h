@@ -17,11 +17,9 @@ struct LammpsEngine {
   std::string program;  ///< softgrain-lammps; empty when only files are written
 };
 
-/// --engine, --ranks and --write-only; nothing for our own engine. Throws BadInput.
-std::optional<LammpsEngine> read_engine(const CommonOptions& options);
-
-/// Throws BadInput when there are more ranks than bodies.
-void require_bodies_for_ranks(const std::optional<LammpsEngine>& lammps, std::int64_t bodies);
+/// --engine, --ranks (of the smallest scene, which has so many bodies, one each at least) and --write-only; nothing for
+/// our own engine. Throws BadInput.
+std::optional<LammpsEngine> read_engine(const CommonOptions& options, std::int64_t bodies);
 
 /// What all samples share.
 struct LammpsRuns {

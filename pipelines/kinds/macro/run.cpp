@@ -166,10 +166,9 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   if (macro.law_file.empty())
     scene.root().reject(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");
-  const std::optional<LammpsEngine> lammps = ready.lammps = read_engine(options);
+  const std::optional<LammpsEngine> lammps = ready.lammps = read_engine(options, macro.setup.spec.bodies);
   if (macro.setup.spec.preparation == Preparation::lammps && !lammps)
     throw BadInput("key macro.preparation = \"lammps\" needs --engine lammps");
-  require_bodies_for_ranks(lammps, macro.setup.spec.bodies);
   if (macro.law.cells && lammps) throw BadInput("--engine lammps: LAMMPS knows no cells; leave it out");
   if (macro.setup.bands > 0) require_draws(macro, lammps.has_value());
   return ready;

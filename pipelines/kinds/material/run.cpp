@@ -337,9 +337,11 @@ ExitStatus write_only(const MaterialScene& scene, const Run& run) {
 
 ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   const MaterialScene material = read_material_scene(scene);
-  const std::optional<LammpsEngine> lammps = read_engine(options);
+  const auto fewest = std::min_element(material.variants.begin(), material.variants.end(), [](auto& a, auto& b) {
+    return a.setup.spec.bodies < b.setup.spec.bodies;
+  });
+  const std::optional<LammpsEngine> lammps = read_engine(options, fewest->setup.spec.bodies);
   require_engine(material, lammps);
-  for (const MaterialVariant& v : material.variants) require_bodies_for_ranks(lammps, v.setup.spec.bodies);
   const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
   if (lammps && lammps->write_only) return write_only(material, run);
   const std::vector<VariantResult> results = run_variants(material, run, {.lammps = lammps});

@@ -129,7 +129,7 @@ std::string check_text(const RecipeCheckSummary& c) {
   return fmt::format(
       "Check: the {} coarsest levels with all their grains ({} of span {}) begin to bear at {}; put together from "
       "levels "
-      "{} ({}): {}. Levels alone say {}, rods {}; by that the value of the whole has a share of {} of the rods.",
+      "{} ({}): {}. By levels it is {}, by rods {}; by that the value of the whole has a share of {} of the rods.",
       c.levels, format_count(c.grains), format_number(c.span, 3), format_number(c.measured.value, 4),
       format_number(c.predicted.onset.value, 4), range_of(c.predicted.onset.low, c.predicted.onset.high, 4),
       c.outside > 0.0 ? "outside by " + format_number(c.outside, 2) + ", and all intervals here are widened by that"
