@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/io/text_file.h"
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/stage.h"
@@ -301,6 +302,17 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
   return out;
 }
 
+std::array<double, 2> pressure_range(const std::vector<VariantResult>& results) {
+  std::array<double, 2> range{kInfinity, 0.0};
+  for (const VariantResult& r : results)
+    for (const MacroCurve& c : r.curves)
+      for (const double p : state_curve(c, r.variant->name, 1.0).pressure) {
+        if (p > 0.0) range[0] = std::min(range[0], p);
+        range[1] = std::max(range[1], p);
+      }
+  return range;
+}
+
 std::string sizes_text(const MaterialScene& scene) {
   std::string text;
   for (const MaterialVariant& v : scene.variants) text += sizes_text(v.setup.spec);
@@ -337,9 +349,8 @@ ExitStatus write_only(const MaterialScene& scene, const Run& run) {
 
 ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   const MaterialScene material = read_material_scene(scene);
-  const auto fewest = std::min_element(material.variants.begin(), material.variants.end(), [](auto& a, auto& b) {
-    return a.setup.spec.bodies < b.setup.spec.bodies;
-  });
+  const auto fewest = std::min_element(material.variants.begin(), material.variants.end(),
+                                       [](auto& a, auto& b) { return a.setup.spec.bodies < b.setup.spec.bodies; });
   const std::optional<LammpsEngine> lammps = read_engine(options, fewest->setup.spec.bodies);
   require_engine(material, lammps);
   const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});

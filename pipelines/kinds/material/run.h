@@ -1,6 +1,7 @@
 // Variants of materials, prepared and tested: what kinds that measure materials share.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +49,9 @@ std::string people_text(const MaterialSummary& summary);
 
 /// The interval behind the value, where it is known.
 std::string interval_text(double value, double low, double high);
+
+/// The least and the largest p/E above 0 that take part in the equation of state.
+std::array<double, 2> pressure_range(const std::vector<VariantResult>& results);
 
 /// Text of all distributions that the variants ask for: kept tasks of a run hold to it.
 std::string sizes_text(const MaterialScene& scene);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "calibrate/excess_pores_fit.h"
 #include "common/core/limits.h"
@@ -65,13 +66,7 @@ class MaterialLawFit {
                            ? fmt::format("power law r^-{:g}", whole.pieces().front().exponent)
                            : fmt::format("{}, cut at the split", to_string(whole.form()));
     card.samples = result(LawVariant::fines).variant->setup.samples;
-    card.pressure_low = kInfinity;
-    for (const VariantResult& r : results_)
-      for (const MacroCurve& c : r.curves)
-        for (const double p : state_curve(c, r.variant->name, 1.0).pressure) {
-          if (p > 0.0) card.pressure_low = std::min(card.pressure_low, p);
-          card.pressure_high = std::max(card.pressure_high, p);
-        }
+    std::tie(card.pressure_low, card.pressure_high) = std::tuple_cat(pressure_range(results_));
   }
 
   /// Of all samples of a mixture together.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
@@ -112,13 +113,7 @@ class RecipeRun {
     law.onset = forms.joined_onset(0, scene_.levels.size(), widen).onset;
     law.shape = shape_of(scene_, results_, states);
     law.start_pressure = scene_.material.variants.front().setup.spec.start_pressure;
-    law.pressure_low = kInfinity;
-    for (const VariantResult& r : results_)
-      for (const MacroCurve& c : r.curves)
-        for (const double p : state_curve(c, r.variant->name, 1.0).pressure) {
-          if (p > 0.0) law.pressure_low = std::min(law.pressure_low, p);
-          law.pressure_high = std::max(law.pressure_high, p);
-        }
+    std::tie(law.pressure_low, law.pressure_high) = std::tuple_cat(pressure_range(results_));
     out().lateral_ratio = lateral_ratio(law.shape);
     return law;
   }

@@ -334,14 +334,21 @@ void check_recipe(const Scene& scene, Findings& out) {
             fmt::format("the {} coarsest levels are checked with all their grains, {} a sample", recipe.checked_levels,
                         recipe.check.grains));
   const auto grains = static_cast<double>(recipe.material.variants.front().setup.spec.bodies);
+  double fewest = kFewGrains;
+  std::size_t few = 0;
   for (std::size_t k = 0; k + 1 < recipe.levels.size(); ++k) {
     const double share = recipe.mixtures.back();
     const double coarse = (1.0 - share) / mean_grain_volume(recipe.levels[k].pieces);
     const double fine = share / mean_grain_volume(recipe.levels[k + 1].pieces);
-    if (grains * coarse / (coarse + fine) < kFewGrains)
-      out.warn(fmt::format("levels {} and {}: a mixture has about {:.0f} coarse grains: its onset will scatter", k + 1,
-                           k + 2, grains * coarse / (coarse + fine)));
+    const double there = grains * coarse / (coarse + fine);
+    few += there < kFewGrains ? 1 : 0;
+    fewest = std::min(fewest, there);
   }
+  if (few > 0)
+    out.warn(
+        fmt::format("{} of {} pairs of levels: a mixture has fewer than {:g} coarse grains (the least about {:.0f}): "
+                    "its onset will scatter",
+                    few, recipe.levels.size() - 1, kFewGrains, fewest));
   if (recipe.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
   if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
   out.spend("packings", packing_seconds(recipe));
