@@ -82,7 +82,7 @@ Grading pair_of(const RecipeLevel& coarse, const RecipeLevel& fine, double fines
 }
 
 double cut_of_pair(const RecipeLevel& coarse, const RecipeLevel& fine) {
-  return 0.5 * (std::min(coarse.low, coarse.high) + fine.high) / coarse.high;
+  return 0.5 * (coarse.low + fine.high) / coarse.high;
 }
 
 Grading joined(const std::vector<RecipeLevel>& levels, std::size_t first, std::size_t count) {
@@ -93,13 +93,7 @@ Grading joined(const std::vector<RecipeLevel>& levels, std::size_t first, std::s
 }
 
 double mean_grain_volume(const std::vector<SizePiece>& pieces) {
-  double volume = 0.0;
-  double number = 0.0;
-  for (const SizePiece& p : pieces) {
-    volume += p.volume;
-    number += p.volume / (kSphereVolume * p.mean_power(3));
-  }
-  return volume / number;
+  return kSphereVolume * Grading::classes(pieces).mean_volume();
 }
 
 }  // namespace softgrain

@@ -160,7 +160,7 @@ class RecipeRun {
     summary_.law = fitted.summary;
     for (const std::string& problem : fitted.problems) head().remarks.push_back("no cell law: " + problem);
     ShellLevels shells;
-    if (scene_.shells.levels > 0) shells = run_shells_();
+    if (scene_.shells.levels > 0) shells = measure_shells();
     if (fitted.problems.empty()) {
       const CellCard card =
           among_all_fines(scene_, fitted.card, forms.joined_onset(1, scene_.levels.size() - 1, widen));
@@ -180,12 +180,13 @@ class RecipeRun {
     head().files["curves"] = run_.path("recipe.csv");
   }
 
-  ShellLevels run_shells_() {
+  ShellLevels measure_shells() {
     try {
       ShellLevels shells = run_shells(scene_, run_);
       out().shells = shells.levels;
       head().files["shell_law"] = run_.path("law_table.toml");
       for (const std::string& remark : shells.remarks) head().remarks.push_back(remark);
+      if (!shells.usable) head().status = RunStatus::not_usable;
       return shells;
     } catch (const NotUsable& e) {
       head().reject("no shell law: " + std::string(e.what()));
@@ -198,7 +199,7 @@ class RecipeRun {
   /// What a reader must not overlook.
   void judge(double end) {
     for (const RecipeCurve& c : out().curves)
-      if (!c.problem.empty()) head().remarks.push_back(c.name + ": " + c.problem);
+      if (!c.problem.empty()) head().reject(c.name + ": " + c.problem);
     if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;

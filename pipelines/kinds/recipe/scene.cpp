@@ -12,6 +12,7 @@
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"
+#include "pipelines/kinds/soft_particle/kept_states.h"
 
 namespace softgrain {
 
@@ -290,6 +291,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").mistake("test", "levels are measured in oedometric compression (and one of them in shear)");
     base.samples = root.count("samples", 1, 10000, base.samples);
+    base.kept_states = read_kept_states(root);
     out.constituents = read_constituents(root, base.spec.density);
     if (!out.constituents.empty())
       for (const char* key : {"sizes", "exponent", "radius_max", "ratio"})
@@ -353,7 +355,8 @@ void check_recipe(const Scene& scene, Findings& out) {
   if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
   out.spend("packings", packing_seconds(recipe));
   out.spend("friction of cells", friction_seconds(recipe.cells));
-  out.spend("shells", 10.0 * static_cast<double>(recipe.shells.levels * recipe.shells.packings));
+  if (recipe.shells.levels > 0)
+    out.spend("shells", 10.0 * static_cast<double>(recipe.shells.levels * recipe.shells.packings));
 }
 
 }  // namespace softgrain

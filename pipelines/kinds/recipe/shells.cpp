@@ -9,6 +9,7 @@
 #include "common/contact/crowd_prediction.h"
 #include "common/contact/crowd_table_file.h"
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/packing/grading_parts.h"
 #include "pipelines/kinds/hierarchy/level.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
@@ -28,7 +29,7 @@ std::vector<RecipeLevel> decades_of(const RecipeScene& scene) {
   std::vector<RecipeLevel> levels = levels_of(scene.sizes, cuts);
   // Of the last one, what is finer than a decade stays out: it would be too many grains for a shell.
   const double floor = levels.back().high / scene.shells.ratio;
-  const std::vector<SizePiece> kept = pieces_between(Grading::classes(levels.back().pieces), floor, 2.0 * kShell + 1.0);
+  const std::vector<SizePiece> kept = pieces_between(Grading::classes(levels.back().pieces), floor, kInfinity);
   if (levels.back().low < floor && !kept.empty()) {
     levels.back().pieces = kept;
     levels.back().low = floor;
@@ -100,8 +101,10 @@ ShellLevels run_shells(const RecipeScene& scene, const Run& run) {
     const CrowdLaw* law = level.entry.find(scene.shells.form);
     if (law == nullptr || law->status == LawStatus::no_threshold_crossing)
       throw NotUsable(fmt::format("shells, level {}: its law never crosses its threshold", k));
-    if (law->status != LawStatus::good)
+    if (law->status != LawStatus::good) {
+      out.usable = false;
       out.remarks.push_back(fmt::format("shells, level {}: {}: {}", k, to_string(law->status), law->reason));
+    }
     save_law_table({1, {level.entry}}, run.path(fmt::format("law_table_level_{}.toml", k)), run.provenance);
     out.levels.push_back({static_cast<std::int64_t>(k), 2.0 * decade.low, 2.0 * decade.high,
                           force_of_plane(level.entry, scene.shells.form), level.grains});

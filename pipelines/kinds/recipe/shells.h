@@ -14,6 +14,7 @@ struct ShellLevels {
   std::vector<ShellLevelSummary> levels;  ///< the finest first
   LawTable table;                         ///< of the coarsest
   std::vector<std::string> remarks;
+  bool usable = true;  ///< every level has a good law
 };
 
 /// Measures and fits all levels, each with its slice of the curve; writes law_table_level_K.toml, crowd_level_K.h5 and
