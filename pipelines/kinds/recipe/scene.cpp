@@ -291,7 +291,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     if (base.spec.test != MacroTest::oedometric)
       root.table("test").mistake("test", "levels are measured in oedometric compression (and one of them in shear)");
     base.samples = root.count("samples", 1, 10000, base.samples);
-    base.kept_states = read_kept_states(root);
+    base.kept_states = read_kept_states(root, 0);
     out.constituents = read_constituents(root, base.spec.density);
     if (!out.constituents.empty())
       for (const char* key : {"sizes", "exponent", "radius_max", "ratio"})
