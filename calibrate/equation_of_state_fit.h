@@ -17,6 +17,8 @@ struct StateEstimate {
   double high = 0.0;
 };
 
+inline Estimate estimate_of(const StateEstimate& e) { return {e.value, e.error, e.low, e.high}; }
+
 struct StateGroup {
   std::string name;
   double span = 1.0;
@@ -48,6 +50,13 @@ struct StateFit {
       0.0;  ///< of a scatter between groups as large as this if K is the same for all; below 0.05 it hardly is
   std::vector<std::vector<double>> replicates;  ///< ln K, n, phi_J of the groups
   int left_out = 0;                             ///< points without pressure
+
+  /// Null when it has none of this name.
+  [[nodiscard]] const StateGroup* find(const std::string& name) const {
+    for (const StateGroup& g : groups)
+      if (g.name == name) return &g;
+    return nullptr;
+  }
 };
 
 /// Least squares of phi at given p: near the onset pressures vanish and samples differ by their onsets above all, a

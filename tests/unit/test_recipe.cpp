@@ -87,7 +87,7 @@ TEST(RecipeScene, PacksNothingTwice) {
   ASSERT_EQ(scene.mixed.size(), 2U);
   EXPECT_EQ(scene.mixed[0], scene.mixed[1]);
   EXPECT_EQ(scene.material.variants.size(), 2U + scene.mixtures.size());
-  EXPECT_TRUE(scene.material.variants[scene.sheared].same_packings);
+  EXPECT_TRUE(scene.material.variants[kSheared].same_packings);
   EXPECT_FALSE(scene.checked);
 }
 

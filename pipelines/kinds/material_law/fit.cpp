@@ -16,8 +16,6 @@ namespace softgrain {
 
 namespace {
 
-Estimate estimate_of(const StateEstimate& e) { return {e.value, e.error, e.low, e.high}; }
-
 /// Mean over samples with Student's interval.
 Estimate mean_of_samples(const std::vector<double>& values) {
   const MeanError m = mean_error(values);
@@ -201,9 +199,7 @@ class MaterialLawFit {
 /// Whether the fit knows every variant that tells an onset.
 std::string missing_group(const std::vector<VariantResult>& results, const StateFit& states) {
   for (const VariantResult& r : results)
-    if (!r.variant->same_packings && std::none_of(states.groups.begin(), states.groups.end(),
-                                                  [&](const StateGroup& g) { return g.name == r.variant->name; }))
-      return r.variant->name;
+    if (!r.variant->same_packings && states.find(r.variant->name) == nullptr) return r.variant->name;
   return "";
 }
 

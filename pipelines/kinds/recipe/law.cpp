@@ -19,7 +19,7 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
       scene.material,
       pair_of(scene.levels[0], scene.levels[1], fines_over_coarse(scene, 0) / (1.0 + fines_over_coarse(scene, 0))),
       cut_of_pair(scene.levels[0], scene.levels[1]), scene.mixtures, scene.cells};
-  std::vector<VariantResult> some{results[scene.slice[1]], results[scene.sheared], results[scene.slice[0]]};
+  std::vector<VariantResult> some{results[scene.slice[1]], results[kSheared], results[scene.slice[0]]};
   for (const std::size_t v : scene.mixed[0]) some.push_back(results[v]);
   return fit_material_law(law, some, states, seed);
 }
@@ -47,10 +47,9 @@ struct OneShape {
 };
 
 OneShape shape_of_packing(const VariantResult& r, StateForm form, const StateFit& states) {
-  const auto group = std::find_if(states.groups.begin(), states.groups.end(),
-                                  [&](const StateGroup& g) { return g.name == r.variant->name; });
+  const StateGroup* group = states.find(r.variant->name);
   const MacroSpec& spec = r.variant->setup.spec;
-  if (group == states.groups.end()) return {};
+  if (group == nullptr) return {};
   const double k = states.modulus.value;
   const double n = states.exponent.value;
   const double start = state_phi(form, k, n, group->onset.value, spec.start_pressure);

@@ -8,7 +8,6 @@
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
 #include "common/core/statistics.h"
-#include "macrosim/constructed_packing.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_models/models.h"
@@ -39,17 +38,6 @@ MacroSetup setup_of(const RecipeScene& scene, const CellCard& card, double strai
   return setup;
 }
 
-std::vector<MacroPacking> packings_of(const MacroSetup& setup, const Run& run) {
-  std::vector<MacroPacking> out;
-  for (std::int64_t k = 0; k < setup.samples; ++k) {
-    const auto sample = static_cast<std::uint64_t>(k);
-    const std::string key = packing_key(setup.spec, run.seed, sample);
-    out.push_back(kept_packing(key, ResultCache::name("recipe_packing", key), run,
-                               [&] { return make_packing(setup.spec, run.seed, sample); }));
-  }
-  return out;
-}
-
 /// One curve of all samples; what cannot be run is said in it.
 RecipeCurve pressed(const std::string& name, std::vector<MacroCurve>& kept,
                     const std::function<std::vector<MacroCurve>()>& run) {
@@ -69,7 +57,7 @@ RecipeCurve cells_curve(const RecipeScene& scene, const CellCard& card, double s
                         const std::string& task, const Run& run, std::vector<MacroCurve>& kept) {
   return pressed(name, kept, [&] {
     const MacroSetup setup = setup_of(scene, card, strain);
-    const std::vector<MacroPacking> packings = packings_of(setup, run);
+    const std::vector<MacroPacking> packings = prepare_packings(setup, run, task + ".h5");
     return run_engines({setup, packings, {}, run.seed, task}, {}, run, "");
   });
 }
@@ -122,7 +110,7 @@ RecipeCurve press_with_shells(const RecipeScene& scene, const CellCard& card, co
   constexpr double kHigh = 0.6;
   return pressed("shell law", kept, [&] {
     MacroSetup setup = setup_of(scene, card, strain);
-    const std::vector<MacroPacking> cells = packings_of(setup, run);
+    const std::vector<MacroPacking> cells = prepare_packings(setup, run, "cells.h5");
     setup.spec.cells.reset();
     setup.spec.increments_per_step = scene.material.variants.front().setup.spec.increments_per_step;
     LawSources sources;

@@ -59,13 +59,12 @@ struct LevelForms::Parts {
     std::vector<double> error(variants.size(), 1.0);
     for (std::size_t v = 0; v < variants.size(); ++v) {
       if (variants[v].same_packings) continue;
-      const auto group = std::find_if(fit.groups.begin(), fit.groups.end(),
-                                      [&](const StateGroup& g) { return g.name == variants[v].name; });
-      if (group == fit.groups.end()) throw NotUsable(variants[v].name + " bears at too few points to tell its onset");
+      const StateGroup* group = fit.find(variants[v].name);
+      if (group == nullptr) throw NotUsable(variants[v].name + " bears at too few points to tell its onset");
       estimate[v] = group->onset.value;
-      measured[v] = {group->onset.value, group->onset.error, group->onset.low, group->onset.high};
+      measured[v] = estimate_of(group->onset);
       error[v] = std::isfinite(group->onset.error) && group->onset.error > 0.0 ? group->onset.error : 1.0;
-      const auto place = 2 + static_cast<std::size_t>(group - fit.groups.begin());
+      const auto place = 2 + static_cast<std::size_t>(group - fit.groups.data());
       for (std::size_t r = 0; r < replicates.size(); ++r) replicates[r][v] = fit.replicates[r][place];
       if (scene.checked == v) continue;
       rods.emplace_back(v, RodCurve(*variants[v].setup.spec.solid_sizes));

@@ -65,14 +65,13 @@ class RecipeRun {
   double check(LevelForms& forms, const StateFit& states) {
     if (!scene_.checked) return 0.0;
     const MaterialVariant& v = scene_.material.variants[*scene_.checked];
-    const auto group =
-        std::find_if(states.groups.begin(), states.groups.end(), [&](const StateGroup& g) { return g.name == v.name; });
-    if (group == states.groups.end()) return 0.0;
+    const StateGroup* group = states.find(v.name);
+    if (group == nullptr) return 0.0;
     RecipeCheckSummary c;
     c.levels = static_cast<std::int64_t>(scene_.checked_levels);
     c.grains = v.setup.spec.bodies;
     c.span = v.setup.spec.solid_polydispersity;
-    c.measured = {group->onset.value, group->onset.error, group->onset.low, group->onset.high};
+    c.measured = estimate_of(group->onset);
     c.predicted = forms.joined_onset(0, scene_.checked_levels);
     c.outside = std::max({0.0, c.predicted.onset.low - c.measured.value, c.measured.value - c.predicted.onset.high});
     if (c.outside > 0.0)
@@ -108,8 +107,8 @@ class RecipeRun {
   WholeLaw whole_law(const StateFit& states, double widen, const LevelForms& forms) {
     WholeLaw law;
     law.form = scene_.material.equation.form;
-    law.modulus = {states.modulus.value, states.modulus.error, states.modulus.low, states.modulus.high};
-    law.exponent = {states.exponent.value, states.exponent.error, states.exponent.low, states.exponent.high};
+    law.modulus = estimate_of(states.modulus);
+    law.exponent = estimate_of(states.exponent);
     law.onset = forms.joined_onset(0, scene_.levels.size(), widen).onset;
     law.shape = shape_of(scene_, results_, states);
     law.start_pressure = scene_.material.variants.front().setup.spec.start_pressure;

@@ -182,7 +182,6 @@ void make_variants(const MacroSetup& base, double shear_strain, RecipeScene& out
   sheared.setup.spec.test = MacroTest::shear;
   sheared.setup.spec.strain_end = shear_strain;
   variants.push_back(std::move(sheared));
-  out.sheared = 1;
   for (std::size_t k = 0; k < levels.size(); ++k)
     out.slice.push_back(place_of(variants, variant_of(fmt::format("level-{}", k + 1), still, slice_of(levels[k]))));
   for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
@@ -282,7 +281,7 @@ double fines_over_coarse(const RecipeScene& scene, std::size_t level) {
 RecipeScene read_recipe_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice("kind", {"recipe"});
-    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, 0, {}, 0, {}, {}, {}, 100};
+    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, 100};
     out.material.title = root.text("title", "");
     out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();

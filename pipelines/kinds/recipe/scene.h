@@ -42,6 +42,9 @@ struct RecipeShells {
   Crowd form = Crowd::bag;
 };
 
+/// Place among the variants of the second level, sheared at constant volume: behind it, whose packings it shares.
+inline constexpr std::size_t kSheared = 1;
+
 /// What a level measured together with the next finer one, place by place in RecipeScene::mixtures.
 using MixtureVariants = std::vector<std::size_t>;
 
@@ -53,7 +56,6 @@ struct RecipeScene {
   std::vector<double> mixtures;        ///< shares of the finer level by solid volume, ascending
   std::vector<std::size_t> slice;      ///< of every level: its variant in `material`
   std::vector<MixtureVariants> mixed;  ///< of every level but the finest
-  std::size_t sheared = 0;             ///< variant: the second level, sheared at constant volume
   std::optional<std::size_t> checked;  ///< variant of the check
   std::size_t checked_levels = 0;      ///< that it holds
   RecipeCheck check;
