@@ -91,10 +91,9 @@ class ExcessProblem {
 
  private:
   static std::size_t place(const StateFit& states, const std::string& name) {
-    const auto at =
-        std::find_if(states.groups.begin(), states.groups.end(), [&](const StateGroup& g) { return g.name == name; });
-    if (at == states.groups.end()) throw BadInput("excess pores: nothing was fitted to \"" + name + "\"");
-    return 2 + static_cast<std::size_t>(at - states.groups.begin());
+    const StateGroup* at = states.find(name);
+    if (at == nullptr) throw BadInput("excess pores: nothing was fitted to \"" + name + "\"");
+    return 2 + static_cast<std::size_t>(at - states.groups.data());
   }
 
   const MixtureGroups& groups_;

@@ -172,8 +172,7 @@ void require_input(const StateFit& fit, double span, const OnsetOptions& options
   if (!(span >= 1.0) || !std::isfinite(span))
     throw BadInput(fmt::format("onsets: span {}; it must be 1 or more", span));
   for (const auto& name : options.groups)
-    if (std::none_of(fit.groups.begin(), fit.groups.end(), [&](const StateGroup& g) { return g.name == name; }))
-      throw BadInput(fmt::format("onsets: no group {}", name));
+    if (fit.find(name) == nullptr) throw BadInput(fmt::format("onsets: no group {}", name));
 }
 
 }  // namespace

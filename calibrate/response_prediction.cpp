@@ -40,8 +40,7 @@ void require_curves(const StateFit& fit, const std::vector<ResponseCurve>& curve
   if (curves.empty()) throw BadInput("responses: no curves");
   const std::vector<double>& volume = curves.front().volume;
   for (const ResponseCurve& c : curves) {
-    if (std::none_of(fit.groups.begin(), fit.groups.end(), [&](const StateGroup& g) { return g.name == c.group; }))
-      throw BadInput("responses: no group " + c.group);
+    if (fit.find(c.group) == nullptr) throw BadInput("responses: no group " + c.group);
     bool same = c.volume.size() == volume.size() && c.pressure.size() == volume.size() &&
                 c.ratio.size() == volume.size() && c.deviator.size() == volume.size();
     for (std::size_t k = 0; same && k < volume.size(); ++k) same = std::abs(c.volume[k] / volume[k] - 1.0) < 1e-4;

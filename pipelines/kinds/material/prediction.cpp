@@ -54,7 +54,7 @@ struct Group {
   [[nodiscard]] std::vector<ResponseCurve> responses(const StateFit& fit) const {
     std::vector<ResponseCurve> out;
     for (const PredictionInput* in : inputs)
-      if (std::any_of(fit.groups.begin(), fit.groups.end(), [&](const auto& g) { return g.name == in->material; }))
+      if (fit.find(in->material) != nullptr)
         for (const MacroCurve& c : in->curves)
           if (predictable(c)) out.push_back(response_of(c, in->material));
     return out;
