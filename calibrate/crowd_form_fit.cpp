@@ -342,11 +342,21 @@ void FormRefits::take(const FormFit& fit, int draw) {
   draws.push_back(draw);
 }
 
+namespace {
+
+/// Configurations that a form is fitted to.
+std::int64_t fitted_to(const std::vector<CrowdStates>& states, Crowd form) {
+  return std::count_if(states.begin(), states.end(), [form](const CrowdStates& c) { return serves(c, form); });
+}
+
+}  // namespace
+
 FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options) {
   constexpr int kMostPerReplicate = 2;
   FormRefits out;
   out.columns.resize(full.parameters().size());
   const auto wanted = static_cast<std::size_t>(options.replicates);
+  const std::int64_t configurations = fitted_to(average_states(data), form);
   for (int tried = 0; out.draws.size() < wanted && tried < kMostPerReplicate * options.replicates;) {
     const int more =
         std::min(static_cast<int>(wanted - out.draws.size()), kMostPerReplicate * options.replicates - tried);
@@ -354,6 +364,8 @@ FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& 
     parallel_tasks(more, [&](std::int64_t k) {
       const auto weights = packing_weights(data.packings.size(), options.seed, tried + static_cast<int>(k));
       const auto states = average_states(data, weights);
+      // A configuration with few packings may have none in a draw: that is no fit of the same law.
+      if (fitted_to(states, form) < configurations) return;
       fits[static_cast<std::size_t>(k)] = all_together(states, form)
                                               ? refitted(full, states, options.discrepancy)
                                               : fit_form(form, states, options.discrepancy, false, full.model);

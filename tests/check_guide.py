@@ -19,6 +19,7 @@ GUIDE = "pipelines/guide"
 PAGES = {
     "scene_pipeline.md": (
         ["pipelines/kinds/soft_particle/scene.cpp", "pipelines/kinds/pipeline/scene.cpp", "pipelines/kinds/macro/scene.cpp",
+         "pipelines/kinds/law_table/crowd_law_fit.cpp",
          "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
          "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
          "pipelines/kinds/soft_particle/kept_states.cpp"],

@@ -37,11 +37,13 @@ struct ResultFile {
   void (*visit)(const std::string& path, SnapshotChoice choice, const VisitSnapshot& visit) = nullptr;
 };
 
-/// Places of the sections in a report.
+/// Places of the sections in a report: what came out before what it was made from.
 enum class Place {
   runs,
   own_data,
   search,
+  macro,
+  macro_scenes,
   crowds,
   levels,
   normal,
@@ -49,8 +51,6 @@ enum class Place {
   stiffness,
   laws,
   relaxations,
-  macro,
-  macro_scenes,
   material,
   packing,
   radii,

@@ -206,6 +206,25 @@ bool all_carry_stress(const std::vector<MacroCurve>& curves) {
   return std::none_of(curves.begin(), curves.end(), lacks_stress);
 }
 
+std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of) {
+  std::vector<std::string> out;
+  std::vector<std::string> seen;
+  for (const MacroCurve& c : curves) {
+    if (!c.usable) {
+      out.push_back(fmt::format("{}'{}' of sample {} is not usable: {}", of, c.engine, c.sample, c.note));
+      continue;
+    }
+    if (c.note.empty() || std::find(seen.begin(), seen.end(), c.engine) != seen.end()) continue;
+    seen.push_back(c.engine);
+    const std::vector<MacroCurve> all = curves_of(curves, c.engine);
+    const auto noted =
+        std::count_if(all.begin(), all.end(), [](const MacroCurve& o) { return o.usable && !o.note.empty(); });
+    const std::string more = noted > 1 ? fmt::format(" (and of {} more)", noted - 1) : "";
+    out.push_back(fmt::format("{}'{}' of sample {}{}: {}", of, c.engine, c.sample, more, c.note));
+  }
+  return out;
+}
+
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
   std::vector<std::string> out;
   for (const MacroCurve& c : curves)
@@ -214,11 +233,7 @@ std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
           fmt::format("macro run '{}' of sample {} carries no stress at its end: what is relative to it is "
                       "undefined",
                       c.engine, c.sample));
-  for (const MacroCurve& c : curves)
-    if (!c.usable)
-      out.push_back(fmt::format("macro run '{}' of sample {} is not usable: {}", c.engine, c.sample, c.note));
-    else if (!c.note.empty())
-      out.push_back(fmt::format("macro run '{}' of sample {}: {}", c.engine, c.sample, c.note));
+  for (std::string& note : run_notes(curves, "macro run ")) out.push_back(std::move(note));
   if (!use_pair_law(curves)) return out;
   out.emplace_back(
       "a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains "

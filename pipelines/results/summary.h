@@ -334,6 +334,10 @@ std::vector<std::string> measurement_remarks(const Measurements& data);
 /// Whether every run with a law, and every shelled twin, ends under stress: else nothing can be said relative to it.
 bool all_carry_stress(const std::vector<MacroCurve>& curves);
 
+/// What runs say of themselves, after `of` (with its blank or comma): each that cannot be used, one line for all others
+/// of an engine.
+std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of);
+
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves);
 
 }  // namespace softgrain

@@ -44,7 +44,15 @@ std::vector<SmallForm> small_forms() {
                                          "measure.soft_solid.angles_deg=[-1.0,0.05]"};
   const std::vector<std::string> soft_rotated{"measure.soft_soft.tangential_deltas=[0.3]",
                                               "measure.soft_soft.angles_deg=[0.05]"};
-  const std::vector<std::string> table_law{"law.range=clamp", "macro.bands=8"};
+  const std::vector<std::string> table_law{
+      "macro.bands=8",
+      "crowd.packings_min=4",
+      "crowd.packings_max=4",
+      "crowd.increment=0.05",
+      "crowd.settle_time=5",
+      "crowd.tolerance=0.1",
+      "calibrate.crowd.replicates=10",
+      R"(configuration=[{arrangement="one",partner="plane",overlap=0.45},{arrangement="cube",partner="plane",overlap=0.3},{arrangement="one",partner="solid",ratio=1.0,overlap=0.45},{arrangement="one",partner="soft",ratio=1.0,overlap=0.55}])"};
   const std::vector<std::string> quick_rest{"measure.least_work.settle_time=5", "measure.least_work.path_settle_time=5",
                                             "measure.least_work.settle_time_rotated=2"};
   // Deep enough for laws, so that a macro run follows.

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/crowd_table_file.h"
+#include "common/data/crowd_replicates.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/markup_check.h"
@@ -388,6 +390,41 @@ TEST_F(LawTableUse, APipelineShowsTheLawOfATableBesideItsOwn) {
   EXPECT_FALSE(summary("alone").contains("pair"));
   for (const MacroCurve& c : both)
     EXPECT_EQ(c.law.form, c.engine == "pair" ? Crowd::pair : law_entry(0.70).best) << c.engine;
+}
+
+/// The same with a table that the run measures itself: it is the one that a scene of kind law-table makes of the same
+/// tables, and what the pair law does is what it does without it.
+TEST_F(LawTableUse, APipelineMeasuresASmallTableOfItsOwn) {
+  const std::string crowd =
+      "[crowd]\nrelaxation = \"damped\"\nincrement = 0.05\npackings_min = 4\npackings_max = 4\npoints = 4\n"
+      "[[configuration]]\narrangement = \"one\"\npartner = \"plane\"\noverlap = 0.45\n"
+      "[[configuration]]\narrangement = \"cube\"\npartner = \"plane\"\noverlap = 0.3\n"
+      "[[configuration]]\narrangement = \"one\"\npartner = \"solid\"\noverlap = 0.45\n"
+      "[[configuration]]\narrangement = \"one\"\npartner = \"soft\"\noverlap = 0.55\n";
+  const std::string text = std::string(kTinyPipeline) + "samples = 2\nresolved = false\n";
+  write_text_atomic(file("alone.toml"), text);
+  write_text_atomic(file("both.toml"), text + crowd + "[calibrate.crowd]\nbest = \"bag\"\nreplicates = 10\n");
+  std::string table = text.substr(0, text.find("[measure]")) + crowd + "[calibrate]\nbest = \"bag\"\nreplicates = 10\n";
+  table.replace(table.find("\"pipeline\""), 10, "\"law-table\"");
+  table.erase(table.find("count = 4\n"), 10);
+  write_text_atomic(file("table.toml"), table);
+  for (const std::string name : {"alone", "both"})
+    expect(run_the_program("run '" + file(name + ".toml") + "' --quiet --out '" + file(name) + "'"), 3, {});
+  expect(run_the_program("run '" + file("table.toml") + "' --quiet --out '" + file("table") + "'"), 0, {});
+  const softgrain::LawTable own = load_law_table(file("both") + "/law_table.toml");
+  const softgrain::LawTable apart = load_law_table(file("table") + "/law_table.toml");
+  ASSERT_EQ(own.entries.size(), 1U);
+  EXPECT_EQ(crowd_numbers(*own.entries[0].find(Crowd::bag)), crowd_numbers(*apart.entries[0].find(Crowd::bag)));
+  std::map<std::string, std::vector<std::vector<double>>> axial;
+  for (const MacroCurve& c : load_macro(file("both") + "/macro.h5")) axial[c.engine].push_back(c.stress_axial);
+  std::vector<std::vector<double>> alone;
+  for (const MacroCurve& c : load_macro(file("alone") + "/macro.h5")) alone.push_back(c.stress_axial);
+  EXPECT_EQ(axial["pair"], alone);
+  ASSERT_EQ(axial["law"].size(), 2U);
+  EXPECT_NE(axial["law"], alone);
+  EXPECT_TRUE(summary("both").contains("entries"));
+  EXPECT_EQ(summary("both").at("crowd").at("configurations").size(), 4U);
+  EXPECT_EQ(summary("both").at("pair").at("macro").at("law").at("form"), "pair");
 }
 
 }  // namespace

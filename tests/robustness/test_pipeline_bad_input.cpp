@@ -130,6 +130,19 @@ TEST_F(PipelineBadInput, Measurements) {
          {"scene.toml:25: relaxation = \"damped\"", "must differ"});
 }
 
+TEST_F(PipelineBadInput, CrowdsAreMeasuredForAMacroSceneAndInOnePlaceOnly) {
+  const std::string one = "[[configuration]]\narrangement = \"one\"\npartner = \"plane\"\noverlap = 0.4\n";
+  const std::string table = SOFTGRAIN_SOURCE_DIR "/results/law_table/law_table.toml";
+  expect("[macro]", one + "[law]\ntable = \"" + table + "\"\n[macro]",
+         {"scene.toml:31", "law: ", "measures a law of crowds already"});
+  expect("[macro]\nbodies = 8\nsteps = 4\nstrain = 0.3\n", one, {"configuration: ", "goes with [macro]", "law-table"});
+  expect("[macro]", "[crowd]\npoints = 4\n[macro]", {"scene.toml:27", "crowd: ", "goes with [[configuration]]"});
+  expect("[macro]", one + "[crowd]\npackings_min = 2\npackings_max = 3\n[macro]", {"packings_max", "min_packings"});
+  expect("[macro]", one + "[calibrate.crowd]\nbest = \"pair\"\n[macro]", {"scene.toml:32: best", "directional"});
+  expect("[macro]", "[[configuration]]\narrangement = \"cube\"\npartner = \"plane\"\noverlap = 0.3\n[macro]",
+         {"configuration", "one plane alone"});
+}
+
 TEST_F(PipelineBadInput, FitAndMacro) {
   expect("min_packings = 2", "min_packings = 1", {"scene.toml:25: min_packings = 1", "from 2"});
   expect("min_packings = 2", "delta_low = 0.3\ndelta_high = 0.2", {"scene.toml:26: delta_high = 0.2", "above 0.3"});

@@ -133,11 +133,10 @@ double planned_seconds(const CrowdSetup& setup, double pass_seconds) {
 
 }  // namespace
 
-MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
+void check_configurations(const CrowdSetup& setup, Findings& out) {
   const auto configurations = static_cast<std::int64_t>(setup.configurations.size());
   std::int64_t increments = 0;
   std::int64_t stages = 0;
-  double softs = 0.0;
   std::int64_t least = 0;
   std::int64_t most = 0;
   for (const CrowdConfiguration& c : setup.configurations) {
@@ -145,7 +144,6 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
     most += setup.orientations * setup.most_packings(c);
     increments += increments_of(c, setup.options);
     stages += static_cast<std::int64_t>(c.stages.size());
-    softs = std::max(softs, softs_of(c));
   }
   out.facts["configurations"] = configurations;
   out.facts["runs_min"] = least;
@@ -160,12 +158,18 @@ MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
                            setup.packings_min, setup.packings_max, own, least, most);
   out.lines +=
       fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
+  add_overlaps(setup, out);
+  warn_of_configurations(setup, out);
+}
+
+MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out) {
+  check_configurations(setup, out);
   const MeasureTrial trial = try_one(setup, out);
+  double softs = 0.0;
+  for (const CrowdConfiguration& c : setup.configurations) softs = std::max(softs, softs_of(c));
   const double bodies = static_cast<double>(trial.packing.radius.size()) * (1.0 + softs);
   const double memory = estimated_memory(static_cast<std::int64_t>(bodies), kPairsPerGrain * bodies);
   out.add("bytes", memory, "memory: about " + bytes_text(memory) + " for the largest measurement under way");
-  add_overlaps(setup, out);
-  warn_of_configurations(setup, out);
   warn_of_soft_particle(setup.spec, out);
   return trial;
 }

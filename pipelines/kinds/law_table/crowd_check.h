@@ -12,6 +12,9 @@ namespace softgrain {
 /// Counts, overlaps, memory, and what the table will lack; returns the trial of its first packing.
 MeasureTrial check_crowd(const CrowdSetup& setup, Findings& out);
 
+/// The same without the packing and its trial: counts, overlaps, and what the table will lack.
+void check_configurations(const CrowdSetup& setup, Findings& out);
+
 /// Core seconds of a configuration with one packing.
 double seconds_per_packing(const CrowdConfiguration& configuration, const CrowdSetup& setup, double pass_seconds);
 

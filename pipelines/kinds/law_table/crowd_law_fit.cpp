@@ -93,19 +93,32 @@ CrowdFitOptions read_crowd_fit(const SceneTable& t) {
   return o;
 }
 
+void require_law_of_crowds(const SceneTable& root, const CrowdSetup& setup, const CrowdFitOptions& fit) {
+  if (setup.packings_max < fit.min_packings)
+    root.table_or_empty("crowd").mistake("packings_max", "below calibrate.min_packings: there would be no fit");
+  const auto& all = setup.configurations;
+  if (std::none_of(all.begin(), all.end(), [](const CrowdConfiguration& c) {
+        return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;
+      }))
+    root.mistake("configuration", "a law table needs one plane alone (arrangement \"one\", partner \"plane\")");
+}
+
 void add_entry(CrowdLawFit& fit, const CrowdMeasurements& data, const CrowdFitOptions& options, double target) {
   const LawTableEntry entry = fit_crowd_laws(data, options);
   fit.usable = fit.usable && all_converged(data);
   for (const std::string& r : crowd_remarks(data, target))
     fit.remarks.push_back(fmt::format("solid fraction {:.3f}: {}", entry.solid_fraction, r));
-  for (const CrowdLaw& law : entry.laws) {
+  std::string failed;
+  for (const CrowdLaw& law : entry.laws)
     if (law.replicates_failed > 0)
-      fit.remarks.push_back(
-          fmt::format("solid fraction {:.3f}, {} law: {} of {} refits to drawn packings did not come to a minimum and "
-                      "are left out of "
-                      "the intervals",
-                      entry.solid_fraction, to_string(law.form), law.replicates_failed,
-                      law.replicates_failed + static_cast<int>(law.replicates.size())));
+      failed += fmt::format("{}{} law {} of {}", failed.empty() ? "" : ", ", to_string(law.form), law.replicates_failed,
+                            law.replicates_failed + static_cast<int>(law.replicates.size()));
+  if (!failed.empty())
+    fit.remarks.push_back(
+        fmt::format("solid fraction {:.3f}: refits to drawn packings that did not come to a minimum, left out of the "
+                    "intervals: {}",
+                    entry.solid_fraction, failed));
+  for (const CrowdLaw& law : entry.laws) {
     if (law.status == LawStatus::good) continue;
     fit.usable = fit.usable && law.form != entry.best;
     fit.remarks.push_back(to_string(law.form) + " law: " + to_string(law.status) + ": " + law.reason);

@@ -50,13 +50,7 @@ LawTableSetup read_law_table(const Scene& scene) {
       if (calibrate.sound() && out.variants.back().packings.value_or(out.crowd.packings_max) < out.fit.min_packings)
         t.mistake("packings", "fewer than calibrate.min_packings: there would be no fit");
     }
-    if (calibrate.sound() && out.crowd.packings_max < out.fit.min_packings)
-      crowd.mistake("packings_max", "below calibrate.min_packings: there would be no fit");
-    const auto& all = out.crowd.configurations;
-    if (std::none_of(all.begin(), all.end(), [](const CrowdConfiguration& c) {
-          return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;
-        }))
-      root.mistake("configuration", "a law table needs one plane alone (arrangement \"one\", partner \"plane\")");
+    if (calibrate.sound()) require_law_of_crowds(root, out.crowd, out.fit);
     return out;
   });
 }

@@ -42,24 +42,9 @@ void remark_spread(SceneResult& r) {
                       r.name, s.shelled.axial_end.mean));
 }
 
-/// What runs say of themselves: each that cannot be used, one line for all others of an engine.
 void remark_notes(const std::vector<MacroCurve>& curves, SceneResult& r) {
-  std::vector<std::string> seen;
-  for (const MacroCurve& c : curves) {
-    r.usable = r.usable && c.usable;
-    if (c.note.empty()) continue;
-    if (!c.usable) {
-      r.remarks.push_back(fmt::format("{}, {}, sample {} (not usable): {}", r.name, c.engine, c.sample, c.note));
-      continue;
-    }
-    if (std::find(seen.begin(), seen.end(), c.engine) != seen.end()) continue;
-    seen.push_back(c.engine);
-    const std::vector<MacroCurve> all = curves_of(curves, c.engine);
-    const auto noted = std::count_if(all.begin(), all.end(), [](const MacroCurve& o) { return !o.note.empty(); });
-    r.remarks.push_back(all.size() == 1 ? fmt::format("{}, {}, sample {}: {}", r.name, c.engine, c.sample, c.note)
-                                        : fmt::format("{}, {}, {} of {} samples; sample {}: {}", r.name, c.engine,
-                                                      noted, all.size(), c.sample, c.note));
-  }
+  for (const MacroCurve& c : curves) r.usable = r.usable && c.usable;
+  for (std::string& note : run_notes(curves, r.name + ", ")) r.remarks.push_back(std::move(note));
 }
 
 SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,

@@ -6,7 +6,11 @@
 #include <optional>
 
 #include "calibrate/threshold_fit.h"
+#include "common/contact/crowd_table_file.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/kinds/law_table/crowd_check.h"
+#include "pipelines/kinds/law_table/crowd_stage.h"
+#include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/first_point.h"
@@ -35,6 +39,8 @@ std::string law_line(const PairLaw& law) {
 struct PipelineResult {
   MeasureResult measured;
   LawCard card;
+  CrowdMeasurements crowd;  ///< with [[configuration]]
+  CrowdLawFit crowd_fit;
   std::vector<MacroCurve> curves;
   std::vector<BandRecord> bands;
   std::optional<Comparison> comparison;       ///< of engine "law" with its twin
@@ -57,15 +63,54 @@ void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   }
 }
 
+/// A small law table of this run's own, on the packings that the pair law is measured on.
+void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
+  if (!setup.measured_table) return;
+  const MeasuredTable& wanted = *setup.measured_table;
+  CrowdFitOptions options = wanted.fit;
+  options.seed = run.seed;
+  try {
+    run.context.guard([&] { result.crowd = run_crowd_stage(wanted.crowd, run, result.crowd_fit.remarks, nullptr); });
+    add_entry(result.crowd_fit, result.crowd, options, wanted.crowd.target);
+  } catch (const NotUsable& e) {  // the pair law goes on alone
+    result.remarks.push_back(fmt::format("no law of crowds: {}", e.what()));
+    result.usable = false;
+    return;
+  }
+  result.crowd_fit.table.entries.front().main = true;
+  save_law_table(result.crowd_fit.table, run.path("law_table.toml"), run.provenance);
+  run.context.say(entries_text(result.crowd_fit.table));
+  result.remarks.insert(result.remarks.end(), result.crowd_fit.remarks.begin(), result.crowd_fit.remarks.end());
+  result.usable = result.usable && result.crowd_fit.usable;
+}
+
+bool has_crowd_law(const PipelineSetup& setup, const PipelineResult& result) {
+  return setup.table || !result.crowd_fit.table.entries.empty();
+}
+
+/// Where the law called "law" comes from.
+LawSources sources_of(const PipelineSetup& setup, const Run& run, const PipelineResult& result) {
+  if (setup.table) return *setup.table;
+  LawSources out;
+  if (has_crowd_law(setup, result)) {
+    out.table = result.crowd_fit.table;
+    out.table_file = run.path("law_table.toml");
+    out.forms = {result.crowd_fit.table.entries.front().best};
+  } else {
+    out.card = result.card;
+  }
+  return out;
+}
+
 /// What was measured and fitted is kept and said even when no macro run can follow: false, with a remark.
 bool run_macro_samples(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   std::string why;
   try {
     const double fraction = mean_solid_fraction(result.measured.packings);
-    LawSources sources = setup.crowd.value_or(LawSources{});
-    if (!setup.crowd) sources.card = result.card;
-    std::vector<NamedLaws> laws{pair_law_of(result.card, setup.macro->spec, setup.crowd ? "pair" : "law")};
-    if (setup.crowd) laws.insert(laws.begin(), scene_law(sources, setup.macro->spec, fraction, "law"));
+    const LawSources sources = sources_of(setup, run, result);
+    const bool crowd = has_crowd_law(setup, result);
+    std::vector<NamedLaws> laws{pair_law_of(result.card, setup.macro->spec, crowd ? "pair" : "law")};
+    if (crowd) laws.insert(laws.begin(), scene_law(sources, setup.macro->spec, fraction, "law"));
     result.curves = run_macro_stage(*setup.macro, laws, result.measured.packings, run,
                                     draws_for(*setup.macro, sources, {laws.front()}, fraction), result.bands);
     return true;
@@ -103,7 +148,7 @@ void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& resul
   result.usable = result.usable && all_carry_stress(result.curves);
   if (!has_twin(*setup.macro, Twin::shelled)) return;
   result.comparison = with_twin("law", result);
-  if (setup.crowd) result.pair_comparison = with_twin("pair", result);
+  if (has_crowd_law(setup, result)) result.pair_comparison = with_twin("pair", result);
 }
 
 struct PipelineSummary {
@@ -131,6 +176,8 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
+  if (setup.measured_table)
+    for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5"}) s.head.files[file] = run.path(file);
   s.bands = r.bands;
   s.band_ends = banded_ends(r.curves);
   s.head.sizes = summaries_of(shell_sizes(r.measured.data.spec, r.measured.data.packings));
@@ -145,7 +192,7 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.macro.resolved = summary_of(r.curves, "shelled");
   if (setup.macro && has_twin(*setup.macro, Twin::free)) s.macro.free = summary_of(r.curves, "free");
   if (r.comparison) s.macro.comparison = summary_of(*r.comparison);
-  if (setup.crowd) {
+  if (has_crowd_law(setup, r)) {
     s.pair.emplace();
     s.pair->macro = summary_of(r.curves, "pair");
     if (r.pair_comparison) s.pair->comparison = summary_of(*r.pair_comparison);
@@ -155,15 +202,18 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
 
 std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : "(undefined)"; }
 
-std::string people_text(const PipelineResult& r) {
+std::string people_text(const PipelineSetup& setup, const PipelineResult& r) {
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
+  if (!r.crowd_fit.table.entries.empty()) text += entries_text(r.crowd_fit.table);
   const bool crowd = r.pair_comparison.has_value();
   if (r.comparison)
     text += fmt::format(
         "macro{} against its resolved twin: stress differs by {} %, {} times fewer contact evaluations, {} times less "
         "time\n",
-        crowd ? ", law of all neighbours at once (from the table)," : "",
+        !crowd                 ? ""
+        : setup.measured_table ? ", law of all neighbours at once (measured above),"
+                               : ", law of all neighbours at once (from the table),",
         rounded(100.0 * r.comparison->axial_difference.mean), rounded(r.comparison->speedup_contact_evaluations),
         rounded(r.comparison->speedup_seconds));
   if (crowd)
@@ -176,29 +226,46 @@ std::string people_text(const PipelineResult& r) {
 ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   const PipelineSetup setup = read_pipeline_setup(scene);
   const Run run(scene, options, "run", setup.measure.seed,
-                {.files = setup.crowd ? setup.crowd->files : std::vector<std::string>{},
+                {.files = setup.table ? setup.table->files : std::vector<std::string>{},
                  .text = sizes_text(setup.measure.spec) + (setup.macro ? sizes_text(setup.macro->spec) : "") +
-                         (setup.crowd ? setup.crowd->text : "")});
+                         (setup.table ? setup.table->text : "")});
   PipelineResult result;
   run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
   for (const std::string& r : result.measured.left_out) result.remarks.push_back(r);
   result.usable = result.measured.enough_left;
   fit(setup, run, result);
+  measure_table(setup, run, result);
   run_macro(setup, run, result);
-  return run.finish(json_of(summarise(setup, result, run)),
-                    people_text(result) + bands_text(result.bands, banded_ends(result.curves)));
+  nlohmann::json summary = json_of(summarise(setup, result, run));
+  if (!result.crowd_fit.table.entries.empty()) {
+    summary["crowd"] = crowd_json(result.crowd, setup.measured_table->crowd.target);
+    summary["entries"] = entries_json(result.crowd_fit.table);
+  }
+  return run.finish(summary, people_text(setup, result) + bands_text(result.bands, banded_ends(result.curves)));
 }
 
 void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
   const PipelineSetup setup = read_pipeline_setup(scene);
   const MeasureTrial trial = check_measurements(setup.measure, out);
+  if (setup.measured_table) {
+    check_configurations(setup.measured_table->crowd, out);
+    spend_on_packings(setup.measured_table->crowd, trial, 1.0, out);
+    spend_on_crowd(setup.measured_table->crowd, trial, 1.0, "measuring with many neighbours", out);
+  }
   if (!setup.macro) return;
   add_sizes(out, drawn_sizes(*setup.macro, setup.measure.seed));
   check_macro(*setup.macro, content_of(trial), nullptr, out);
 }
 
 NextSteps next_of(const report::RunData& run) {
+  if (run.law_table)
+    return {
+        "Take the law of all neighbours in a scene of your own, with error bars: `softgrain macrosim SCENE.toml "
+        "--law " +
+            run.directory + "/law_table.toml --bands 20`.",
+        "It is measured on a few packings: an hour's worth of them is in `results/law_table`, your own material by "
+        "`softgrain run pipelines/law_table.toml`, from a sieve curve by `softgrain run pipelines/graded_sand.toml`."};
   return {"Take the law in a scene of your own: `softgrain macrosim SCENE.toml --law " + run.directory +
               "/law.toml`; values with 95 % intervals: `softgrain law eval " + run.directory +
               "/law.toml --delta 0.1 0.2`.",

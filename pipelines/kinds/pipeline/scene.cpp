@@ -17,6 +17,30 @@ LawSources read_crowd_law(const Scene& scene, const SceneTable& law) {
   return out;
 }
 
+MeasuredTable read_measured_table(const SceneTable& root) {
+  MeasuredTable out{read_crowd_setup(root), read_crowd_fit(root.table_or_empty("calibrate").table_or_empty("crowd"))};
+  require_law_of_crowds(root, out.crowd, out.fit);
+  if (out.fit.best == Crowd::pair)
+    root.table("calibrate")
+        .table("crowd")
+        .mistake("best", "the pair law is measured anyway: \"bag\" or \"directional\"");
+  return out;
+}
+
+void read_crowd_laws(const Scene& scene, const SceneTable& root, PipelineSetup& setup) {
+  const bool measures = root.has("configuration");
+  for (const char* key : {"law", "configuration"})
+    if (root.has(key) && !root.has("macro"))
+      root.reject(key,
+                  "goes with [macro]: laws of crowds are for many neighbours at once; a table alone is measured by "
+                  "kind = \"law-table\"");
+  if (measures && root.has("law"))
+    root.reject("law", "[[configuration]] measures a law of crowds already; leave one of the two out");
+  if (root.has("crowd") && !measures) root.reject("crowd", "goes with [[configuration]], which says what is measured");
+  if (root.has("law")) setup.table = read_crowd_law(scene, root.table("law"));
+  if (measures) setup.measured_table = read_measured_table(root);
+}
+
 }  // namespace
 
 PipelineSetup read_pipeline_setup(const Scene& scene) {
@@ -26,11 +50,8 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     setup.title = root.text("title", "");
     setup.measure = read_measure_setup(root);
     setup.fit = read_fit_settings(root.table_or_empty("calibrate"));
-    if (!root.has("macro")) {
-      if (root.has("law")) root.reject("law", "goes with [macro]: laws of crowds are for many neighbours at once");
-      return setup;
-    }
-    if (root.has("law")) setup.crowd = read_crowd_law(scene, root.table("law"));
+    read_crowd_laws(scene, root, setup);
+    if (!root.has("macro")) return setup;
     const SceneTable macro = root.table("macro");
     setup.macro = read_macro_setup(macro, setup.measure.spec);
     read_stages(root, macro, setup.macro->spec);
