@@ -154,8 +154,11 @@ void check_configurations(const CrowdSetup& setup, Findings& out) {
       (setup.packings.empty() ? "" : fmt::format(" ({} on as many as they say)", setup.packings.size())) +
       (setup.orientations > 1 ? fmt::format(" in {} orientations each", setup.orientations) : "") +
       (setup.plan.empty() ? "" : fmt::format(" and {} as planned", setup.plan.size()));
-  out.lines += fmt::format("  {} configurations on {} to {} packings{}: {} to {} runs\n", configurations,
-                           setup.packings_min, setup.packings_max, own, least, most);
+  const auto range = [](std::int64_t low, std::int64_t high) {
+    return low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high);
+  };
+  out.lines += fmt::format("  {} configurations on {} packings{}: {} runs\n", configurations,
+                           range(setup.packings_min, setup.packings_max), own, range(least, most));
   out.lines +=
       fmt::format("  per packing: up to {} recorded states, about {} relaxations\n", stages * setup.points, increments);
   add_overlaps(setup, out);
