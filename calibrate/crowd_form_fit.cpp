@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
+#include "calibrate/crowd_slopes.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/random.h"
@@ -54,34 +56,49 @@ std::vector<const CrowdState*> loading_states(const CrowdStates& states) {
 
 namespace {
 
-/// A force that a fit compares with, and its weight.
-struct WeighedState {
-  const std::vector<CrowdPartner>* partners = nullptr;
-  const CrowdState* state = nullptr;
-  std::vector<double> weight{};  ///< of every neighbour
+/// Forces that a fit compares with, and their weights, neighbour after neighbour.
+struct WeighedForces {
+  std::vector<OverlapState> states;
+  std::vector<double> mean;
+  std::vector<double> weight;
 };
 
-std::vector<WeighedState> weighed_states(const StateSelection& selection, double discrepancy) {
-  std::vector<WeighedState> out;
+WeighedForces weighed_forces(const StateSelection& selection, double discrepancy) {
+  WeighedForces out;
   for (const CrowdStates* c : selection) {
     const double floor = 0.1 * discrepancy * c->largest_force();
     const double share = 1.0 / std::sqrt(static_cast<double>(c->configuration->touching()));
     for (const CrowdState* s : loading_states(*c)) {
-      WeighedState& w = out.emplace_back(WeighedState{&c->configuration->partners, s});
+      out.states.push_back({&c->configuration->partners, &s->overlap});
       for (std::size_t k = 0; k < s->mean.size(); ++k) {
         const double own = discrepancy * s->mean[k];
-        w.weight.push_back(share / std::sqrt(s->error[k] * s->error[k] + own * own + floor * floor));
+        out.mean.push_back(s->mean[k]);
+        out.weight.push_back(share / std::sqrt(s->error[k] * s->error[k] + own * own + floor * floor));
       }
     }
   }
   return out;
 }
 
-std::vector<double> weighed_residuals(const CrowdModel& model, const std::vector<WeighedState>& states) {
-  std::vector<double> out;
-  for (const WeighedState& w : states) {
-    const std::vector<double> force = crowd_forces(model, *w.partners, w.state->overlap);
-    for (std::size_t k = 0; k < force.size(); ++k) out.push_back(w.weight[k] * (force[k] - w.state->mean[k]));
+/// How the numbers of the law at the states of a fit change with its parameters: numbers x parameters, by central
+/// differences of what is cheap and smooth.
+template <class Set>
+std::vector<double> number_slopes(const CrowdSlopes& forces, const CrowdModel& model, std::span<const double> p,
+                                  const Set& set) {
+  const double step = std::cbrt(std::numeric_limits<double>::epsilon());
+  std::vector<double> out(forces.numbers() * p.size());
+  std::vector<double> moved(p.begin(), p.end());
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    const double h = step * std::max(1.0, std::abs(p[j]));
+    std::vector<double> ends[2];
+    for (const int side : {0, 1}) {
+      moved[j] = p[j] + (side == 0 ? -h : h);
+      CrowdModel tried = model;
+      set(tried, moved);
+      ends[side] = forces.numbers_of(tried);
+    }
+    moved[j] = p[j];
+    for (std::size_t k = 0; k < forces.numbers(); ++k) out[k * p.size() + j] = (ends[1][k] - ends[0][k]) / (2.0 * h);
   }
   return out;
 }
@@ -91,16 +108,35 @@ template <class Set>
 LeastSquaresFit fit_model(const CrowdModel& model, const StateSelection& selection, double discrepancy,
                           const std::vector<double>& start, const std::vector<ParameterBounds>& bounds, bool thorough,
                           const Set& set) {
-  const std::vector<WeighedState> states = weighed_states(selection, discrepancy);
-  LeastSquaresProblem problem;
-  problem.residuals = weighed_residuals(model, states).size();
-  problem.bounds = bounds;
-  problem.evaluate = [&](std::span<const double> p, std::span<double> r) {
+  const WeighedForces wanted = weighed_forces(selection, discrepancy);
+  const CrowdSlopes forces(model.crowd, wanted.states);
+  const auto numbers_at = [&](std::span<const double> p) {
     CrowdModel tried = model;
     set(tried, p);
-    const std::vector<double> residuals = weighed_residuals(tried, states);
-    std::copy(residuals.begin(), residuals.end(), r.begin());
+    return forces.numbers_of(tried);
+  };
+  LeastSquaresProblem problem;
+  problem.residuals = wanted.mean.size();
+  problem.bounds = bounds;
+  problem.evaluate = [&](std::span<const double> p, std::span<double> r) {
+    forces.evaluate(numbers_at(p), r);
+    for (std::size_t k = 0; k < r.size(); ++k) r[k] = wanted.weight[k] * (r[k] - wanted.mean[k]);
     return std::all_of(r.begin(), r.end(), [](double x) { return std::isfinite(x); });
+  };
+  std::vector<double> slope(forces.forces() * forces.numbers());
+  problem.jacobian = [&](std::span<const double> p, std::span<double> jacobian) {
+    forces.slopes(numbers_at(p), slope);
+    const std::vector<double> by_parameter = number_slopes(forces, model, p, set);
+    for (std::size_t i = 0; i < forces.forces(); ++i) {
+      const std::span<double> row = jacobian.subspan(i * p.size(), p.size());
+      std::fill(row.begin(), row.end(), 0.0);
+      for (std::size_t k = 0; k < forces.numbers(); ++k) {
+        const double s = wanted.weight[i] * slope[i * forces.numbers() + k];
+        if (s == 0.0) continue;
+        for (std::size_t j = 0; j < p.size(); ++j) row[j] += s * by_parameter[k * p.size() + j];
+      }
+    }
+    return std::all_of(jacobian.begin(), jacobian.end(), [](double x) { return std::isfinite(x); });
   };
   LeastSquaresOptions options;
   options.thorough = thorough;
@@ -112,7 +148,12 @@ LeastSquaresFit fit_model(const CrowdModel& model, const StateSelection& selecti
 }  // namespace
 
 std::vector<double> crowd_residuals(const CrowdModel& model, const StateSelection& selection, double discrepancy) {
-  return weighed_residuals(model, weighed_states(selection, discrepancy));
+  const WeighedForces wanted = weighed_forces(selection, discrepancy);
+  const CrowdSlopes forces(model.crowd, wanted.states);
+  std::vector<double> out(wanted.mean.size());
+  forces.evaluate(forces.numbers_of(model), out);
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = wanted.weight[k] * (out[k] - wanted.mean[k]);
+  return out;
 }
 
 double crowd_error(const CrowdModel& model, const CrowdStates& states) {

@@ -1,5 +1,7 @@
 #include "calibrate/gauss_newton.h"
 
+#include <Eigen/QR>
+
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
@@ -30,7 +32,8 @@ bool evaluate_jacobian(const LeastSquaresProblem& problem, const Vector& p, Vect
   return jacobian_at(problem, p, jacobian) && all_finite(jacobian);
 }
 
-/// On a bound (to rounding) with the descent direction pointing out of it.
+/// On a bound (to rounding) with the descent direction pointing out of it. What the residuals do not feel at all is not
+/// held by its bound, but undetermined.
 std::vector<bool> active_bounds(const LeastSquaresProblem& problem, const Vector& p, const Vector& r,
                                 const Vector& jacobian) {
   std::vector<bool> active(p.size(), false);
@@ -38,7 +41,12 @@ std::vector<bool> active_bounds(const LeastSquaresProblem& problem, const Vector
     const ParameterBounds& b = problem.bounds[j];
     const double slack = 1e-9 * std::max(std::abs(p[j]), std::isfinite(b.high - b.low) ? b.high - b.low : 0.0);
     double gradient = 0.0;
-    for (std::size_t i = 0; i < r.size(); ++i) gradient += jacobian[i * p.size() + j] * r[i];
+    bool felt = false;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      gradient += jacobian[i * p.size() + j] * r[i];
+      felt = felt || jacobian[i * p.size() + j] != 0.0;
+    }
+    if (!felt && b.low < b.high) continue;
     active[j] = (p[j] - b.low <= slack && gradient >= 0.0) || (b.high - p[j] <= slack && gradient <= 0.0);
   }
   return active;
@@ -50,25 +58,29 @@ void keep_gsl_from_aborting() {
   (void)previous;
 }
 
-/// Singular value decomposition of the free columns, each divided by its norm: J_free = U S V^T diag(norm).
-/// One-sided Jacobi keeps small singular values accurate. Rows of zeros are added when there are fewer residuals than
-/// columns.
+/// Singular value decomposition of the free columns, each divided by its norm: J_free = Q U S V^T diag(norm), Q from a
+/// QR decomposition, which leaves a small square to the one-sided Jacobi that keeps small singular values accurate.
+/// Rows of zeros are added when there are fewer residuals than columns.
 struct Decomposition {
   std::vector<std::size_t> free;  ///< column of each free parameter
   Vector norm;
   MatrixPtr u, v;
   VectorPtr s;
   std::size_t rank = 0;
+  Vector turned;  ///< Q^T r, what lies in the columns
 };
 
-Decomposition decompose(const Vector& jacobian, std::size_t rows, const std::vector<bool>& at_bound, double tolerance) {
+Decomposition decompose(const Vector& jacobian, const Vector& r, const std::vector<bool>& at_bound, double tolerance) {
   Decomposition d;
   const std::size_t n = at_bound.size();
+  const std::size_t rows = r.size();
   for (std::size_t j = 0; j < n; ++j)
     if (!at_bound[j]) d.free.push_back(j);
   const std::size_t columns = d.free.size();
   if (columns == 0) return d;
-  d.u.reset(gsl_matrix_calloc(std::max(rows, columns), columns));
+  const auto height = static_cast<Eigen::Index>(std::max(rows, columns));
+  const auto width = static_cast<Eigen::Index>(columns);
+  Eigen::MatrixXd scaled = Eigen::MatrixXd::Zero(height, width);
   d.v.reset(gsl_matrix_alloc(columns, columns));
   d.s.reset(gsl_vector_alloc(columns));
   for (std::size_t c = 0; c < columns; ++c) {
@@ -76,8 +88,17 @@ Decomposition decompose(const Vector& jacobian, std::size_t rows, const std::vec
     for (std::size_t i = 0; i < rows; ++i) sum += jacobian[i * n + d.free[c]] * jacobian[i * n + d.free[c]];
     d.norm.push_back(std::sqrt(sum));
     for (std::size_t i = 0; i < rows && sum > 0.0; ++i)
-      gsl_matrix_set(d.u.get(), i, c, jacobian[i * n + d.free[c]] / d.norm[c]);
+      scaled(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = jacobian[i * n + d.free[c]] / d.norm[c];
   }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  Eigen::VectorXd turned = Eigen::VectorXd::Zero(height);
+  for (std::size_t i = 0; i < rows; ++i) turned[static_cast<Eigen::Index>(i)] = r[i];
+  turned.applyOnTheLeft(qr.householderQ().adjoint());
+  d.turned.assign(turned.data(), turned.data() + columns);
+  d.u.reset(gsl_matrix_calloc(columns, columns));
+  for (std::size_t i = 0; i < columns; ++i)
+    for (std::size_t c = i; c < columns; ++c)
+      gsl_matrix_set(d.u.get(), i, c, qr.matrixQR()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)));
   keep_gsl_from_aborting();
   gsl_linalg_SV_decomp_jacobi(d.u.get(), d.v.get(), d.s.get());
   const double smallest = tolerance * gsl_vector_get(d.s.get(), 0);
@@ -86,14 +107,14 @@ Decomposition decompose(const Vector& jacobian, std::size_t rows, const std::vec
 }
 
 /// Step and inverse over the free parameters; directions beyond the rank take no part.
-void fill_free(const Decomposition& d, const Vector& r, Linearisation& out) {
+void fill_free(const Decomposition& d, Linearisation& out) {
   const std::size_t n = out.at_bound.size();
   const std::size_t columns = d.free.size();
   Vector seen(columns, 0.0);  // share of each parameter's axis inside the determined directions
   for (std::size_t k = 0; k < d.rank; ++k) {
     Vector direction(columns);
     double along = 0.0;
-    for (std::size_t i = 0; i < r.size(); ++i) along += gsl_matrix_get(d.u.get(), i, k) * r[i];
+    for (std::size_t i = 0; i < columns; ++i) along += gsl_matrix_get(d.u.get(), i, k) * d.turned[i];
     for (std::size_t c = 0; c < columns; ++c) {
       const double v = gsl_matrix_get(d.v.get(), c, k);
       seen[c] += v * v;
@@ -121,10 +142,10 @@ Linearisation linearise(const LeastSquaresProblem& problem, const std::vector<do
   if (!out.defined) return out;
   for (const double x : r) out.residual_sum_of_squares += x * x;
   out.at_bound = active_bounds(problem, p, r, jacobian);
-  const Decomposition d = decompose(jacobian, problem.residuals, out.at_bound, rank_tolerance);
+  const Decomposition d = decompose(jacobian, r, out.at_bound, rank_tolerance);
   out.rank = static_cast<int>(d.rank);
   out.rank_deficient = d.rank < d.free.size();
-  fill_free(d, r, out);
+  fill_free(d, out);
   return out;
 }
 

@@ -7,18 +7,9 @@ namespace {
 /// A solid sphere of so many radii presses like a plane.
 constexpr double kPlaneLike = 100.0;
 
-double positive(double x) { return std::max(x, 0.0); }
-
-PairConstants constants_of(const CrowdModel& model, const CrowdPartner& p) {
-  if (p.kind == PartnerKind::plane) return p.smooth ? model.smooth : model.solid.at(0.0);
-  if (p.kind == PartnerKind::solid) return model.solid.at(p.ratio);
-  return model.soft.at(p.ratio);
-}
-
 LostVolume<double> lost_to(const CrowdModel& model, const CrowdPartner& p, double overlap) {
-  const PairConstants k = constants_of(model, p);
-  const double curvature = p.kind == PartnerKind::plane ? 0.0 : 1.0 / p.ratio;
-  return lost_volume(lens(positive(overlap), curvature), k.a, k.b);
+  const PairConstants k = neighbour_constants(model, p);
+  return lost_volume(neighbour_lens(p, overlap), k.a, k.b);
 }
 
 double volume_of(const CrowdModel& model, const CrowdSum<3>& sum) {
@@ -50,7 +41,7 @@ double other_side(const CrowdModel& model, const std::vector<CrowdPartner>& part
                   const std::vector<double>& overlap, std::size_t k) {
   const CrowdPartner& p = partners[k];
   if (p.kind != PartnerKind::soft) return 0.0;
-  const CrowdPartner back{PartnerKind::soft, 1.0 / p.ratio, -p.direction};
+  const CrowdPartner back = seen_from_neighbour(p);
   const LostVolume nu = lost_to(model, back, overlap[k] / p.ratio);
   if (!(nu.nu > 0.0)) return 0.0;
   CrowdSum<3> sum = sum_of(model, partners, overlap, static_cast<std::int32_t>(k), p.ratio);
@@ -62,6 +53,18 @@ double other_side(const CrowdModel& model, const std::vector<CrowdPartner>& part
 }
 
 }  // namespace
+
+PairConstants neighbour_constants(const CrowdModel& model, const CrowdPartner& p) {
+  if (p.kind == PartnerKind::plane) return p.smooth ? model.smooth : model.solid.at(0.0);
+  if (p.kind == PartnerKind::solid) return model.solid.at(p.ratio);
+  return model.soft.at(p.ratio);
+}
+
+Lens<double> neighbour_lens(const CrowdPartner& p, double overlap) {
+  return lens(std::max(overlap, 0.0), p.kind == PartnerKind::plane ? 0.0 : 1.0 / p.ratio);
+}
+
+CrowdPartner seen_from_neighbour(const CrowdPartner& p) { return {PartnerKind::soft, 1.0 / p.ratio, -p.direction}; }
 
 std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<CrowdPartner>& partners,
                                  const std::vector<double>& overlap) {

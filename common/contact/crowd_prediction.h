@@ -18,6 +18,15 @@ struct CrowdModel {
   PairConstants smooth{1.0, 1.0};  ///< w and m of a plane without friction
 };
 
+/// w and m of the volume that a neighbour takes.
+PairConstants neighbour_constants(const CrowdModel& model, const CrowdPartner& p);
+
+/// What it covers at this overlap, in radii of the soft particle that it meets; nothing where they are apart.
+Lens<double> neighbour_lens(const CrowdPartner& p, double overlap);
+
+/// The particle in the middle as soft neighbour `p` sees it: a soft one of radius 1/ratio.
+CrowdPartner seen_from_neighbour(const CrowdPartner& p);
+
 /// Forces on the neighbours of the centre over E Rs^2 at these overlaps [Rs]. Soft neighbours have this contact and
 /// those with the planes that press them.
 std::vector<double> crowd_forces(const CrowdModel& model, const std::vector<CrowdPartner>& partners,

@@ -112,6 +112,18 @@ TEST(LeastSquares, BoundsOfZeroWidthFixAParameter) {
   EXPECT_EQ(fit_least_squares(problem, {{2.0, 0.6}}).parameters[0], 2.0);
 }
 
+/// At p = 0 the data say nothing of p^3: its bound does not hold it.
+TEST(LeastSquares, WhatIsNotFeltAtItsBoundIsUndetermined) {
+  constexpr auto flat = [](const auto* p, const double* x) { return p[0] * exp(-0.7 * x[0]) + p[1] * p[1] * p[1]; };
+  auto problem = curve_problem<2>(decay_data(3.0, 0.7, 0.01), flat);
+  problem.bounds = {{}, {0.0, 1.0}};
+  const auto fit = fit_least_squares(problem, {{2.0, 0.0}});
+  EXPECT_FALSE(fit.at_bound[1]);
+  EXPECT_EQ(fit.rank, 1);
+  EXPECT_TRUE(std::isinf(fit.standard_deviations[1]));
+  EXPECT_FALSE(fit.usable());
+}
+
 TEST(LeastSquares, RankDeficientCovarianceIsReported) {
   constexpr auto twice = [](const auto* p, const double* x) { return (p[0] + p[1]) * exp(-p[2] * x[0]); };
   const auto fit = fit_least_squares(curve_problem<3>(decay_data(3.0, 0.7, 0.01), twice), {{1.0, 1.0, 0.2}});
