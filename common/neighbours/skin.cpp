@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "common/core/in_pieces.h"
@@ -58,33 +59,88 @@ double image_drift(const System<D>& s) {
   return sum;
 }
 
+/// Where places of the last list would be had all moved alike: F x + shift.
+template <int D>
+struct Carried {
+  Matrix<D> f;
+  Vec<D> shift;
+  bool moves = false;
+
+  Carried() {
+    for (int k = 0; k < D; ++k) f[k][k] = 1.0;
+  }
+};
+
+/// The only plane with this normal, or none.
+template <int D>
+Slot plane_facing(const Particles<D>& p, int axis, double sign) {
+  Vec<D> normal{};
+  normal[axis] = sign;
+  Slot found = -1;
+  for (Slot plane = p.first_plane(); plane < p.size(); ++plane) {
+    if (!(p.normal_of(plane) == normal)) continue;
+    if (found >= 0) return -1;
+    found = plane;
+  }
+  return found;
+}
+
+/// With the box, where two planes face each other along axes: what a packing that is pressed between walls does, but
+/// for its fluctuations. An open scene otherwise.
+template <int D>
+Carried<D> carried_by_walls(const System<D>& s) {
+  Carried<D> out;
+  if (s.cell.any_periodic() || s.particles.planes < 2) return out;
+  for (int k = 0; k < D; ++k) {
+    const Slot low = plane_facing(s.particles, k, 1.0);
+    const Slot high = plane_facing(s.particles, k, -1.0);
+    if (low < 0 || high < 0) continue;
+    const double from[2] = {s.neighbours.reference[at(low)][k], s.neighbours.reference[at(high)][k]};
+    const double to[2] = {s.particles.sphere[at(low)].x[k], s.particles.sphere[at(high)].x[k]};
+    const double f = (to[1] - to[0]) / (from[1] - from[0]);
+    if (!std::isfinite(f) || !(f > 0.0)) continue;
+    out.f[k][k] = f;
+    out.shift[k] = to[0] - f * from[0];
+    out.moves = out.moves || to[0] != from[0] || to[1] != from[1];
+  }
+  return out;
+}
+
 /// Share of its margin that each body has used up.
 template <int D>
 class Uses {
  public:
   explicit Uses(const System<D>& s) : s_(s), flows_(follows_cell(s)), half_reach_(half_reach(s.laws)) {
     if (flows_ && !(s.cell.edges == s.neighbours.reference_edges)) {
-      f_ = deformation(s.cell, s.neighbours.reference_edges);
-      strain_ = frobenius(without_unit(f_));
-    } else {
-      for (int k = 0; k < D; ++k) f_[k][k] = 1.0;
-      if (!flows_) drift_ = 0.5 * image_drift(s);
+      carried_.f = deformation(s.cell, s.neighbours.reference_edges);
+      carried_.moves = true;
+      strain_ = frobenius(without_unit(carried_.f));
+    } else if (!flows_) {
+      drift_ = 0.5 * image_drift(s);
     }
   }
+  /// Relative to a motion that all share.
+  Uses(const System<D>& s, const Carried<D>& carried)
+      : s_(s),
+        flows_(false),
+        half_reach_(half_reach(s.laws)),
+        carried_(carried),
+        strain_(frobenius(without_unit(carried.f))) {}
 
   [[nodiscard]] double of(std::size_t u) const {
-    const auto& n = s_.neighbours;
-    const Sphere<D>& sphere = s_.particles.sphere[u];
-    const Vec<D> from = strain_ > 0.0 ? f_ * n.reference[u] : n.reference[u];
+    const System<D>& s = s_;
+    const auto& n = s.neighbours;
+    const Sphere<D>& sphere = s.particles.sphere[u];
+    const Vec<D> from = carried_.moves ? carried_.f * n.reference[u] + carried_.shift : n.reference[u];
     const double used = (norm(sphere.x - from) + drift_ + strain_ * (sphere.r + half_reach_ + n.skin[u])) / n.skin[u];
     return std::isfinite(used) ? used : kNever;
   }
 
  private:
-  const System<D>& s_;
+  std::reference_wrapper<const System<D>> s_;
   bool flows_;
   double half_reach_;
-  Matrix<D> f_;
+  Carried<D> carried_;
   double strain_ = 0.0;
   double drift_ = 0.0;
 };
@@ -100,6 +156,25 @@ double largest_use(const Uses<D>& uses, std::size_t bodies) {
       },
       [](double& most, double piece) { most = std::max(most, piece); });
 }
+
+/// How bodies are followed: any motion that all share will do, and the one is taken that leaves the smallest rest.
+template <int D>
+struct Followed {
+  Uses<D> uses;
+  double largest = 0.0;
+
+  explicit Followed(const System<D>& s) : uses(s), largest(largest_use(uses, at(s.particles.size()))) {
+    constexpr double kFarFromUsedUp = 0.25;  // no reason to look again
+    if (largest <= kFarFromUsedUp) return;
+    const Carried<D> carried = carried_by_walls(s);
+    if (!carried.moves) return;
+    Uses<D> with_walls(s, carried);
+    const double rest = largest_use(with_walls, at(s.particles.size()));
+    if (!(rest < largest)) return;
+    largest = rest;
+    uses = with_walls;
+  }
+};
 
 /// Size classes by halving of the radius, the smallest grain in class 0.
 constexpr std::size_t kClasses = 40;
@@ -145,7 +220,7 @@ template <int D>
 class UsedUp {
  public:
   explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
-    const Uses<D> uses(s);
+    const Uses<D> uses = Followed<D>(s).uses;
     used_.resize(s.particles.sphere.size());
     in_pieces(used_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t u = begin; u < end; ++u) used_[u] = uses.of(u) * s.neighbours.skin[u];
@@ -256,7 +331,7 @@ template <int D>
 double skin_used(const System<D>& s) {
   const auto bodies = static_cast<std::size_t>(s.particles.size());
   if (s.neighbours.reference.size() != bodies) return kNever;
-  return largest_use(Uses<D>(s), bodies);
+  return Followed<D>(s).largest;
 }
 
 template <int D>

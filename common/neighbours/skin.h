@@ -6,6 +6,8 @@
 // within reach unseen as long as |u| + e (r + q + s) <= s for every body, because a pair that was not listed is at
 // least |F d0| - |u_i| - |u_j| >= (1 - e) |d0| - |u_i| - |u_j| apart. So a steadily sheared packing, where
 // |x - x0| grows with the size of the cell, keeps its list as long as one at rest with the same fluctuations.
+// Any F and shift will do, frozen since the last look too. Between walls that face each other bodies are followed
+// relative to the box where that leaves less, else from where they were.
 #pragma once
 
 #include <limits>

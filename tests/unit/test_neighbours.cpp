@@ -2,9 +2,12 @@
 #include "common/neighbours/hierarchical_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/dynamics/force_pass.h"
@@ -292,6 +295,81 @@ TEST(Neighbours, NoContactIsMissedWhileGrainsFollowAShrinkingCell) {
     }
     EXPECT_EQ(s.contacts.size(), 1);
   }
+}
+
+/// Pairs of grains that overlap.
+int touching_now(const System3& s) {
+  const std::vector<double> none(static_cast<std::size_t>(s.particles.size()), 0.0);
+  return static_cast<int>(candidate_pairs_brute_force(s.particles, s.cell, none).size());
+}
+
+/// Grains in a box of six planes, 2.3 radii from one to the next; the planes by axis and side.
+struct WalledLattice {
+  static constexpr int kSide = 10;
+  static constexpr double kEdge = 2.3 * kSide;
+  System3 s = hertz_system<3>(0.0, 1.0, false);
+  std::array<std::size_t, 6> plane{};
+
+  WalledLattice() {
+    RandomStream random(5, RandomPurpose::test, 7);
+    for (int k = 0; k < kSide * kSide * kSide; ++k) {
+      Vec3 x{{2.3 * (k % kSide), 2.3 * (k / kSide % kSide), 2.3 * (k / kSide / kSide)}};
+      for (double& c : x.v) c += 1.1 + 0.1 * random.uniform();
+      add_grain(s.particles, test_sphere<3>(x, 1.0, 2500.0));
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      NewBody<3> body;
+      body.x[static_cast<int>(k / 2)] = k % 2 == 0 ? 0.0 : kEdge;
+      Vec3 normal{};
+      normal[static_cast<int>(k / 2)] = k % 2 == 0 ? 1.0 : -1.0;
+      plane[k] = at(add_plane(s.particles, body, normal));
+    }
+  }
+
+  /// Every grain that touches a plane is listed with it.
+  void expect_complete() {
+    expect_complete_list(s);
+    std::set<std::pair<Slot, Slot>> listed;
+    for (std::size_t c = 0; c < s.contacts.i.size(); ++c) listed.insert({s.contacts.i[c], s.contacts.j[c]});
+    for (Slot i = 0; i < s.particles.grains; ++i)
+      for (const std::size_t k : plane) {
+        const Vec3 way = s.particles.sphere[at(i)].x - s.particles.sphere[k].x;
+        const auto slot = static_cast<Slot>(k);
+        const bool touches = dot(way, s.particles.normal_of(slot)) < s.particles.sphere[at(i)].r;
+        ASSERT_TRUE(!touches || listed.count({i, slot}) == 1) << i << " at plane " << k;
+      }
+  }
+};
+
+/// What goes with the walls keeps its list: the far side of the box moves by many margins, neighbours by a part of one.
+TEST(Neighbours, GrainsThatGoWithTheWallsOfABoxKeepTheirList) {
+  WalledLattice box;
+  update_neighbours(box.s);
+  const std::int64_t before = box.s.neighbours.rebuilds;
+  for (int step = 0; step < 150 && !::testing::Test::HasFatalFailure(); ++step) {
+    for (auto& sphere : box.s.particles.sphere) {  // about a corner, walls included
+      sphere.x[0] *= 0.9985;
+      sphere.x[1] *= 0.9995;
+      sphere.x[2] += 0.01;
+    }
+    update_neighbours(box.s);
+    box.expect_complete();
+  }
+  EXPECT_GT(touching_now(box.s), 500);
+  EXPECT_LT(box.s.neighbours.rebuilds - before, 12) << "the far side moves by 40 margins";
+}
+
+/// A piston comes down on grains that stand still: to follow them with the box would miss that.
+TEST(Neighbours, GrainsThatStandStillBetweenMovingWallsKeepTheirListToo) {
+  WalledLattice box;
+  update_neighbours(box.s);
+  const std::int64_t before = box.s.neighbours.rebuilds;
+  for (int step = 0; step < 150 && !::testing::Test::HasFatalFailure(); ++step) {
+    box.s.particles.sphere[box.plane[5]].x[2] -= 0.01;
+    update_neighbours(box.s);
+    box.expect_complete();
+  }
+  EXPECT_LT(box.s.neighbours.rebuilds - before, 12);
 }
 
 /// The reduced cell spans the same lattice: every old edge is a whole combination of new ones.
