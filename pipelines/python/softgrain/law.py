@@ -257,7 +257,8 @@ class TableLaw(Law):
 
     def __repr__(self):
         about = self.about()
-        return f"<law table {self.path}: {len(self.card['entry'])} packing(s), best form {about['form']} ({about['status']})>"
+        fractions = ", ".join(f"{entry['solid_fraction']:.3f}" for entry in self.card["entry"])
+        return f"<law table {self.path}: solid fraction {fractions}, best form {about['form']} ({about['status']})>"
 
 
 def _choice(form=None, solid_fraction=None, range="reject", beyond=None):  # pylint: disable=redefined-builtin
