@@ -56,9 +56,44 @@ DampedOptions options_under(double pressure, const HardBodies& hard, const Macro
       rest.residual));
 }
 
+/// How far pressing has come, 0 to 1. The first pressure closes the gaps and brings all roughly to rest, which takes
+/// about two fifths of all passes; half go into the last pressure, whose residual falls like a power of them.
+class PressingProgress {
+ public:
+  PressingProgress(const HardBodies& hard, double first) : first_(std::max(first, 1.0)), begin_(volume(hard)) {
+    to_close_ = std::log(kPacked / std::min(hard.fraction(), 0.99 * kPacked));
+  }
+
+  [[nodiscard]] double at(const HardBodies& hard, double over, double residual, double tolerance) const {
+    if (over <= 1.0) {
+      const double before = first_ > 1.0 ? kLast : 0.0;
+      return before + (1.0 - before) * reached(std::log(residual) / std::log(tolerance));
+    }
+    if (over < first_) return kFirst + (kLast - kFirst) * (1.0 - std::log(over) / std::log(first_));
+    const double closed = reached(std::log(begin_ / volume(hard)) / to_close_);
+    return kFirst * (0.2 * closed + 0.8 * reached(std::log(residual) / std::log(tolerance)));
+  }
+
+ private:
+  static constexpr double kPacked = 0.55;
+  static constexpr double kFirst = 0.4;
+  static constexpr double kLast = 0.5;
+
+  static double volume(const HardBodies& hard) {
+    const Vec3 size = hard.size();
+    return size[0] * size[1] * size[2];
+  }
+  static double reached(double way) { return way > 0.0 ? std::min(way, 1.0) : 0.0; }
+
+  double first_;
+  double begin_;
+  double to_close_ = 0.0;
+};
+
 /// Relaxes bodies and walls together under a pressure that falls to the one asked for.
 void press(HardBodies& hard, const MacroSpec& spec, double first, const PreparationWatch& watch) {
   const double asked = spec.start_pressure * spec.youngs_modulus;
+  const PressingProgress progress(hard, first);
   for (double over = std::max(first, 1.0);; over = std::max(1.0, over * kFall)) {
     const bool last = over <= 1.0;
     const double pressure = over * asked;
@@ -67,12 +102,8 @@ void press(HardBodies& hard, const MacroSpec& spec, double first, const Preparat
     DampedOptions options = options_under(pressure, hard, spec);
     options.restless = kRestless;
     options.tolerance = last ? spec.protocol.tolerance : std::max(kLoose, spec.protocol.tolerance);
-    // About half of all passes go into the last pressure, whose residual falls like a power of them.
-    const double before = last ? 0.5 : 0.5 * (1.0 - std::log(over) / std::log(std::max(first, 1.0)));
     PressedBox walls(hard.box, control, [&](const RelaxationResult& so_far) {
-      if (!watch) return;
-      const double way = std::log(so_far.residual) / std::log(options.tolerance);
-      watch(before + (last ? 0.5 * std::clamp(way, 0.0, 1.0) : 0.0));
+      if (watch) watch(progress.at(hard, over, so_far.residual, options.tolerance));
     });
     const RelaxationResult rest = DampedRelaxation<3>(options).relax(hard.system, walls);
     if (last && rest.end != RelaxationEnd::converged) not_jammed(spec, hard, rest);

@@ -328,13 +328,10 @@ std::vector<MacroPacking> prepare_packings(const MacroSetup& setup, const Run& r
   std::vector<MacroPacking> packings(static_cast<std::size_t>(setup.samples));
   Progress progress("preparing macro samples", static_cast<double>(setup.samples), run.context.quiet());
   over_samples(setup.samples, [&](std::int64_t k) {
-    double done = 0.0;
-    const auto watch = [&](double share) {
-      progress.advance(share - done);
-      done = share;
-    };
-    packings[static_cast<std::size_t>(k)] = sample_packing(setup, run, k, file_name, watch);
-    watch(1.0);
+    TaskProgress mine(progress);
+    packings[static_cast<std::size_t>(k)] =
+        sample_packing(setup, run, k, file_name, [&](double share) { mine.reach(share); });
+    mine.reach(1.0);
   });
   return packings;
 }
