@@ -71,7 +71,7 @@ class PressingProgress {
     }
     if (over < first_) return kFirst + (kLast - kFirst) * (1.0 - std::log(over) / std::log(first_));
     const double closed = reached(std::log(begin_ / volume(hard)) / to_close_);
-    return kFirst * (0.2 * closed + 0.8 * reached(std::log(residual) / std::log(tolerance)));
+    return kFirst * closed * (0.2 + 0.8 * reached(std::log(residual) / std::log(tolerance)));
   }
 
  private:
