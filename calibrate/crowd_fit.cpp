@@ -226,7 +226,7 @@ FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>
   CrowdLaw& law = out.law;
   law.form = form;
   law.parameters = static_cast<int>(fit.planes.parameters.size());
-  const FormRefits refits = refit_form(data, form, fit, options);
+  const FormRefits refits = refit_form(data, states, form, fit, options);
   law.replicates_failed = refits.failed;
   const Filler filler(fit, refits.columns);
   filler.planes(law);

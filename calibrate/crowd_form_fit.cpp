@@ -392,12 +392,13 @@ std::int64_t fitted_to(const std::vector<CrowdStates>& states, Crowd form) {
 
 }  // namespace
 
-FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options) {
+FormRefits refit_form(const CrowdMeasurements& data, const std::vector<CrowdStates>& all, Crowd form,
+                      const FormFit& full, const CrowdFitOptions& options) {
   constexpr int kMostPerReplicate = 2;
   FormRefits out;
   out.columns.resize(full.parameters().size());
   const auto wanted = static_cast<std::size_t>(options.replicates);
-  const std::int64_t configurations = fitted_to(average_states(data), form);
+  const std::int64_t configurations = fitted_to(all, form);
   for (int tried = 0; out.draws.size() < wanted && tried < kMostPerReplicate * options.replicates;) {
     const int more =
         std::min(static_cast<int>(wanted - out.draws.size()), kMostPerReplicate * options.replicates - tried);

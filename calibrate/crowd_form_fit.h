@@ -93,6 +93,7 @@ struct FormRefits {
 
 /// Refits to packings drawn with replacement, from the fit to all of them: as many as options.replicates that come to a
 /// minimum, or those of twice as many draws. A draw in which a configuration has no state left counts as failed.
-FormRefits refit_form(const CrowdMeasurements& data, Crowd form, const FormFit& full, const CrowdFitOptions& options);
+FormRefits refit_form(const CrowdMeasurements& data, const std::vector<CrowdStates>& all, Crowd form,
+                      const FormFit& full, const CrowdFitOptions& options);
 
 }  // namespace softgrain

@@ -29,6 +29,14 @@ struct CrowdSlopes::BodyState {
   double by_threshold = 0.0;  ///< dp/d delta
 };
 
+/// All that forces and slopes at some numbers share.
+struct CrowdSlopes::Evaluation {
+  std::span<const double> numbers;
+  CrowdForm law;
+  std::vector<LostVolume<double>> lost;  ///< to each contact
+  std::vector<BodyState> bodies;
+};
+
 CrowdSlopes::CrowdSlopes(Crowd form, const std::vector<OverlapState>& states) : form_(form) {
   for (const OverlapState& s : states) add_state(s);
 }
@@ -91,39 +99,36 @@ std::vector<double> CrowdSlopes::numbers_of(const CrowdModel& model) const {
   return out;
 }
 
-LostVolume<double> CrowdSlopes::lost(std::span<const double> numbers, std::size_t contact) const {
-  const Contact& c = contacts_[contact];
-  return lost_volume(c.lens, std::exp(numbers[kLaw + 2 * c.kind]), numbers[kLaw + 2 * c.kind + 1]);
-}
-
-std::vector<CrowdSlopes::BodyState> CrowdSlopes::body_states(std::span<const double> numbers) const {
-  const CrowdForm law = form_of(numbers);
-  std::vector<BodyState> out(bodies_.size());
-  for (std::size_t b = 0; b < out.size(); ++b) {
-    BodyState& state = out[b];
+CrowdSlopes::Evaluation CrowdSlopes::evaluation(std::span<const double> numbers) const {
+  Evaluation out{numbers, form_of(numbers), {}, std::vector<BodyState>(bodies_.size())};
+  std::vector<double> weight;
+  for (std::size_t k = 0; k < kinds_.size(); ++k) weight.push_back(std::exp(numbers[kLaw + 2 * k]));
+  out.lost.reserve(contacts_.size());
+  for (const Contact& c : contacts_)
+    out.lost.push_back(lost_volume(c.lens, weight[c.kind], numbers[kLaw + 2 * c.kind + 1]));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyState& state = out.bodies[b];
     for (std::size_t c = bodies_[b].first; c < bodies_[b].first + bodies_[b].count; ++c)
-      state.sum.add(lost(numbers, c).nu, contacts_[c].direction);
-    state.volume = form_ == Crowd::directional ? law.equivalent_volume(state.sum) : state.sum.volume;
-    state.sum.close(law.pressure, state.volume);
+      state.sum.add(out.lost[c].nu, contacts_[c].direction);
+    state.volume = form_ == Crowd::directional ? out.law.equivalent_volume(state.sum) : state.sum.volume;
+    state.sum.close(out.law.pressure, state.volume);
   }
   return out;
 }
 
-double CrowdSlopes::force_of(const CrowdForm& law, const std::vector<BodyState>& bodies, const Side& side,
-                             std::span<const double> numbers) const {
-  const CrowdSum<3>& sum = bodies[side.body].sum;
-  const LostVolume<double> nu = lost(numbers, side.contact);
+double CrowdSlopes::force_of(const Evaluation& at, const Side& side) const {
+  const CrowdSum<3>& sum = at.bodies[side.body].sum;
+  const LostVolume<double>& nu = at.lost[side.contact];
   const double felt =
-      form_ == Crowd::directional ? law.felt(sum, nu.nu, contacts_[side.contact].direction) : sum.volume;
+      form_ == Crowd::directional ? at.law.felt(sum, nu.nu, contacts_[side.contact].direction) : sum.volume;
   return side.area * nu.slope * sum.gain * felt;
 }
 
 void CrowdSlopes::evaluate(std::span<const double> numbers, std::span<double> force) const {
-  const CrowdForm law = form_of(numbers);
-  const std::vector<BodyState> bodies = body_states(numbers);
+  const Evaluation at = evaluation(numbers);
   for (std::size_t k = 0; k < forces_.size(); ++k) {
-    force[k] = force_of(law, bodies, forces_[k].centre, numbers);
-    if (forces_[k].has_other) force[k] += force_of(law, bodies, forces_[k].other, numbers);
+    force[k] = force_of(at, forces_[k].centre);
+    if (forces_[k].has_other) force[k] += force_of(at, forces_[k].other);
   }
 }
 
@@ -148,12 +153,12 @@ std::pair<double, double> pressure_slopes(const CrowdPressure& p, double s) {
 }  // namespace
 
 /// F = area dnu/dx g(S) B, g = p(S)/S: by the numbers of the law, and by nu of every contact of the body.
-void CrowdSlopes::add_slopes(const CrowdForm& law, const std::vector<BodyState>& bodies, const Side& side,
-                             std::span<const double> numbers, std::span<double> row) const {
-  const BodyState& state = bodies[side.body];
+void CrowdSlopes::add_slopes(const Evaluation& at, const Side& side, std::span<double> row) const {
+  const CrowdForm& law = at.law;
+  const BodyState& state = at.bodies[side.body];
   const CrowdSum<3>& sum = state.sum;
   const Contact& own = contacts_[side.contact];
-  const LostVolume<double> nu = lost(numbers, side.contact);
+  const LostVolume<double>& nu = at.lost[side.contact];
   const bool directional = form_ == Crowd::directional;
   const double felt = directional ? law.felt(sum, nu.nu, own.direction) : sum.volume;
   const double scale = side.area * nu.slope;
@@ -166,7 +171,7 @@ void CrowdSlopes::add_slopes(const CrowdForm& law, const std::vector<BodyState>&
   row[0] += force;
   row[1] += scale * felt * state.by_exponent / state.volume;
   row[2] += scale * felt * state.by_threshold / state.volume;
-  const auto m = numbers[kLaw + 2 * own.kind + 1];
+  const double m = at.numbers[kLaw + 2 * own.kind + 1];
   by_constants(side.contact, force, force * (1.0 / m + std::log(own.lens.volume)));
   if (directional) {
     const double squares[3] = {sum.volume * sum.volume - sum.square, sum.square - norm2(sum.first),
@@ -178,7 +183,7 @@ void CrowdSlopes::add_slopes(const CrowdForm& law, const std::vector<BodyState>&
   }
   const Body& body = bodies_[side.body];
   for (std::size_t c = body.first; c < body.first + body.count; ++c) {
-    const LostVolume<double> other = lost(numbers, c);
+    const LostVolume<double>& other = at.lost[c];
     if (!(other.nu > 0.0)) continue;
     double volume_slope = state.volume;  // S dS/dnu
     double felt_slope = 1.0;
@@ -193,15 +198,14 @@ void CrowdSlopes::add_slopes(const CrowdForm& law, const std::vector<BodyState>&
 }
 
 void CrowdSlopes::slopes(std::span<const double> numbers, std::span<double> slope) const {
-  const CrowdForm law = form_of(numbers);
-  std::vector<BodyState> bodies = body_states(numbers);
-  for (BodyState& b : bodies) std::tie(b.by_exponent, b.by_threshold) = pressure_slopes(law.pressure, b.volume);
+  Evaluation at = evaluation(numbers);
+  for (BodyState& b : at.bodies) std::tie(b.by_exponent, b.by_threshold) = pressure_slopes(at.law.pressure, b.volume);
   std::fill(slope.begin(), slope.end(), 0.0);
   const std::size_t n = this->numbers();
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     const std::span<double> row = slope.subspan(k * n, n);
-    add_slopes(law, bodies, forces_[k].centre, numbers, row);
-    if (forces_[k].has_other) add_slopes(law, bodies, forces_[k].other, numbers, row);
+    add_slopes(at, forces_[k].centre, row);
+    if (forces_[k].has_other) add_slopes(at, forces_[k].other, row);
   }
 }
 

@@ -61,18 +61,16 @@ class CrowdSlopes {
     bool has_other = false;
   };
   struct BodyState;
+  struct Evaluation;
 
   std::size_t kind_of(const CrowdPartner& partner);
   Contact contact_of(const CrowdPartner& partner, double overlap);
   std::size_t add_body(const std::vector<Contact>& contacts);
   void add_state(const OverlapState& state);
   [[nodiscard]] Side other_side(const OverlapState& state, std::size_t k);
-  [[nodiscard]] std::vector<BodyState> body_states(std::span<const double> numbers) const;
-  [[nodiscard]] LostVolume<double> lost(std::span<const double> numbers, std::size_t contact) const;
-  [[nodiscard]] double force_of(const CrowdForm& law, const std::vector<BodyState>& bodies, const Side& side,
-                                std::span<const double> numbers) const;
-  void add_slopes(const CrowdForm& law, const std::vector<BodyState>& bodies, const Side& side,
-                  std::span<const double> numbers, std::span<double> row) const;
+  [[nodiscard]] Evaluation evaluation(std::span<const double> numbers) const;
+  [[nodiscard]] double force_of(const Evaluation& at, const Side& side) const;
+  void add_slopes(const Evaluation& at, const Side& side, std::span<double> row) const;
 
   Crowd form_;
   std::vector<CrowdPartner> kinds_;  ///< one neighbour of each kind and size

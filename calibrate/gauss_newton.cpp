@@ -1,10 +1,9 @@
 #include "calibrate/gauss_newton.h"
 
-#include <Eigen/QR>
-
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "common/core/in_pieces.h"
@@ -106,49 +105,47 @@ Carried<D> carried_by_walls(const System<D>& s) {
   return out;
 }
 
-/// Share of its margin that each body has used up.
+/// With a periodic cell that deforms, where bodies are followed relative to it.
+template <int D>
+Carried<D> carried_by_cell(const System<D>& s) {
+  Carried<D> out;
+  out.moves = follows_cell(s) && !(s.cell.edges == s.neighbours.reference_edges);
+  if (out.moves) out.f = deformation(s.cell, s.neighbours.reference_edges);
+  return out;
+}
+
+/// Share of its margin that each body has used up, relative to a motion that all share.
 template <int D>
 class Uses {
  public:
-  explicit Uses(const System<D>& s) : s_(s), flows_(follows_cell(s)), half_reach_(half_reach(s.laws)) {
-    if (flows_ && !(s.cell.edges == s.neighbours.reference_edges)) {
-      carried_.f = deformation(s.cell, s.neighbours.reference_edges);
-      carried_.moves = true;
-      strain_ = frobenius(without_unit(carried_.f));
-    } else if (!flows_) {
-      drift_ = 0.5 * image_drift(s);
-    }
-  }
-  /// Relative to a motion that all share.
   Uses(const System<D>& s, const Carried<D>& carried)
       : s_(s),
-        flows_(false),
         half_reach_(half_reach(s.laws)),
         carried_(carried),
-        strain_(frobenius(without_unit(carried.f))) {}
+        strain_(frobenius(without_unit(carried.f))),
+        drift_(follows_cell(s) ? 0.0 : 0.5 * image_drift(s)) {}
 
   [[nodiscard]] double of(std::size_t u) const {
-    const System<D>& s = s_;
-    const auto& n = s.neighbours;
-    const Sphere<D>& sphere = s.particles.sphere[u];
+    const auto& n = s_.neighbours;
+    const Sphere<D>& sphere = s_.particles.sphere[u];
     const Vec<D> from = carried_.moves ? carried_.f * n.reference[u] + carried_.shift : n.reference[u];
     const double used = (norm(sphere.x - from) + drift_ + strain_ * (sphere.r + half_reach_ + n.skin[u])) / n.skin[u];
     return std::isfinite(used) ? used : kNever;
   }
 
  private:
-  std::reference_wrapper<const System<D>> s_;
-  bool flows_;
+  const System<D>& s_;
   double half_reach_;
   Carried<D> carried_;
-  double strain_ = 0.0;
-  double drift_ = 0.0;
+  double strain_;
+  double drift_;
 };
 
 template <int D>
-double largest_use(const Uses<D>& uses, std::size_t bodies) {
+double largest_use(const System<D>& s, const Carried<D>& carried) {
+  const Uses<D> uses(s, carried);
   return joined_in_pieces<double>(
-      bodies,
+      at(s.particles.size()),
       [&](std::size_t begin, std::size_t end) {
         double most = 0.0;
         for (std::size_t u = begin; u < end; ++u) most = std::max(most, uses.of(u));
@@ -157,22 +154,20 @@ double largest_use(const Uses<D>& uses, std::size_t bodies) {
       [](double& most, double piece) { most = std::max(most, piece); });
 }
 
-/// How bodies are followed: any motion that all share will do, and the one is taken that leaves the smallest rest.
+/// The motion relative to which bodies are followed, any that all share will do, and the largest share of a margin that
+/// is used up. With the walls only where a new list would be made else.
 template <int D>
 struct Followed {
-  Uses<D> uses;
+  Carried<D> with;
   double largest = 0.0;
 
-  explicit Followed(const System<D>& s) : uses(s), largest(largest_use(uses, at(s.particles.size()))) {
-    constexpr double kFarFromUsedUp = 0.25;  // no reason to look again
-    if (largest <= kFarFromUsedUp) return;
-    const Carried<D> carried = carried_by_walls(s);
-    if (!carried.moves) return;
-    Uses<D> with_walls(s, carried);
-    const double rest = largest_use(with_walls, at(s.particles.size()));
+  explicit Followed(const System<D>& s) : with(carried_by_cell(s)), largest(largest_use(s, with)) {
+    if (largest <= 1.0) return;
+    const Carried<D> walls = carried_by_walls(s);
+    const double rest = walls.moves ? largest_use(s, walls) : kNever;
     if (!(rest < largest)) return;
     largest = rest;
-    uses = with_walls;
+    with = walls;
   }
 };
 
@@ -220,7 +215,7 @@ template <int D>
 class UsedUp {
  public:
   explicit UsedUp(const System<D>& s) : smallest_(smallest_radius(s.particles)), grains_(s.particles.grains) {
-    const Uses<D> uses = Followed<D>(s).uses;
+    const Uses<D> uses(s, Followed<D>(s).with);
     used_.resize(s.particles.sphere.size());
     in_pieces(used_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t u = begin; u < end; ++u) used_[u] = uses.of(u) * s.neighbours.skin[u];

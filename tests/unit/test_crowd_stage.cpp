@@ -60,7 +60,8 @@ class CrowdStage : public ::testing::Test {
   }
   CrowdMeasurements measure(const CrowdLevel* level) {
     const softgrain::Run run(scene_, options_, "run", setup_.seed);
-    CrowdMeasurements data = run_crowd_stage(setup_, run, left_out_, &contents_, level);
+    contents_.clear();
+    CrowdMeasurements data = run_crowd_stage(setup_, run, left_out_, contents_, level);
     run.store.clear();
     return data;
   }

@@ -20,7 +20,8 @@ std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
 }
 
 /// Facts about the inner soft particles, over the packings of the pool.
-void describe_inner(LevelContents& contents, const std::vector<ShellPacking>& pool, HierarchyLevel& level) {
+void describe_inner(LevelContents& contents, HierarchyLevel& level) {
+  const std::vector<ShellPacking>& pool = contents.packings;
   level.inner_low = 1.0;
   for (std::size_t k = 0; k < pool.size(); ++k) {
     const SoftContent content = contents.of(pool[k], static_cast<std::int64_t>(k));
@@ -166,16 +167,16 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   const Stopwatch watch;
   HierarchyLevel level;
   level.number = number;
-  std::vector<ShellPacking> pool;
   const CrowdLevel crowd = crowd_level(setup, contents, number, below);
-  data = run_crowd_stage(setup.crowd, run, level.left_out, &pool, &crowd);
-  if (below != nullptr) describe_inner(contents, pool, level);
+  data = run_crowd_stage(setup.crowd, run, level.left_out, contents.packings, &crowd);
+  if (below != nullptr) describe_inner(contents, level);
   CrowdFitOptions fit;
   fit.seed = run.seed;
   fit.replicates = 0;
   level.entry = fit_crowd_laws(data, fit);
   double grains = 0.0;
-  for (const ShellPacking& p : pool) grains += static_cast<double>(p.radius.size()) / static_cast<double>(pool.size());
+  for (const ShellPacking& p : contents.packings)
+    grains += static_cast<double>(p.radius.size()) / static_cast<double>(contents.packings.size());
   level.grains = grains + (below != nullptr ? level.inner_mean * below->grains : 0.0);
   level.cost = cost_of(data);
   if (below != nullptr) compare_with_below(level, *below, data, *data_below, setup.form);

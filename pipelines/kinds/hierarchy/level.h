@@ -39,12 +39,14 @@ struct HierarchyLevel {
 /// Soft particles in the voids of a packing; deterministic.
 SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing);
 
-/// The same content at every level: packings are filled once.
+/// The same content at every level: packings are made and filled once.
 class LevelContents {
  public:
   explicit LevelContents(const HierarchySetup& setup) : setup_(setup) {}
   /// Of the packing with this number in the pool; safe from several threads.
   SoftContent of(const ShellPacking& packing, std::int64_t number);
+
+  std::vector<ShellPacking> packings;  ///< the pool of all levels, once one has made it
 
  private:
   const HierarchySetup& setup_;

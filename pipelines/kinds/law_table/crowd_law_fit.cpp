@@ -93,9 +93,12 @@ CrowdFitOptions read_crowd_fit(const SceneTable& t) {
   return o;
 }
 
-void require_law_of_crowds(const SceneTable& root, const CrowdSetup& setup, const CrowdFitOptions& fit) {
-  if (setup.packings_max < fit.min_packings)
-    root.table_or_empty("crowd").mistake("packings_max", "below calibrate.min_packings: there would be no fit");
+void require_law_of_crowds(const SceneTable& root, const CrowdSetup& setup, const SceneTable& calibrate,
+                           const CrowdFitOptions& fit) {
+  if (calibrate.sound() && setup.packings_max < fit.min_packings)
+    root.table_or_empty("crowd").mistake(
+        "packings_max", fmt::format("below min_packings = {} of [calibrate{}]: there would be no fit", fit.min_packings,
+                                    root.table_or_empty("calibrate").has("crowd") ? ".crowd" : ""));
   const auto& all = setup.configurations;
   if (std::none_of(all.begin(), all.end(), [](const CrowdConfiguration& c) {
         return c.partners.size() == 1 && c.partners[0].kind == PartnerKind::plane && !c.held_out && !c.centre_free;

@@ -26,8 +26,10 @@ std::string cross_text(const CrowdLaw& law);
 /// Reads `discrepancy`, `replicates`, `min_packings` and `largest_error`. Throws BadInput.
 CrowdFitOptions read_crowd_fit(const SceneTable& t);
 
-/// Mistakes of a scene of which there would be no fit: too few packings, no plane alone.
-void require_law_of_crowds(const SceneTable& root, const CrowdSetup& setup, const CrowdFitOptions& fit);
+/// Mistakes of a scene of which there would be no fit: too few packings, no plane alone. `calibrate`: the table of
+/// `fit`.
+void require_law_of_crowds(const SceneTable& root, const CrowdSetup& setup, const SceneTable& calibrate,
+                           const CrowdFitOptions& fit);
 
 /// Fits `data` and adds an entry at the solid fraction of its packings, between those that are there. `target`: wanted
 /// standard error of mean forces, for the remarks. Throws BadInput when the table has an entry at this solid fraction,

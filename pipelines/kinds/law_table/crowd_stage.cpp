@@ -161,16 +161,19 @@ void require_enough(const CrowdConfiguration& c, std::size_t left, std::size_t t
                               runner.left_out().empty() ? "" : runner.left_out().back()));
 }
 
-std::vector<ShellPacking> generate_pool(const CrowdSetup& setup, const Run& run) {
-  std::vector<ShellPacking> pool(static_cast<std::size_t>(setup.pool()));
-  Progress progress("packing", static_cast<double>(pool.size()), run.context.quiet());
-  parallel_tasks(setup.pool(), [&](std::int64_t k) {
+/// Of the pool, those that are not there.
+void complete_pool(std::vector<ShellPacking>& pool, const CrowdSetup& setup, const Run& run) {
+  const auto there = static_cast<std::int64_t>(pool.size());
+  pool.resize(static_cast<std::size_t>(setup.pool()));
+  const std::int64_t wanted = std::max(setup.pool() - there, std::int64_t{0});
+  Progress progress("packing", static_cast<double>(wanted), run.context.quiet());
+  parallel_tasks(wanted, [&](std::int64_t n) {
     if (interrupt_requested()) throw Interrupted("stopped by a signal while packing");
+    const std::int64_t k = there + n;
     pool[static_cast<std::size_t>(k)] = generate_shell_packing(setup.spec, run.seed, static_cast<std::uint64_t>(k));
     progress.advance();
   });
   progress.finish();
-  return pool;
 }
 
 /// A coarse look at every way of loading; configurations that load alike share it.
@@ -349,8 +352,9 @@ std::vector<CrowdRun> measure_all(const CrowdSetup& setup, CrowdRunner& runner, 
 }  // namespace
 
 CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::vector<std::string>& left_out,
-                                  std::vector<ShellPacking>* contents, const CrowdLevel* level) {
-  const std::vector<ShellPacking> pool = generate_pool(setup, run);
+                                  std::vector<ShellPacking>& known, const CrowdLevel* level) {
+  complete_pool(known, setup, run);
+  const std::vector<ShellPacking>& pool = known;
   std::vector<SoftContent> filled(pool.size());
   parallel_tasks(static_cast<std::int64_t>(pool.size()), [&](std::int64_t k) {
     const ShellPacking& packing = pool[static_cast<std::size_t>(k)];
@@ -366,7 +370,6 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::
   data.runs = measure_all(setup, runner, run);
   left_out.insert(left_out.end(), runner.left_out().begin(), runner.left_out().end());
   save_crowd(data, run.path(level != nullptr ? level->file : "crowd.h5"), run.provenance);
-  if (contents != nullptr) *contents = pool;
   return data;
 }
 

@@ -26,9 +26,10 @@ struct CrowdLevel {
 /// pool of setup.packings_max; soft neighbour number k of packing p holds packing (p + 1 + k) mod packings_max.
 /// Recorded overlaps follow from a pilot of three packings and are the same for all of them. Batches of packings are
 /// added to a configuration until its target is met. Results do not depend on the number of threads. `left_out` gets a
-/// sentence for each run that broke off (a grain was squeezed out of its shell...). `contents`: the pool. Throws
-/// NotUsable when more than half of a configuration's packings broke off, Interrupted.
+/// sentence for each run that broke off (a grain was squeezed out of its shell...). `known`: packings 0, 1, ... that
+/// are there already, of the same soft particle and seed, and in the end the whole pool. Throws NotUsable when more
+/// than half of a configuration's packings broke off, Interrupted.
 CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::vector<std::string>& left_out,
-                                  std::vector<ShellPacking>* contents, const CrowdLevel* level = nullptr);
+                                  std::vector<ShellPacking>& known, const CrowdLevel* level = nullptr);
 
 }  // namespace softgrain

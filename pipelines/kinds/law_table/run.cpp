@@ -29,7 +29,8 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
   LawTableRun result;
   CrowdFitOptions fit = setup.fit;
   fit.seed = run.seed;
-  result.data = run_crowd_stage(setup.crowd, run, result.fit.remarks, nullptr);
+  std::vector<ShellPacking> packings;
+  result.data = run_crowd_stage(setup.crowd, run, result.fit.remarks, packings);
   add_entry(result.fit, result.data, fit, setup.crowd.target);
   result.fit.table.entries.front().main = true;
   for (std::size_t k = 0; k < setup.variants.size(); ++k) {
@@ -37,7 +38,8 @@ LawTableRun measure_and_fit(const LawTableSetup& setup, const Run& run) {
     run.context.say(fmt::format("variant {}: beta = {}, {} trials", k + 1, v.spec.beta, v.spec.trials));
     CrowdLevel named;  // nothing inside the soft particles, but a file of its own
     named.file = fmt::format("crowd_variant_{}.h5", k + 1);
-    add_entry(result.fit, run_crowd_stage(setup_of(v, setup.crowd), run, result.fit.remarks, nullptr, &named), fit,
+    packings.clear();
+    add_entry(result.fit, run_crowd_stage(setup_of(v, setup.crowd), run, result.fit.remarks, packings, &named), fit,
               setup.crowd.target);
   }
   save_law_table(result.fit.table, run.path("law_table.toml"), run.provenance);

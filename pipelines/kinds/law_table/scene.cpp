@@ -50,7 +50,7 @@ LawTableSetup read_law_table(const Scene& scene) {
       if (calibrate.sound() && out.variants.back().packings.value_or(out.crowd.packings_max) < out.fit.min_packings)
         t.mistake("packings", "fewer than calibrate.min_packings: there would be no fit");
     }
-    if (calibrate.sound()) require_law_of_crowds(root, out.crowd, out.fit);
+    require_law_of_crowds(root, out.crowd, calibrate, out.fit);
     return out;
   });
 }

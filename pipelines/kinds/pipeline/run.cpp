@@ -70,7 +70,8 @@ void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& r
   CrowdFitOptions options = wanted.fit;
   options.seed = run.seed;
   try {
-    run.context.guard([&] { result.crowd = run_crowd_stage(wanted.crowd, run, result.crowd_fit.remarks, nullptr); });
+    std::vector<ShellPacking> packings = result.measured.packings;
+    run.context.guard([&] { result.crowd = run_crowd_stage(wanted.crowd, run, result.crowd_fit.remarks, packings); });
     add_entry(result.crowd_fit, result.crowd, options, wanted.crowd.target);
   } catch (const NotUsable& e) {  // the pair law goes on alone
     result.remarks.push_back(fmt::format("no law of crowds: {}", e.what()));
@@ -79,7 +80,6 @@ void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& r
   }
   result.crowd_fit.table.entries.front().main = true;
   save_law_table(result.crowd_fit.table, run.path("law_table.toml"), run.provenance);
-  run.context.say(entries_text(result.crowd_fit.table));
   result.remarks.insert(result.remarks.end(), result.crowd_fit.remarks.begin(), result.crowd_fit.remarks.end());
   result.usable = result.usable && result.crowd_fit.usable;
 }

@@ -18,12 +18,11 @@ LawSources read_crowd_law(const Scene& scene, const SceneTable& law) {
 }
 
 MeasuredTable read_measured_table(const SceneTable& root) {
-  MeasuredTable out{read_crowd_setup(root), read_crowd_fit(root.table_or_empty("calibrate").table_or_empty("crowd"))};
-  require_law_of_crowds(root, out.crowd, out.fit);
+  const SceneTable calibrate = root.table_or_empty("calibrate").table_or_empty("crowd");
+  MeasuredTable out{read_crowd_setup(root), read_crowd_fit(calibrate)};
+  require_law_of_crowds(root, out.crowd, calibrate, out.fit);
   if (out.fit.best == Crowd::pair)
-    root.table("calibrate")
-        .table("crowd")
-        .mistake("best", "the pair law is measured anyway: \"bag\" or \"directional\"");
+    calibrate.mistake("best", "the pair law is measured anyway: \"bag\" or \"directional\"");
   return out;
 }
 
