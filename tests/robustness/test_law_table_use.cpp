@@ -427,4 +427,21 @@ TEST_F(LawTableUse, APipelineMeasuresASmallTableOfItsOwn) {
   EXPECT_EQ(summary("both").at("pair").at("macro").at("law").at("form"), "pair");
 }
 
+/// Pressed in too little, nothing crosses its threshold: that is said, and the pair law goes on alone.
+TEST_F(LawTableUse, APipelineWithoutALawOfCrowdsGoesOnWithItsPairLaw) {
+  std::string text = std::string(kTinyPipeline) +
+                     "resolved = false\n[crowd]\nrelaxation = \"damped\"\npackings_min = 4\n"
+                     "packings_max = 4\npoints = 2\n[[configuration]]\narrangement = \"one\"\npartner = \"plane\"\n"
+                     "overlap = 0.02\n";
+  write_text_atomic(file("shallow.toml"), text);
+  expect(run_the_program("run '" + file("shallow.toml") + "' --quiet --out '" + file("shallow") + "'"), 3,
+         {"no law of crowds", "press deeper"});
+  EXPECT_FALSE(std::filesystem::exists(file("shallow") + "/law_table.toml"));
+  EXPECT_FALSE(summary("shallow").contains("pair"));
+  const auto curves = load_macro(file("shallow") + "/macro.h5");
+  ASSERT_EQ(curves.size(), 1U);
+  EXPECT_EQ(curves[0].law.form, Crowd::pair);
+  EXPECT_GT(curves[0].stress_axial.back(), 0.0);
+}
+
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -67,21 +68,28 @@ void fit(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
 void measure_table(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   if (!setup.measured_table) return;
   const MeasuredTable& wanted = *setup.measured_table;
+  CrowdLawFit& fit = result.crowd_fit;
   CrowdFitOptions options = wanted.fit;
   options.seed = run.seed;
+  std::string why;
   try {
     std::vector<ShellPacking> packings = result.measured.packings;
-    run.context.guard([&] { result.crowd = run_crowd_stage(wanted.crowd, run, result.crowd_fit.remarks, packings); });
-    add_entry(result.crowd_fit, result.crowd, options, wanted.crowd.target);
-  } catch (const NotUsable& e) {  // the pair law goes on alone
-    result.remarks.push_back(fmt::format("no law of crowds: {}", e.what()));
-    result.usable = false;
-    return;
+    run.context.guard([&] { result.crowd = run_crowd_stage(wanted.crowd, run, fit.remarks, packings); });
+    add_entry(fit, result.crowd, options, wanted.crowd.target);
+  } catch (const BadInput& e) {  // what is left could not be fitted
+    why = e.what();
+  } catch (const NotUsable& e) {
+    why = e.what();
   }
-  result.crowd_fit.table.entries.front().main = true;
-  save_law_table(result.crowd_fit.table, run.path("law_table.toml"), run.provenance);
-  result.remarks.insert(result.remarks.end(), result.crowd_fit.remarks.begin(), result.crowd_fit.remarks.end());
-  result.usable = result.usable && result.crowd_fit.usable;
+  if (!why.empty()) {  // the pair law goes on alone
+    fit.remarks.push_back("no law of crowds: " + why);
+    fit.usable = false;
+  } else {
+    fit.table.entries.front().main = true;
+    save_law_table(fit.table, run.path("law_table.toml"), run.provenance);
+  }
+  result.remarks.insert(result.remarks.end(), fit.remarks.begin(), fit.remarks.end());
+  result.usable = result.usable && fit.usable;
 }
 
 bool has_crowd_law(const PipelineSetup& setup, const PipelineResult& result) {
@@ -176,7 +184,7 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
   s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
-  if (setup.measured_table)
+  if (!r.crowd_fit.table.entries.empty())
     for (const char* file : {"crowd.h5", "law_table.toml", "law_table.h5"}) s.head.files[file] = run.path(file);
   s.bands = r.bands;
   s.band_ends = banded_ends(r.curves);
@@ -250,7 +258,9 @@ void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
   const MeasureTrial trial = check_measurements(setup.measure, out);
   if (setup.measured_table) {
     check_configurations(setup.measured_table->crowd, out);
-    spend_on_packings(setup.measured_table->crowd, trial, 1.0, out);
+    const auto pool = static_cast<double>(setup.measured_table->crowd.pool());
+    const auto there = static_cast<double>(setup.measure.packings());
+    spend_on_packings(setup.measured_table->crowd, trial, std::max(0.0, 1.0 - there / pool), out);
     spend_on_crowd(setup.measured_table->crowd, trial, 1.0, "measuring with many neighbours", out);
   }
   if (!setup.macro) return;
