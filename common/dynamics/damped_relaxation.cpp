@@ -16,6 +16,8 @@ namespace {
 
 /// Passes between two updates of masses and two tests for convergence.
 constexpr std::int64_t kMassInterval = PseudoMasses::kInterval;
+/// Passes in which the lead of single bodies doubles.
+constexpr std::int64_t kLeadDoubles = 2000;
 
 template <int N>
 void limit_length(Quad& v, double longest) {
@@ -73,10 +75,25 @@ Fire::Steering DampedRelaxation<D>::steer(System<D>& s, RelaxingFrame<D>* frame)
 }
 
 template <int D>
-double DampedRelaxation<D>::move(System<D>& s, const Fire::Steering& steering, std::size_t begin, std::size_t end) {
+double DampedRelaxation<D>::longest_move(const Particles<D>& p, std::int64_t pass) const {
+  if (!std::isfinite(options_.max_lead)) return options_.max_move;
+  const double speed2 = sum_in_pieces<double>(inverse_mass_.size(), [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t u = begin; u < end; ++u)
+      if (inverse_mass_[u] > 0.0) sum += norm2(p.velocity[u]) / (p.sphere[u].r * p.sphere[u].r);
+    return sum;
+  });
+  const double typical = fire_.step * std::sqrt(speed2 / static_cast<double>(inverse_mass_.size()));
+  const double lead = options_.max_lead * std::exp2(static_cast<double>(pass / kLeadDoubles));
+  return typical > 0.0 ? std::min(options_.max_move, lead * typical) : options_.max_move;
+}
+
+template <int D>
+double DampedRelaxation<D>::move(System<D>& s, const Fire::Steering& steering, double longest, std::size_t begin,
+                                 std::size_t end) {
   auto& p = s.particles;
   const SkinUse<D> use(s);
-  const double fastest = options_.max_move / fire_.step;
+  const double fastest = longest / fire_.step;
   double used2 = 0.0;
   for (std::size_t u = begin; u < end; ++u) {
     Quad velocity = quad_of(p.velocity[u]);
@@ -116,9 +133,10 @@ void DampedRelaxation<D>::turn(Particles<D>& p, const Fire::Steering& steering, 
 }
 
 template <int D>
-void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering) {
+void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering, std::int64_t pass) {
+  const double longest = longest_move(s.particles, pass);
   const double used2 = joined_in_pieces<double>(
-      inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return move(s, steering, begin, end); },
+      inverse_mass_.size(), [&](std::size_t begin, std::size_t end) { return move(s, steering, longest, begin, end); },
       [](double& most, double piece) { most = std::max(most, piece); });
   watch_.moved(fire_.step * std::sqrt(used2));
 }
@@ -151,7 +169,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
       scale_masses(s, frame);
     }
     const Fire::Steering steering = steer(s, frame);
-    move_all(s, steering);
+    move_all(s, steering, result.passes);
     if (frame != nullptr) frame->carry(s, fire_.step);
     if (frame != nullptr || flows) watch_.forget();
     watch_.require_list(s);

@@ -2,6 +2,7 @@
 // contact laws, friction included, without physical inertia.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "common/dynamics/fire.h"
@@ -17,7 +18,10 @@ struct DampedOptions {
   double restless = 0.0;     ///< share of the bodies, rounded down, whose net force may be larger
   double force_floor = 0.0;  ///< the mean contact force never counts for less than this [N]
   std::int64_t max_passes = 20000;
-  double max_move = 0.05;        ///< largest move of a body per pass, in its radius
+  double max_move = 0.05;  ///< largest move of a body per pass, in its radius
+  /// No body moves farther per pass than this times the root mean square move of all, both in radii: the few that fly
+  /// would use up the margins of the neighbour list. Doubles every 2,000 passes, so that nothing waits for ever.
+  double max_lead = std::numeric_limits<double>::infinity();
   double least_stiffness = 0.0;  ///< no body counts as softer than this times its radius [Pa]; 0: a share of the mean
 };
 
@@ -80,11 +84,13 @@ class DampedRelaxation {
   [[nodiscard]] typename RelaxingFrame<D>::Sums sums_of(const Particles<D>& p, std::size_t begin,
                                                         std::size_t end) const;
   Fire::Steering steer(System<D>& system, RelaxingFrame<D>* frame);
+  /// The largest move in the next pass, the first being 0 [radii].
+  [[nodiscard]] double longest_move(const Particles<D>& p, std::int64_t pass) const;
   /// Velocities take the steering and the forces, which go to zero; places take the velocities. Returns the square of
   /// the largest share of its margin in the neighbour list that a body uses up per time.
-  double move(System<D>& system, const Fire::Steering& steering, std::size_t begin, std::size_t end);
+  double move(System<D>& system, const Fire::Steering& steering, double longest, std::size_t begin, std::size_t end);
   void turn(Particles<D>& p, const Fire::Steering& steering, std::size_t begin, std::size_t end) const;
-  void move_all(System<D>& system, const Fire::Steering& steering);
+  void move_all(System<D>& system, const Fire::Steering& steering, std::int64_t pass);
 
   DampedOptions options_;
   BodyStiffness stiffness_;

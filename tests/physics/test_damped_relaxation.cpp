@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include <cmath>
+#include <limits>
 
 #include "common/dynamics/force_pass.h"
 #include "microsim/shell_packing.h"
@@ -52,6 +53,38 @@ TEST(DampedRelaxation, AGrainBetweenPlanesGoesToTheMiddle) {
     EXPECT_NEAR(-s.particles.force[1][2], hertz_force(0.0004), 1e-8 * hertz_force(0.0004)) << start;
     EXPECT_NEAR(s.particles.force[2][2], hertz_force(0.0004), 1e-8 * hertz_force(0.0004)) << start;
   }
+}
+
+/// Grains of a row between two planes: all but the last one are near the middle.
+System3 row_with_one_apart() {
+  System3 s = hertz_system<3>(0.3, 1.0, false);
+  for (int k = 0; k < 10; ++k)
+    add_grain(s.particles, test_sphere<3>({{0.1 * k, 0.0, k < 9 ? 0.0096 + 1e-6 : 0.0093}}, kRadius, 2500.0));
+  add_floor_and_ceiling(s, 0.0192);
+  return s;
+}
+
+TEST(DampedRelaxation, NoneLeadsTheOthersByMoreThanAllowed) {
+  const auto gone = [](double lead, std::int64_t passes, double& others) {
+    System3 s = row_with_one_apart();
+    DampedOptions options;
+    options.tolerance = 1e-10;
+    options.max_passes = passes;
+    options.max_lead = lead;
+    const RelaxationResult result = DampedRelaxation<3>(options).relax(s);
+    EXPECT_EQ(result.end, passes > 10 ? RelaxationEnd::converged : RelaxationEnd::capped);
+    others = s.particles.sphere[0].x[2] - (0.0096 + 1e-6);
+    return s.particles.sphere[9].x[2] - 0.0093;
+  };
+  double others = 0.0;
+  const double free = gone(std::numeric_limits<double>::infinity(), 10, others);
+  // The first pass has no typical move yet. Then the one apart moves at most 1.5 times as far as the root mean square,
+  // which is itself of a tenth of the grains: sqrt(0.1) of its last move.
+  const double held = gone(1.5, 10, others);
+  EXPECT_LT(held, 0.5 * free);
+  EXPECT_GT(held, 0.0);
+  EXPECT_NEAR(gone(1.5, 20000, others), 0.0003, 1e-11);
+  EXPECT_NEAR(others, -1e-6, 1e-11);
 }
 
 TEST(DampedRelaxation, UnderGravityTheFloorCarriesTheWeight) {
