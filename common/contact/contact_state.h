@@ -52,6 +52,8 @@ struct ContactState {
   T radius_j{};                           ///< 0 for a plane, negative for the inside of a shell
   const CrowdSum<D, T>* sum_i = nullptr;  ///< of the particle pass, for laws that ask for it: all contacts of body i
   const CrowdSum<D, T>* sum_j = nullptr;
+  const T* lost_i = nullptr;  ///< what the contact takes from body i, where a particle pass has kept it
+  const T* lost_j = nullptr;
 };
 
 /// Answer of a law: force on i is normal_force * normal + tangential_force.

@@ -168,7 +168,7 @@ struct SoftCrowd {
     const bool both = i_is_soft && j_is_soft;
     const T w = both && !of_i ? s.constants.b : s.constants.a;
     const T m = both ? T(partner.common_exponent) : s.constants.b;
-    return lost_volume(lens<T>(felt_overlap(s) / own, curvature), w, m);
+    return lost_volume(lens<T>(felt_overlap(s) / own, curvature), w, m, of_i ? s.lost_i : s.lost_j);
   }
 
   template <int D, class T>

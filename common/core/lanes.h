@@ -3,6 +3,7 @@
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -77,13 +78,11 @@ T power(const T& x, const std::type_identity_t<T>& y) {
   if constexpr (std::is_same_v<Mask<T>, bool>)
     return std::pow(x, y);
   else {
-    std::array<double, T::size()> base, exponent;
-    for (std::size_t l = 0; l < T::size(); ++l) {
-      base[l] = x[l];
-      exponent[l] = y[l];
-    }
+    using Numbers = std::array<double, T::size()>;
+    auto base = std::bit_cast<Numbers>(x);
+    const auto exponent = std::bit_cast<Numbers>(y);
     powers_of(base.data(), exponent.data(), base.data(), T::size());
-    return T([&](auto lane) { return base[lane]; });
+    return std::bit_cast<T>(base);
   }
 }
 

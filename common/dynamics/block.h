@@ -81,8 +81,8 @@ struct Block {
   Rows<kRollsOf<D>> roll_moment;  ///< likewise in space
   Row rolling_stiffness;
   Row normal_force, stiffness, tangential_stiffness;
-  Rows<D> normal;        ///< of the particle pass
-  Row taken_i, taken_j;  ///< of the particle pass
+  Rows<D> normal;      ///< of the particle pass
+  Row lost_i, lost_j;  ///< results of the particle pass, then what laws are told of them
 };
 
 /// Position with the radius in the fourth place.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -34,6 +35,7 @@ class Gatherer {
 
  protected:
   static constexpr bool kOrdered = kTake == Take::ordered;
+  static constexpr bool kSumsUp = kTraits.is_crowd && !kTraits.has_tangential;  ///< the first half of a particle pass
 
   static std::size_t u(std::int32_t k) { return static_cast<std::size_t>(k); }
 
@@ -157,14 +159,18 @@ class Gatherer {
       const std::size_t place = u(c[l]);
       const std::size_t j = u(second[place]);
       __builtin_prefetch(&p.sphere[u(second[std::min(place + kLater, last)])]);
-      __builtin_prefetch(&p.force[j], 1);
+      if constexpr (!kSumsUp) __builtin_prefetch(&p.force[j], 1);
       if constexpr (kTraits.needs_velocity) __builtin_prefetch(&p.velocity[j]);
       if constexpr (kTraits.has_tangential) {
         __builtin_prefetch(&p.spin[j]);
         __builtin_prefetch(&p.torque[j], 1);
       }
-      if constexpr (kTraits.needs_particle_pass)
-        if (kernel_.sums.j) __builtin_prefetch(&list_.particle_sum[j]);
+      if constexpr (kTraits.needs_particle_pass || kSumsUp)
+        if (kernel_.sums.j) {
+          __builtin_prefetch(&list_.particle_sum[j], kSumsUp ? 1 : 0);
+          if constexpr (kTraits.directions_in_sums)
+            __builtin_prefetch(&list_.particle_sum[j].second[1], kSumsUp ? 1 : 0);
+        }
     }
     const std::size_t place = u(c[0]);
     __builtin_prefetch(&list_.constants[place]);
@@ -226,6 +232,7 @@ class Gatherer {
     const PairConstants* const all_constants = list_.constants.data();
     for (int g = 0; g < block_.touching; g += 4) {
       std::array<Quad, 4> branch, motion, spin_i, spin_j, spring, normal, roll;
+      [[maybe_unused]] std::array<const CrowdSum<D>*, 4> sum_i, sum_j;
       for (std::size_t l = 0; l < 4; ++l) {
         const std::size_t c = u(block_.pair[u(g) + l]);
         const std::size_t i = u(first[c]);
@@ -243,14 +250,16 @@ class Gatherer {
           spring[l] = quad_of(springs[c]);
         }
         if constexpr (kRolls) roll[l] = quad_of(list_.roll[c]);
-        if constexpr (kTraits.is_crowd && !kTraits.has_tangential) {
+        if constexpr (kSumsUp) {
           block_.radius_i.v[u(g) + l] = spheres[i].r;
           block_.radius_j.v[u(g) + l] = spheres[j].r;
         }
         if constexpr (kTraits.has_memory) block_.memory.v[u(g) + l] = list_.memory[c];
         if constexpr (kTraits.needs_particle_pass) {
-          if (kernel_.sums.i) gather_sum(block_.sum_i, u(g) + l, sums[i]);
-          if (kernel_.sums.j) gather_sum(block_.sum_j, u(g) + l, sums[j]);
+          sum_i[l] = &sums[i];
+          sum_j[l] = &sums[j];
+          block_.lost_i.v[u(g) + l] = list_.lost_i[c];
+          block_.lost_j.v[u(g) + l] = list_.lost_j[c];
         }
         if constexpr (kGeometry == Geometry::sphere_plane) normal[l] = block_.upright_record[u(g) + l];
       }
@@ -275,6 +284,10 @@ class Gatherer {
         transpose(spring[0], spring[1], spring[2], spring[3]);
         store_rows<D>(block_.spring, g, spring);
       }
+      if constexpr (kTraits.needs_particle_pass) {
+        if (kernel_.sums.i) gather_sums(block_.sum_i, g, sum_i);
+        if (kernel_.sums.j) gather_sums(block_.sum_j, g, sum_j);
+      }
       if constexpr (kRolls) {
         transpose(roll[0], roll[1], roll[2], roll[3]);
         store_rows<D>(block_.roll, g, roll);
@@ -282,14 +295,23 @@ class Gatherer {
     }
   }
 
-  static void gather_sum(SumRows<D>& rows, std::size_t k, const CrowdSum<D>& sum) {
-    rows.volume.v[k] = sum.volume;
+  /// Four sums become columns of the rows, see CrowdSum.
+  static void gather_sums(SumRows<D>& rows, int g, const std::array<const CrowdSum<D>*, 4>& sums) {
+    static_assert(D != 3 || offsetof(CrowdSum<3>, second) == 7 * sizeof(double));
+    std::array<Quad, 4> numbers;
+    const auto columns = [&](int group, const std::array<Row*, 4>& to) {
+      for (std::size_t l = 0; l < 4; ++l)
+        numbers[l] = load_quad(reinterpret_cast<const double*>(sums[l]) + 4 * group);  // NOLINT: in groups of four
+      transpose(numbers[0], numbers[1], numbers[2], numbers[3]);
+      for (std::size_t k = 0; k < 4; ++k)
+        if (to[k] != nullptr) store_quad(to[k]->v + g, numbers[k]);
+    };
+    columns(0, {&rows.volume, &rows.gain, &rows.gain_slope, nullptr});
     if constexpr (kTraits.directions_in_sums) {
-      for (int a = 0; a < D; ++a) rows.first[static_cast<std::size_t>(a)].v[k] = sum.first[a];
-      for (std::size_t a = 0; a < sum.second.size(); ++a) rows.second[a].v[k] = sum.second[a];
+      columns(1, {rows.first.data(), &rows.first[1], &rows.first[2], rows.second.data()});
+      columns(2, {&rows.second[1], &rows.second[2], &rows.second[3], &rows.second[4]});
+      for (std::size_t l = 0; l < 4; ++l) rows.second[5].v[u(g) + l] = sums[l]->second[5];
     }
-    rows.gain.v[k] = sum.gain;
-    rows.gain_slope.v[k] = sum.gain_slope;
   }
 
   System<D>& s_;

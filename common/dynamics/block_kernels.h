@@ -67,11 +67,16 @@ template <int D, Geometry kGeometry, class Law>
       s.normal_speed = dot(at<D>(b.velocity, g), geometry.normal);
     if constexpr (kLaw.has_rolling) s.turning = at<kRot<D>>(b.spin_i, g) - at<kRot<D>>(b.spin_j, g);
     CrowdSum<D, Lanes> sum_i, sum_j;
+    Lanes lost_i, lost_j;
     if constexpr (kLaw.needs_particle_pass) {
       sum_i = sum_at<D, kLaw.directions_in_sums>(b.sum_i, g);
       sum_j = sum_at<D, kLaw.directions_in_sums>(b.sum_j, g);
       s.sum_i = &sum_i;
       s.sum_j = &sum_j;
+      lost_i = b.lost_i.at(g);
+      lost_j = b.lost_j.at(g);
+      s.lost_i = &lost_i;
+      s.lost_j = &lost_j;
     }
     const ContactResponse<D, Lanes> r = law.evaluate(s);
     if constexpr (kLaw.has_tangential) {
@@ -106,8 +111,8 @@ template <int D, Geometry kGeometry, class Law>
     const ContactGeometry<D, Lanes> geometry = geometry_at<D, kGeometry>(b, g);
     const ContactState<D, Lanes> s = state_at<D, kGeometry, Law>(b, g, geometry);
     put<D>(b.normal, g, geometry.normal);
-    if (law.soft_sides().i) b.taken_i.put(g, law.taken(s, true));
-    if (law.soft_sides().j) b.taken_j.put(g, law.taken(s, false));
+    if (law.soft_sides().i) b.lost_i.put(g, law.taken(s, true));
+    if (law.soft_sides().j) b.lost_j.put(g, law.taken(s, false));
   }
 }
 

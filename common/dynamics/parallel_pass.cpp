@@ -245,15 +245,11 @@ class Pass {
   /// The two halves of the particle pass.
   void add_shares(std::size_t thread) {
     const OwnBodies own{plan_.owner.data(), static_cast<std::uint8_t>(thread)};
-    auto& sums = s_.contacts.particle_sum;
-    for (std::size_t u = 0; u < sums.size(); ++u)
-      if (own(static_cast<Slot>(u))) sums[u] = {};
+    clear_particle_sums(s_, own);
     for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k)
       for (const PairRange& stretch : plan_.shares[thread][k].touching)
         add_particle_shares<D>(s_, s_.contacts.sections[k], stretch, own);
-    for (std::size_t k = 0; k < s_.contacts.sections.size(); ++k)
-      for (const PairRange& stretch : plan_.shares[thread][k].touching)
-        close_particle_sums<D>(s_, s_.contacts.sections[k], stretch, own);
+    close_particle_sums<D>(s_, own);
   }
 
   void put_down(std::size_t thread) {

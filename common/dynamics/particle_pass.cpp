@@ -8,17 +8,19 @@ namespace {
 
 using namespace block;
 
+template <class Law>
+constexpr LawTraits kAskedOfShares{
+    .has_memory = Law::traits.memory_in_sums, .directions_in_sums = Law::traits.directions_in_sums, .is_crowd = true};
+
 /// The first half of the particle pass: what every contact takes from its bodies.
 template <class Law, Geometry kGeometry, bool kPeriodic>
-class Shares : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic,
-                        Take::all> {
-  using Base = Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .is_crowd = true}, kGeometry, kPeriodic,
-                        Take::all>;
+class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, Take::all> {
+  using Base = Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, Take::all>;
   using Base::block_, Base::list_, Base::u;
 
  public:
   Shares(System<3>& s, const Law& law, const PairRange& range, OwnBodies own)
-      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0, {}}, range, {}), law_(law), own_(own) {}
+      : Base(s, {&law, &take<3, kGeometry, Law>, 0.0, law.soft_sides()}, range, {}), law_(law), own_(own) {}
 
   void run() {
     for (std::int32_t k = this->range_.begin; k < this->range_.end; k += kBlock) {
@@ -33,18 +35,37 @@ class Shares : Gatherer<3, LawTraits{.has_memory = Law::traits.memory_in_sums, .
  private:
   void add(int n) {
     const std::size_t c = u(block_.pair[u(n)]);
-    const Vec<3> normal{{block_.normal[0].v[n], block_.normal[1].v[n], block_.normal[2].v[n]}};
+    const Quad normal{block_.normal[0].v[n], block_.normal[1].v[n], block_.normal[2].v[n], 0.0};
     const Slot i = list_.i[c];
     const Slot j = list_.j[c];
-    if (law_.i_is_soft && own_(i)) Law::add(block_.taken_i.v[n], -normal, list_.particle_sum[u(i)]);
-    if (law_.j_is_soft && own_(j)) Law::add(block_.taken_j.v[n], normal, list_.particle_sum[u(j)]);
+    if (own_(i)) {
+      list_.lost_i[c] = block_.lost_i.v[n];
+      list_.lost_j[c] = block_.lost_j.v[n];
+    }
+    if (law_.i_is_soft && own_(i)) add(block_.lost_i.v[n], -normal, list_.particle_sum[u(i)]);
+    if (law_.j_is_soft && own_(j)) add(block_.lost_j.v[n], normal, list_.particle_sum[u(j)]);
+  }
+
+  /// Law::add, four numbers at once.
+  static void add(double nu, Quad n, CrowdSum<3>& sum) {
+    double* const numbers = &sum.volume;
+    const auto to = [&](int group, Quad more) {
+      store_quad(numbers + 4 * group, load_quad(numbers + 4 * group) + more);  // NOLINT: they lie in groups of four
+    };
+    to(0, Quad{nu, 0.0, 0.0, nu * nu});
+    if constexpr (Law::traits.directions_in_sums) {
+      const Quad first = n * nu;
+      to(1, Quad{first[0], first[1], first[2], first[0] * n[0]});
+      to(2, Quad{first[0], first[0], first[1], first[1]} * Quad{n[1], n[2], n[1], n[2]});
+      sum.second[5] += first[2] * n[2];
+    }
   }
 
   const Law& law_;
   OwnBodies own_;
 };
 
-/// Closes sums, each once, several at a time.
+/// Closes sums, several at a time.
 template <class Law>
 class Closing {
  public:
@@ -93,32 +114,44 @@ void add_particle_shares(System<3>& s, const ContactSection& section, const Pair
   });
 }
 
-template <>
-void close_particle_sums(System<2>&, const ContactSection&, const PairRange&, OwnBodies) {}
+template <int D>
+void clear_particle_sums(System<D>& s, OwnBodies own) {
+  for (const CrowdBody& crowd : s.contacts.crowd_bodies)
+    if (own(crowd.body)) s.contacts.particle_sum[at(crowd.body)] = {};
+}
 
 template <>
-void close_particle_sums(System<3>& s, const ContactSection& section, const PairRange& range, OwnBodies own) {
-  open(s, section, [&]<class Law>(const Law& law, auto) {
-    if constexpr (Law::traits.needs_particle_pass) {
-      Closing<Law> closing(law);
-      for (std::int32_t c = range.begin; c < range.end; ++c)
-        for (const Slot body : {s.contacts.i[at(c)], s.contacts.j[at(c)]})
-          if (own(body)) closing.add(s.contacts.particle_sum[at(body)]);
-      closing.close();
-    }
-  });
+void close_particle_sums(System<2>&, OwnBodies) {}
+
+template <>
+void close_particle_sums(System<3>& s, OwnBodies own) {
+  const auto& bodies = s.contacts.crowd_bodies;
+  for (std::size_t begin = 0, end = 0; begin < bodies.size(); begin = end) {
+    while (end < bodies.size() && bodies[end].law == bodies[begin].law) ++end;
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          if constexpr (Law::traits.needs_particle_pass) {
+            Closing<Law> closing(law);
+            for (std::size_t k = begin; k < end; ++k)
+              if (own(bodies[k].body)) closing.add(s.contacts.particle_sum[at(bodies[k].body)]);
+            closing.close();
+          }
+        },
+        s.laws.law(bodies[begin].law));
+  }
 }
 
 template <int D>
 void particle_pass(System<D>& s) {
   if (s.contacts.particle_sum.empty()) return;
-  std::fill(s.contacts.particle_sum.begin(), s.contacts.particle_sum.end(), CrowdSum<D>{});
+  clear_particle_sums(s, {});
   for (const ContactSection& section : s.contacts.sections)
     add_particle_shares<D>(s, section, {section.begin, section.end}, {});
-  for (const ContactSection& section : s.contacts.sections)
-    close_particle_sums<D>(s, section, {section.begin, section.end}, {});
+  close_particle_sums<D>(s, {});
 }
 
+template void clear_particle_sums<2>(System<2>&, OwnBodies);
+template void clear_particle_sums<3>(System<3>&, OwnBodies);
 template void particle_pass<2>(System<2>&);
 template void particle_pass<3>(System<3>&);
 

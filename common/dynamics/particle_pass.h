@@ -21,11 +21,13 @@ struct OwnBodies {
   bool operator()(Slot body) const { return owner == nullptr || owner[at(body)] == thread; }
 };
 
-/// Its two halves for own bodies: what contacts take from them, whose sums must be empty; and the closing of their sums
-/// once all sections were seen. Nothing in the plane.
+/// Its parts for own bodies: sums become empty; contacts of a range take their shares; and sums are closed once all
+/// sections were seen. Nothing in the plane.
+template <int D>
+void clear_particle_sums(System<D>& system, OwnBodies own);
 template <int D>
 void add_particle_shares(System<D>& system, const ContactSection& section, const PairRange& range, OwnBodies own);
 template <int D>
-void close_particle_sums(System<D>& system, const ContactSection& section, const PairRange& range, OwnBodies own);
+void close_particle_sums(System<D>& system, OwnBodies own);
 
 }  // namespace softgrain

@@ -235,6 +235,8 @@ void size_history(ContactList<D>& list, const LawSet& laws, std::size_t bodies) 
   list.roll_next.clear();
   list.touched.assign(list.i.size(), 1);
   list.particle_sum.assign(sums ? bodies : 0, CrowdSum<D>{});
+  list.lost_i.resize(sums ? list.i.size() : 0);
+  list.lost_j.resize(sums ? list.i.size() : 0);
 }
 
 template <int D>
@@ -250,6 +252,30 @@ void fill_constants(System<D>& s) {
           });
         },
         s.laws.law(section.law));
+}
+
+/// Soft particles go with the first section that lists them.
+template <int D>
+void note_crowd_bodies(System<D>& s) {
+  ContactList<D>& list = s.contacts;
+  list.crowd_bodies.clear();
+  if (list.particle_sum.empty()) return;
+  std::vector<std::int32_t> law_of(list.particle_sum.size(), LawSet::kNoContact);
+  const auto note = [&](Slot body, std::int32_t law) {
+    if (law_of[at(body)] == LawSet::kNoContact) law_of[at(body)] = law;
+  };
+  for (const ContactSection& section : list.sections) {
+    if (!traits_of(s.laws.law(section.law)).needs_particle_pass) continue;
+    const SoftSides soft = soft_sides(s.laws.law(section.law));
+    for (std::size_t c = at(section.begin); c < at(section.end); ++c) {
+      if (soft.i) note(list.i[c], section.law);
+      if (soft.j) note(list.j[c], section.law);
+    }
+  }
+  for (std::int32_t law = 0; law < s.laws.size(); ++law)
+    if (traits_of(s.laws.law(law)).needs_particle_pass)
+      for (std::size_t u = 0; u < law_of.size(); ++u)
+        if (law_of[u] == law) list.crowd_bodies.push_back({static_cast<Slot>(u), law});
 }
 
 /// Radii from the origin beyond which a grain is lost: its overlap with a neighbour would be no number of 53 bits.
@@ -336,6 +362,7 @@ template <int D>
 void adopt_list(System<D>& s) {
   fill_constants(s);
   size_history(s.contacts, s.laws, static_cast<std::size_t>(s.particles.size()));
+  note_crowd_bodies(s);
   note_skin(s);
   static std::atomic<std::uint64_t> builds{0};
   s.contacts.build = ++builds;

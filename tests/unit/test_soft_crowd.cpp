@@ -48,8 +48,13 @@ TEST(CrowdForm, LensIsWhatTheOtherBodyCovers) {
 }
 
 TEST(CrowdForm, CapDepthInvertsTheVolumeOfACap) {
-  for (const double d : {1e-6, 1e-3, 0.03, 0.1, 0.5, 1.0, 1.6, 1.99})
-    EXPECT_NEAR(cap_depth(lens(d, 0.0).volume), d, 1e-9 * d + 1e-13) << d;
+  for (const double d : {1e-6, 1e-3, 0.03, 0.1, 0.5, 0.9999, 1.0, 1.0001, 1.6, 1.99})
+    EXPECT_NEAR(cap_depth(lens(d, 0.0).volume), d, 1e-14 * d) << d;
+  EXPECT_EQ(cap_depth(0.0), 0.0);
+  for (const double beyond : {1.0, 1.5}) {  // a finite pressure, if one of no meaning
+    EXPECT_NEAR(cap_depth(beyond), 2.0, 1e-7);
+    EXPECT_LT(cap_depth(beyond), 2.0);
+  }
 }
 
 const CrowdPressure kPressure{0.8, 3.0, 0.09};
