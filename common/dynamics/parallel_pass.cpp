@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/core/in_pieces.h"
 #include "common/dynamics/block_loop.h"
 #include "common/dynamics/particle_pass.h"
 #include "common/dynamics/thread_pace.h"
@@ -53,8 +54,9 @@ struct Plan {
   bool rolls = false;               ///< some law of the scene has rolling resistance
   bool shares_sums = false;         ///< the particle pass goes by threads: they find their pairs in long stretches
   std::vector<std::uint8_t> owner;  ///< thread of every body
-  std::vector<std::uint8_t> lent;   ///< by place in the list, 1: the pair has bodies of two threads
-  std::vector<std::vector<Share>> shares;  ///< [thread][section]
+  std::vector<std::vector<BodyRange>> bodies;  ///< the same by threads, as stretches
+  std::vector<std::uint8_t> lent;              ///< by place in the list, 1: the pair has bodies of two threads
+  std::vector<std::vector<Share>> shares;      ///< [thread][section]
 };
 
 /// Stretches of the space-filling curve with the given shares of all pairs. Grains of a large scene lie along it, size
@@ -78,6 +80,20 @@ std::vector<std::uint8_t> owners_of(const System<D>& s, const std::vector<double
   std::vector<std::uint8_t> owner(s.particles.sphere.size(), 0);
   for (std::size_t u = 0; u < part.size(); ++u) owner[u] = thread_of[part[u]];
   return owner;
+}
+
+/// Of each thread; nothing where bodies do not lie in spatial order, so that stretches are short.
+std::vector<std::vector<BodyRange>> stretches_of(const std::vector<std::uint8_t>& owner, std::size_t threads) {
+  constexpr std::size_t kShort = 4;
+  std::size_t many = 0;
+  std::vector<std::vector<BodyRange>> stretches(threads);
+  for (std::size_t begin = 0, end = 0; begin < owner.size(); begin = end) {
+    while (end < owner.size() && owner[end] == owner[begin]) ++end;
+    stretches[owner[begin]].push_back({begin, end});
+    ++many;
+  }
+  if (many * kShort > owner.size()) stretches.clear();
+  return stretches;
 }
 
 /// Pairs of two threads in a row that a stretch goes over, and the pairs of a stretch, on average, from which it pays
@@ -169,6 +185,7 @@ template <int D>
 void make_plan(const System<D>& s, std::size_t threads, Plan& plan) {
   plan.pace.share_out(threads);
   plan.owner = owners_of(s, plan.pace.share);
+  plan.bodies = stretches_of(plan.owner, threads);
   plan.build = s.contacts.build;
   plan.rolls = false;
   for (std::int32_t l = 0; l < s.laws.size(); ++l) plan.rolls = plan.rolls || traits_of(s.laws.law(l)).has_rolling;
@@ -314,6 +331,23 @@ void parallel_pass(System<D>& s, double dt, History history, int threads, BodySt
   ++plan.pace.passes;
 }
 
+template <int D>
+std::vector<std::vector<BodyRange>> bodies_of_threads(System<D>& s) {
+  const std::size_t bodies = s.particles.sphere.size();
+  const int most = omp_in_parallel() == 0 && bodies >= kParallelLength ? std::min(omp_get_max_threads(), 255) : 1;
+  const auto threads = static_cast<std::size_t>(most);
+  if (threads > 1) {
+    const Plan& plan = s.contacts.plan.template get<Plan>();
+    if (plan.build == s.contacts.build && plan.bodies.size() == threads && plan.owner.size() == bodies)
+      return plan.bodies;
+  }
+  std::vector<std::vector<BodyRange>> equal(threads);
+  for (std::size_t t = 0; t < threads; ++t) equal[t] = {{bodies * t / threads, bodies * (t + 1) / threads}};
+  return equal;
+}
+
+template std::vector<std::vector<BodyRange>> bodies_of_threads(System<2>&);
+template std::vector<std::vector<BodyRange>> bodies_of_threads(System<3>&);
 template void parallel_pass<2>(System<2>&, double, History, int, BodyStiffness*);
 template void parallel_pass<3>(System<3>&, double, History, int, BodyStiffness*);
 

@@ -1,6 +1,8 @@
 // The sums of forces on several threads, bit for bit those of one.
 #pragma once
 
+#include <vector>
+
 #include "common/dynamics/block_loop.h"
 #include "common/system.h"
 
@@ -13,5 +15,17 @@ namespace softgrain {
 /// number of threads and whoever owns it. `stiffness`, where it is there, gets the stiffness sums; it must be clear.
 template <int D>
 void parallel_pass(System<D>& system, double dt, History history, int threads, BodyStiffness* stiffness = nullptr);
+
+/// Bodies [begin, end).
+struct BodyRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// Stretches of bodies for each thread that may run: what it owns, where the last pass ran on as many threads over this
+/// list, so that a core finds in its own cache what it wrote there; else equal parts, and all for one thread where
+/// there are few.
+template <int D>
+std::vector<std::vector<BodyRange>> bodies_of_threads(System<D>& system);
 
 }  // namespace softgrain

@@ -6,6 +6,7 @@
 #include "common/core/in_pieces.h"
 #include "common/core/quad.h"
 #include "common/dynamics/force_pass.h"
+#include "common/dynamics/parallel_pass.h"
 
 namespace softgrain {
 
@@ -74,11 +75,15 @@ void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
   turn_.resize(bodies);
   const SkinUse<D> use(s);
   double fastest2 = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelLength)
-  for (std::size_t u = 0; u < bodies; ++u) {
-    if (correct_first) correct(s, u);
-    fastest2 = std::max(fastest2, drift(s, u, use));
-  }
+  const auto parts = bodies_of_threads(s);
+  const int threads = static_cast<int>(parts.size());
+#pragma omp parallel for schedule(static, 1) reduction(max : fastest2) num_threads(threads) if (threads > 1)
+  for (int t = 0; t < threads; ++t)
+    for (const BodyRange& part : parts[static_cast<std::size_t>(t)])
+      for (std::size_t u = part.begin; u < part.end; ++u) {
+        if (correct_first) correct(s, u);
+        fastest2 = std::max(fastest2, drift(s, u, use));
+      }
   if (s.cell.any_periodic()) s.cell.advance(dt_);
   watch_.moved(dt_ * (std::sqrt(fastest2) + use.strain_rate()));
 }
