@@ -15,21 +15,11 @@
 #include "macrosim/placed_spheres.h"
 #include "macrosim/preparation.h"
 #include "macrosim/pressed_box.h"
+#include "macrosim/pressing.h"
 
 namespace softgrain {
 
 namespace {
-
-/// Tolerance of forces and stress before the last pressure, and how the pressure falls.
-constexpr double kLoose = 0.1;
-constexpr double kFall = 0.7;
-/// Share of the bodies that may still be on their way: to wait for the last loose one takes ever longer, the more there
-/// are (of 40,000 bodies 8,660 passes under the last pressure instead of 2,020, the fraction the same to 1e-4). The
-/// test begins by bringing all to rest with its own law.
-constexpr double kRestless = 1.0 / 2000.0;
-/// Those few go no farther per pass than this many typical moves: in a million bodies some always begin to fly, and the
-/// neighbour list was made every other pass for them. With 6 most bodies wait for others, with 15 most lists remain.
-constexpr double kLead = 10.0;
 
 double mean_radius(const System3& s) {
   double sum = 0.0;
@@ -37,18 +27,10 @@ double mean_radius(const System3& s) {
   return sum / s.particles.grains;
 }
 
-/// Of relaxations under this pressure. As little as a body can be held by: a share of the stiffness of its contacts
-/// where all bear alike.
-DampedOptions options_under(double pressure, const HardBodies& hard, const MacroSpec& spec) {
+DampedOptions options_under(double pressure, const HardBodies& hard, const MacroSpec& spec, bool last) {
   const Vec3 size = hard.size();
-  const double n = hard.system.particles.grains;
-  const double radius = mean_radius(hard.system);
-  const double force = pressure * size[0] * size[1] / std::cbrt(n * n);
-  DampedOptions options;
-  options.max_passes = spec.protocol.max_passes;
-  options.force_floor = 1e-2 * pressure * size[0] * size[1] / n;
-  options.least_stiffness = 0.2 * std::cbrt(force * spec.youngs_modulus * spec.youngs_modulus * radius) / radius;
-  return options;
+  return pressing_options(spec, last, pressure * size[0] * size[1], hard.system.particles.grains,
+                          mean_radius(hard.system));
 }
 
 [[noreturn]] void not_jammed(const MacroSpec& spec, HardBodies& hard, const RelaxationResult& rest) {
@@ -97,15 +79,12 @@ class PressingProgress {
 void press(HardBodies& hard, const MacroSpec& spec, double first, const PreparationWatch& watch) {
   const double asked = spec.start_pressure * spec.youngs_modulus;
   const PressingProgress progress(hard, first);
-  for (double over = std::max(first, 1.0);; over = std::max(1.0, over * kFall)) {
+  for (double over = std::max(first, 1.0);; over = std::max(1.0, over * kPressureFall)) {
     const bool last = over <= 1.0;
     const double pressure = over * asked;
     BoxControl control{{true, true, true}, {{pressure, pressure, pressure}}, true};
-    control.tolerance = last ? spec.protocol.tolerance / 3.0 : kLoose;
-    DampedOptions options = options_under(pressure, hard, spec);
-    options.restless = kRestless;
-    if (kRestless * hard.system.particles.grains >= 1.0) options.max_lead = kLead;
-    options.tolerance = last ? spec.protocol.tolerance : std::max(kLoose, spec.protocol.tolerance);
+    const DampedOptions options = options_under(pressure, hard, spec, last);
+    control.tolerance = pressing_stress_tolerance(spec, last);
     PressedBox walls(hard.box, control, [&](const RelaxationResult& so_far) {
       if (watch) watch(progress.at(hard, over, so_far.residual, options.tolerance));
     });
@@ -203,8 +182,7 @@ double grow_fines(MacroPacking& packing, const MacroSpec& spec, std::size_t coar
   HardBodies hard(spec, packing);
   for (std::size_t u = 0; u < coarse; ++u) hard.system.particles.inverse_mass[u] = 0.0;
   const double most = spec.protocol.first_pressure * spec.start_pressure * spec.youngs_modulus;
-  DampedOptions options = options_under(most, hard, spec);
-  options.tolerance = kLoose;
+  DampedOptions options = options_under(most, hard, spec, false);
   options.max_passes = kPasses;
   const double first = share;
   for (;;) {

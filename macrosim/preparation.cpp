@@ -36,14 +36,6 @@ bool place(std::vector<MacroBody>& bodies, double edge, Boundary boundary, Rando
   return true;
 }
 
-DampedOptions preparation_options(const CompactionProtocol& protocol) {
-  DampedOptions options;
-  options.tolerance = protocol.tolerance;
-  options.max_passes = protocol.max_passes;
-  options.force_floor = protocol.force_floor;
-  return options;
-}
-
 }  // namespace
 
 double power_law_radius(double exponent, double rmax, double polydispersity, double u) {
@@ -95,13 +87,6 @@ PreparationProtocol protocol_of(Preparation preparation, double friction) {
 
 AnyLaw hard_law(const MacroSpec& spec) { return HardBodies::law(spec, 0.0, 1.0); }
 
-CompactionProtocol compaction_protocol(const MacroSpec& spec, const Vec3& size, std::size_t bodies) {
-  CompactionProtocol protocol;
-  protocol.pressure = spec.start_pressure * spec.youngs_modulus;
-  protocol.force_floor = 1e-2 * protocol.pressure * size[0] * size[1] / static_cast<double>(bodies);
-  return protocol;
-}
-
 std::string not_jammed_text(const MacroSpec& spec) {
   return fmt::format("macro: the preparation did not reach a pressure of {:.6g} E", spec.start_pressure);
 }
@@ -110,11 +95,15 @@ void compact_to_fraction(const MacroSpec& spec, MacroPacking& packing, double fr
   constexpr double kStep = 0.01;
   const double pressure = spec.start_pressure * spec.youngs_modulus;
   HardBodies hard(spec, packing);
+  DampedOptions options;
+  options.tolerance = 1e-3;
+  options.max_passes = 50000;
   for (double now = hard.fraction(); now < fraction * (1.0 - 1e-9); now = hard.fraction()) {
     const double step = std::min(kStep, 1.0 - std::cbrt(now / fraction));
     strain_box(hard.system, hard.box, {{step, step, step}});
-    DampedRelaxation<3>(preparation_options(compaction_protocol(spec, hard.size(), packing.bodies.size())))
-        .relax(hard.system);
+    const Vec3 size = hard.size();
+    options.force_floor = 1e-2 * pressure * size[0] * size[1] / static_cast<double>(packing.bodies.size());
+    DampedRelaxation<3>(options).relax(hard.system);
     if (hard.pressure() > pressure)
       throw BadInput(fmt::format(
           "macro: the solid grains jam at a solid fraction of {:.6f}, before solid_fill = {:.6f}", now, fraction));

@@ -41,22 +41,6 @@ void require_room_for_images(const std::vector<MacroBody>& bodies);
 /// `friction`: of the test.
 PreparationProtocol protocol_of(Preparation preparation, double friction);
 
-/// Compaction in steps, as LAMMPS does it: the box shrinks in steps and all is relaxed after each; a step
-/// that overshoots the pressure is taken back and halved.
-struct CompactionProtocol {
-  double pressure = 0.0;        ///< of the walls, at the end at least [Pa]
-  double overshoot = 1.5;       ///< times the pressure: too much
-  double first_step = 0.02;     ///< strain of all three axes
-  double smallest_step = 1e-7;  ///< below it the packing does not jam
-  int most_rounds = 400;        ///< steps taken back among them
-  double tolerance = 1e-3;      ///< of every relaxation
-  double force_floor = 0.0;     ///< [N]
-  std::int64_t max_passes = 50000;
-};
-
-/// For `bodies` in a box of this size [m].
-CompactionProtocol compaction_protocol(const MacroSpec& spec, const Vec3& size, std::size_t bodies);
-
 /// What is said when a compaction ends without jamming.
 std::string not_jammed_text(const MacroSpec& spec);
 

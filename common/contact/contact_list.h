@@ -29,7 +29,7 @@ struct ContactSection {
   std::int32_t law = 0;
 };
 
-/// A soft particle under a law with a particle pass.
+/// A soft particle with a pair in the list under a law with a particle pass.
 struct CrowdBody {
   Slot body = 0;
   std::int32_t law = 0;  ///< one of them
@@ -73,9 +73,9 @@ struct ContactList {
   std::vector<Stored<D>> roll_next;
   std::vector<std::uint8_t> touched;      ///< 0: the committed history is known to be empty
   std::vector<CrowdSum<D>> particle_sum;  ///< scratch of laws with a particle pass, per body; empty when no law has one
-  std::vector<CrowdBody> crowd_bodies;    ///< whose sums are asked for, by laws, then by bodies
   std::vector<double> lost_i;             ///< likewise, per pair that touches: what it takes from body i, if soft
   std::vector<double> lost_j;
+  std::vector<CrowdBody> crowd_bodies;  ///< whose sums are asked for, by laws, then by bodies
   std::vector<ContactSection> sections;
   PassPlan plan;            ///< of the pass on several threads
   bool has_spring = false;  ///< some law of the scene has a tangential spring

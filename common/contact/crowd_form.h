@@ -41,7 +41,7 @@ template <class T>
 T cap_depth(const T& s) {
   const Mask<T> most = s > 0.5;  // what is left is a cap too
   const T part = choose<T>(most, largest<T>(1.0 - s, 1e-16), s);
-  // D = x (1 - D/3)^(-1/2), x = sqrt(4 S/3), as a series in x: within 0.005. Two steps by Halley, each of which leaves
+  // D = x (1 - D/3)^(-1/2), x = sqrt(4 S/3), as a series in x: within 0.01. Two steps by Halley, each of which leaves
   // about the third power of an error.
   const T x = root<T>(part * (4.0 / 3.0));
   T d = x * (1.0 + x * (1.0 / 6.0 + x * (5.0 / 72.0 + x * (1.0 / 27.0 + x * 0.02228))));

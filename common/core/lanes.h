@@ -63,15 +63,6 @@ template <class T>
   return copysign(size, sign);
 }
 
-/// f(x) of every lane.
-template <class T, class F>
-[[gnu::always_inline]] inline T each(F&& f, const T& x) {
-  if constexpr (std::is_same_v<Mask<T>, bool>)
-    return f(x);
-  else
-    return T([&](auto lane) { return f(static_cast<double>(x[lane])); });
-}
-
 /// x^y.
 template <class T>
 T power(const T& x, const std::type_identity_t<T>& y) {

@@ -258,8 +258,8 @@ class Gatherer {
         if constexpr (kTraits.needs_particle_pass) {
           sum_i[l] = &sums[i];
           sum_j[l] = &sums[j];
-          block_.lost_i.v[u(g) + l] = list_.lost_i[c];
-          block_.lost_j.v[u(g) + l] = list_.lost_j[c];
+          if (kernel_.sums.i) block_.lost_i.v[u(g) + l] = list_.lost_i[c];
+          if (kernel_.sums.j) block_.lost_j.v[u(g) + l] = list_.lost_j[c];
         }
         if constexpr (kGeometry == Geometry::sphere_plane) normal[l] = block_.upright_record[u(g) + l];
       }

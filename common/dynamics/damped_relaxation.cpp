@@ -16,8 +16,6 @@ namespace {
 
 /// Passes between two updates of masses and two tests for convergence.
 constexpr std::int64_t kMassInterval = PseudoMasses::kInterval;
-/// Passes in which the lead of single bodies doubles.
-constexpr std::int64_t kLeadDoubles = 2000;
 
 template <int N>
 void limit_length(Quad& v, double longest) {
@@ -84,8 +82,7 @@ double DampedRelaxation<D>::longest_move(const Particles<D>& p, std::int64_t pas
     return sum;
   });
   const double typical = fire_.step * std::sqrt(speed2 / static_cast<double>(inverse_mass_.size()));
-  const double lead = options_.max_lead * std::exp2(static_cast<double>(pass / kLeadDoubles));
-  return typical > 0.0 ? std::min(options_.max_move, lead * typical) : options_.max_move;
+  return MoveLimit{options_.max_move, options_.max_lead}.at(typical, pass);
 }
 
 template <int D>

@@ -19,8 +19,7 @@ struct DampedOptions {
   double force_floor = 0.0;  ///< the mean contact force never counts for less than this [N]
   std::int64_t max_passes = 20000;
   double max_move = 0.05;  ///< largest move of a body per pass, in its radius
-  /// No body moves farther per pass than this times the root mean square move of all, both in radii: the few that fly
-  /// would use up the margins of the neighbour list. Doubles every 2,000 passes, so that nothing waits for ever.
+  /// No body moves farther per pass than this times the root mean square move of all, both in radii (MoveLimit).
   double max_lead = std::numeric_limits<double>::infinity();
   double least_stiffness = 0.0;  ///< no body counts as softer than this times its radius [Pa]; 0: a share of the mean
 };

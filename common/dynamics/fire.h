@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace softgrain {
 
@@ -88,6 +89,22 @@ struct PseudoMasses {
   /// `stiffness`: sum over the contacts of tangential stiffness times the arm squared [N m].
   [[nodiscard]] double inverse_inertia(double stiffness, double r) const {
     return 1.0 / std::max(stiffness, 0.4 * floor(r) * r * r);
+  }
+};
+
+/// How far a body may go in one pass, in its radius.
+struct MoveLimit {
+  static constexpr std::int64_t kLeadDoubles = 2000;  ///< passes
+
+  double most = 0.05;
+  /// Times the root mean square move of all: the few that fly would use up the margins of the neighbour list. Doubles
+  /// every kLeadDoubles passes, so that nothing waits for ever.
+  double lead = std::numeric_limits<double>::infinity();
+
+  /// `typical`: root mean square move of the last pass, in radii.
+  [[nodiscard]] double at(double typical, std::int64_t pass) const {
+    const double led = lead * std::exp2(static_cast<double>(pass / kLeadDoubles)) * typical;
+    return typical > 0.0 ? std::min(most, led) : most;
   }
 };
 

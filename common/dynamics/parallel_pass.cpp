@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "common/core/in_pieces.h"
 #include "common/dynamics/block_loop.h"
 #include "common/dynamics/particle_pass.h"
 #include "common/dynamics/thread_pace.h"
@@ -332,22 +331,16 @@ void parallel_pass(System<D>& s, double dt, History history, int threads, BodySt
 }
 
 template <int D>
-std::vector<std::vector<BodyRange>> bodies_of_threads(System<D>& s) {
-  const std::size_t bodies = s.particles.sphere.size();
-  const int most = omp_in_parallel() == 0 && bodies >= kParallelLength ? std::min(omp_get_max_threads(), 255) : 1;
-  const auto threads = static_cast<std::size_t>(most);
-  if (threads > 1) {
-    const Plan& plan = s.contacts.plan.template get<Plan>();
-    if (plan.build == s.contacts.build && plan.bodies.size() == threads && plan.owner.size() == bodies)
-      return plan.bodies;
-  }
-  std::vector<std::vector<BodyRange>> equal(threads);
-  for (std::size_t t = 0; t < threads; ++t) equal[t] = {{bodies * t / threads, bodies * (t + 1) / threads}};
-  return equal;
+const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& s) {
+  const auto threads = static_cast<std::size_t>(std::min(omp_get_max_threads(), 255));
+  if (threads < 2 || omp_in_parallel() != 0) return nullptr;
+  const Plan& plan = s.contacts.plan.template get<Plan>();
+  const bool good = plan.build == s.contacts.build && plan.bodies.size() == threads;
+  return good && plan.owner.size() == s.particles.sphere.size() ? &plan.bodies : nullptr;
 }
 
-template std::vector<std::vector<BodyRange>> bodies_of_threads(System<2>&);
-template std::vector<std::vector<BodyRange>> bodies_of_threads(System<3>&);
+template const std::vector<std::vector<BodyRange>>* owned_bodies(System<2>&);
+template const std::vector<std::vector<BodyRange>>* owned_bodies(System<3>&);
 template void parallel_pass<2>(System<2>&, double, History, int, BodyStiffness*);
 template void parallel_pass<3>(System<3>&, double, History, int, BodyStiffness*);
 

@@ -22,10 +22,10 @@ struct BodyRange {
   std::size_t end = 0;
 };
 
-/// Stretches of bodies for each thread that may run: what it owns, where the last pass ran on as many threads over this
-/// list, so that a core finds in its own cache what it wrote there; else equal parts, and all for one thread where
-/// there are few.
+/// What each thread owned in the last pass: who moves its own bodies finds in its cache what it wrote there. None when
+/// that pass went over another list or ran on another number of threads than may run now, and where bodies do not lie
+/// in spatial order.
 template <int D>
-std::vector<std::vector<BodyRange>> bodies_of_threads(System<D>& system);
+const std::vector<std::vector<BodyRange>>* owned_bodies(System<D>& system);
 
 }  // namespace softgrain

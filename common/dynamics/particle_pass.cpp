@@ -38,9 +38,9 @@ class Shares : Gatherer<3, kAskedOfShares<Law>, kGeometry, kPeriodic, Take::all>
     const Quad normal{block_.normal[0].v[n], block_.normal[1].v[n], block_.normal[2].v[n], 0.0};
     const Slot i = list_.i[c];
     const Slot j = list_.j[c];
-    if (own_(i)) {
-      list_.lost_i[c] = block_.lost_i.v[n];
-      list_.lost_j[c] = block_.lost_j.v[n];
+    if (own_(i)) {  // one of the threads that see the pair
+      if (law_.i_is_soft) list_.lost_i[c] = block_.lost_i.v[n];
+      if (law_.j_is_soft) list_.lost_j[c] = block_.lost_j.v[n];
     }
     if (law_.i_is_soft && own_(i)) add(block_.lost_i.v[n], -normal, list_.particle_sum[u(i)]);
     if (law_.j_is_soft && own_(j)) add(block_.lost_j.v[n], normal, list_.particle_sum[u(j)]);
@@ -72,8 +72,7 @@ class Closing {
   explicit Closing(const Law& law) : law_(law) {}
 
   void add(CrowdSum<3>& sum) {
-    if (sum.ready || !(sum.square > 0.0)) return;
-    sum.ready = true;
+    if (!(sum.square > 0.0)) return;
     waiting_[static_cast<std::size_t>(many_)] = &sum;
     volume_.v[many_] = law_.equivalent(sum);
     if (++many_ == kLanes) close();

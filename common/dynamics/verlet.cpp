@@ -75,15 +75,20 @@ void VelocityVerlet<D>::move(System<D>& s, bool correct_first) {
   turn_.resize(bodies);
   const SkinUse<D> use(s);
   double fastest2 = 0.0;
-  const auto parts = bodies_of_threads(s);
-  const int threads = static_cast<int>(parts.size());
-#pragma omp parallel for schedule(static, 1) reduction(max : fastest2) num_threads(threads) if (threads > 1)
-  for (int t = 0; t < threads; ++t)
-    for (const BodyRange& part : parts[static_cast<std::size_t>(t)])
-      for (std::size_t u = part.begin; u < part.end; ++u) {
-        if (correct_first) correct(s, u);
-        fastest2 = std::max(fastest2, drift(s, u, use));
-      }
+  const auto move_one = [&](std::size_t u) {
+    if (correct_first) correct(s, u);
+    return drift(s, u, use);
+  };
+  if (const auto* const own = owned_bodies(s)) {
+    const int threads = static_cast<int>(own->size());
+#pragma omp parallel for schedule(static, 1) reduction(max : fastest2) num_threads(threads)
+    for (int t = 0; t < threads; ++t)
+      for (const BodyRange& part : (*own)[static_cast<std::size_t>(t)])
+        for (std::size_t u = part.begin; u < part.end; ++u) fastest2 = std::max(fastest2, move_one(u));
+  } else {
+#pragma omp parallel for schedule(static) reduction(max : fastest2) if (bodies >= kParallelLength)
+    for (std::size_t u = 0; u < bodies; ++u) fastest2 = std::max(fastest2, move_one(u));
+  }
   if (s.cell.any_periodic()) s.cell.advance(dt_);
   watch_.moved(dt_ * (std::sqrt(fastest2) + use.strain_rate()));
 }

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "atom.h"
 #include "comm.h"
@@ -82,7 +84,13 @@ void FixSoftgrainRelax::set_number(const std::string& key, const std::string& wo
   else if (key == "max_passes" && value >= 1.0)
     max_passes_ = value;
   else if (key == "max_move" && value > 0.0)
-    max_move_ = value;
+    limit_.most = value;
+  else if (key == "lead" && value > 0.0)
+    limit_.lead = value;
+  else if (key == "restless" && value >= 0.0 && value < 1.0)
+    restless_ = value;
+  else if (key == "least_stiffness" && value >= 0.0)
+    least_stiffness_ = value;
   else if (key == "stress_tolerance" && value > 0.0)
     stress_tolerance_ = value;
   else if (key == "least_stress" && value >= 0.0)
@@ -92,8 +100,9 @@ void FixSoftgrainRelax::set_number(const std::string& key, const std::string& wo
   else
     error->all(FLERR,
                "fix softgrain/relax: '" + key + " " + word +
-                   "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, follow yes|no, stress "
-                   "SX|no SY|no SZ|no, alike yes|no, stress_tolerance > 0, least_stress >= 0 and farthest > 0");
+                   "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, lead > 0, 0 <= restless "
+                   "< 1, least_stiffness >= 0, follow yes|no, stress SX|no SY|no SZ|no, alike yes|no, stress_tolerance "
+                   "> 0, least_stress >= 0 and farthest > 0");
 }
 
 int FixSoftgrainRelax::modify_param(int count, char** words) {
@@ -174,18 +183,36 @@ void FixSoftgrainRelax::setup(int) {
   if (update->nsteps > 0) judge();
 }
 
+/// Squared; infinite where it is not finite.
+double FixSoftgrainRelax::net_force2(int i) const {
+  const double f2 = norm2(atom->f[i]);
+  const double m2 = norm2(atom->torque[i]) / (atom->radius[i] * atom->radius[i]);
+  return std::isfinite(f2 + m2) ? std::max(f2, m2) : std::numeric_limits<double>::infinity();
+}
+
 double FixSoftgrainRelax::worst_net_force() const {
   double worst = 0.0;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const double f2 = norm2(atom->f[i]);
-    const double m2 = norm2(atom->torque[i]) / (atom->radius[i] * atom->radius[i]);
-    const double both = f2 + m2;
-    worst = std::isfinite(both) ? std::max(worst, std::max(f2, m2)) : std::numeric_limits<double>::infinity();
-    if (std::isinf(worst)) break;
-  }
+  for (int i = 0; i < atom->nlocal && !std::isinf(worst); ++i) worst = std::max(worst, net_force2(i));
   double all = 0.0;
   MPI_Allreduce(&worst, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return std::sqrt(all);
+}
+
+/// The largest but for those of the restless few: of every rank as many as might be among them, and the one after.
+double FixSoftgrainRelax::settled_net_force() const {
+  const double worst = worst_net_force();
+  const auto few = static_cast<std::size_t>(restless_ * static_cast<double>(atom->natoms));
+  if (few == 0 || !std::isfinite(worst)) return worst;
+  std::vector<double> own(static_cast<std::size_t>(atom->nlocal));
+  for (int i = 0; i < atom->nlocal; ++i) own[static_cast<std::size_t>(i)] = net_force2(i);
+  const std::size_t sent = few + 1;
+  own.resize(std::max(own.size(), sent), -1.0);
+  const auto at_few = static_cast<std::ptrdiff_t>(few);
+  std::nth_element(own.begin(), own.begin() + at_few, own.end(), std::greater<>());
+  std::vector<double> all(sent * static_cast<std::size_t>(comm->nprocs));
+  MPI_Allgather(own.data(), static_cast<int>(sent), MPI_DOUBLE, all.data(), static_cast<int>(sent), MPI_DOUBLE, world);
+  std::nth_element(all.begin(), all.begin() + at_few, all.end(), std::greater<>());
+  return std::sqrt(std::max(all[few], 0.0));
 }
 
 /// Whether this run is at its end.
@@ -195,7 +222,7 @@ void FixSoftgrainRelax::judge() {
   MPI_Allreduce(own.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, world);
   mean_force_ = all[1] > 0.0 ? all[0] / all[1] : 0.0;
   const double scale = std::max(mean_force_, floor_);
-  const double worst = worst_net_force();
+  const double worst = settled_net_force();
   residual_ = scale > 0.0 ? worst / scale : 0.0;
   if (!std::isfinite(worst))
     end_ = diverged;
@@ -225,7 +252,7 @@ void FixSoftgrainRelax::scale_masses() {
   }
   std::array<double, 2> all{};
   MPI_Allreduce(sum.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, world);
-  const PseudoMasses masses(all[0], all[1], 0.0, all[0] > 0.0 ? 0.0 : worst_net_force());
+  const PseudoMasses masses(all[0], all[1], least_stiffness_, all[0] > 0.0 ? 0.0 : worst_net_force());
   for (std::size_t i = 0; i < own; ++i) {
     inverse_mass_[i] = masses.inverse_mass(gathered.translation[i], atom->radius[i]);
     inverse_inertia_[i] = masses.inverse_inertia(gathered.rotation[i], atom->radius[i]);
@@ -234,7 +261,7 @@ void FixSoftgrainRelax::scale_masses() {
 }
 
 void FixSoftgrainRelax::steer() {
-  std::array<double, 3> sum{};
+  std::array<double, 4> sum{};
   double** v = atom->v;
   double** f = atom->f;
   double** omega = atom->omega;
@@ -245,11 +272,13 @@ void FixSoftgrainRelax::steer() {
     sum[0] += dot(v[i], f[i]) + dot(omega[i], torque[i]);
     sum[1] += norm2(v[i]) * mass + norm2(omega[i]) * inertia;
     sum[2] += norm2(f[i]) / mass + norm2(torque[i]) / inertia;
+    sum[3] += norm2(v[i]) / (atom->radius[i] * atom->radius[i]);
   }
-  std::array<double, 3> all{};
-  MPI_Allreduce(sum.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
+  std::array<double, 4> all{};
+  MPI_Allreduce(sum.data(), all.data(), 4, MPI_DOUBLE, MPI_SUM, world);
   if (pressed()) steer_box(all.data());
   const softgrain::Fire::Steering steering = fire_.steer(all[0], all[1], all[2]);
+  typical_move_ = fire_.step * std::sqrt(all[3] / static_cast<double>(atom->natoms));
   if (pressed()) box_velocity_ = box_velocity_ * steering.keep + box_force_ * (steering.pull * box_inverse_mass_);
   if (steering.stop) {
     stop_motion();
@@ -264,6 +293,7 @@ void FixSoftgrainRelax::steer() {
 }
 
 void FixSoftgrainRelax::move() {
+  const double longest = limit_.at(typical_move_, static_cast<std::int64_t>(passes_));
   for (int i = 0; i < atom->nlocal; ++i) {
     const auto u = static_cast<std::size_t>(i);
     double* v = atom->v[i];
@@ -272,8 +302,8 @@ void FixSoftgrainRelax::move() {
       v[k] += atom->f[i][k] * (fire_.step * inverse_mass_[u]);
       omega[k] += atom->torque[i][k] * (fire_.step * inverse_inertia_[u]);
     }
-    limit_length(v, max_move_ * atom->radius[i] / fire_.step);
-    limit_length(omega, max_move_ / fire_.step);
+    limit_length(v, longest * atom->radius[i] / fire_.step);
+    limit_length(omega, limit_.most / fire_.step);
     for (int k = 0; k < 3; ++k) atom->x[i][k] += v[k] * fire_.step;
   }
 }

@@ -1,16 +1,19 @@
 // Fix softgrain/relax: the damped relaxation of the program (common/dynamics/damped_relaxation.h) as time integration.
 //
-//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [follow yes|no]
-//     [stress SX|no SY|no SZ|no] [alike yes|no] [stress_tolerance T] [least_stress P] [farthest F]
+//   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [lead L] [restless S]
+//     [least_stiffness K] [follow yes|no] [stress SX|no SY|no SZ|no] [alike yes|no] [stress_tolerance T]
+//     [least_stress P] [farthest F]
 //   fix_modify ID KEY VALUE ...         the same keys, later
 //
 // A box that was strained since the last run (change_box ... remap) takes the springs of the contacts along, unless
 // `follow no`: bodies slide on each other as the box moves them.
 // Every run relaxes anew, from rest. Ends it when the largest net force is below T times the mean contact force (which
 // never counts for less than F [N]), or after N passes. Time steps are pseudo-time. Fixes with forces come before it in
-// the script. Scalar: residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3
-// diverged), mean contact force [N], passes of all runs, near pairs looked at in all passes, stress on the box along x,
-// y, z [Pa].
+// the script. A share `restless` of the bodies, rounded down, may have a larger net force at the end. No body moves
+// farther per pass than `max_move` radii, and, with `lead`, than so many times the root mean square move of all
+// (common/dynamics/fire.h, MoveLimit); none counts as softer than `least_stiffness` [Pa] times its radius. Scalar:
+// residual. Vector: passes of the last run, residual, end (0 not run, 1 converged, 2 capped, 3 diverged), mean contact
+// force [N], passes of all runs, near pairs looked at in all passes, stress on the box along x, y, z [Pa].
 //
 // `stress` holds the simulation box by stress [Pa, compression positive] along the axes that have a number: its faces
 // come to rest together with the bodies, which they carry along (macrosim/pressed_box.h), at `stress_tolerance` times
@@ -80,12 +83,17 @@ class FixSoftgrainRelax : public Fix {
   void scale_masses();
   void steer();
   void move();
+  [[nodiscard]] double net_force2(int i) const;
   [[nodiscard]] double worst_net_force() const;
+  [[nodiscard]] double settled_net_force() const;
 
   double tolerance_ = 1e-2;
   double floor_ = 0.0;
   double max_passes_ = 20000.0;
-  double max_move_ = 0.05;  ///< largest move of a body per pass, in its radius
+  softgrain::MoveLimit limit_;
+  double typical_move_ = 0.0;  ///< root mean square of the last pass, in radii
+  double restless_ = 0.0;
+  double least_stiffness_ = 0.0;  ///< over radius [Pa]
   bool follow_ = true;
   softgrain::Vec<3> box_{};  ///< its lengths at the last run
   softgrain::Fire fire_;

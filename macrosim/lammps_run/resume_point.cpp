@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The last round of a compaction whose restart file is there, and the step that comes next.
+/// The last round of a compaction whose restart file is there, and what comes next.
 std::vector<std::string> last_round(const std::string& directory) {
   if (fs::exists(directory + "/" + kTouchingFile)) return {"-var", "prepared", "1"};
   if (!fs::exists(directory + "/" + kCompactionFile)) return {};
@@ -26,9 +26,11 @@ std::vector<std::string> last_round(const std::string& directory) {
   for (std::string line; std::getline(in, line) && !in.eof();) {
     std::istringstream words(line);
     std::int64_t round = 0;
-    std::string step;
-    if (words >> round >> step && fs::exists(fmt::format("{}/restart.compaction.{}", directory, round)))
-      settings = {"-var", "round_done", std::to_string(round), "-var", "first_step", step};
+    std::string over;
+    std::string passes;
+    if (words >> round >> over >> passes && fs::exists(fmt::format("{}/restart.compaction.{}", directory, round)))
+      settings = {"-var", "round_done", std::to_string(round), "-var", "next_pressure",
+                  over,   "-var",       "passes_under",        passes};
   }
   return settings;
 }

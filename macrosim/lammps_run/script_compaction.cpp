@@ -1,11 +1,28 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "macrosim/lammps_run/script_parts.h"
 #include "macrosim/preparation.h"
+#include "macrosim/pressing.h"
 
 namespace softgrain::lammps {
 
 namespace {
+
+/// Passes after which a relaxation writes a restart file and goes on. The lead of single bodies doubles there.
+constexpr std::int64_t kRoundPasses = MoveLimit::kLeadDoubles;
+/// Logarithmic strain of the box in one round beyond which nothing will press.
+constexpr double kFarthestPressed = 3.0;
+
+/// Times the last pressure, the first one. LAMMPS loses bodies whose centre walls press out of the box, where our own
+/// engine lets them come back.
+double first_pressure(const MacroSpec& spec) {
+  constexpr double kMost = 5e-3;  ///< over E
+  if (spec.boundary == Boundary::periodic) return spec.protocol.first_pressure;
+  return std::min(spec.protocol.first_pressure, std::max(1.0, kMost / spec.start_pressure));
+}
 
 /// Every law is that of hard grains without friction.
 std::string hard_laws(bool periodic) {
@@ -16,95 +33,125 @@ std::string hard_laws(bool periodic) {
   return periodic ? pairs : pairs + fmt::format("fix          walls all softgrain/wall box law * {} hard\n", kLawsFile);
 }
 
-/// The mean stress on the box: of its walls, or of the contacts in a periodic cell.
-std::string box_pressure(bool periodic) {
-  if (periodic) return "variable walls equal \"(c_contacts[5]+c_contacts[6]+c_contacts[7])/(3*lx*ly*lz)\"\n";
-  return "variable walls equal \"((f_walls[1]+f_walls[2])*lx + (f_walls[3]+f_walls[4])*ly &\n"
-         "  + (f_walls[5]+f_walls[6])*lz)/(6*lx*ly*lz)\"\n";
+double mean_radius(const MacroPacking& packing) {
+  double sum = 0.0;
+  for (const MacroBody& b : packing.bodies) sum += b.r;
+  return sum / static_cast<double>(packing.bodies.size());
 }
 
-/// A row says which round it was, what step comes next, and how far the box and its walls are. Its restart file is
-/// complete when it is there.
-std::string note_round() {
-  return fmt::format(
-      "write_restart restart.compaction.${{round}}\n"
-      "print \"${{round}} $(v_step:%.17g) $(lx:%.17g) $(v_pressure:%.17g) &\n"
-      "  $(v_passes) $(v_end)\" append {} screen no\n"
-      "if \"${{round}} > 2\" then \"shell rm restart.compaction.$(v_round-2)\"\n",
-      kCompactionFile);
+/// Of a box whose faces bear 1 N.
+DampedOptions options(const ScriptScene& s, bool last) {
+  return pressing_options(s.spec, last, 1.0, static_cast<double>(s.packing.bodies.size()), mean_radius(s.packing));
 }
 
 }  // namespace
 
 std::string compaction_settings(const ScriptScene& s) {
-  const CompactionProtocol p = compaction_protocol(s.spec, s.packing.size(), s.packing.bodies.size());
   std::string text = setting("round_done", "0", "round of the compaction to go on after; 0: none");
-  text += setting("first_step", fmt::format("{}", p.first_step), "strain of its first (or next) round");
+  text += setting("next_pressure", fmt::format("{}", first_pressure(s.spec)),
+                  "the pressure that comes next, times the last one");
+  text += setting("passes_under", "0", "passes that were made under it");
   text += setting("prepared", "0", "1: go on where the compaction was done");
-  text += setting("pressure_end", fmt::format("{}", p.pressure), "of the walls when bodies touch [Pa]");
-  text += setting("loose_floor", fmt::format("{}", p.force_floor), "as floor below, for the compaction [N]");
+  text += setting("pressure_end", fmt::format("{}", s.spec.start_pressure * s.spec.youngs_modulus),
+                  "last pressure of the compaction [Pa]");
   return text;
 }
 
 namespace {
 
-/// One round: `pressure` is what the walls bear at rest.
-std::string one_round(const CompactionProtocol& p) {
-  return "change_box all x scale $(1-v_step:%.17g) y scale $(1-v_step:%.17g) &\n"
-         "  z scale $(1-v_step:%.17g) remap units box\n" +
-         fmt::format(
-             "fix relax all softgrain/relax tolerance {} floor ${{loose_floor}} max_passes {}\nrun {} post no\n",
-             p.tolerance, p.max_passes, p.max_passes) +
+/// Relaxation of bodies and box under one pressure, or a part of it.
+std::string one_round(const ScriptScene& s) {
+  const DampedOptions last = options(s, true);
+  std::string text = fmt::format(
+      "variable lowest equal $(v_times<=1)\n"
+      "variable bear equal $(v_times*v_pressure_end:%.17g)\n"
+      "variable face_load equal $(v_bear*lx*ly:%.17g)\n"
+      "variable press_rest equal $(v_lowest*{}+(1-v_lowest)*{})\n"
+      "variable press_even equal $(v_lowest*{}+(1-v_lowest)*{})\n",
+      last.tolerance, options(s, false).tolerance, pressing_stress_tolerance(s.spec, true),
+      pressing_stress_tolerance(s.spec, false));
+  text += fmt::format(
+      "fix relax all softgrain/relax stress ${{bear}} ${{bear}} ${{bear}} alike yes &\n"
+      "  tolerance ${{press_rest}} stress_tolerance ${{press_even}} floor $({}*v_face_load:%.17g) &\n"
+      "  least_stiffness $({}*v_face_load^(1/3):%.17g) restless {}{} &\n"
+      "  max_passes {} farthest {}\n"
+      "run {} post no\n",
+      last.force_floor, last.least_stiffness, last.restless,
+      std::isfinite(last.max_lead) ? fmt::format(" lead $({}*2^floor(v_so_far/{}))", last.max_lead, kRoundPasses) : "",
+      kRoundPasses, kFarthestPressed, kRoundPasses);
+  return text +
          "variable passes equal $(f_relax[1])\n"
          "variable end equal $(f_relax[3])\n"
-         "unfix relax\n"
-         "if \"${end} == 3\" then \"jump SELF loose\"\n"
-         "run 0 post no\n"
-         "variable pressure equal $(v_walls:%.17g)\n" +
-         fmt::format("variable far equal $(v_pressure>={}*v_pressure_end)\n", p.overshoot) +
-         "if \"$(v_pressure>=v_pressure_end) > ${far}\" then \"jump SELF touching\"\n"
-         "if \"${far} > 0\" then &\n"
-         "  \"change_box all x scale $(1/(1-v_step):%.17g) y scale $(1/(1-v_step):%.17g) &\n"
-         "   z scale $(1/(1-v_step):%.17g) remap units box\" &\n"
-         "  \"variable step equal $(0.5*v_step:%.17g)\"\n";
+         "variable pressure equal $((f_relax[7]+f_relax[8]+f_relax[9])/3:%.17g)\n"
+         "unfix relax\n";
+}
+
+/// The same pressure once more while it is not at rest, the next one after it.
+std::string next_pressure(const ScriptScene& s) {
+  return fmt::format(
+             "if \"${{end}} == 3\" then \"jump SELF loose\"\n"
+             "if \"$(v_end==2) > $(v_passes>={0})\" then \"jump SELF loose\"\n"
+             "variable so_far equal $(v_so_far+v_passes)\n"
+             "variable again equal $((v_end==2)*(v_so_far<{1}))\n"
+             "if \"${{lowest}} > 0 && ${{again}} == 0 && ${{end}} == 2\" then \"jump SELF loose\"\n"
+             "if \"${{lowest}} > 0 && ${{again}} == 0\" then \"jump SELF touching\"\n",
+             kRoundPasses, s.spec.protocol.max_passes) +
+         fmt::format(
+             "if \"${{again}} == 0\" then &\n"
+             "  \"variable so_far equal 0\" &\n"
+             "  \"variable times equal $(1+(v_times*{0}>1)*(v_times*{0}-1):%.17g)\"\n",
+             kPressureFall);
+}
+
+/// A row says which round it was, what comes next, how far the box is and what it bears.
+std::string row() {
+  return fmt::format(
+      "print \"${{round}} $(v_times:%.17g) $(v_so_far) $(lx:%.17g) $(v_pressure:%.17g) &\n"
+      "  $(v_passes) $(v_end)\" append {} screen no\n",
+      kCompactionFile);
+}
+
+/// The restart file of a round is complete when its row is there.
+std::string note_round() {
+  return "write_restart restart.compaction.${round}\n" + row() +
+         "if \"${round} > 2\" then \"shell rm restart.compaction.$(v_round-2)\"\n";
 }
 
 /// Bodies touch: they are written down, and what served the compaction goes.
 std::string touching(bool periodic) {
-  return fmt::format(
-      "label touching\n"
-      "dump bodies all custom 1 {} id type radius x y z\n"
-      "dump_modify bodies sort id format float %.17g\n"
-      "run 0 post no\n"
-      "undump bodies\n"
-      "write_restart restart.new\n"
-      "shell mv restart.new restart.prepared\n"
-      "unfix clock\n"
-      "uncompute contacts\n"
-      "{}"
-      "label prepared\n",
-      kPreparedFile, periodic ? "" : "unfix walls\n");
+  return "label touching\n" + row() +
+         fmt::format(
+             "dump bodies all custom 1 {} id type radius x y z\n"
+             "dump_modify bodies sort id format float %.17g\n"
+             "run 0 post no\n"
+             "undump bodies\n"
+             "write_restart restart.new\n"
+             "shell mv restart.new restart.prepared\n"
+             "unfix clock\n"
+             "uncompute contacts\n"
+             "{}"
+             "label prepared\n",
+             kPreparedFile, periodic ? "" : "unfix walls\n");
 }
 
 }  // namespace
 
 std::string compaction(const ScriptScene& s) {
-  const CompactionProtocol p = compaction_protocol(s.spec, s.packing.size(), s.packing.bodies.size());
-  std::string text = section("Preparation: bodies placed loosely are brought into touch");
+  constexpr int kMostRounds = 10000;
+  std::string text = section("Preparation: bodies placed loosely are pressed into touch");
   text +=
-      "# hard and without friction; the box shrinks until it bears the pressure, a step\n"
-      "# that overshoots is taken back and halved\n"
+      "# hard and without friction, bodies and box relax together under a pressure that\n"
+      "# falls to the last one\n"
       "if \"${from} >= 0 || ${prepared} > 0\" then \"jump SELF prepared\"\n";
   const bool periodic = s.spec.boundary == Boundary::periodic;
   text += hard_laws(periodic) + watching(s) + "run 0 post no\n";
-  text += "variable step equal ${first_step}\n" + box_pressure(periodic);
   text += fmt::format(
+      "variable times equal ${{next_pressure}}\nvariable so_far equal ${{passes_under}}\n"
       "if \"${{round_done}} == 0\" then &\n"
-      "  'print \"# round next_step lx pressure passes end\" file {} screen no'\n"
+      "  'print \"# round next_pressure passes_under_it lx pressure passes end\" file {} screen no'\n"
       "variable round loop $(v_round_done+1) {}\nlabel round\n",
-      kCompactionFile, p.most_rounds);
-  text += one_round(p) + note_round();
-  text += fmt::format("if \"${{step}} < {}\" then \"jump SELF loose\"\n", p.smallest_step);
+      kCompactionFile, kMostRounds);
+  text += one_round(s) + next_pressure(s) + note_round();
   text += "next round\njump SELF round\nlabel loose\n";
   text += fmt::format("print \"ERROR: {}\"\nquit 1\n", kNotJammed);
   return text + touching(periodic);

@@ -234,9 +234,8 @@ TEST_F(WithLammps, PreparesScenesItself) {
   const MacroCurve own = curve("own");
   const MacroCurve prep = curve("prep");
   EXPECT_NEAR(prep.solid_fraction, own.solid_fraction, 0.03);
-  // Of hard grains ours ends at start_pressure, that of LAMMPS at up to 1.5 times it; thirty bodies scatter beside.
-  EXPECT_GT(prep.stress_axial.back() / own.stress_axial.back(), 0.8);
-  EXPECT_LT(prep.stress_axial.back() / own.stress_axial.back(), 1.5 * 1.2);
+  // The same way from the same places, in sums of another order: thirty bodies end in other packings.
+  EXPECT_NEAR(prep.stress_axial.back() / own.stress_axial.back(), 1.0, 0.2);
   EXPECT_TRUE(fs::exists(file("prep/macro_initial.h5")));
 }
 
@@ -349,8 +348,7 @@ TEST_F(Staged, LammpsCompactsPeriodicCells) {
   expect(macro("own", ""), 0, {});
   expect(macro("prep", "--engine lammps --set macro.preparation=lammps"), 0, {});
   EXPECT_NEAR(curve("prep").solid_fraction, curve("own").solid_fraction, 0.03);
-  EXPECT_GT(curve("prep").stress_axial.back() / curve("own").stress_axial.back(), 0.8);
-  EXPECT_LT(curve("prep").stress_axial.back() / curve("own").stress_axial.back(), 1.5 * 1.2);
+  EXPECT_NEAR(curve("prep").stress_axial.back() / curve("own").stress_axial.back(), 1.0, 0.2);
 }
 
 /// What stands in a run that was stopped is what a run without stop has.

@@ -189,11 +189,11 @@ TEST(LammpsFiles, ScriptsOfMaterialsBeginWithSpringsAndRecordGrains) {
   EXPECT_NE(script().find("softgrain/contacts\n"), std::string::npos);
 }
 
-TEST(LammpsFiles, PeriodicCellsAreCompactedUntilTheirContactsBear) {
+TEST(LammpsFiles, PeriodicCellsArePressedWithoutWalls) {
   MacroSpec spec = spec_of(MacroTest::oedometric, 0.0, Preparation::lammps);
   spec.boundary = Boundary::periodic;
   const std::string text = script_of(spec);
-  EXPECT_NE(text.find("(c_contacts[5]+c_contacts[6]+c_contacts[7])/(3*lx*ly*lz)"), std::string::npos);
+  EXPECT_NE(text.find("softgrain/relax stress ${bear} ${bear} ${bear} alike yes"), std::string::npos);
   EXPECT_EQ(text.find("walls all"), std::string::npos);
   EXPECT_EQ(text.find("f_walls"), std::string::npos);
 }
@@ -332,11 +332,12 @@ TEST_F(Resume, ATestThatEndedEarlyDoesNotGoBeyond) {
 }
 
 TEST_F(Resume, GoesOnWithinTheCompaction) {
-  overwrite(directory_.file(lammps::kCompactionFile), "# head\n1 0.02 1 0 5 1\n2 0.01 1 0 5 1\n3 0.005 1");
+  overwrite(directory_.file(lammps::kCompactionFile), "# head\n1 128 2000 1 0 5 1\n2 89.6 0 1 0 5 1\n3 62.7 0 1");
   touch("restart.compaction.1");
   touch("restart.compaction.2");
   touch("restart.compaction.3");
-  EXPECT_EQ(find().settings, (Words{"-var", "round_done", "2", "-var", "first_step", "0.01"}));
+  EXPECT_EQ(find().settings,
+            (Words{"-var", "round_done", "2", "-var", "next_pressure", "89.6", "-var", "passes_under", "0"}));
   touch(lammps::kTouchingFile);
   EXPECT_EQ(find().settings, (Words{"-var", "prepared", "1"}));
 }
