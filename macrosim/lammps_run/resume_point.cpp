@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -10,6 +11,7 @@
 #include "macrosim/lammps_run/lammps_curve.h"
 #include "macrosim/lammps_run/points_file.h"
 #include "macrosim/lammps_run/script_parts.h"
+#include "macrosim/pressing.h"
 
 namespace softgrain::lammps {
 
@@ -17,25 +19,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The last round of a compaction whose restart file is there, and what comes next.
-std::vector<std::string> last_round(const std::string& directory) {
-  if (fs::exists(directory + "/" + kTouchingFile)) return {"-var", "prepared", "1"};
-  if (!fs::exists(directory + "/" + kCompactionFile)) return {};
+/// A row of the table of a compaction.
+struct Round {
+  std::int64_t number = 0;
+  double next_pressure = 0.0;     ///< times the last one
+  std::int64_t passes_under = 0;  ///< it, so far
+};
+
+/// Whole rows.
+std::vector<Round> rounds_of(const std::string& directory) {
+  std::vector<Round> rounds;
+  if (!fs::exists(directory + "/" + kCompactionFile)) return rounds;
   std::istringstream in(read_text(directory + "/" + kCompactionFile));
-  std::vector<std::string> settings;
   for (std::string line; std::getline(in, line) && !in.eof();) {
     std::istringstream words(line);
-    std::int64_t round = 0;
-    std::string over;
-    std::string passes;
-    if (words >> round >> over >> passes && fs::exists(fmt::format("{}/restart.compaction.{}", directory, round)))
-      settings = {"-var", "round_done", std::to_string(round), "-var", "next_pressure",
-                  over,   "-var",       "passes_under",        passes};
+    Round round;
+    if (words >> round.number >> round.next_pressure >> round.passes_under) rounds.push_back(round);
   }
+  return rounds;
+}
+
+/// The last round whose restart file is there, and what comes next.
+std::vector<std::string> last_round(const std::string& directory) {
+  if (fs::exists(directory + "/" + kTouchingFile)) return {"-var", "prepared", "1"};
+  std::vector<std::string> settings;
+  for (const Round& r : rounds_of(directory))
+    if (fs::exists(fmt::format("{}/restart.compaction.{}", directory, r.number)))
+      settings = {"-var", "round_done",    fmt::format("{}", r.number),
+                  "-var", "next_pressure", fmt::format("{}", r.next_pressure),
+                  "-var", "passes_under",  fmt::format("{}", r.passes_under)};
   return settings;
 }
 
 }  // namespace
+
+double compaction_share(const std::string& directory) {
+  // Of all passes about two fifths are made under the first pressure and a third under the last one.
+  constexpr double kFirst = 0.4;
+  constexpr double kLast = 0.7;
+  if (fs::exists(directory + "/" + kTouchingFile)) return 1.0;
+  const auto rounds = rounds_of(directory);
+  if (rounds.empty()) return 0.0;
+  const double first = std::log(rounds.front().next_pressure / kPressureFall);
+  return first > 0.0 ? kLast - (kLast - kFirst) * std::log(rounds.back().next_pressure) / first : kLast;
+}
 
 ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
                               const std::vector<MacroStage>& stages, const std::vector<std::string>& more) {

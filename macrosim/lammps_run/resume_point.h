@@ -19,4 +19,7 @@ struct ResumePoint {
 ResumePoint find_resume_point(const std::string& directory, const std::string& key, std::int64_t points,
                               const std::vector<MacroStage>& stages = {}, const std::vector<std::string>& more = {});
 
+/// How far a compaction in LAMMPS is, 0 to 1, from its table; it moves with every pressure.
+double compaction_share(const std::string& directory);
+
 }  // namespace softgrain::lammps

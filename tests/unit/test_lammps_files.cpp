@@ -338,8 +338,10 @@ TEST_F(Resume, GoesOnWithinTheCompaction) {
   touch("restart.compaction.3");
   EXPECT_EQ(find().settings,
             (Words{"-var", "round_done", "2", "-var", "next_pressure", "89.6", "-var", "passes_under", "0"}));
+  EXPECT_NEAR(lammps::compaction_share(directory_.path()), 0.7 - 0.3 * std::log(89.6) / std::log(128.0 / 0.7), 1e-12);
   touch(lammps::kTouchingFile);
   EXPECT_EQ(find().settings, (Words{"-var", "prepared", "1"}));
+  EXPECT_EQ(lammps::compaction_share(directory_.path()), 1.0);
 }
 
 class Dumps : public ::testing::Test {

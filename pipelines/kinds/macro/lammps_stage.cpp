@@ -86,9 +86,7 @@ class Sample {
     const std::uintmax_t before = fs::exists(log) ? fs::file_size(log) : 0;
     fs::remove(where_ + "/" + lammps::kDivergedFile);
     const auto words = lammps::command_words(engine.program, engine.ranks, from.settings);
-    const ChildEnd end = run_child(words, where_, log, [&] {
-      progress(static_cast<double>(lammps::count_points(where_)) / static_cast<double>(recorded_points(spec())));
-    });
+    const ChildEnd end = run_child(words, where_, log, [&] { progress(share_done()); });
     if (end.interrupted)
       throw Interrupted(
           "stopped by a signal while LAMMPS was straining; what was recorded is saved; go on with --resume");
@@ -122,6 +120,14 @@ class Sample {
 
  private:
   [[nodiscard]] const MacroSpec& spec() const { return runs_.setup.spec; }
+
+  /// Of compaction and test; a compaction takes about as long as five points.
+  [[nodiscard]] double share_done() const {
+    const auto points = static_cast<double>(lammps::count_points(where_));
+    const double before = spec().preparation == Preparation::lammps ? 5.0 : 0.0;
+    const double compacted = before > 0.0 ? before * lammps::compaction_share(where_) : 0.0;
+    return (compacted + points) / (before + static_cast<double>(recorded_points(spec())));
+  }
 
   [[nodiscard]] std::vector<lammps::PointRow> read_rows() const {
     return lammps::read_points(where_, key_, lammps::grain_names(spec()));
