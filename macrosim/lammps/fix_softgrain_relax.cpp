@@ -72,8 +72,10 @@ int FixSoftgrainRelax::set(int count, char** words) {
 }
 
 void FixSoftgrainRelax::set_number(const std::string& key, const std::string& word) {
-  if ((key == "follow" || key == "alike") && (word == "yes" || word == "no")) {
-    (key == "alike" ? alike_ : follow_) = word == "yes";
+  if ((key == "follow" || key == "alike" || key == "lists") && (word == "yes" || word == "no")) {
+    (key == "alike" ? alike_ : key == "lists" ? lists_ : follow_) = word == "yes";
+    force_reneighbor = lists_ ? 1 : 0;
+    next_reneighbor = -1;
     return;
   }
   const double value = bridge::number(word, key, error);
@@ -101,7 +103,8 @@ void FixSoftgrainRelax::set_number(const std::string& key, const std::string& wo
     error->all(FLERR,
                "fix softgrain/relax: '" + key + " " + word +
                    "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, lead > 0, 0 <= restless "
-                   "< 1, least_stiffness >= 0, follow yes|no, stress SX|no SY|no SZ|no, alike yes|no, stress_tolerance "
+                   "< 1, least_stiffness >= 0, follow yes|no, lists yes|no, stress SX|no SY|no SZ|no, alike yes|no, "
+                   "stress_tolerance "
                    "> 0, least_stress >= 0 and farthest > 0");
 }
 
@@ -121,7 +124,7 @@ FixSoftgrainRelax::~FixSoftgrainRelax() {
 
 int FixSoftgrainRelax::setmask() {
   return FixConst::PRE_EXCHANGE | FixConst::INITIAL_INTEGRATE | FixConst::END_OF_STEP | FixConst::POST_RUN |
-         FixConst::PRE_FORCE;
+         FixConst::PRE_FORCE | FixConst::PRE_NEIGHBOR;
 }
 
 void FixSoftgrainRelax::init() {
@@ -314,6 +317,7 @@ void FixSoftgrainRelax::initial_integrate(int) {
   steer();
   move();
   if (pressed()) carry();
+  if (lists_) watch_lists();
   pair_->spring_dt = fire_.step;
   pair_->gathered.wanted = (pass + 1) % PseudoMasses::kInterval == 0;
 }

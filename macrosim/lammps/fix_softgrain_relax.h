@@ -2,7 +2,7 @@
 //
 //   fix ID all softgrain/relax tolerance T floor F max_passes N [max_move M] [lead L] [restless S]
 //     [least_stiffness K] [follow yes|no] [stress SX|no SY|no SZ|no] [alike yes|no] [stress_tolerance T]
-//     [least_stress P] [farthest F]
+//     [least_stress P] [farthest F] [lists yes|no]
 //   fix_modify ID KEY VALUE ...         the same keys, later
 //
 // A box that was strained since the last run (change_box ... remap) takes the springs of the contacts along, unless
@@ -21,6 +21,10 @@
 // their stresses. A logarithmic strain beyond `farthest` since the run began ends it as capped: the stress is out of
 // reach. The box has walls in all faces (boundary f f f and fix softgrain/wall box) or is periodic (p p p); the stress
 // is that on the walls, or that of the contacts.
+//
+// `lists yes` with `neigh_modify delay 0 every 1000000 check no`: the fix says when lists of near pairs are made. It
+// follows bodies relative to the box, whose motion alone brings no two of them together by more than its strain times
+// their distance; LAMMPS follows them from where they were, and makes a list every pass while a large box shrinks.
 #pragma once  // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
@@ -47,6 +51,8 @@ class FixSoftgrainRelax : public Fix {
   int modify_param(int count, char** words) override;
   void init() override;
   void setup_pre_exchange() override;
+  void setup_pre_neighbor() override { pre_neighbor(); }
+  void pre_neighbor() override;
   void setup_pre_force(int vflag) override;
   void setup(int vflag) override;
   void initial_integrate(int vflag) override;
@@ -72,6 +78,7 @@ class FixSoftgrainRelax : public Fix {
   void scale_box(const softgrain::PseudoMasses& masses);
   void steer_box(double* sums);
   void carry();
+  void watch_lists();
   void make_alike(softgrain::Vec<3>& a) const;
   [[nodiscard]] double box_residual() const;
   [[nodiscard]] bool pressed() const { return by_stress_[0] || by_stress_[1] || by_stress_[2]; }
@@ -119,6 +126,10 @@ class FixSoftgrainRelax : public Fix {
   softgrain::Vec<3> box_velocity_{};
   softgrain::Vec<3> box_strain_{};  ///< since the run began
   double box_inverse_mass_ = 0.0;
+
+  bool lists_ = false;
+  std::vector<softgrain::Vec<3>> listed_;      ///< where bodies were when the last list was made
+  softgrain::Vec<3> shrunk_{{1.0, 1.0, 1.0}};  ///< the box since then, per axis
 };
 
 }  // namespace LAMMPS_NS

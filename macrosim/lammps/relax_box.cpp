@@ -12,6 +12,8 @@
 #include "macrosim/lammps/fix_softgrain_wall.h"
 #include "macrosim/lammps/pair_softgrain.h"
 #include "macrosim/lammps/words.h"
+#include "neighbor.h"
+#include "update.h"
 
 namespace LAMMPS_NS {
 
@@ -105,11 +107,41 @@ void FixSoftgrainRelax::carry() {
     domain->boxhi[k] += (centre - domain->boxhi[k]) * shrink;
     pair_->flow[k] = -box_velocity_[k] / (1.0 - shrink);
     box_strain_[k] += shrink;
+    shrunk_[k] *= 1.0 - shrink;
   }
   domain->set_global_box();
   domain->set_local_box();
   pair_->flows = true;
   note_box();
+}
+
+/// A list is about to be made.
+void FixSoftgrainRelax::pre_neighbor() {
+  if (!lists_) return;
+  listed_.resize(static_cast<std::size_t>(atom->nlocal));
+  for (std::size_t i = 0; i < listed_.size(); ++i) listed_[i] = {{atom->x[i][0], atom->x[i][1], atom->x[i][2]}};
+  shrunk_ = {{1.0, 1.0, 1.0}};
+}
+
+/// Asks for a list where two bodies can have come nearer by the skin: each by itself, and both with the box, by its
+/// strain times how far apart they are at most.
+void FixSoftgrainRelax::watch_lists() {
+  double own = 0.0;
+  for (std::size_t i = 0; i < listed_.size(); ++i) {
+    double away2 = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double centre = 0.5 * (domain->boxlo[k] + domain->boxhi[k]);
+      const double away = atom->x[i][k] - (centre + (listed_[i][k] - centre) * shrunk_[k]);
+      away2 += away * away;
+    }
+    own = std::max(own, away2);
+  }
+  double all = 0.0;
+  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  double strain = 0.0;
+  for (int k = 0; k < 3; ++k) strain = std::max(strain, std::abs(1.0 - shrunk_[k]));
+  // Not a number asks for one too: it is then found where bodies are counted.
+  if (!(2.0 * std::sqrt(all) + strain * neighbor->cutneighmax < neighbor->skin)) next_reneighbor = update->ntimestep;
 }
 
 double FixSoftgrainRelax::box_residual() const {

@@ -74,7 +74,7 @@ std::string one_round(const ScriptScene& s) {
       "fix relax all softgrain/relax stress ${{bear}} ${{bear}} ${{bear}} alike yes &\n"
       "  tolerance ${{press_rest}} stress_tolerance ${{press_even}} floor $({}*v_face_load:%.17g) &\n"
       "  least_stiffness $({}*v_face_load^(1/3):%.17g) restless {}{} &\n"
-      "  max_passes {} farthest {}\n"
+      "  max_passes {} farthest {} lists yes\n"
       "run {} post no\n",
       last.force_floor, last.least_stiffness, last.restless,
       std::isfinite(last.max_lead) ? fmt::format(" lead $({}*2^floor(v_so_far/{}))", last.max_lead, kRoundPasses) : "",
@@ -129,6 +129,7 @@ std::string touching(bool periodic) {
              "shell mv restart.new restart.prepared\n"
              "unfix clock\n"
              "uncompute contacts\n"
+             "neigh_modify delay 0 every 1 check yes\n"
              "{}"
              "label prepared\n",
              kPreparedFile, periodic ? "" : "unfix walls\n");
@@ -144,7 +145,9 @@ std::string compaction(const ScriptScene& s) {
       "# falls to the last one\n"
       "if \"${from} >= 0 || ${prepared} > 0\" then \"jump SELF prepared\"\n";
   const bool periodic = s.spec.boundary == Boundary::periodic;
-  text += hard_laws(periodic) + watching(s) + "run 0 post no\n";
+  text += hard_laws(periodic) + watching(s);
+  text +=
+      "# the relaxation itself says when lists are made\nneigh_modify delay 0 every 1000000 check no\nrun 0 post no\n";
   text += fmt::format(
       "variable times equal ${{next_pressure}}\nvariable so_far equal ${{passes_under}}\n"
       "if \"${{round_done}} == 0\" then &\n"
