@@ -117,7 +117,7 @@ FixSoftgrainRelax::~FixSoftgrainRelax() {
   atom->delete_callback(id, Atom::GROW);
   if (pair_ != nullptr && force != nullptr && force->pair == pair_) {
     pair_->spring_dt = -1.0;
-    pair_->flows = false;
+    pair_->flows = pair_->box_followed = false;
     pair_->gathered.wanted = pair_->gathered.pressed = false;
   }
 }
@@ -130,6 +130,7 @@ int FixSoftgrainRelax::setmask() {
 void FixSoftgrainRelax::init() {
   pair_ = dynamic_cast<PairSoftgrain*>(force->pair);
   if (pair_ == nullptr) error->all(FLERR, std::string("fix softgrain/relax needs pair style softgrain"));
+  pair_->box_followed = lists_;
   bool before = true;
   for (int k = 0; k < modify->nfix; ++k) {
     if (modify->fix[k] == this) before = false;

@@ -171,6 +171,7 @@ void FixSoftgrainWall::build(const bridge::Bodies& b, const std::vector<bridge::
 
 /// Atoms may move half the skin between two lists, and so may planes.
 void FixSoftgrainWall::ask_for_list() {
+  if (box_ && pair_->box_followed) return;  // walls and bodies go with the box
   double way = 0.0;
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const double time = pair_->flows ? std::max(pair_->spring_dt, 0.0) : update->dt;

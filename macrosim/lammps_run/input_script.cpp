@@ -49,12 +49,6 @@ std::string heading(const ScriptScene& s) {
              "can be set in this way.");
 }
 
-double smallest_radius(const MacroPacking& packing) {
-  double r = packing.bodies.front().r;
-  for (const MacroBody& b : packing.bodies) r = std::min(r, b.r);
-  return r;
-}
-
 /// What every test has. Lists are made for bodies that move by half the skin; the smallest bodies have the most to do
 /// with it.
 std::string common_numbers(const ScriptScene& s) {
@@ -146,6 +140,12 @@ std::string laws(const ScriptScene& s) {
 }
 
 }  // namespace
+
+double smallest_radius(const MacroPacking& packing) {
+  double r = packing.bodies.front().r;
+  for (const MacroBody& b : packing.bodies) r = std::min(r, b.r);
+  return r;
+}
 
 std::string bodies_file(const std::string& point) { return "bodies." + point + ".txt"; }
 std::string contacts_file(const std::string& point) { return "contacts." + point + ".txt"; }

@@ -15,6 +15,8 @@ std::string section(const std::string& title);
 /// "variable NAME index VALUE  # MEANING": what -var on the command line replaces.
 std::string setting(const std::string& name, const std::string& value, const std::string& meaning);
 
+double smallest_radius(const MacroPacking& packing);
+
 /// Sums over contacts, kept up to date by thermo output, and the clock.
 std::string watching(const ScriptScene& scene);
 
