@@ -15,6 +15,7 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kSilentStart{2.0};     ///< shorter work prints nothing
+constexpr Seconds kFirstLook{0.5};       ///< done by then: found, not made
 constexpr Seconds kTerminalPeriod{0.2};  ///< between two updates of the bar
 constexpr Seconds kLinePeriod{30.0};     ///< between two lines of a log
 constexpr std::size_t kBarWidth = 30;
@@ -39,6 +40,7 @@ Progress::Progress(std::string what, double total, bool quiet)
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
+      found_at_(start_),
       last_print_(start_) {}
 
 Progress::~Progress() { finish(); }
@@ -66,13 +68,19 @@ void Progress::print(bool last) {
   if (quiet_ || (finished_ && !last)) return;
   const auto now = std::chrono::steady_clock::now();
   const Seconds elapsed = now - start_;
+  if (elapsed < kFirstLook) {
+    found_ = done_;
+    found_at_ = now;
+  }
   const Seconds period = terminal_ ? kTerminalPeriod : kLinePeriod;
   if (!last && (elapsed < kSilentStart || (printed_ && now - last_print_ < period))) return;
   const double share = total_ > 0.0 ? std::clamp(done_ / total_, 0.0, 1.0) : 0.0;
   std::string line = terminal_ ? fmt::format("\r\033[K{} {} {:3.0f} %", what_, bar(share), 100.0 * share)
                                : fmt::format("{}: {:.0f} %", what_, 100.0 * share);
   line += ", " + readable_time(elapsed.count()) + " so far";
-  if (!last && share > 0.0) line += ", about " + readable_time(elapsed.count() * (1.0 - share) / share) + " left";
+  const Seconds working = now - found_at_;
+  if (!last && done_ > found_)
+    line += ", about " + readable_time(working.count() * (total_ * (1.0 - share)) / (done_ - found_)) + " left";
   if (!terminal_ || last) line += "\n";
   std::fputs(line.c_str(), stderr);
   printed_ = true;

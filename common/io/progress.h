@@ -25,11 +25,13 @@ class Progress {
   std::string what_;
   double total_;
   double done_ = 0.0;
+  double found_ = 0.0;  ///< done when the work began: what a run that goes on has from before says nothing of its speed
   bool quiet_;
   bool terminal_;
   bool printed_ = false;
   bool finished_ = false;
   std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point found_at_;
   std::chrono::steady_clock::time_point last_print_;
   std::mutex mutex_;
 };

@@ -14,7 +14,7 @@ namespace {
 /// Passes after which a relaxation writes a restart file and goes on. The lead of single bodies doubles there.
 constexpr std::int64_t kRoundPasses = MoveLimit::kLeadDoubles;
 /// Skin over the smallest radius. With 0.2, as in the test, lists took three quarters of the time: of 20,000 bodies on
-/// two ranks the first 1,800 passes took 18.1 s; 9.8 with 0.5, 8.7 with 1, 7.9 with 1.5.
+/// two ranks the first 1,800 to 2,000 passes took 18.1 s; 9.8 with 0.5, 9.6 with 1, 7.9 with 1.5.
 constexpr double kLooseSkin = 1.2;
 /// Logarithmic strain of the box in one round beyond which nothing will press.
 constexpr double kFarthestPressed = 3.0;

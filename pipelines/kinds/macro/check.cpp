@@ -206,15 +206,14 @@ void check_laws_of(const LawSources& laws, const MacroSpec& spec, double content
 void check_lammps(const MacroSetup& setup, const BodyCounts& count, Findings& out) {
   // Measured with a million bodies on two ranks.
   constexpr double kFileBytes = 91.0;
-  constexpr double kRankBytes = 800.0;
+  constexpr double kRankBytes = 2200.0;
   if (setup.spec.preparation != Preparation::lammps) return;
   const double files = count.all * kFileBytes * static_cast<double>(setup.samples);
   out.add("engine", "lammps",
           "runs with --engine lammps alone: bodies are placed here, LAMMPS compacts and strains them");
   out.add("lammps_file_bytes", files, fmt::format("bodies for LAMMPS: about {:.3g} MB of text", files / 1e6));
   out.add("lammps_bytes", count.all * kRankBytes,
-          fmt::format("memory in LAMMPS: about {:.3g} MB over all ranks when bodies are loose, more when they touch",
-                      count.all * kRankBytes / 1e6));
+          fmt::format("memory in LAMMPS: about {:.3g} MB over all ranks", count.all * kRankBytes / 1e6));
   try {
     const std::string program = lammps::find_program();
     if (program.empty())
