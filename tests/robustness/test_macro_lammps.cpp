@@ -8,6 +8,8 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
+#include <vector>
 
 #include "common/data/macro_result.h"
 #include "common/data/snapshot_io.h"
@@ -391,6 +393,46 @@ TEST_F(WithLammps, WhatWasRunElsewhereIsReadWithResume) {
   EXPECT_EQ(curve("run").strain.size(), 4U);
   // Another seed: these are not its points.
   expect(macro("run", "--engine lammps --resume --seed 99"), 2, {"another scene"});
+}
+
+/// Bodies are followed relative to the box there; LAMMPS by itself makes a list whenever one has moved at all.
+TEST_F(WithLammps, ACompactionMissesNoPair) {
+  const auto first_row = [&](const std::string& run) {
+    std::istringstream in(read_text(file(run) + "/lammps-0/compaction.txt"));
+    std::string head;
+    std::getline(in, head);
+    std::vector<double> row(7);
+    for (double& x : row) in >> x;
+    return row;
+  };
+  for (const std::string run : {"relative", "absolute"}) {
+    expect(macro(run,
+                 "--engine lammps --write-only --set macro.preparation=lammps --set macro.bodies=200 --set "
+                 "macro.start_pressure=1e-4"),
+           0, {});
+    const std::string script = file(run) + "/lammps-0/scene.in";
+    std::string text = read_text(script);
+    const auto replace = [&](const std::string& one, const std::string& other) {
+      const std::size_t at = text.find(one);
+      ASSERT_NE(at, std::string::npos) << one;
+      text.replace(at, one.size(), other);
+    };
+    if (run == "absolute") {
+      replace(" lists yes", "");
+      replace("every 1000000 check no", "every 1 check yes");
+    }
+    replace("next round", "quit 0\nnext round");
+    write_text_atomic(script, text);
+    const std::string line =
+        "cd '" + file(run) + "/lammps-0' && '" + beside_the_program() + "' -in scene.in -log none >lammps.log";
+    ASSERT_EQ(std::system(line.c_str()), 0);
+  }
+  const std::vector<double> relative = first_row("relative");
+  const std::vector<double> absolute = first_row("absolute");
+  EXPECT_EQ(relative[5], absolute[5]);
+  EXPECT_GT(relative[5], 100.0);
+  EXPECT_NEAR(relative[3] / absolute[3], 1.0, 1e-9);
+  EXPECT_NEAR(relative[4] / absolute[4], 1.0, 1e-7);
 }
 
 TEST_F(WithLammps, DamagedTablesAreRefused) {
