@@ -85,6 +85,22 @@ TEST_P(Relaxation, OfTheFirstIncrementTakesTheSamePassesToTheSamePlace) {
   EXPECT_NEAR(fix_value("walls", 5), top, 1e-6 * top);
 }
 
+// What preparations of many bodies ask for: a few that are not at rest, limits on single ones, none too soft.
+TEST_P(Relaxation, WithTheLimitsOfPreparationsGoesTheSameWay) {
+  const double bodies = lammps.atoms().nlocal;
+  const double all = ours.system.particles.size();  // ours counts walls where it takes the mean move
+  options.restless = 0.04;
+  options.max_lead = 2.0;
+  options.least_stiffness = 0.05 * scene.spec.youngs_modulus;
+  strain(0.01);
+  lammps(fmt::format("fix_modify relax restless 0.04 lead {:.17g} least_stiffness {:.17g}",
+                     options.max_lead * std::sqrt(bodies / all), options.least_stiffness));
+  const RelaxationResult rest = relax(20000);
+  EXPECT_EQ(fix_value("relax", 0), static_cast<double>(rest.passes));
+  EXPECT_LT(difference(), 1e-8);
+  EXPECT_NEAR(fix_value("relax", 1), rest.residual, 1e-5 * rest.residual);
+}
+
 // Springs, memories and the box go on from one increment to the next. Small differences then grow a hundredfold every
 // twenty passes, so that only the beginning is the same.
 TEST_P(Relaxation, OfTheNextIncrementBeginsTheSame) {
