@@ -53,7 +53,7 @@ struct PreparationProtocol {
   double friction = 0.0;             ///< mu of all contacts
   double restitution = 0.3;          ///< of the motion
   double coarse_share = 1.0;         ///< of the volume, by the largest bodies, that jams first; fines grow between
-  double first_pressure = 128.0;     ///< of the relaxation, times that of its end; halved to it
+  double first_pressure = 128.0;     ///< of the relaxation, times that of its end; falls to it
   double tolerance = 3e-2;           ///< at the end: largest net force over mean contact force; a third for stress
   std::int64_t max_passes = 200000;  ///< of a relaxation
 };

@@ -30,7 +30,7 @@ void require_room_for_images(const std::vector<MacroBody>& bodies);
 
 /// What the named preparations are:
 /// frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,
-/// is halved whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the gaps in a few
+/// falls by three tenths whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the gaps in a few
 /// hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies would creep
 /// through ever so many rearrangements.
 /// fast, slow: the box is shrunk at the rate of an inertial number by molecular dynamics, all bodies moving along at

@@ -104,8 +104,7 @@ void FixSoftgrainRelax::set_number(const std::string& key, const std::string& wo
                "fix softgrain/relax: '" + key + " " + word +
                    "': known are tolerance > 0, floor >= 0, max_passes >= 1, max_move > 0, lead > 0, 0 <= restless "
                    "< 1, least_stiffness >= 0, follow yes|no, lists yes|no, stress SX|no SY|no SZ|no, alike yes|no, "
-                   "stress_tolerance "
-                   "> 0, least_stress >= 0 and farthest > 0");
+                   "stress_tolerance > 0, least_stress >= 0 and farthest > 0");
 }
 
 int FixSoftgrainRelax::modify_param(int count, char** words) {
@@ -204,9 +203,8 @@ double FixSoftgrainRelax::worst_net_force() const {
 
 /// The largest but for those of the restless few: of every rank as many as might be among them, and the one after.
 double FixSoftgrainRelax::settled_net_force() const {
-  const double worst = worst_net_force();
   const auto few = static_cast<std::size_t>(restless_ * static_cast<double>(atom->natoms));
-  if (few == 0 || !std::isfinite(worst)) return worst;
+  if (few == 0) return worst_net_force();
   std::vector<double> own(static_cast<std::size_t>(atom->nlocal));
   for (int i = 0; i < atom->nlocal; ++i) own[static_cast<std::size_t>(i)] = net_force2(i);
   const std::size_t sent = few + 1;
@@ -216,6 +214,7 @@ double FixSoftgrainRelax::settled_net_force() const {
   std::vector<double> all(sent * static_cast<std::size_t>(comm->nprocs));
   MPI_Allgather(own.data(), static_cast<int>(sent), MPI_DOUBLE, all.data(), static_cast<int>(sent), MPI_DOUBLE, world);
   std::nth_element(all.begin(), all.begin() + at_few, all.end(), std::greater<>());
+  if (std::isinf(*std::max_element(all.begin(), all.begin() + at_few + 1))) return HUGE_VAL;
   return std::sqrt(std::max(all[few], 0.0));
 }
 

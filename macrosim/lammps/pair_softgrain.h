@@ -69,12 +69,11 @@ class PairSoftgrain : public Pair {
   /// The box has been strained since the last run: the pass of the setup lets the springs follow, velocities being
   /// moves.
   bool strained = false;
-  bool flows = false;  ///< the box moves: what contacts see is the motion of bodies and that of the box
-  bool box_followed =
-      false;  ///< fix softgrain/relax says when lists are made, for bodies and walls that go with the box
-  softgrain::Vec<3> flow{};  ///< rate of its lengths; of a strained box growth over the length that it has now
-  double spring_dt = -1.0;   ///< for the history, of a relaxation; negative: the time step
-  double evaluations = 0.0;  ///< near pairs looked at by all passes of this rank
+  bool flows = false;         ///< the box moves: what contacts see is the motion of bodies and that of the box
+  bool box_followed = false;  ///< fix softgrain/relax says when lists are made: walls of the box ask for none
+  softgrain::Vec<3> flow{};   ///< rate of its lengths; of a strained box growth over the length that it has now
+  double spring_dt = -1.0;    ///< for the history, of a relaxation; negative: the time step
+  double evaluations = 0.0;   ///< near pairs looked at by all passes of this rank
 
  private:
   void allocate();

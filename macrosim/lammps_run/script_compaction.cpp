@@ -132,6 +132,8 @@ std::string touching(bool periodic) {
              "undump bodies\n"
              "write_restart restart.new\n"
              "shell mv restart.new restart.prepared\n"
+             "if \"${{round}} > 1\" then \"shell rm restart.compaction.$(v_round-1)\"\n"
+             "if \"${{round}} > 2\" then \"shell rm restart.compaction.$(v_round-2)\"\n"
              "unfix clock\n"
              "uncompute contacts\n"
              "neighbor ${{skin}} multi\n"
