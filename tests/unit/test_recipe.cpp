@@ -267,5 +267,72 @@ TEST(RecipeLaw, FollowsTheEquationOfStateFromTheStartPressure) {
   }
 }
 
+/// At rest sides may bear a little more than the axis: the band holds the value there too.
+TEST(RecipeLaw, BandsHoldTheirValue) {
+  WholeLaw law;
+  law.modulus = {0.05, 0.0, 0.05, 0.05};
+  law.exponent = {2.0, 0.0, 2.0, 2.0};
+  law.onset = {0.8, 0.005, 0.79, 0.81};
+  law.shape = {{0.0, 0.02}, {1.0, 0.8}, {0.001, 0.04}, {1.01, 0.5}, {0.002, 0.02}};
+  law.start_pressure = 1e-4;
+  const RecipeCurve c = curve_of(law, 0.04, 8);
+  for (std::size_t k = 0; k < c.strain.size(); ++k) {
+    EXPECT_LE(c.low[k], c.axial[k]) << k;
+    EXPECT_GE(c.high[k], c.axial[k]) << k;
+  }
+}
+
+/// Replicates that all lie to one side of the estimate.
+TEST(LevelForms, IntervalsHoldTheirValue) {
+  const RecipeScene scene = three_levels();
+  std::vector<double> onsets;
+  for (const MaterialVariant& v : scene.material.variants)
+    onsets.push_back(RodCurve(*v.setup.spec.solid_sizes).at(1.1));
+  for (const double aside : {-0.02, 0.02}) {
+    StateFit fit = fit_of(scene, onsets);
+    for (auto& replicate : fit.replicates)
+      for (std::size_t k = 2; k < replicate.size(); ++k) replicate[k] += aside;
+    const OnsetByForms whole = LevelForms(scene, fit).joined_onset(0, 3);
+    EXPECT_LE(whole.onset.low, whole.onset.value) << aside;
+    EXPECT_GE(whole.onset.high, whole.onset.value) << aside;
+  }
+}
+
+TEST(RecipeLaw, ModuliAreSecantsBetweenTheSameStresses) {
+  RecipeCurve linear{"material law", {0.0, 0.01, 0.02}, {}, {}, {}, {}, ""};
+  RecipeCurve low = linear;
+  low.name = "never there";
+  for (const double e : linear.strain) {
+    const double s = 2.0 * -std::log1p(-e);
+    linear.axial.push_back(s);
+    linear.low.push_back(0.9 * s);
+    linear.high.push_back(1.2 * s);
+    low.axial.push_back(0.1 * s);
+  }
+  std::vector<RecipeCurve> curves{linear, low};
+  set_moduli(curves, {0.01, 0.03});
+  ASSERT_TRUE(curves[0].modulus);
+  EXPECT_NEAR(curves[0].modulus->value, 2.0, 0.01);
+  EXPECT_NEAR(curves[0].modulus->low, 1.8, 0.01);
+  EXPECT_NEAR(curves[0].modulus->high, 2.4, 0.01);
+  EXPECT_FALSE(curves[1].modulus);
+  set_moduli(curves, {0.0, 0.0});  // the upper half of what the lower end of its band comes to
+  EXPECT_NEAR(curves[0].modulus->from, 0.5 * linear.low.back(), 1e-15);
+  EXPECT_NEAR(curves[0].modulus->low, 1.8, 0.01);
+}
+
+TEST(RecipeScene, RaisesDefaultCountsThatHaveNoRoomAndRefusesGivenOnes) {
+  // With a fifth of fines next to the coarsest grains, 40 grains of the level under load lie in one another's images.
+  const std::string broad = "exponent = 3.9\nratio = 60\ncount = 60000";
+  const RecipeScene scene = read_recipe("[levels]\nratio = 8\n[check]\ngrains = 0\n", broad);
+  EXPECT_GT(scene.macro.grains, 150);
+  ASSERT_EQ(scene.raised.size(), 1U);
+  EXPECT_NE(scene.raised[0].find("([macro] grains)"), std::string::npos) << scene.raised[0];
+  const std::string given = refusal("[levels]\nratio = 8\n[check]\ngrains = 0\n[macro]\ngrains = 150\n", broad);
+  for (const char* part : {"[macro] grains", "too few for a periodic cell", "or more have room"})
+    EXPECT_NE(given.find(part), std::string::npos) << part << "\n" << given;
+  EXPECT_EQ(given.find("boundary"), std::string::npos) << given;
+}
+
 }  // namespace
 }  // namespace softgrain
