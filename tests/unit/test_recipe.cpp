@@ -321,17 +321,25 @@ TEST(RecipeLaw, ModuliAreSecantsBetweenTheSameStresses) {
   EXPECT_NEAR(curves[0].modulus->low, 1.8, 0.01);
 }
 
+/// Few grains are coarse in a mixture of 2000 with four fifths of fines: their images would meet when it is pressed.
 TEST(RecipeScene, RaisesDefaultCountsThatHaveNoRoomAndRefusesGivenOnes) {
-  // With a fifth of fines next to the coarsest grains, 40 grains of the level under load lie in one another's images.
-  const std::string broad = "exponent = 3.9\nratio = 60\ncount = 60000";
-  const RecipeScene scene = read_recipe("[levels]\nratio = 8\n[check]\ngrains = 0\n", broad);
-  EXPECT_GT(scene.macro.grains, 150);
-  ASSERT_EQ(scene.raised.size(), 1U);
-  EXPECT_NE(scene.raised[0].find("([macro] grains)"), std::string::npos) << scene.raised[0];
-  const std::string given = refusal("[levels]\nratio = 8\n[check]\ngrains = 0\n[macro]\ngrains = 150\n", broad);
-  for (const char* part : {"[macro] grains", "too few for a periodic cell", "or more have room"})
+  const std::string sizes = "exponent = 3.5\nratio = 10";
+  const std::string levels = "[levels]\nratio = 3.2\n[check]\ngrains = 0\n[macro]\ngrains = 300\n";
+  const RecipeScene scene = read_recipe(levels, sizes);
+  ASSERT_FALSE(scene.raised.empty());
+  EXPECT_NE(scene.raised[0].find("in place of the default 2000 ([grains] count)"), std::string::npos)
+      << scene.raised[0];
+  std::size_t larger = 0;
+  for (const MaterialVariant& v : scene.material.variants) {
+    EXPECT_GE(v.setup.spec.bodies, 2000) << v.name;
+    larger += v.setup.spec.bodies > 2000 ? 1 : 0;
+  }
+  EXPECT_EQ(larger, scene.raised.size());
+  const std::string given = refusal(levels, sizes + "\ncount = 2000");
+  for (const char* part : {"count", "packing levels-1-2-80", "2000 grains are too few for a periodic cell",
+                           "or more have room ([grains] count)"})
     EXPECT_NE(given.find(part), std::string::npos) << part << "\n" << given;
-  EXPECT_EQ(given.find("boundary"), std::string::npos) << given;
+  for (const char* part : {"boundary", "macro:"}) EXPECT_EQ(given.find(part), std::string::npos) << given;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/rod_packing.h"
 #include "common/core/solid_sphere.h"
 #include "macrosim/macro_packing.h"
 #include "pipelines/kinds/macro/stages.h"
@@ -22,30 +23,39 @@ constexpr std::int64_t kDraws = 32;
 /// Bodies that are drawn before the run, of all samples of a scene.
 constexpr double kMostDrawn = 2e7;
 
-/// Share of the cell that bodies fill when they jam: more than most preparations reach.
-double jammed_fraction(const MacroSpec& spec) {
-  constexpr double kRough = 0.2;  // mu of the preparation
-  return spec.protocol.friction > kRough ? 0.68 : 0.75;
-}
-
-/// And under the first pressure of the preparation, which is up to 128 times that of its end: p/E = 0.045 x^1.75.
-double pressed_fraction(const MacroSpec& spec) {
-  constexpr double kPlaced = 0.75;  // that place_loosely() asks for
-  constexpr double kJammed = 0.70;
-  const double pressure = spec.start_pressure * std::max(1.0, spec.protocol.first_pressure);
-  const double pressed = kJammed + (1.0 - kJammed) * std::pow(pressure / 0.045, 1.0 / 1.75);
-  return std::max(kPlaced, std::min(pressed, 1.0));
-}
-
-/// Least volume of bodies, over the cube of the largest radius.
-double needed_volume(const MacroSpec& spec) {
-  const double period = std::pow(kPeriod, 3);
-  const double shortened = std::clamp(1.0 - rough_strains(spec).largest_axial, 0.1, 1.0);
-  return std::max(pressed_fraction(spec) * period, jammed_fraction(spec) * period / std::pow(shortened, 3));
-}
-
 Grading sizes_or_power_law(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
   return sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest);
+}
+
+/// Share of the cell that bodies fill when they jam: that of rods without friction, less with it.
+double jammed_fraction(const MacroSpec& spec) {
+  constexpr double kFrictionless = 0.7654;  // gap of rods
+  constexpr double kLoosest = 0.07;         // less at mu = 0.3 and above
+  constexpr std::size_t kRods = 1000;
+  double fraction = 0.72;  // of grains and soft particles together
+  if (!(spec.soft_share > 0.0))
+    fraction = RodCurve(sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max,
+                                           spec.solid_polydispersity),
+                        kRods)
+                   .at(kFrictionless);
+  return fraction * (1.0 - kLoosest * std::min(1.0, spec.protocol.friction / 0.3));
+}
+
+/// And under a pressure over E: p/E = 0.045 x^1.75, x the loss of pores.
+double fraction_under(double jammed, double pressure) {
+  return std::min(1.0, jammed + (1.0 - jammed) * std::pow(pressure / 0.045, 1.0 / 1.75));
+}
+
+/// Least volume of bodies, over the cube of the largest radius: so that they can be placed, under the first pressure of
+/// the preparation, which is up to 128 times that of its end, and where the test shortens the cell most.
+double needed_volume(const MacroSpec& spec) {
+  constexpr double kPlaced = 0.75;  // that place_loosely() asks for
+  const double period = std::pow(kPeriod, 3);
+  const double jammed = jammed_fraction(spec);
+  const double first = fraction_under(jammed, spec.start_pressure * std::max(1.0, spec.protocol.first_pressure));
+  const double shortened = std::clamp(1.0 - rough_strains(spec).largest_axial, 0.1, 1.0);
+  const double strained = fraction_under(jammed, spec.start_pressure) / std::pow(shortened, 3);
+  return period * std::max({kPlaced, first, strained});
 }
 
 bool needs_room(const MacroSetup& setup) {

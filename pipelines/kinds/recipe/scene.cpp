@@ -237,12 +237,15 @@ class RoomForImages {
   /// Of grains in this packing, those asked for or more.
   std::int64_t enough(MacroSetup setup, const char* table, const char* key, const std::string& what) {
     constexpr int kTries = 20;
+    constexpr std::int64_t kDearest = 5;  // times the default: what is dearer should be asked for
     const std::int64_t asked = setup.spec.bodies;
     std::string problem = room_problem(setup, scene_.material.seed, "grains");
     if (problem.empty()) return asked;
     const SceneTable t = root_.table_or_empty(table);
-    if (t.has(key)) t.reject(key, fmt::format("{}: {} ([{}] {})", what, problem, table, key));
     setup.spec.bodies = std::max(asked, least_bodies(setup.spec));
+    if (t.has(key) || setup.spec.bodies > kDearest * asked)
+      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what, problem,
+                                table, key));
     for (int k = 0; k < kTries && !room_problem(setup, scene_.material.seed, "grains").empty(); ++k)
       setup.spec.bodies += setup.spec.bodies / 10;
     scene_.raised.push_back(fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room",
