@@ -134,6 +134,7 @@ struct MacroSpec {
   MacroTest test = MacroTest::oedometric;
   std::vector<double> splits;  ///< of grains into coarse and fine, over the largest radius: who bears what is recorded
   std::vector<MacroStage> stages;        ///< of test "stages"; the numbers below are those of the other tests
+  std::array<double, 2> modulus_stress{};  ///< of the stages that do not name their own, see StageRecord [Pa]
   double strain_end = 0.15;              ///< nominal; of shear: logarithmic
   double preload = 0.0;                  ///< shear: isotropic nominal strain before
   std::int64_t preload_steps = 4;        ///< recorded points of it

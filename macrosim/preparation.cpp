@@ -56,10 +56,11 @@ void require_room_for_images(const std::vector<MacroBody>& bodies) {
   }
   const double edge = std::cbrt(volume / kPacked);
   if (edge >= kPeriod * largest) return;
+  const double enough = static_cast<double>(bodies.size()) * cube(kPeriod * largest / edge);
   throw BadInput(fmt::format(
-      "macro: {} bodies are too few for a periodic cell: packed, its edge is about {:.3g} m, and images of the largest "
-      "body (radius {:.3g} m) must be at least two diameters apart: more bodies, or boundary = \"walls\"",
-      bodies.size(), edge, largest));
+      "{} bodies are too few for a periodic cell: packed, its edge is about {:.3g} m, and images of the largest "
+      "(radius {:.3g} m) must be two diameters apart: about {:.2g} have room",
+      bodies.size(), edge, largest, 1.1 * enough));
 }
 
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample, double fraction,

@@ -14,7 +14,7 @@ double nominal_step(double end, std::int64_t k, std::int64_t total) {
 
 MacroStage short_stage(const MacroSpec& spec, StageKind kind, double strain, std::int64_t steps) {
   MacroStage stage;
-  stage.record = {to_string(kind), kind, kind};
+  stage.record = {to_string(kind), kind, kind, spec.modulus_stress};
   stage.steps = steps;
   stage.increments_per_step = spec.increments_per_step;
   stage.tolerance = spec.tolerance;
@@ -46,6 +46,7 @@ std::vector<MacroStage> stages_of(const MacroSpec& spec) {
   if (preload_points(spec) > 0) {
     stages.push_back(short_stage(spec, StageKind::isotropic, spec.preload, spec.preload_steps));
     stages.back().record.name = "preload";
+    stages.back().record.modulus_stress = {};
   }
   stages.push_back(short_stage(spec, StageKind::shear, spec.strain_end, spec.steps));
   return stages;

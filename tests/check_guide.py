@@ -42,10 +42,10 @@ PAGES = {
     "scene_material.md": (
         ["pipelines/kinds/material/scene.cpp", "pipelines/kinds/material/equation.cpp", "pipelines/run/variant_name.cpp"],
         {"preparation", "start_pressure", "preparation_tolerance", "strain", "steps", "increments_per_step", "preload", "preload_steps",
-                "tolerance", "force_floor", "max_passes", "snapshots", "stage", "test", "output"}, {"solid_fraction", "rattlers"}),
+                "tolerance", "force_floor", "max_passes", "modulus_stress", "snapshots", "stage", "test", "output"}, {"solid_fraction", "rattlers"}),
     "scene_material_law.md": (
         ["pipelines/kinds/material_law/scene.cpp"],
-        {"preload", "preload_steps", "strain", "steps", "increments_per_step", "tolerance", "force_floor", "max_passes", "material", "grains",
+        {"preload", "preload_steps", "strain", "steps", "increments_per_step", "tolerance", "force_floor", "max_passes", "modulus_stress", "material", "grains",
                 "packing", "output", "snapshots", "count", "test"}, set()),
     "scene_recipe.md": (
         ["pipelines/kinds/recipe/scene.cpp"],

@@ -63,6 +63,22 @@ void write_stage_records(const h5::Group& group, const std::vector<StageRecord>&
   std::string text;
   for (const StageRecord& s : stages) text += fmt::format("{} {} {}\n", to_string(s.kind), to_string(s.way), s.name);
   group.attribute("stages", text);
+  std::string stresses;
+  bool any = false;
+  for (const StageRecord& s : stages) {
+    stresses += fmt::format("{:.17g} {:.17g}\n", s.modulus_stress[0], s.modulus_stress[1]);
+    any = any || s.modulus_stress[1] > 0.0;
+  }
+  if (any) group.attribute("modulus_stresses", stresses);
+}
+
+/// One line per stage, two stresses; files without them are those of tests that do not name any.
+void read_modulus_stresses(const h5::Group& group, std::vector<StageRecord>& stages) {
+  if (!group.has_attribute("modulus_stresses")) return;
+  std::istringstream numbers(group.text("modulus_stresses"));
+  for (StageRecord& s : stages)
+    if (!(numbers >> s.modulus_stress[0] >> s.modulus_stress[1]))
+      throw FileTrouble("attribute 'modulus_stresses': two numbers for each of the stages are needed");
 }
 
 std::vector<StageRecord> read_stage_records(const h5::Group& group) {
@@ -83,6 +99,7 @@ std::vector<StageRecord> read_stage_records(const h5::Group& group) {
     record.way = *known_way;
     stages.push_back(record);
   }
+  read_modulus_stresses(group, stages);
   return stages;
 }
 

@@ -1,6 +1,7 @@
 // Stress-strain records of macro runs and of their resolved twins.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -100,8 +101,13 @@ struct StageRecord {
   std::string name;
   StageKind kind = StageKind::oedometric;
   StageKind way = StageKind::oedometric;  ///< of unload, reload and hold: what they go back, forth or stand on
+  /// Stresses [Pa], ascending, between which its modulus is taken; zeros: as stage_results.h says for its kind.
+  std::array<double, 2> modulus_stress{};
 
-  friend bool operator==(const StageRecord&, const StageRecord&) = default;
+  /// Of what the stage does: how its curve is evaluated makes no other one.
+  friend bool operator==(const StageRecord& a, const StageRecord& b) {
+    return a.name == b.name && a.kind == b.kind && a.way == b.way;
+  }
 };
 
 /// What a curve starts from; runs that are set side by side should agree in it. Zeros: not known.

@@ -1,6 +1,9 @@
 #include "pipelines/compare/stage_results.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -28,6 +31,62 @@ double tangent(const Quantity& x, const Quantity& y, std::size_t from, std::size
   const double secant = (ys[1] - ys[0]) / (xs[1] - xs[0]);
   const double slope = slope_at_first(xs, ys);
   return slope * secant > 0.0 && std::abs(slope) <= kSteepest * std::abs(secant) ? slope : secant;
+}
+
+/// Points of a stage: strain and stress whose slope is the modulus.
+struct StressStrain {
+  std::vector<double> strain;
+  std::vector<double> stress;
+
+  [[nodiscard]] bool falls() const { return stress.back() < stress.front(); }
+};
+
+/// The stresses of an interval that nobody named.
+std::array<double, 2> usual_interval(Modulus modulus, const StressStrain& s) {
+  const double begin = s.stress.front();
+  const double end = s.stress.back();
+  if (s.falls()) return {begin, end};
+  if (modulus == Modulus::young || modulus == Modulus::shear)
+    return {begin, begin + 0.5 * (*std::max_element(s.stress.begin(), s.stress.end()) - begin)};
+  return {std::max(begin, 0.5 * end), end};
+}
+
+/// Where the stress is first met, straight between points, and behind the place `from` (a point and a part of the way to
+/// the next); NaN where it is not. An end that misses it by a trifle of the stage's change counts as met: stresses are
+/// imposed within a tolerance.
+double place_of(const StressStrain& s, double stress, double from) {
+  constexpr double kTrifle = 0.02;
+  const double near = kTrifle * std::abs(s.stress.back() - s.stress.front());
+  const double sign = s.falls() ? -1.0 : 1.0;
+  const auto beyond = [&](std::size_t k) { return sign * (s.stress[k] - stress); };  // above 0: it lies behind
+  if (from <= 0.0 && beyond(0) >= 0.0) return beyond(0) <= near ? 0.0 : kNaN;
+  for (auto k = static_cast<std::size_t>(from); k + 1 < s.stress.size(); ++k) {
+    if (beyond(k + 1) < 0.0) continue;
+    const double part = std::clamp(-beyond(k) / (beyond(k + 1) - beyond(k)), 0.0, 1.0);
+    if (static_cast<double>(k) + part >= from) return static_cast<double>(k) + part;
+  }
+  const std::size_t last = s.stress.size() - 1;
+  return std::abs(beyond(last)) <= near && static_cast<double>(last) > from ? static_cast<double>(last) : kNaN;
+}
+
+double at_place(const std::vector<double>& values, double place) {
+  const auto k = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  return values[k] + (place - static_cast<double>(k)) * (values[k + 1] - values[k]);
+}
+
+void add_secant(Modulus modulus, const StressStrain& s, StageResult& r) {
+  const bool given = r.record.modulus_stress[1] > 0.0;
+  std::array<double, 2> interval = given ? r.record.modulus_stress : usual_interval(modulus, s);
+  if (given && s.falls()) std::swap(interval[0], interval[1]);
+  const double from = place_of(s, interval[0], 0.0);
+  const double to = std::isfinite(from) ? place_of(s, interval[1], from) : kNaN;
+  if (!(to > from)) return;
+  const double strain = at_place(s.strain, to) - at_place(s.strain, from);
+  const double stress = at_place(s.stress, to) - at_place(s.stress, from);
+  if (strain == 0.0 || stress == 0.0) return;
+  r.modulus_from = at_place(s.stress, from);
+  r.modulus_to = at_place(s.stress, to);
+  r.modulus = stress / strain;
 }
 
 double q_of(const Vec3& s) {
@@ -80,9 +139,15 @@ class Reader {
       x = [&](std::size_t k) { return ex(k) + ey(k) + ez(k); };
       y = [&](std::size_t k) { return (c_.stress_x[k] + c_.stress_y[k] + c_.stress_axial[k]) / 3.0; };
     } else if (modulus == Modulus::shear) {
-      x = [&](std::size_t k) { return 2.0 * (ez(k) - ex(k)); };
-      y = [&](std::size_t k) { return c_.stress_axial[k] - c_.stress_x[k]; };
+      x = [&](std::size_t k) { return ez(k) - ex(k); };
+      y = [&](std::size_t k) { return 0.5 * (c_.stress_axial[k] - c_.stress_x[k]); };
     }
+    StressStrain points;
+    for (std::size_t k = from; k <= last; ++k) {
+      points.strain.push_back(x(k));
+      points.stress.push_back(y(k));
+    }
+    add_secant(modulus, points, r);
     r.modulus_begin = tangent(x, y, from, last, false);
     r.modulus_end = tangent(x, y, from, last, true);
     if (modulus == Modulus::young)
@@ -130,6 +195,49 @@ Modulus modulus_of(StageKind way) {
   }
 }
 
+const char* stress_of(Modulus modulus) {
+  if (modulus == Modulus::bulk) return "mean stress";
+  return modulus == Modulus::shear ? "shear stress" : "axial stress";
+}
+
+std::string modulus_interval(const StageRecord& record) {
+  const auto text = [](double stress) {
+    if (stress >= 1e6) return fmt::format("{:.6g} MPa", 1e-6 * stress);
+    return stress >= 1e3 ? fmt::format("{:.6g} kPa", 1e-3 * stress) : fmt::format("{:.6g} Pa", stress);
+  };
+  if (record.modulus_stress[1] > 0.0)
+    return text(record.modulus_stress[0]) + " to " + text(record.modulus_stress[1]);
+  if (record.kind == StageKind::unload) return "whole stage";
+  const Modulus modulus = modulus_of(record.way);
+  return modulus == Modulus::young || modulus == Modulus::shear ? "first half of the largest stress"
+                                                                : "upper half of the stress";
+}
+
+double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to) {
+  const StressStrain s{strain, stress};
+  if (strain.size() < 2 || strain.size() != stress.size()) return kNaN;
+  const double first = place_of(s, from, 0.0);
+  const double second = std::isfinite(first) ? place_of(s, to, first) : kNaN;
+  if (!(second > first)) return kNaN;
+  return (at_place(stress, second) - at_place(stress, first)) / (at_place(strain, second) - at_place(strain, first));
+}
+
+std::string modulus_text(const StageMeans& s) {
+  const Modulus modulus = s.record.kind == StageKind::hold ? Modulus::none : modulus_of(s.record.way);
+  if (modulus == Modulus::none) return "";
+  if (!s.modulus)
+    return fmt::format("{} modulus not determined: the stage does not go through {} of {}", to_string(modulus),
+                       modulus_interval(s.record), stress_of(modulus));
+  std::string text = fmt::format("{} modulus {:.4g}", to_string(modulus), s.modulus->mean);
+  if (s.modulus->n > 1) text += fmt::format(" +- {:.2g}", s.modulus->error);
+  text += fmt::format(" Pa from {:.3g} to {:.3g} Pa of {}", s.modulus_from->mean, s.modulus_to->mean,
+                      stress_of(modulus));
+  if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s.record) + ")";
+  if (s.axial_end && s.modulus->n < s.axial_end->n)
+    text += fmt::format(", {} of {} samples", s.modulus->n, s.axial_end->n);
+  return text;
+}
+
 std::vector<double> stress_ratios(const MacroCurve& c) {
   constexpr double kBearing = 0.01;
   std::vector<double> out(c.strain.size(), kNaN);
@@ -173,8 +281,9 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
       if (k < sample.size()) all.push_back(&sample[k]);
     const auto mean = [&](double StageResult::*member) { return mean_of(all, member); };
     out.push_back({all.front()->record, mean(&StageResult::strain_end), mean(&StageResult::volumetric_end),
-                   mean(&StageResult::axial_end), mean(&StageResult::lateral_end), mean(&StageResult::modulus_begin),
-                   mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
+                   mean(&StageResult::axial_end), mean(&StageResult::lateral_end), mean(&StageResult::modulus),
+                   mean(&StageResult::modulus_from), mean(&StageResult::modulus_to),
+                   mean(&StageResult::modulus_begin), mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
                    mean(&StageResult::ratio_peak_strain), mean(&StageResult::ratio_end)});
   }
   return out;

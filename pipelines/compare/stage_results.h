@@ -31,6 +31,9 @@ inline constexpr auto words<Modulus> = word_list<Modulus>({{Modulus::constrained
 
 Modulus modulus_of(StageKind way);
 
+/// The stress whose change over the strain a modulus is: sigma_z; bulk: p; shear: (sigma_z - sigma_x)/2.
+const char* stress_of(Modulus modulus);
+
 /// Of one stage of one sample. p = (sigma_x + sigma_y + sigma_z)/3, q = sqrt(3 J2), which is |sigma_z - sigma_x| where
 /// two axes bear alike. NaN where it is not defined.
 struct StageResult {
@@ -41,13 +44,23 @@ struct StageResult {
   double volumetric_end = kNaN;
   double axial_end = kNaN;  ///< stress [Pa]
   double lateral_end = kNaN;
-  double modulus_begin = kNaN;      ///< tangent at the first point: of unload the unloading modulus [Pa]
-  double modulus_end = kNaN;        ///< tangent at the last point [Pa]
+  /// Secant between two stresses [Pa]: those of the record; without any from half the stress at the end to the end
+  /// (constrained, bulk, axial; from the begin where that is more), from the begin to half of the largest change
+  /// (Young, shear: E50), and over the whole stage where the stress falls. NaN where the stage does not go through both.
+  double modulus = kNaN;
+  double modulus_from = kNaN;   ///< the stress where the interval begins; see stress_of() [Pa]
+  double modulus_to = kNaN;     ///< where it ends
+  double modulus_begin = kNaN;  ///< tangent at the first point: of unload the unloading modulus [Pa]
+  double modulus_end = kNaN;    ///< tangent at the last point, from few points and one side: scatters [Pa]
   double poisson_begin = kNaN;      ///< Young's way: -d(eps_x + eps_y)/(2 d eps_z) at the first point
   double ratio_peak = kNaN;         ///< largest q/p
   double ratio_peak_strain = kNaN;  ///< of z, where it is
   double ratio_end = kNaN;          ///< q/p
 };
+
+/// Change of stress over that of strain between two stresses (the second lies behind the first), straight between points;
+/// NaN where the points do not go through both.
+double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to);
 
 /// Of every stage that has two points at least; empty for curves that do not say their stages. Tangents are those of a
 /// parabola by least squares through the four points (or as many as there are) next to that end; where that is no
@@ -61,6 +74,9 @@ struct StageMeans {
   std::optional<MeanError> volumetric_end;
   std::optional<MeanError> axial_end;
   std::optional<MeanError> lateral_end;
+  std::optional<MeanError> modulus;
+  std::optional<MeanError> modulus_from;
+  std::optional<MeanError> modulus_to;
   std::optional<MeanError> modulus_begin;
   std::optional<MeanError> modulus_end;
   std::optional<MeanError> poisson_begin;
@@ -68,6 +84,14 @@ struct StageMeans {
   std::optional<MeanError> ratio_peak_strain;
   std::optional<MeanError> ratio_end;
 };
+
+/// Between which stresses the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to
+/// 5 MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
+std::string modulus_interval(const StageRecord& record);
+
+/// "constrained modulus 6.5e+08 +- 2e+07 Pa from 2.5e+06 to 5e+06 Pa of axial stress (upper half of the stress)", or why
+/// it is not determined; empty where the stage has none.
+std::string modulus_text(const StageMeans& stage);
 
 std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const std::string& engine);
 

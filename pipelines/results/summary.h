@@ -229,6 +229,9 @@ void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("kind", s.record.kind);
   visit("way", s.record.way);
   if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>) visit("modulus", modulus_of(s.record.way));
+  visit("modulus_secant", s.modulus, kLeftOut);
+  visit("modulus_stress_from", s.modulus_from, kLeftOut);
+  visit("modulus_stress_to", s.modulus_to, kLeftOut);
   visit("modulus_begin", s.modulus_begin, kLeftOut);
   visit("modulus_end", s.modulus_end, kLeftOut);
   visit("poisson_begin", s.poisson_begin, kLeftOut);

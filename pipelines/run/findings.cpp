@@ -45,11 +45,16 @@ void Findings::spend(const std::string& part, double core_seconds) {
     known->second += core_seconds;
 }
 
+double Findings::spent() const {
+  double total = 0.0;
+  for (const auto& [part, seconds] : times_) total += seconds;
+  return total;
+}
+
 void Findings::close_times() {
   if (times_.empty()) return;
   constexpr double kTrifle = 0.02;  // of the whole: such parts are in the facts alone
-  double total = 0.0;
-  for (const auto& [part, seconds] : times_) total += seconds;
+  const double total = spent();
   std::string parts;
   for (const auto& [part, seconds] : times_) {
     facts["core_seconds_parts"][part] = seconds;

@@ -24,6 +24,8 @@ class Findings {
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// Adds to the time that the run will take [s of one core] what a part of it ("measuring", "twins") takes.
   void spend(const std::string& part, double core_seconds);
+  /// Of all parts so far [s of one core].
+  [[nodiscard]] double spent() const;
   /// Says the time of the run and its parts, once all are there; with a warning when it is more than a day.
   void close_times();
   /// Bytes that a run will write to disk, with a warning when less is free in the directory of results here.

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <filesystem>
 
+#include "common/data/macro_result.h"
+#include "tests/support/every_kind.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_files.h"
@@ -260,6 +262,84 @@ TEST_F(Check, ARadiusOfMetresIsMinded) {
       "count = 2\nbeta = 8.0\n[measure]\nrelaxation = \"damped\"\n[measure.soft_solid]\ndeltas = [0.2]\n";
   EXPECT_TRUE(warned(scene_facts(scene), "shell_radius is 16 m"));
   EXPECT_FALSE(warned(scene_facts(scene, "--set 'packing.shell_radius=16 mm'"), "shell_radius is"));
+}
+
+/// Bodies, soft particles and grains inside them, sample by sample, are those that the run then has.
+void expect_counts_of_the_run(const std::string& text) {
+  const test::KindRuns runs({"counts", kind_of(Scene::parse(text, "s")).command, text, 0});
+  const std::vector<std::string> words = runs.arguments("run");
+  const test::ProgramOutcome checked = run_the_program("check '" + words[1] + "' --json");
+  ASSERT_EQ(checked.status, 0) << checked.output;
+  const json samples = json::parse(checked.output)["macro_samples"];
+  std::string line;
+  for (const std::string& word : words) line += "'" + word + "' ";
+  const test::ProgramOutcome outcome = run_the_program(line);
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
+  std::size_t twins = 0;
+  for (const MacroCurve& c : load_macro(runs.out("run") + "/macro.h5")) {
+    const json& expected = samples.at(static_cast<std::size_t>(c.sample));
+    EXPECT_EQ(expected["bodies"].get<double>(), static_cast<double>(c.bodies)) << text;
+    EXPECT_EQ(expected["soft"].get<double>(), static_cast<double>(c.soft)) << text;
+    if (!c.twin()) continue;
+    ++twins;
+    EXPECT_EQ(expected["grains_inside"].get<double>(), static_cast<double>(c.grains)) << text;
+  }
+  EXPECT_GT(twins, 0U);
+}
+
+TEST_F(Check, CountsAreThoseOfTheRun) {
+  const std::string macro =
+      "kind = \"macro\"\nseed = 3\ncontents = 3\nlaw = \"law.toml\"\n[macro]\nbodies = 14\nsteps = 1\nstrain = "
+      "0.05\nresolved = true\n";
+  expect_counts_of_the_run(macro + "soft_share = 0.8\nsamples = 2\nsoft_radius_max = \"24 mm\"\n");
+  expect_counts_of_the_run(macro + "soft_share = 0.3\nconstruction = \"voids\"\nsoft_radius_max = \"9 mm\"\n");
+  expect_counts_of_the_run(test::kTinyPipeline);
+}
+
+/// Nothing is soft in a material, and nothing is said of it; its time is told, in cells of a few grains too.
+TEST_F(Check, AMaterialSaysItsTimeAndNothingOfSoftParticles) {
+  const std::string scene = "kind = \"material\"\nsamples = 2\n[grains]\ncount = 700\nratio = 4\n[packing]\npreparation = "
+                            "\"fast\"\n[test]\nstrain = 0.04\nsteps = 4\n";
+  const json expected = scene_facts(scene);
+  const std::string said = run_the_program("check '" + directory_.file("scene.toml") + "'").output;
+  EXPECT_EQ(said.find("of them soft"), std::string::npos) << said;
+  EXPECT_NE(said.find("time: about"), std::string::npos) << said;
+  const double before = time_of_children();
+  const test::ProgramOutcome outcome = run_the_program("run '" + directory_.file("scene.toml") +
+                                                       "' --threads 1 --out '" + directory_.file("run") + "'");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const double ratio = expected["core_seconds"].get<double>() / (time_of_children() - before);
+  EXPECT_GT(ratio, 1.0 / 3.0);
+  EXPECT_LT(ratio, 3.0);
+}
+
+/// One packing of a material fails: it is named, with what to do, and the others are there.
+TEST_F(Check, AFailedPackingCostsNoOther) {
+  write_text_atomic(directory_.file("scene.toml"), R"(kind = "material"
+[grains]
+count = 120
+ratio = 1.5
+[packing]
+preparation = "fast"
+[test]
+strain = 0.02
+steps = 2
+[[variant]]
+name = "sound"
+[[variant]]
+name = "hasty"
+preparation_passes = 10
+)");
+  const test::ProgramOutcome outcome =
+      run_the_program("run '" + directory_.file("scene.toml") + "' --out '" + directory_.file("run") + "'");
+  EXPECT_EQ(outcome.status, 3) << outcome.output;
+  EXPECT_NE(outcome.output.find("packing hasty: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("preparation_passes"), std::string::npos) << outcome.output;
+  const json summary = test::summary_of(directory_.file("run"));
+  ASSERT_EQ(summary["variants"].size(), 1U);
+  EXPECT_EQ(summary["variants"][0]["name"], "sound");
+  EXPECT_TRUE(fs::exists(directory_.file("run") + "/material_sound.h5"));
+  EXPECT_NE(read_text(directory_.file("run") + "/material.csv").find("sound,0"), std::string::npos);
 }
 
 TEST_F(Check, TakesAMoment) {

@@ -9,7 +9,7 @@ namespace {
 
 const std::string kLoadedMaterial = R"(kind = "material"
 [grains]
-count = 50
+count = 500
 [test]
 strain = 0.08
 steps = 5
@@ -94,6 +94,55 @@ TEST(MaterialScene, NoTwoResultsShareAFile) {
                 .find("'a-x-pressed' would be the name of two results"),
             std::string::npos);
   EXPECT_NE(complaint_of_loadings("[[loading]]\nname = \"initial\"\n").find("give another name"), std::string::npos);
+}
+
+/// [test] stands for all stages that name no stresses of their own, and a variant for its own.
+TEST(MaterialScene, StressesOfModuliGoFromTablesToStages) {
+  const MaterialScene scene = read_material_scene(Scene::parse(R"(kind = "material"
+[grains]
+count = 500
+[test]
+modulus_stress = [1e3, 2e3]
+[[stage]]
+kind = "oedometric"
+strain = 0.02
+[[stage]]
+kind = "oedometric"
+strain = 0.02
+modulus_stress = [3e3, 4e3]
+[[variant]]
+name = "a"
+[[variant]]
+name = "b"
+modulus_stress = [5e3, 6e3]
+)",
+                                                               "s"));
+  const auto interval = [&](std::size_t variant, std::size_t stage) {
+    return scene.variants.at(variant).setup.spec.stages.at(stage).record.modulus_stress[0];
+  };
+  EXPECT_EQ(interval(0, 0), 1e3);
+  EXPECT_EQ(interval(0, 1), 3e3);
+  EXPECT_EQ(interval(1, 0), 5e3);
+  EXPECT_EQ(interval(1, 1), 3e3);
+}
+
+/// Too few grains are refused before the run, by the key of this kind, with the number that would do.
+TEST(MaterialScene, RefusesCellsWithoutRoomForImages) {
+  const auto refusal = [](const std::string& count) -> std::string {
+    try {
+      (void)read_material_scene(Scene::parse("kind = \"material\"\n[grains]\ncount = " + count + "\n", "s"));
+    } catch (const BadInput& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string text = refusal("60");
+  for (const char* part : {"s:3: count", "60 grains are too few for a periodic cell", "or more have room", "[grains] count"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  for (const char* part : {"macro", "boundary"}) EXPECT_EQ(text.find(part), std::string::npos) << text;
+  const auto at = text.find(" or more have room");
+  const auto from = text.rfind(' ', at - 1);
+  EXPECT_EQ(refusal(text.substr(from + 1, at - from - 1)), "") << text;  // so many do
 }
 
 }  // namespace

@@ -267,5 +267,80 @@ TEST(RecipeLaw, FollowsTheEquationOfStateFromTheStartPressure) {
   }
 }
 
+/// At rest sides may bear a little more than the axis: the band holds the value there too.
+TEST(RecipeLaw, BandsHoldTheirValue) {
+  WholeLaw law;
+  law.modulus = {0.05, 0.0, 0.05, 0.05};
+  law.exponent = {2.0, 0.0, 2.0, 2.0};
+  law.onset = {0.8, 0.005, 0.79, 0.81};
+  law.shape = {{0.0, 0.02}, {1.0, 0.8}, {0.001, 0.04}, {1.01, 0.5}, {0.002, 0.02}};
+  law.start_pressure = 1e-4;
+  const RecipeCurve c = curve_of(law, 0.04, 8);
+  for (std::size_t k = 0; k < c.strain.size(); ++k) {
+    EXPECT_LE(c.low[k], c.axial[k]) << k;
+    EXPECT_GE(c.high[k], c.axial[k]) << k;
+  }
+}
+
+/// Replicates that all lie to one side of the estimate.
+TEST(LevelForms, IntervalsHoldTheirValue) {
+  const RecipeScene scene = three_levels();
+  std::vector<double> onsets;
+  for (const MaterialVariant& v : scene.material.variants)
+    onsets.push_back(RodCurve(*v.setup.spec.solid_sizes).at(1.1));
+  for (const double aside : {-0.02, 0.02}) {
+    StateFit fit = fit_of(scene, onsets);
+    for (auto& replicate : fit.replicates)
+      for (std::size_t k = 2; k < replicate.size(); ++k) replicate[k] += aside;
+    const OnsetByForms whole = LevelForms(scene, fit).joined_onset(0, 3);
+    EXPECT_LE(whole.onset.low, whole.onset.value) << aside;
+    EXPECT_GE(whole.onset.high, whole.onset.value) << aside;
+  }
+}
+
+TEST(RecipeLaw, ModuliAreSecantsBetweenTheSameStresses) {
+  RecipeCurve linear{"material law", {0.0, 0.01, 0.02}, {}, {}, {}, {}, ""};
+  RecipeCurve low = linear;
+  low.name = "never there";
+  for (const double e : linear.strain) {
+    const double s = 2.0 * -std::log1p(-e);
+    linear.axial.push_back(s);
+    linear.low.push_back(0.9 * s);
+    linear.high.push_back(1.2 * s);
+    low.axial.push_back(0.1 * s);
+  }
+  std::vector<RecipeCurve> curves{linear, low};
+  set_moduli(curves, {0.01, 0.03});
+  ASSERT_TRUE(curves[0].modulus);
+  EXPECT_NEAR(curves[0].modulus->value, 2.0, 0.01);
+  EXPECT_NEAR(curves[0].modulus->low, 1.8, 0.01);
+  EXPECT_NEAR(curves[0].modulus->high, 2.4, 0.01);
+  EXPECT_FALSE(curves[1].modulus);
+  set_moduli(curves, {0.0, 0.0});  // the upper half of what the lower end of its band comes to
+  EXPECT_NEAR(curves[0].modulus->from, 0.5 * linear.low.back(), 1e-15);
+  EXPECT_NEAR(curves[0].modulus->low, 1.8, 0.01);
+}
+
+/// Few grains are coarse in a mixture of 2000 with four fifths of fines: their images would meet when it is pressed.
+TEST(RecipeScene, RaisesDefaultCountsThatHaveNoRoomAndRefusesGivenOnes) {
+  const std::string sizes = "exponent = 3.5\nratio = 10";
+  const std::string levels = "[levels]\nratio = 3.2\n[check]\ngrains = 0\n[macro]\ngrains = 300\n";
+  const RecipeScene scene = read_recipe(levels, sizes);
+  ASSERT_FALSE(scene.raised.empty());
+  EXPECT_NE(scene.raised[0].find("in place of the default 2000 ([grains] count)"), std::string::npos)
+      << scene.raised[0];
+  std::size_t larger = 0;
+  for (const MaterialVariant& v : scene.material.variants) {
+    EXPECT_GE(v.setup.spec.bodies, 2000) << v.name;
+    larger += v.setup.spec.bodies > 2000 ? 1 : 0;
+  }
+  EXPECT_EQ(larger, scene.raised.size());
+  const std::string given = refusal(levels, sizes + "\ncount = 2000");
+  for (const char* part : {"count", "packing levels-1-2-80", "2000 grains are too few for a periodic cell",
+                           "or more have room ([grains] count)"})
+    EXPECT_NE(given.find(part), std::string::npos) << part << "\n" << given;
+  for (const char* part : {"boundary", "macro:"}) EXPECT_EQ(given.find(part), std::string::npos) << given;
+}
+
 }  // namespace
 }  // namespace softgrain

@@ -1,10 +1,13 @@
 // Moduli and strength of stages from curves whose numbers are known.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "common/core/vec.h"
 #include "pipelines/compare/compare.h"
 #include "pipelines/compare/stage_results.h"
+#include "tests/support/temporary_directory.h"
 
 namespace softgrain {
 namespace {
@@ -58,10 +61,12 @@ TEST(StageResults, ModuliAreThoseOfHooke) {
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_NEAR(r[k].modulus_begin, expected[k], 1e-8 * expected[k]) << k;
     EXPECT_NEAR(r[k].modulus_end, expected[k], 1e-8 * expected[k]) << k;
+    EXPECT_NEAR(r[k].modulus, expected[k], 1e-8 * expected[k]) << k;
   }
   EXPECT_NEAR(r[3].poisson_begin, poisson, 1e-9);
   EXPECT_TRUE(std::isnan(r[0].poisson_begin));
   EXPECT_TRUE(std::isnan(r[5].modulus_begin));
+  EXPECT_TRUE(std::isnan(r[5].modulus));
   EXPECT_NEAR(r[0].volumetric_end, -std::expm1(-0.005), 1e-12);
   EXPECT_NEAR(r[4].strain_begin, e.curve.strain_z[18], 1e-15);
   EXPECT_NEAR(r[4].strain_end, e.curve.strain_z[20], 1e-15);
@@ -101,6 +106,79 @@ TEST(StageResults, AnEndThatNoParabolaContinuesHasItsSecant) {
   c.stress_x = c.stress_y = {0.0, 0.0, 0.0, 0.0};
   c.stress_axial = {0.0, 60.0, 120.0, 180.0};
   EXPECT_NEAR(stage_results(c)[0].modulus_begin, 60.0 / -std::log1p(-0.02), 1e-9);
+}
+
+/// sigma = 1e9 eps^2 up to 0.01, and back along a steeper line.
+MacroCurve stiffening(std::array<double, 2> loading = {}, std::array<double, 2> unloading = {}) {
+  MacroCurve c;
+  c.engine = "law";
+  c.stages = {{"loading", StageKind::oedometric, StageKind::oedometric, loading},
+              {"back", StageKind::unload, StageKind::oedometric, unloading}};
+  const auto add = [&](double stage, double strain, double stress) {
+    c.stage.push_back(stage);
+    c.strain_z.push_back(-std::expm1(-strain));
+    c.strain = c.strain_z;
+    for (auto* none : {&c.strain_x, &c.strain_y, &c.stress_x, &c.stress_y}) none->push_back(0.0);
+    c.stress_axial.push_back(stress);
+  };
+  for (int k = 0; k <= 100; ++k) add(0.0, 1e-4 * k, 1e9 * std::pow(1e-4 * k, 2));
+  for (int k = 1; k <= 4; ++k) add(1.0, 0.01 - 2e-4 * k, 1e5 - 1e4 * k);
+  return c;
+}
+
+TEST(StageResults, ModuliAreSecantsBetweenTheStressesOfTheirStage) {
+  const auto usual = stage_results(stiffening());
+  // From half the stress at the end, at a strain of 0.01/sqrt(2).
+  EXPECT_NEAR(usual[0].modulus, 5e4 / (0.01 - 0.01 / std::sqrt(2.0)), 3e3);
+  EXPECT_NEAR(usual[0].modulus_from, 5e4, 1e-6);
+  EXPECT_NEAR(usual[0].modulus_to, 1e5, 1e-6);
+  EXPECT_NEAR(usual[1].modulus, 1e4 / 2e-4, 1e-3);  // the whole way back
+  EXPECT_NEAR(usual[1].modulus_from, 1e5, 1e-6);
+  EXPECT_NEAR(usual[1].modulus_to, 6e4, 1e-6);
+  const auto given = stage_results(stiffening({1e4, 4e4}, {7e4, 9e4}));
+  EXPECT_NEAR(given[0].modulus, 3e4 / (std::sqrt(4e-5) - std::sqrt(1e-5)), 3e3);
+  EXPECT_NEAR(given[1].modulus, 5e7, 1e-3);
+  EXPECT_NEAR(given[1].modulus_from, 9e4, 1e-6);  // stress falls
+  const auto far = stage_results(stiffening({1e4, 2e5}, {1e4, 9e4}));
+  EXPECT_TRUE(std::isnan(far[0].modulus));
+  EXPECT_TRUE(std::isnan(far[1].modulus));
+}
+
+TEST(StageResults, IntervalsAreSaidAndWhereThereIsNoModulus) {
+  const auto of = [](const MacroCurve& c) { return modulus_text(stage_means({c}, "law")[0]); };
+  EXPECT_NE(of(stiffening()).find("from 5e+04 to 1e+05 Pa of axial stress (upper half of the stress)"),
+            std::string::npos)
+      << of(stiffening());
+  EXPECT_EQ(of(stiffening({1e4, 2e5})),
+            "constrained modulus not determined: the stage does not go through 10 kPa to 200 kPa of axial stress");
+}
+
+/// E50 of triaxial stages: up to half of the strength, whatever comes after the peak.
+TEST(StageResults, YoungsModulusIsTakenToHalfOfTheStrength) {
+  MacroCurve c;
+  c.engine = "law";
+  c.stages = {{"a", StageKind::triaxial, StageKind::triaxial}};
+  for (int k = 0; k < 5; ++k) {
+    c.stage.push_back(0);
+    c.strain_z.push_back(-std::expm1(-0.01 * k));
+    for (auto* none : {&c.strain_x, &c.strain_y}) none->push_back(0.0);
+    for (auto* sides : {&c.stress_x, &c.stress_y}) sides->push_back(100.0);
+  }
+  c.strain = c.strain_z;
+  c.stress_axial = {100.0, 200.0, 280.0, 300.0, 240.0};
+  const StageResult r = stage_results(c)[0];
+  EXPECT_NEAR(r.modulus, 100.0 / 0.01, 1e-6);
+  EXPECT_NEAR(r.modulus_to, 200.0, 1e-9);
+}
+
+TEST(StageResults, IntervalsAreKeptWithTheirCurve) {
+  const test::TemporaryDirectory directory;
+  save_macro({stiffening({1e4, 4e4}), stiffening()}, directory.file("m.h5"));
+  const auto back = load_macro(directory.file("m.h5"));
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0].stages[0].modulus_stress, (std::array<double, 2>{1e4, 4e4}));
+  EXPECT_EQ(back[0].stages[1].modulus_stress, (std::array<double, 2>{}));
+  EXPECT_EQ(back[1].stages[0].modulus_stress, (std::array<double, 2>{}));
 }
 
 TEST(StageResults, MeansLeaveOutWhatIsNotUsable) {

@@ -1,6 +1,7 @@
 // [[stage]] of macro scenes: what every kind of stage makes of its keys, and what is refused.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -150,6 +151,20 @@ TEST(Stages, IncrementsComeToTheEnd) {
   const std::vector<Vec3> starts{{{0.0, 50.0, 500.0}}};
   EXPECT_EQ(stress_at(stage, 5, starts), (Vec3{{50.0, 125.0, 400.0}}));
   EXPECT_EQ(stress_at(stage, 10, starts), (Vec3{{100.0, 200.0, 300.0}}));
+}
+
+TEST(Stages, SayBetweenWhichStressesTheirModulusIs) {
+  const std::string two = "modulus_stress = [\"1 kPa\", \"2 kPa\"]";
+  const std::array<double, 2> expected{1000.0, 2000.0};
+  EXPECT_EQ(one("kind = \"oedometric\"\nstrain = 0.1\n" + two).record.modulus_stress, expected);
+  EXPECT_EQ(one("kind = \"oedometric\"\nstrain = 0.1").record.modulus_stress, (std::array<double, 2>{}));
+  const MacroSpec cycles = read("[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n[[stage]]\nkind = \"cycles\"\ncount "
+                                "= 1\nstrain = 0.01\n" + two);
+  for (const std::size_t k : {1U, 2U}) EXPECT_EQ(cycles.stages.at(k).record.modulus_stress, expected) << k;
+  for (const char* wrong : {"modulus_stress = [2e3, 1e3]", "modulus_stress = [1e3]", "modulus_stress = [-1.0, 1e3]"})
+    EXPECT_THROW((void)one(std::string("kind = \"oedometric\"\nstrain = 0.1\n") + wrong), BadInput) << wrong;
+  EXPECT_THROW((void)read("[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n[[stage]]\nkind = \"hold\"\n" + two),
+               BadInput);
 }
 
 }  // namespace

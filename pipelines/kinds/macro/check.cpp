@@ -11,6 +11,7 @@
 #include "macrosim/constructed_packing.h"
 #include "macrosim/lammps_run/lammps_program.h"
 #include "macrosim/test_protocol.h"
+#include "microsim/shell_packing.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/stage.h"
@@ -19,6 +20,7 @@
 #include "pipelines/kinds/soft_particle/kept_states.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/results/summary.h"
+#include "pipelines/run/trial_times.h"
 
 namespace softgrain {
 
@@ -31,25 +33,55 @@ constexpr double kGrainsPerSoft = 400.0;
 /// Above it the pair law, measured with one contact, is far off.
 constexpr double kCrowdedShare = 0.05;
 
+/// Of one sample.
 struct BodyCounts {
   double all = 0.0;
   double soft = 0.0;
 };
 
-/// Scenes by construction are made on trial, in a fraction of a second: how many soft particles fit, and whether the
-/// share does, is known only then.
-BodyCounts count_bodies(const MacroSetup& setup) {
-  const auto bodies = static_cast<double>(setup.spec.bodies);
-  if (setup.spec.construction != Construction::voids) {
-    double soft = setup.spec.soft_share * bodies;
-    if (setup.spec.solid_sizes || setup.spec.soft_sizes) {
-      const std::vector<MacroBody> drawn = drawn_bodies(setup.spec, 1, 0);
-      soft = static_cast<double>(std::count_if(drawn.begin(), drawn.end(), [](const MacroBody& b) { return b.soft; }));
-    }
-    return {bodies, soft};
+BodyCounts counts_of(const std::vector<MacroBody>& bodies) {
+  return {static_cast<double>(bodies.size()),
+          static_cast<double>(std::count_if(bodies.begin(), bodies.end(), [](const MacroBody& b) { return b.soft; }))};
+}
+
+/// Of the samples that the run draws; of scenes by construction, which are packed to be counted, the first alone.
+std::vector<BodyCounts> count_bodies(const MacroSetup& setup, std::uint64_t seed) {
+  constexpr double kMostDrawn = 2e7;
+  if (setup.given) return {counts_of(setup.given->bodies)};
+  if (setup.spec.construction == Construction::voids && !setup.spec.cells)
+    return {counts_of(make_packing(setup.spec, seed, 0).bodies)};
+  std::vector<BodyCounts> out;
+  double drawn = 0.0;
+  for (std::int64_t k = 0; k < setup.samples && drawn < kMostDrawn; ++k) {
+    out.push_back(counts_of(drawn_bodies(setup.spec, seed, static_cast<std::uint64_t>(k))));
+    drawn += out.back().all;
   }
-  const SceneFacts facts = describe(make_packing(setup.spec, 1, 0), {});
-  return {static_cast<double>(facts.solid + facts.soft), static_cast<double>(facts.soft)};
+  return out;
+}
+
+BodyCounts mean_of(const std::vector<BodyCounts>& samples) {
+  BodyCounts mean;
+  for (const BodyCounts& one : samples) {
+    mean.all += one.all / static_cast<double>(samples.size());
+    mean.soft += one.soft / static_cast<double>(samples.size());
+  }
+  return mean;
+}
+
+/// Grains inside so many soft particles.
+double inner_grains(const MacroContent& content, double soft) {
+  if (content.grains.empty() || static_cast<std::int64_t>(content.grains.size()) < content.contents)
+    return soft * content.grains_per_soft;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(soft); ++k)
+    sum += static_cast<double>(content.grains[k % content.grains.size()]);
+  return sum;
+}
+
+/// "104", or "101 to 106".
+std::string range_text(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *least == *most ? fmt::format("{:.0f}", *least) : fmt::format("{:.0f} to {:.0f}", *least, *most);
 }
 
 std::string load_text(const MacroSpec& spec) {
@@ -294,42 +326,94 @@ AffineOverlap affine_overlap(const MacroSpec& spec) {
   return {2.0 * spec.preload, along};
 }
 
-MacroContent content_of(const SoftParticleSpec& spec, std::uint64_t seed) {
+MacroContent content_of(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed) {
   constexpr double kBudget = 0.2;
-  return content_of(try_soft_particle(spec, seed, kBudget));
+  return content_of(try_soft_particle(spec, seed, kBudget), spec, count, seed);
 }
 
-MacroContent content_of(const MeasureTrial& trial) {
-  const auto grains = static_cast<double>(trial.packing.radius.size());
-  return {.grains_per_soft = grains,
-          .grain_pass_seconds = trial.pass_seconds / grains,
-          .solid_fraction = trial.packing.solid_fraction()};
+MacroContent content_of(const MeasureTrial& trial, const SoftParticleSpec& spec, std::int64_t count,
+                        std::uint64_t seed) {
+  constexpr double kBudget = 2.0;  // core seconds
+  const auto first = static_cast<double>(trial.packing.radius.size());
+  MacroContent out;
+  out.contents = count;
+  out.grain_pass_seconds = trial.pass_seconds / first;
+  out.smallest_grain = *std::min_element(trial.packing.radius.begin(), trial.packing.radius.end());
+  double fraction = trial.packing.solid_fraction();
+  double sum = first;
+  out.grains.push_back(static_cast<std::int64_t>(trial.packing.radius.size()));
+  double spent = 0.0;
+  for (std::int64_t k = 1; k < count && spent < kBudget; ++k)
+    spent += core_seconds_of([&] {
+      const ShellPacking one = generate_shell_packing(spec, seed, static_cast<std::uint64_t>(k));
+      out.grains.push_back(static_cast<std::int64_t>(one.radius.size()));
+      fraction += one.solid_fraction();
+      sum += static_cast<double>(one.radius.size());
+    });
+  out.grains_per_soft = sum / static_cast<double>(out.grains.size());
+  out.solid_fraction = fraction / static_cast<double>(out.grains.size());
+  return out;
 }
 
-void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, Findings& out) {
-  const BodyCounts count = count_bodies(setup);
+namespace {
+
+/// What a sample holds; soft particles are spoken of where there are some.
+void tell_bodies(const MacroSetup& setup, const std::vector<BodyCounts>& samples, Findings& out) {
+  std::vector<double> all;
+  std::vector<double> soft;
+  json facts = json::array();
+  for (const BodyCounts& one : samples) {
+    all.push_back(one.all);
+    soft.push_back(one.soft);
+    facts.push_back({{"bodies", one.all}, {"soft", one.soft}});
+  }
+  out.facts["macro_samples"] = facts;
+  const bool any = *std::max_element(soft.begin(), soft.end()) > 0.0;
+  const bool estimated = static_cast<std::int64_t>(samples.size()) < setup.samples;
+  out.add("macro_bodies", mean_of(samples).all,
+          fmt::format("macro: {} sample{} of {}{} bodies{}{}, {}", setup.samples, setup.samples == 1 ? "" : "s",
+                      estimated ? "about " : "", range_text(all),
+                      setup.spec.boundary == Boundary::periodic ? " in a periodic cell" : "",
+                      any ? fmt::format(", {}{} of them soft", estimated ? "about " : "", range_text(soft)) : "",
+                      test_text(setup.spec)));
+}
+
+void tell_twins(const MacroSetup& setup, const std::vector<BodyCounts>& samples, const MacroContent& content,
+                Findings& out) {
+  if (setup.twins.empty()) return;
+  std::vector<double> grains;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    grains.push_back(samples[k].all - samples[k].soft + inner_grains(content, samples[k].soft));
+    out.facts["macro_samples"][k]["grains_inside"] = inner_grains(content, samples[k].soft);
+  }
+  const bool all_known = static_cast<std::int64_t>(content.grains.size()) >= content.contents && content.contents > 0;
+  const bool exact = all_known && static_cast<std::int64_t>(samples.size()) == setup.samples;
+  for (const Twin twin : setup.twins)
+    out.lines += fmt::format("  resolved twin ({}): {}{} grains per sample\n", to_string(twin), exact ? "" : "about ",
+                             range_text(grains));
+  const double most = *std::max_element(grains.begin(), grains.end());
+  const double memory = macro_memory(most);
+  out.facts["twin_grains"] = grains.front();
+  out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
+}
+
+}  // namespace
+
+void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, std::uint64_t seed,
+                 Findings& out) {
+  const std::vector<BodyCounts> samples = count_bodies(setup, seed);
+  const BodyCounts count = mean_of(samples);
   content.bodies = count.all;
   content.soft = count.soft;
-  const double resolved = count.all + count.soft * content.grains_per_soft;
-  const double memory = macro_memory(resolved);
-  out.add("macro_bodies", count.all,
-          fmt::format("macro: {} sample{} of {:.0f} bodies{}, about {:.0f} of them soft, {}", setup.samples,
-                      setup.samples == 1 ? "" : "s", count.all,
-                      setup.spec.boundary == Boundary::periodic ? " in a periodic cell" : "", count.soft,
-                      test_text(setup.spec)));
+  tell_bodies(setup, samples, out);
   const AffineOverlap overlap = affine_overlap(setup.spec);
   out.add("affine_overlap", {{"mean", overlap.mean}, {"largest", overlap.largest}}, load_text(setup.spec));
-  for (const Twin twin : setup.twins)
-    out.lines += fmt::format("  resolved twin ({}): about {:.0f} grains per sample\n", to_string(twin), resolved);
-  if (!setup.twins.empty()) {
-    out.facts["twin_grains"] = resolved;
-    out.add("twin_bytes", memory, fmt::format("memory of a twin: about {:.1f} MB", memory / 1e6));
-  }
+  tell_twins(setup, samples, content, out);
   tell_preparation(setup, out);
   warn_of_scene(setup, count, out);
   check_lammps(setup, count, out);
   if (laws != nullptr) check_laws_of(*laws, setup.spec, content.solid_fraction, out);
-  spend_on_macro(setup, content, laws, out);
+  spend_on_macro(setup, content, laws, seed, out);
 }
 
 void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
@@ -338,12 +422,13 @@ void check_macro_scene(const Scene& scene, const std::string& law, Findings& out
   add_sizes(out, drawn_sizes(macro.setup, macro.seed));
   if (macro.law_file.empty()) {
     out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");
-    check_macro(macro.setup, {.grains_per_soft = kGrainsPerSoft}, nullptr, out);
+    check_macro(macro.setup, {.grains_per_soft = kGrainsPerSoft}, nullptr, macro.seed, out);
     return;
   }
   out.add("law_file", macro.law_file, "law from " + macro.law_file);
-  check_macro(macro.setup, macro.setup.twins.empty() ? MacroContent{} : content_of(macro.spec, macro.seed), &macro.law,
-              out);
+  check_macro(macro.setup,
+              macro.setup.twins.empty() ? MacroContent{} : content_of(macro.spec, macro.contents, macro.seed),
+              &macro.law, macro.seed, out);
 }
 
 }  // namespace softgrain

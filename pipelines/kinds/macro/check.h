@@ -14,15 +14,16 @@ namespace softgrain {
 /// BadInput, FileTrouble.
 void check_macro_scene(const Scene& scene, const std::string& law, Findings& out);
 
-/// What such packings bring into the soft particles of a scene.
-MacroContent content_of(const MeasureTrial& trial);
+/// What the first `count` packings of a seed bring into the soft particles of a scene, the first of them tried already;
+/// all are made unless that takes more than a moment.
+MacroContent content_of(const MeasureTrial& trial, const SoftParticleSpec& spec, std::int64_t count,
+                        std::uint64_t seed);
+MacroContent content_of(const SoftParticleSpec& spec, std::int64_t count, std::uint64_t seed);
 
-/// The same from the first packing of a seed: one stands for all.
-MacroContent content_of(const SoftParticleSpec& spec, std::uint64_t seed);
-
-/// Bodies, twins, memory, time. `content`: of soft particles (bodies are counted here). `laws`: what acts between soft
-/// particles; null: not known yet (a pipeline fits them).
-void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, Findings& out);
+/// Bodies, twins, memory, time. `content`: of soft particles (bodies are counted here, from those that the run draws
+/// with this seed). `laws`: what acts between soft particles; null: not known yet (a pipeline fits them).
+void check_macro(const MacroSetup& setup, MacroContent content, const LawSources* laws, std::uint64_t seed,
+                 Findings& out);
 
 /// Overlaps of contacts of equal bodies at the end of a test if all moved with the box: h/R = 2 eps along the load and
 /// two thirds of that (oedometric: a third) in the mean over all directions.

@@ -1,12 +1,16 @@
 #include "pipelines/kinds/macro/cost.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/core/error.h"
 #include "macrosim/cell_test.h"
 #include "macrosim/compression.h"
 #include "macrosim/constructed_packing.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/run/trial_times.h"
 
@@ -14,8 +18,14 @@ namespace softgrain {
 
 namespace {
 
-/// Scenes with more bodies are tried in small.
-constexpr std::int64_t kTrialBodies = 60;
+/// Bodies that scenes with more are tried with: laws of soft particles cost more than contacts of grains.
+std::int64_t trial_bodies(const MacroSpec& spec) {
+  constexpr std::int64_t kSoft = 60;
+  constexpr std::int64_t kGrains = 250;
+  std::int64_t least = spec.soft_share > 0.0 || spec.cells ? kSoft : kGrains;
+  if (spec.boundary == Boundary::periodic) least = std::max(least, least_bodies(spec));
+  return std::min(spec.bodies, least);
+}
 
 /// Increments of all stages of a test.
 double increments_of(const MacroSpec& spec) {
@@ -58,7 +68,7 @@ std::vector<NamedLaws> laws_of(const LawSources* laws, const MacroSpec& spec, do
 /// its like.
 template <class State, class Test>
 double try_test(const MacroSpec& spec, State& state, const Test& test) {
-  constexpr double kBudget = 0.4;
+  constexpr double kBudget = 0.8;
   double share = 0.0;
   RunControl<State> control{.seconds = kBudget};
   control.progress = [&](const State& s, double done) {
@@ -73,6 +83,30 @@ double try_test(const MacroSpec& spec, State& state, const Test& test) {
     }
   });
   return share > 0.0 ? seconds / share : 0.0;
+}
+
+/// A preparation on trial: core seconds of the whole, and the packing where it came to its end.
+struct PreparationTrial {
+  double seconds = 0.0;
+  std::optional<MacroPacking> packing{};
+};
+
+PreparationTrial try_preparation(const MacroSpec& spec, std::uint64_t seed) {
+  constexpr double kBudget = 3.0;
+  PreparationTrial out;
+  double share = 0.0;
+  const double start = thread_seconds();
+  const double seconds = core_seconds_of([&] {
+    try {
+      out.packing = make_packing(spec, seed, 0, [&](double done) {
+        share = done;
+        if (thread_seconds() - start > kBudget && done > 0.0) throw TrialOver{};
+      });
+    } catch (const TrialOver&) {
+    }
+  });
+  out.seconds = out.packing ? seconds : seconds / share;
+  return out;
 }
 
 double try_law(const MacroSpec& spec, const MacroPacking& packing, const NamedLaws& law, double solid_fraction) {
@@ -95,19 +129,21 @@ double relaxing_passes(const MacroSpec& spec, Twin twin) {
   return (twin == Twin::free ? 1.5 : 1.0) * increments * 650.0 * std::pow(strain / 0.005, 0.3);
 }
 
-/// And of its motion. The smallest grain, which sets the step, is taken to be as in the published soft particle.
-double moving_passes(const MacroSpec& spec) {
-  constexpr double kPerNaturalTime = 19.6;  ///< R sqrt(rho/E) of the smallest soft particle, at step_factor 1
-  const double smallest = spec.soft_radius_max / spec.soft_polydispersity;
+/// And of its motion. The smallest grain sets the step.
+double moving_passes(const MacroSpec& spec, const MacroContent& content) {
+  constexpr double kPerNaturalTime = 0.98;  ///< R sqrt(rho/E) of the smallest grain, at step_factor 1
+  constexpr double kPublished = 0.05;       // smallest grain of the published soft particle over its radius
+  const double inside = content.smallest_grain > 0.0 ? content.smallest_grain : kPublished;
+  const double smallest = inside * spec.soft_radius_max / spec.soft_polydispersity;
   const double largest = std::max(spec.solid_radius_max, spec.soft_radius_max);
   const double straining = rough_strains(spec).way * 2.0 * largest / spec.twin.speed;
   const double settling = (increments_of(spec) + 1.0) * spec.twin.settle_time * spec.soft_radius_max;
   return kPerNaturalTime / spec.twin.step_factor * (straining + settling) / smallest;
 }
 
-double twin_passes(const MacroSpec& spec, Twin twin) {
+double twin_passes(const MacroSpec& spec, const MacroContent& content, Twin twin) {
   const bool moves = spec.twin.relaxation == TwinRelaxation::slow_dynamics;
-  return moves ? moving_passes(spec) + 0.3 * relaxing_passes(spec, twin) : relaxing_passes(spec, twin);
+  return moves ? moving_passes(spec, content) + 0.3 * relaxing_passes(spec, twin) : relaxing_passes(spec, twin);
 }
 
 /// Runs that the band of a law takes on a sample, at most: two along each of a few components and four for what its
@@ -118,32 +154,51 @@ double band_runs(const MacroSetup& setup) {
   return setup.band_estimator == BandEstimator::draws ? static_cast<double>(setup.bands + 4) : kMostAlongComponents;
 }
 
-}  // namespace
+/// Over bodies: contacts, and the passes of an increment.
+constexpr double kTestExponent = 1.2;
 
-void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const LawSources* laws, Findings& out) {
-  MacroSpec spec = setup.spec;
-  if (spec.preparation == Preparation::lammps) spec.preparation = Preparation::frictionless;
-  spec.bodies = std::min(spec.bodies, kTrialBodies);
-  const double larger = static_cast<double>(setup.spec.bodies) / static_cast<double>(spec.bodies);
-  const auto samples = static_cast<double>(setup.samples);
+void spend_on_twins(const MacroSetup& setup, const MacroContent& content, Findings& out) {
   const auto runs = static_cast<double>(setup.samples + std::min(setup.samples, setup.noise_samples));
-  MacroPacking packing;
-  try {
-    const double preparation = core_seconds_of([&] { packing = make_packing(spec, 1, 0); });
-    // Passes of a preparation grow like N^0.33: 1,500, 2,600, 4,500, 6,000 of 60, 250, 1,000, 4,000 bodies.
-    if (!setup.given && !content.prepared) out.spend("preparation", samples * std::pow(larger, 1.33) * preparation);
-    if (spec.cells) out.spend("law runs", samples * larger * try_cells(spec, packing));
-    for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction)) {
-      const double run =
-          larger * static_cast<double>(setup.law_increments) * try_law(spec, packing, law, content.solid_fraction);
-      out.spend("law runs", runs * run);
-      if (setup.bands > 0) out.spend("bands", samples * band_runs(setup) * run);
-    }
-  } catch (const Error&) {  // so few bodies need not jam or hold the share; the scene may
-  }
   const double grains = content.bodies + content.soft * content.grains_per_soft;
   for (const Twin twin : setup.twins)
-    out.spend("twins", runs * grains * content.grain_pass_seconds * twin_passes(setup.spec, twin));
+    out.spend("twins", runs * grains * content.grain_pass_seconds * twin_passes(setup.spec, content, twin));
+}
+
+}  // namespace
+
+void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const LawSources* laws, std::uint64_t seed,
+                    Findings& out) {
+  if (content.untimed) return;
+  MacroSpec spec = setup.spec;
+  const char* const tests = laws == nullptr && !(spec.soft_share > 0.0) ? "tests" : "law runs";
+  if (spec.preparation == Preparation::lammps) spec.preparation = Preparation::frictionless;
+  const auto samples = static_cast<double>(setup.samples);
+  const auto runs = static_cast<double>(setup.samples + std::min(setup.samples, setup.noise_samples));
+  try {
+    PreparationTrial trial;
+    if (setup.given)
+      trial.packing = setup.given;
+    else {
+      spec.bodies = trial_bodies(spec);
+      trial = try_preparation(spec, seed);
+    }
+    const double larger = static_cast<double>(setup.spec.bodies) / static_cast<double>(spec.bodies);
+    // Passes of a preparation grow like N^0.33: 1,500, 2,600, 4,500, 6,000 of 60, 250, 1,000, 4,000 bodies.
+    if (!setup.given && !content.prepared) out.spend("preparation", samples * std::pow(larger, 1.33) * trial.seconds);
+    // A test takes about as long as its preparation where that was too long for a trial.
+    if (!trial.packing) out.spend(tests, runs * std::pow(larger, 1.33) * trial.seconds);
+    if (!trial.packing) return spend_on_twins(setup, content, out);
+    if (spec.cells) out.spend(tests, samples * larger * try_cells(spec, *trial.packing));
+    for (const NamedLaws& law : laws_of(laws, spec, content.solid_fraction)) {
+      const double run = std::pow(larger, kTestExponent) * static_cast<double>(setup.law_increments) *
+                         try_law(spec, *trial.packing, law, content.solid_fraction);
+      out.spend(tests, runs * run);
+      if (setup.bands > 0) out.spend("bands", samples * band_runs(setup) * run);
+    }
+  } catch (const Error& e) {  // so few bodies need not jam or hold the share; the scene may
+    out.lines += fmt::format("  the time is not known: a trial with {} bodies came to no end ({})\n", spec.bodies, e.what());
+  }
+  spend_on_twins(setup, content, out);
 }
 
 }  // namespace softgrain

@@ -17,10 +17,29 @@ constexpr double kContactsPerBody = 3.0;
 /// More than any soft particle of the published kind holds: what fits even so needs no closer look.
 constexpr double kManyGrains = 1e5;
 
+double mean_cube(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
+  return (sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest)).mean_volume();
+}
+
+/// Soft particles, by the mean volumes of both kinds: the share of the scene is one of volume.
+double expected_softs(const MacroSetup& setup) {
+  const MacroSpec& spec = setup.spec;
+  if (setup.given) return static_cast<double>(setup.given->soft_count());
+  const auto bodies = static_cast<double>(spec.bodies);
+  const double share = spec.soft_share;
+  if (!(share > 0.0)) return 0.0;
+  if (share >= 1.0) return bodies;
+  const double soft =
+      share / mean_cube(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const double solid = (1.0 - share) / mean_cube(spec.solid_sizes, spec.exponent, spec.solid_radius_max,
+                                                 spec.solid_polydispersity);
+  return spec.construction == Construction::voids ? bodies * soft / solid : bodies * soft / (soft + solid);
+}
+
 /// Grains of the largest run: the twin, when there is one.
 double resolved(const MacroSetup& setup, double grains) {
   const auto bodies = static_cast<double>(setup.spec.bodies);
-  return setup.twins.empty() ? bodies : bodies * (1.0 + setup.spec.soft_share * grains);
+  return setup.twins.empty() ? bodies : bodies + expected_softs(setup) * grains;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/memory.h"
 #include "pipelines/kinds/macro/packing_source.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
@@ -124,6 +125,13 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
   spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
   spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
+  if (!t.has("modulus_stress")) return;
+  const std::array<double, 2> before = spec.modulus_stress;
+  read_modulus_stress(t, spec.modulus_stress);
+  // Stages of a common table that name no stresses of their own.
+  for (MacroStage& stage : spec.stages)
+    if (stage.record.kind != StageKind::hold && stage.record.modulus_stress == before)
+      stage.record.modulus_stress = spec.modulus_stress;
 }
 
 namespace {
@@ -353,6 +361,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     require_known_contents(macro, out.setup, out.spec, law_file);
   }
   if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
+  if (root.sound()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));
   out.contents = root.count("contents", 1, 100000, out.contents);
   return out;

@@ -41,6 +41,14 @@ std::string cell(const std::optional<MeanError>& m, double unit = 1.0) {
   return m ? format_with_error(m->mean / unit, m->n > 1 ? m->error / unit : 0.0) : "–";
 }
 
+/// The stresses that a secant modulus was taken between, or those that the stage did not go through.
+std::string between(const StageMeans& s, double unit) {
+  const std::string words = modulus_interval(s.record);
+  if (!s.modulus) return "not met: " + words;
+  return format_number(s.modulus_from->mean / unit, 3) + " and " + format_number(s.modulus_to->mean / unit, 3) +
+         (s.record.modulus_stress[1] > 0.0 ? "" : " (" + words + ")");
+}
+
 /// Columns with their prefixes, and what a stage has in them.
 struct StageTable {
   std::vector<std::string> header;
@@ -72,11 +80,12 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
   const std::string stress_unit = " [" + stress.symbol + "Pa]";
   const std::string modulus_unit = " [" + modulus.symbol + "Pa]";
   const StageTable moduli{
-      {"modulus", "at its begin" + modulus_unit, "at its end" + modulus_unit, "Poisson's ratio at its begin"},
+      {"modulus", "secant" + modulus_unit, "between stresses" + stress_unit, "tangent at its begin" + modulus_unit,
+       "Poisson's ratio at its begin"},
       [&](const StageMeans& s) -> std::vector<std::string> {
         const bool holds = s.record.kind == StageKind::hold;
-        return {holds ? "–" : to_string(modulus_of(s.record.way)), cell(s.modulus_begin, modulus.factor),
-                cell(s.modulus_end, modulus.factor), cell(s.poisson_begin)};
+        return {holds ? "–" : to_string(modulus_of(s.record.way)), cell(s.modulus, modulus.factor),
+                holds ? "–" : between(s, stress.factor), cell(s.modulus_begin, modulus.factor), cell(s.poisson_begin)};
       }};
   const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
                          "lateral stress" + stress_unit, "q/p", "largest q/p"},
@@ -95,9 +104,10 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
   if (text.empty()) return "";
   return text +
          paragraph(
-             "Moduli are tangents over logarithmic strains: constrained dσz/dεz, Young dσz/dεz at constant lateral "
-             "stress, "
-             "bulk dp/dεv, shear d(σz − σx)/2d(εz − εx); at the begin of an unloading they are those of unloading. "
+             "Moduli are over logarithmic strains: constrained Δσz/Δεz, Young Δσz/Δεz at constant lateral stress, bulk "
+             "Δp/Δεv, shear Δ(σz − σx)/2Δ(εz − εx). The secant is taken between two values of that stress (p of bulk, "
+             "(σz − σx)/2 of shear), which modulus_stress of the scene chooses. The tangent is that of a parabola "
+             "through the first points; of an unloading it is the unloading modulus. "
              "The second table has what there is at the end of each stage, and the largest q/p with the axial strain "
              "where "
              "it is; q = √(3J₂), p the mean stress. Mean over usable samples ± standard error; one sample has none.");

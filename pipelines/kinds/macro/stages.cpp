@@ -58,6 +58,9 @@ class StageReader {
     stage.increments_per_step = t.count("increments_per_step", 1, 10000, hold ? 1 : spec_.increments_per_step);
     stage.tolerance =
         t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, hold ? 0.1 * spec_.tolerance : spec_.tolerance);
+    if (hold) refuse(t, {"modulus_stress"}, "nothing is driven while all is held: there is no modulus");
+    if (!hold) stage.record.modulus_stress = spec_.modulus_stress;
+    read_modulus_stress(t, stage.record.modulus_stress);
     return stage;
   }
 
@@ -234,7 +237,7 @@ class StageReader {
       unload(t);
       const MacroStage& down = stages_.back();
       MacroStage up = down;
-      up.record = {fmt::format("{} {} reload", name, k), StageKind::reload, down.record.way};
+      up.record = {fmt::format("{} {} reload", name, k), StageKind::reload, down.record.way, down.record.modulus_stress};
       stages_.push_back(up);
       turn_back(MacroStage(stages_[stages_.size() - 2]), here() - 1, stages_.back());
       if (!t.sound()) return;
@@ -252,6 +255,15 @@ double strain_under(double stress, const MacroSpec& spec) {
 }
 
 }  // namespace
+
+void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval) {
+  if (!t.has("modulus_stress")) return;
+  const std::vector<double> ends = t.numbers("modulus_stress", Unit::pressure, Range::not_negative());
+  if (ends.size() != 2 || !(ends[0] < ends[1]))
+    t.mistake("modulus_stress", "must be two stresses, the lower one first: [\"1 MPa\", \"2 MPa\"]");
+  else
+    interval = {ends[0], ends[1]};
+}
 
 void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec) {
   const std::vector<SceneTable> tables = holder.tables("stage");

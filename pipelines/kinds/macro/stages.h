@@ -1,6 +1,8 @@
 // [[stage]] of macro scenes: a test in parts.
 #pragma once
 
+#include <array>
+
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 
@@ -10,6 +12,9 @@ namespace softgrain {
 /// `macro`, the table that says everything else of the scene, must not name one. Steps, increments and tolerance of a
 /// stage are those of `spec` unless it says them. Throws BadInput.
 void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec);
+
+/// Key `modulus_stress`: the two stresses [Pa] between which moduli are taken; as they were where the table has none.
+void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval);
 
 /// What a test does to the box, roughly, were all bodies to move with it: for estimates before a run.
 struct RoughStrains {

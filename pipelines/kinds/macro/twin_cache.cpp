@@ -57,6 +57,8 @@ std::string stage_text(const MacroStage& s) {
   std::string text =
       fmt::format("{} {} {} {} {} {} {} {:.17g}", s.record.name, to_string(s.record.kind), to_string(s.record.way),
                   s.logarithmic, s.alike, s.steps, s.increments_per_step, s.tolerance);
+  if (s.record.modulus_stress[1] > 0.0)
+    text += fmt::format(" modulus {:.17g} {:.17g}", s.record.modulus_stress[0], s.record.modulus_stress[1]);
   for (const AxisDrive& a : s.axis) text += fmt::format(" {} {:.17g} {}", a.by_stress, a.value, a.as_at);
   return text + "\n";
 }

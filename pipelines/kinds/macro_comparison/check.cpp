@@ -15,15 +15,15 @@ using nlohmann::json;
 void check_macro_comparison(const Scene& scene, Findings& out) {
   const MacroComparisonSetup setup = read_macro_comparison(scene);
   out.lines += fmt::format("  comparison of laws with twins on {} scenes\n", setup.scenes.size());
-  const MacroContent content = content_of(setup.spec, setup.seed);
+  const MacroContent content = content_of(setup.spec, setup.contents, setup.seed);
   out.add("solid_fraction", content.solid_fraction,
-          fmt::format("solid fraction of the first content: {:.3f}", content.solid_fraction));
+          fmt::format("solid fraction of the contents: {:.3f}", content.solid_fraction));
   json scenes = json::array();
   for (const ComparisonScene& s : setup.scenes) {
     const json common = std::exchange(out.facts, json{{"name", s.name}});
     out.lines += "  scene " + s.name + ":\n";
     add_sizes(out, drawn_sizes(s.setup, setup.seed));
-    check_macro(s.setup, content, &setup.laws, out);
+    check_macro(s.setup, content, &setup.laws, setup.seed, out);
     scenes.push_back(std::exchange(out.facts, common));
   }
   out.facts["scenes"] = scenes;

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/macro_comparison/scene.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
@@ -24,12 +25,13 @@ bool sound_name(const std::string& name) {
 }
 
 ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const SoftParticleSpec& content,
-                           const std::vector<ComparisonScene>& before, bool sound) {
+                           const std::vector<ComparisonScene>& before, std::uint64_t seed, bool sound) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
   read_stages(t, t, scene.setup.spec);
   require_own_preparation(t, scene.setup);
   if (sound) require_macro_memory(t, scene.setup, content);
+  if (sound && t.sound()) require_room_for_images(t, "bodies", scene.setup, seed);
   std::string name = default_name(scene.setup.spec);
   std::replace(name.begin(), name.end(), '.', '-');
   scene.name = t.text("name", name);
@@ -57,7 +59,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);
     for (const SceneTable& t : root.tables("scene"))
-      setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes, root.sound()));
+      setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes, setup.seed, root.sound()));
     if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
     const SceneTable law = root.table("law");
     law.part([&] { setup.laws = read_law_sources(scene, law); });

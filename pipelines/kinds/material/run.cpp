@@ -141,22 +141,51 @@ void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine
 
 }  // namespace
 
-std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options) {
+namespace {
+
+/// What to do about it, where the message does not say.
+std::string advice_on(const std::string& problem) {
+  if (problem.find("images of") != std::string::npos) return "more grains (count) make a larger cell";
+  if (problem.find("did not reach a pressure") != std::string::npos)
+    return "more preparation_passes, a larger preparation_tolerance or another seed may do";
+  return "another seed or more grains (count) may do";
+}
+
+}  // namespace
+
+VariantRuns run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options) {
   require_engine(scene, options.lammps);
-  std::vector<VariantResult> results;
+  VariantRuns out;
   Packings packings;
+  const auto go = [&](const MaterialVariant& v) {
+    if (!v.same_packings) packings = nullptr;
+    packings = packings_of(v, run, packings);
+    if (!packings) throw NotUsable("the packing that it is to test was not made");
+    out.results.push_back(run_variant(scene, v, options.lammps, run, *packings));
+    if (options.packings) out.results.back().packings = packings;
+  };
+  const auto failed = [&](const MaterialVariant& v, const std::string& problem) {
+    const std::string of = v.name == kMaterialEngine ? "" : "packing " + packings_name(v) + ": ";
+    out.failures.push_back({&v, of + problem + "; " + advice_on(problem)});
+    run.context.say(out.failures.back().problem);
+  };
   run.context.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
       try {
-        packings = packings_of(v, run, packings);
-        results.push_back(run_variant(scene, v, options.lammps, run, *packings));
-        if (options.packings) results.back().packings = packings;
+        go(v);
       } catch (const NotUsable& e) {
-        throw NotUsable(scene.variants.size() > 1 ? v.name + ": " + e.what() : e.what());
+        failed(v, e.what());
+      } catch (const BadInput& e) {  // a cell that became too small for its grains
+        failed(v, e.what());
       }
     }
+    if (out.results.empty()) throw NotUsable(out.failures.front().problem);
   });
-  return results;
+  return out;
+}
+
+void reject_failures(const std::vector<VariantFailure>& failures, SummaryHead& head) {
+  for (const VariantFailure& f : failures) head.reject(f.problem);
 }
 
 TextTable points_of(const std::vector<VariantResult>& results) {
@@ -264,11 +293,13 @@ std::string people_text(const MaterialSummary& s) {
           fmt::format(", solid fraction {:.4f}{} at the start", v.solid_fraction_start->mean,
                       v.solid_fraction_start->n > 1 ? fmt::format(" +- {:.4f}", v.solid_fraction_start->error) : "");
     text += "\n";
-    for (const StageMeans& m : v.runs.stages)
+    for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
         text += fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}\n", m.record.name,
                             m.axial_end->mean / s.youngs_modulus, m.lateral_end->mean / s.youngs_modulus,
                             m.ratio_end->mean);
+      if (const std::string modulus = modulus_text(m); !modulus.empty()) text += "    " + modulus + "\n";
+    }
   }
   return text + (s.equation ? equation_text(*s.equation) : "") + prediction_text(s.predictions);
 }
@@ -355,8 +386,9 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   require_engine(material, lammps);
   const Run run(scene, options, "run", material.seed, {.text = sizes_text(material)});
   if (lammps && lammps->write_only) return write_only(material, run);
-  const std::vector<VariantResult> results = run_variants(material, run, {.lammps = lammps});
+  const auto [results, failures] = run_variants(material, run, {.lammps = lammps});
   MaterialSummary summary = summarise(material, results, run).summary;
+  reject_failures(failures, summary.head);
   if (lammps) {
     summary.engine = engine_use(*lammps, lammps_directory(run.context, 0, folder_of(material.variants.front())));
     add_directories(material, run, summary);

@@ -26,13 +26,29 @@ struct VariantResult {
   std::shared_ptr<const std::vector<MacroPacking>> packings;
 };
 
+/// A variant that could not be prepared or tested: what came in its way, and what to do.
+struct VariantFailure {
+  const MaterialVariant* variant = nullptr;
+  std::string problem;
+};
+
 struct VariantOptions {
   std::optional<LammpsEngine> lammps{};  ///< that runs the tests
   bool packings = false;                 ///< kept in the results
 };
 
+/// Variants that were measured, in their order, and those that were not.
+struct VariantRuns {
+  std::vector<VariantResult> results;
+  std::vector<VariantFailure> failures;
+};
+
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5 and kept states.
-std::vector<VariantResult> run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options = {});
+/// One that fails costs no other. Throws NotUsable where none is left.
+VariantRuns run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options = {});
+
+/// Says in the head what failed, which then is not usable.
+void reject_failures(const std::vector<VariantFailure>& failures, SummaryHead& head);
 
 /// One row per recorded point of every sample of every variant.
 TextTable points_of(const std::vector<VariantResult>& results);

@@ -7,11 +7,13 @@
 #include <set>
 
 #include "common/core/error.h"
+#include "common/core/stopwatch.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
 #include "microsim/particles/scene_memory.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/material/results.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
@@ -191,6 +193,14 @@ MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool s
   return v;
 }
 
+/// For all loadings of the packings from `first` on.
+void require_room(const SceneTable& t, const MaterialScene& scene, std::size_t first) {
+  for (std::size_t k = first; k < scene.variants.size(); ++k) {
+    const std::string problem = room_problem(scene.variants[k].setup, scene.seed, "grains");
+    if (!problem.empty()) t.reject("count", problem + " ([grains] count)");
+  }
+}
+
 /// "a-b" under "c" and "a" under "b-c" would be one file; material_initial.h5 is that of the packings.
 void require_names_apart(const SceneTable& root, const std::vector<MaterialVariant>& variants) {
   std::set<std::string> names;
@@ -229,11 +239,14 @@ MaterialScene read_material(const SceneTable& root) {
   for (const SceneTable& t : variants) {
     const MaterialVariant v = read_variant(t, base, sound);
     if (!names.insert(v.name).second) t.mistake("name", "is used twice");
+    const std::size_t first = out.variants.size();
     add(v, loadings.of_variant(t), false);
+    if (root.sound()) require_room(t, out, first);
   }
   if (variants.empty()) {
     if (root.sound()) require_material_memory(grains, base);
     add({kMaterialEngine, base}, loadings.all(), true);
+    if (root.sound()) require_room(grains, out, 0);
   }
   require_names_apart(root, out.variants);
   return out;
@@ -246,14 +259,19 @@ MaterialScene read_material_scene(const Scene& scene) {
   });
 }
 
-void check_variants(const MaterialScene& material, Findings& out) {
+void check_variants(const MaterialScene& material, Findings& out, bool timed) {
+  constexpr double kMoment = 10.0;  // of trials; what is left then is taken to be like what was tried
+  const Stopwatch watch;
+  double bodies = 0.0;
+  double untried = 0.0;
   nlohmann::json variants = nlohmann::json::array();
   for (const MaterialVariant& v : material.variants) {
     const nlohmann::json common = std::exchange(out.facts, nlohmann::json{{"name", v.name}});
     if (material.variants.size() > 1) out.lines += "  variant " + v.name + ":\n";
-    if (!v.same_packings) require_room_for_images(drawn_bodies(v.setup.spec, material.seed, 0));
     if (!v.same_packings) add_sizes(out, drawn_sizes(v.setup, material.seed));
-    check_macro(v.setup, {.prepared = v.same_packings}, nullptr, out);
+    const bool trial = timed && watch.seconds() < kMoment;
+    (trial ? bodies : untried) += static_cast<double>(v.setup.spec.bodies * v.setup.samples);
+    check_macro(v.setup, {.prepared = v.same_packings, .untimed = !trial}, nullptr, material.seed, out);
     constexpr double kCoarse = 100.0;  // above a third of the largest radius
     double coarse = 0.0;
     for (const MacroBody& b : drawn_bodies(v.setup.spec, material.seed, 0))
@@ -266,6 +284,7 @@ void check_variants(const MaterialScene& material, Findings& out) {
     variants.push_back(std::exchange(out.facts, common));
   }
   out.facts["variants"] = variants;
+  if (timed && untried > 0.0 && bodies > 0.0) out.spend("variants that were not tried", out.spent() * untried / bodies);
 }
 
 }  // namespace softgrain

@@ -47,8 +47,8 @@ MaterialScene read_material(const SceneTable& root);
 /// Reads the whole scene. Throws BadInput, FileTrouble.
 MaterialScene read_material_scene(const Scene& scene);
 
-/// Number, sizes, memory and time of every variant, and what to mind. Throws BadInput, FileTrouble.
-void check_variants(const MaterialScene& material, Findings& out);
+/// Number, sizes and memory of every variant, what to mind, and with `timed` the time. Throws BadInput, FileTrouble.
+void check_variants(const MaterialScene& material, Findings& out, bool timed = true);
 
 /// Prepares and tests all samples of all variants; writes material_NAME.h5, material_initial_NAME.h5, the kept states,
 /// material.csv, summary.json and the report. Status not_usable when a curve is not usable or carries no stress.

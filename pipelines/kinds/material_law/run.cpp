@@ -31,11 +31,15 @@ std::string law_text(const CellLawSummary& s) {
 ExitStatus run_material_law(const Scene& scene, const CommonOptions& options) {
   const MaterialLawScene law = read_material_law_scene(scene);
   const Run run(scene, options, "run", law.material.seed, {.text = sizes_text(law.material)});
-  const std::vector<VariantResult> results = run_variants(law.material, run);
+  const auto [results, failures] = run_variants(law.material, run);
   MaterialOutcome measured = summarise(law.material, results, run);
+  reject_failures(failures, measured.summary.head);
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
   MaterialLaw fitted;
-  run.context.guard([&] { fitted = fit_material_law(law, results, measured.states, run.seed); });
+  if (failures.empty())
+    run.context.guard([&, &all = results] { fitted = fit_material_law(law, all, measured.states, run.seed); });
+  else
+    fitted.problems.push_back("not all of its packings could be measured");
   MaterialLawSummary summary{std::move(measured.summary), std::move(fitted.summary)};
   for (const std::string& problem : fitted.problems) summary.material.head.reject("no cell law: " + problem);
   if (summary.law.usable) {

@@ -8,7 +8,7 @@
 #include "common/core/limits.h"
 #include "common/core/solid_sphere.h"
 #include "common/packing/grading_parts.h"
-#include "macrosim/preparation.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
@@ -83,10 +83,11 @@ void make_variants(const SceneTable& law, const MacroSetup& base, double shear_s
 }
 
 /// Mixtures need grains of both kinds, and all packings more than a few grains.
-void require_grains(const SceneTable& law, const MaterialLawScene& scene) {
+void require_grains(const SceneTable& law, const SceneTable& grains, const MaterialLawScene& scene) {
   for (const MaterialVariant& v : scene.material.variants) {
     if (v.setup.spec.bodies > kManyGrains) continue;
-    require_room_for_images(drawn_bodies(v.setup.spec, scene.material.seed, 0));
+    const std::string problem = room_problem(v.setup, scene.material.seed, "grains");
+    if (!problem.empty()) grains.reject("count", fmt::format("packing {}: {} ([grains] count)", v.name, problem));
     if (&v - scene.material.variants.data() < static_cast<std::ptrdiff_t>(kFirstMixture)) continue;
     const GrainShares shares = shares_of(scene, v, scene.material.seed, 0);
     if (shares.coarse == 0 || shares.fines == 0)
@@ -129,7 +130,7 @@ MaterialLawScene read_material_law_scene(const Scene& scene) {
     out.sizes = sizes_of(base.spec);
     make_variants(law, base, shear, out);
     require_material_memory(root.table("grains"), base);
-    require_grains(law, out);
+    require_grains(law, root.table("grains"), out);
     return out;
   });
 }

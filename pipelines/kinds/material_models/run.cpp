@@ -36,8 +36,10 @@ ExitStatus run_material_models(const Scene& file, const CommonOptions& options) 
   const MaterialModelsScene scene = read_material_models_scene(file);
   const Run run(file, options, "run", scene.material.seed,
                 {.files = scene.files, .text = scene.text + sizes_text(scene.material)});
-  const std::vector<VariantResult> truths = run_variants(scene.material, run, {.packings = true});
+  const VariantRuns measured_variants = run_variants(scene.material, run, {.packings = true});
+  const std::vector<VariantResult>& truths = measured_variants.results;
   MaterialOutcome measured = summarise(scene.material, truths, run);
+  reject_failures(measured_variants.failures, measured.summary.head);
   write_text_atomic(run.path("material.csv"), as_csv(points_of(truths)));
   MaterialModelsSummary summary{std::move(measured.summary), {}};
   run.context.guard([&] { summary.scores = run_models(scene, truths, run); });
@@ -49,6 +51,7 @@ ExitStatus run_material_models(const Scene& file, const CommonOptions& options) 
 void check_models(const Scene& file, Findings& out) {
   const MaterialModelsScene scene = read_material_models_scene(file);
   check_variants(scene.material, out);
+  if (!scene.models.empty()) out.lines += "  the time of the models is not in what is said below\n";
   for (const MaterialModel& m : scene.models) out.lines += "  model " + m.name + ": " + to_string(m.kind) + "\n";
 }
 

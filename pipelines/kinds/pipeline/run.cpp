@@ -265,7 +265,8 @@ void check_pipeline(const Scene& scene, const std::string&, Findings& out) {
   }
   if (!setup.macro) return;
   add_sizes(out, drawn_sizes(*setup.macro, setup.measure.seed));
-  check_macro(*setup.macro, content_of(trial), nullptr, out);
+  const MacroContent content = content_of(trial, setup.measure.spec, setup.measure.packings(), setup.measure.seed);
+  check_macro(*setup.macro, content, nullptr, setup.measure.seed, out);
 }
 
 NextSteps next_of(const report::RunData& run) {

@@ -1,6 +1,7 @@
 #include "pipelines/kinds/pipeline/scene.h"
 
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/law/fit_settings.h"
 
@@ -57,6 +58,7 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     setup.macro->kept_states = setup.measure.kept_states;
     require_own_preparation(macro, *setup.macro);
     if (root.sound()) require_macro_memory(macro, *setup.macro, setup.measure.spec);
+    if (root.sound()) require_room_for_images(macro, "bodies", *setup.macro, setup.measure.seed);
     return setup;
   });
 }

@@ -10,6 +10,7 @@
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
 #include "common/io/text_file.h"
+#include "pipelines/compare/stage_results.h"
 
 namespace softgrain {
 
@@ -137,15 +138,45 @@ RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps) {
     const double ratio = straight(shape.strain, shape.ratio, e);
     const double of_factor = kNormal95 * straight(shape.strain, shape.factor_deviation, e);
     const double of_ratio = kNormal95 * straight(shape.strain, shape.ratio_deviation, e);
+    const double value = axial(factor * pressure(law.onset.value, start.value, e), ratio);
+    // Sides bear as much as the axis at most, or what they bore here: packings at rest can lie a little above.
+    const double low = axial(std::max(0.0, factor - of_factor) * pressure(law.onset.low, start.low, e),
+                             std::max(ratio, std::min(1.0, ratio + of_ratio)));
+    const double high =
+        axial((factor + of_factor) * pressure(law.onset.high, start.high, e), std::max(0.0, ratio - of_ratio));
     out.strain.push_back(e);
-    out.axial.push_back(axial(factor * pressure(law.onset.value, start.value, e), ratio));
-    out.lateral.push_back(ratio * out.axial.back());
-    out.low.push_back(axial(std::max(0.0, factor - of_factor) * pressure(law.onset.low, start.low, e),
-                            std::min(1.0, ratio + of_ratio)));
-    out.high.push_back(
-        axial((factor + of_factor) * pressure(law.onset.high, start.high, e), std::max(0.0, ratio - of_ratio)));
+    out.axial.push_back(value);
+    out.lateral.push_back(ratio * value);
+    out.low.push_back(std::min(low, value));
+    out.high.push_back(std::max(high, value));
   }
   return out;
+}
+
+void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval) {
+  if (curves.empty() || curves.front().axial.size() < 2) return;
+  if (!(interval[1] > 0.0)) {  // so far as the lower end of its band comes
+    const RecipeCurve& first = curves.front();
+    const double low = first.low.empty() ? first.axial.back() : first.low.back();
+    interval[1] = low > first.axial.front() ? low : first.axial.back();
+    interval[0] = std::max(first.axial.front(), 0.5 * interval[1]);
+  }
+  for (RecipeCurve& c : curves) {
+    std::vector<double> strain;
+    for (const double e : c.strain) strain.push_back(-std::log1p(-e));
+    const auto of = [&](const std::vector<double>& axial) {
+      return secant_modulus(strain, axial, interval[0], interval[1]);
+    };
+    SecantModulus m{interval[0], interval[1], of(c.axial)};
+    if (!std::isfinite(m.value)) continue;
+    const double a = of(c.low);
+    const double b = of(c.high);
+    if (std::isfinite(a) && std::isfinite(b)) {
+      m.low = std::min({a, b, m.value});
+      m.high = std::max({a, b, m.value});
+    }
+    c.modulus = m;
+  }
 }
 
 void write_material_card(const RecipeScene& scene, const WholeLaw& law, const std::string& path,

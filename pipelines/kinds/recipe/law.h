@@ -1,6 +1,7 @@
 // The law of the whole: one equation of state from its onset, and the cell law of its coarsest level among all fines.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,10 @@ Estimate solid_fraction_of(const WholeLaw& law);
 /// factor of the shape, axial stress 3 p/(1 + 2 K0); beyond the strain that was measured the shape stays. The band
 /// holds the ends of the onset, and of factor and ratio twice their deviations among packings.
 RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps);
+
+/// Sets the constrained moduli of all curves between the same two axial stresses over E; zeros: from half the stress
+/// where the lower end of the first one's band ends to that. A curve that does not go through both has none.
+void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval);
 
 /// Lateral over axial stress where the shape ends.
 Estimate lateral_ratio(const ResponseShape& shape);

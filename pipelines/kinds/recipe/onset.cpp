@@ -156,8 +156,9 @@ OnsetByForms LevelForms::joined_onset(std::size_t first, std::size_t count, doub
   const auto [levels_low, levels_high] = interval95(levels);
   const auto [rods_low, rods_high] = interval95(by_rods);
   const double misfit = kNormal95 * parts_->deviation;
-  e.low = std::max(0.0, std::min(levels_low, rods_low - misfit) - widen);
-  e.high = std::min(1.0, std::max(levels_high, rods_high + misfit) + widen);
+  // Replicates need not lie about the estimate: both forms are inside, and with them the value.
+  e.low = std::max(0.0, std::min({levels_low, rods_low - misfit, out.levels, out.rods}) - widen);
+  e.high = std::min(1.0, std::max({levels_high, rods_high + misfit, out.levels, out.rods}) + widen);
   e.standard_error = 0.5 * (e.high - e.low) / kNormal95;
   return out;
 }

@@ -28,6 +28,8 @@ std::vector<RunValue> values_of(const report::RunData& run) {
   if (r.onset) out.push_back({"onset of the whole", "", r.onset->value, r.onset->standard_error});
   for (const RecipeCurve& c : r.curves)
     if (!c.axial.empty()) out.push_back({"axial stress over E at the end, " + c.name, "", c.axial.back()});
+  for (const RecipeCurve& c : r.curves)
+    if (c.modulus) out.push_back({"constrained modulus over E, " + c.name, "", c.modulus->value});
   return out;
 }
 

@@ -21,23 +21,44 @@ namespace {
 /// Everything that a run of a recipe makes, step by step.
 class RecipeRun {
  public:
-  RecipeRun(const RecipeScene& scene, const Run& run) : scene_(scene), run_(run) {}
+  RecipeRun(RecipeScene scene, const Run& run) : scene_(std::move(scene)), run_(run) {}
 
   RecipeSummary finish() {
-    results_ = run_variants(scene_.material, run_);
+    VariantRuns measured_variants = run_variants(scene_.material, run_);
+    results_ = std::move(measured_variants.results);
     MaterialOutcome measured = summarise(scene_.material, results_, run_);
     summary_.material = std::move(measured.summary);
+    for (const std::string& raised : scene_.raised) head().remarks.push_back(raised);
+    const bool complete = take_failures(measured_variants.failures);
     // Of dozens of packings the one that holds most of the curve.
     std::erase_if(head().sizes, [](const SizesSummary& sizes) { return !sizes.of.starts_with("check"); });
     describe();
     write_text_atomic(run_.path("material.csv"), as_csv(points_of(results_)));
-    run_.context.guard([&] { put_together(measured.states); });
+    if (complete) run_.context.guard([&] { put_together(measured.states); });
     return std::move(summary_);
   }
 
  private:
   RecipeOutcome& out() { return summary_.recipe; }
   SummaryHead& head() { return summary_.material.head; }
+
+  /// Whether all that the law needs was measured: it can do without its check, which is the last packing.
+  bool take_failures(const std::vector<VariantFailure>& failures) {
+    bool complete = true;
+    for (const VariantFailure& f : failures) {
+      const bool check = scene_.checked && f.variant == &scene_.material.variants[*scene_.checked];
+      head().reject(f.problem + (check ? " ([check] grains)" : " ([grains] count)"));
+      if (check)
+        scene_.checked.reset();
+      else
+        complete = false;
+    }
+    if (!scene_.checked) scene_.checked_levels = 0;
+    if (!complete)
+      head().remarks.push_back("no law: packings are missing; those that were measured are in material.csv and "
+                               "material_NAME.h5");
+    return complete;
+  }
 
   void describe() {
     for (const Constituent& c : scene_.constituents)
@@ -79,7 +100,11 @@ class RecipeRun {
           "the check of {} levels lies {:.4f} outside the interval of its prediction: the interval of the whole is "
           "widened by as much at both ends",
           c.levels, c.outside));
-    forms.lean(scene_.checked_levels, c.measured.value, c.measured.standard_error);
+    c.weighs = tells_ways(scene_);
+    if (c.weighs)
+      forms.lean(scene_.checked_levels, c.measured.value, c.measured.standard_error);
+    else
+      head().remarks.push_back(kTwoLevelsTellNothing);
     c.share_of_rods = forms.share_of_rods();
     out().check = c;
     return c.outside;
@@ -174,9 +199,20 @@ class RecipeRun {
         head().files["macro"] = run_.path("recipe_macro.h5");
       }
     }
+    add_moduli();
     judge(end);
     write_text_atomic(run_.path("recipe.csv"), as_csv(table()));
     head().files["curves"] = run_.path("recipe.csv");
+  }
+
+  void add_moduli() {
+    const MacroSpec& spec = scene_.material.variants.front().setup.spec;
+    set_moduli(out().curves, {spec.modulus_stress[0] / spec.youngs_modulus, spec.modulus_stress[1] / spec.youngs_modulus});
+    for (const RecipeCurve& c : out().curves)
+      if (!c.modulus && !c.axial.empty())
+        head().remarks.push_back(fmt::format("{}: constrained modulus not determined: its axial stress does not go through "
+                                             "the interval of modulus_stress",
+                                             c.name));
   }
 
   ShellLevels measure_shells() {
@@ -220,7 +256,7 @@ class RecipeRun {
     return t;
   }
 
-  const RecipeScene& scene_;
+  RecipeScene scene_;
   const Run& run_;
   std::vector<VariantResult> results_;
   WholeLaw law_;
@@ -253,11 +289,17 @@ std::string recipe_text(const RecipeSummary& s) {
       fmt::format("the whole, span {:.3g}: phi_J = {} (levels {:.4f}, rods {:.4f}), solid fraction at the start {}\n",
                   r.span, text_of(*r.onset), r.levels.front().with_finer.levels, r.levels.front().with_finer.rods,
                   text_of(*r.solid_fraction));
-  for (const RecipeCurve& c : r.curves)
-    if (!c.axial.empty())
-      text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}\n", c.name, c.axial.back(),
-                          c.low.empty() ? "" : fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back()),
-                          c.strain.back());
+  for (const RecipeCurve& c : r.curves) {
+    if (c.axial.empty()) continue;
+    text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}", c.name, c.axial.back(),
+                        c.low.empty() ? "" : fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back()),
+                        c.strain.back());
+    if (c.modulus)
+      text += fmt::format("; constrained modulus {} E from {:.3g} to {:.3g} E",
+                          interval_text(c.modulus->value, c.modulus->low, c.modulus->high), c.modulus->from,
+                          c.modulus->to);
+    text += "\n";
+  }
   for (const ShellLevelSummary& level : r.shells)
     text += fmt::format(
         "  shell hierarchy, level {}: {:.3g} to {:.3g} mm, one plane {:.3g} E Rs^2 at h/Rs = 0.2, {:.3g} "

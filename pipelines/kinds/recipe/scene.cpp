@@ -8,7 +8,7 @@
 
 #include "common/packing/grading_parts.h"
 #include "common/packing/grading_scene.h"
-#include "macrosim/preparation.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
 #include "pipelines/kinds/recipe/run.h"
@@ -201,25 +201,61 @@ void make_variants(const MacroSetup& base, double shear_strain, RecipeScene& out
       variant_of(fmt::format("check-{}-levels", out.checked_levels), still, joined(levels, 0, out.checked_levels)));
 }
 
-/// Of every packing, as far as its bodies are drawn before the run.
-void require_room(const SceneTable& root, const RecipeScene& scene) {
-  constexpr std::int64_t kMany = 1000000;  // have room
-  const auto require = [&](const MacroSpec& spec, const char* table, const char* key, const std::string& what) {
-    if (spec.bodies > kMany) return;
-    try {
-      require_room_for_images(drawn_bodies(spec, scene.material.seed, 0));
-    } catch (const BadInput& e) {
-      root.table_or_empty(table).reject(key, fmt::format("{}: {}", what, e.what()));
+/// Every packing gets room for the images of its largest grains: numbers that nobody asked for are raised, those of the
+/// scene refused.
+class RoomForImages {
+ public:
+  RoomForImages(const SceneTable& root, RecipeScene& scene) : root_(root), scene_(scene) {}
+
+  void require() {
+    for (std::size_t v = 0; v < scene_.material.variants.size(); ++v) {
+      MaterialVariant& variant = scene_.material.variants[v];
+      if (variant.same_packings) {
+        variant.setup.spec.bodies = scene_.material.variants[v - 1].setup.spec.bodies;
+        continue;
+      }
+      const bool check = scene_.checked == v;
+      const MaterialVariant* sheared = v + 1 < scene_.material.variants.size() ? &variant + 1 : nullptr;
+      MacroSetup widest = variant.setup;
+      if (sheared != nullptr && sheared->same_packings) widest.spec.strain_end = widest_strain(variant, *sheared);
+      variant.setup.spec.bodies =
+          enough(widest, check ? "check" : "grains", check ? "grains" : "count", "packing " + variant.name);
+      if (check) scene_.check.grains = variant.setup.spec.bodies;
     }
-  };
-  for (std::size_t v = 0; v < scene.material.variants.size(); ++v)
-    require(scene.material.variants[v].setup.spec, scene.checked == v ? "check" : "grains",
-            scene.checked == v ? "grains" : "count", "packing " + scene.material.variants[v].name);
-  MacroSpec coarsest = scene.material.variants.front().setup.spec;
-  take_sizes(coarsest, Grading::classes(scene.levels[0].pieces));
-  coarsest.bodies = scene.macro.grains;
-  require(coarsest, "macro", "grains", "the coarsest level under load");
-}
+    MacroSetup coarsest = scene_.material.variants.front().setup;
+    take_sizes(coarsest.spec, Grading::classes(scene_.levels[0].pieces));
+    coarsest.spec.bodies = scene_.macro.grains;
+    coarsest.samples = scene_.macro.samples;
+    scene_.macro.grains = enough(coarsest, "macro", "grains", "the coarsest level under load");
+  }
+
+ private:
+  static double widest_strain(const MaterialVariant& a, const MaterialVariant& b) {
+    return std::max(a.setup.spec.strain_end, b.setup.spec.strain_end + b.setup.spec.preload);
+  }
+
+  /// Of grains in this packing, those asked for or more.
+  std::int64_t enough(MacroSetup setup, const char* table, const char* key, const std::string& what) {
+    constexpr int kTries = 20;
+    constexpr std::int64_t kDearest = 5;  // times the default: what is dearer should be asked for
+    const std::int64_t asked = setup.spec.bodies;
+    std::string problem = room_problem(setup, scene_.material.seed, "grains");
+    if (problem.empty()) return asked;
+    const SceneTable t = root_.table_or_empty(table);
+    setup.spec.bodies = std::max(asked, least_bodies(setup.spec));
+    if (t.has(key) || setup.spec.bodies > kDearest * asked)
+      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what, problem,
+                                table, key));
+    for (int k = 0; k < kTries && !room_problem(setup, scene_.material.seed, "grains").empty(); ++k)
+      setup.spec.bodies += setup.spec.bodies / 10;
+    scene_.raised.push_back(fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room",
+                                        what, setup.spec.bodies, asked, table, key));
+    return setup.spec.bodies;
+  }
+
+  const SceneTable& root_;
+  RecipeScene& scene_;
+};
 
 void read_mixtures(const SceneTable& t, RecipeScene& out) {
   out.mixtures = t.numbers("mixtures", Unit::none, Range{0.0, 1.0, true, true}, {0.2, 0.4, 0.6, 0.8});
@@ -278,10 +314,15 @@ double fines_over_coarse(const RecipeScene& scene, std::size_t level) {
   return finer / scene.levels[level].share;
 }
 
+bool tells_ways(const RecipeScene& scene) {
+  constexpr std::size_t kTelling = 3;
+  return scene.checked_levels >= kTelling || scene.checked_levels == scene.levels.size();
+}
+
 RecipeScene read_recipe_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice("kind", {"recipe"});
-    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, 100};
+    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, 100};
     out.material.title = root.text("title", "");
     out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
@@ -309,7 +350,7 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     if (!root.sound()) return out;
     make_variants(base, shear, out);
     require_material_memory(grains, base);
-    require_room(root, out);
+    RoomForImages(root, out).require();
     if (out.checked) require_material_memory(root.table_or_empty("check"), out.material.variants[*out.checked].setup);
     return out;
   });
@@ -324,7 +365,8 @@ void check_recipe(const Scene& scene, Findings& out) {
     out.lines += fmt::format("  level {}: {}, {:.3g} % of the solid volume\n", k + 1, text_of(recipe.levels[k]),
                              100.0 * recipe.levels[k].share);
   Findings variants;  // a dozen lines for every packing: their number is enough here
-  check_variants(recipe.material, variants);
+  check_variants(recipe.material, variants, false);
+  for (const std::string& raised : recipe.raised) out.lines += "  " + raised + "\n";
   const auto packings = std::count_if(recipe.material.variants.begin(), recipe.material.variants.end(),
                                       [](const MaterialVariant& v) { return !v.same_packings; });
   out.add("packings", packings,
@@ -352,6 +394,7 @@ void check_recipe(const Scene& scene, Findings& out) {
                     few, recipe.levels.size() - 1, kFewGrains, fewest));
   if (recipe.material.variants.front().setup.samples < 2) out.warn("one sample: the law will have no errors");
   if (recipe.checked_levels < 2) out.warn("nothing is checked with all its grains: more of them ([check] grains)");
+  if (recipe.checked && !tells_ways(recipe)) out.warn(kTwoLevelsTellNothing);
   out.spend("packings", packing_seconds(recipe));
   out.spend("friction of cells", friction_seconds(recipe.cells));
   if (recipe.shells.levels > 0)

@@ -58,6 +58,7 @@ struct RecipeScene {
   std::vector<MixtureVariants> mixed;  ///< of every level but the finest
   std::optional<std::size_t> checked;  ///< variant of the check
   std::size_t checked_levels = 0;      ///< that it holds
+  std::vector<std::string> raised;     ///< packings whose default number of grains was too small, and what they have
   RecipeCheck check;
   RecipeMacro macro;
   RecipeShells shells;

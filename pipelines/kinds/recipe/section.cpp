@@ -107,6 +107,15 @@ std::string shell_table(const RecipeOutcome& r) {
   return table.empty() ? "" : table.html();
 }
 
+std::string modulus_table(const RecipeOutcome& r) {
+  HtmlTable table({"curve", "constrained modulus [E]", "95 %", "between axial stresses [E]"}, 1);
+  for (const RecipeCurve& c : r.curves)
+    if (c.modulus)
+      table.row({c.name, format_number(c.modulus->value, 3), range_of(c.modulus->low, c.modulus->high),
+                 format_number(c.modulus->from, 3) + " and " + format_number(c.modulus->to, 3)});
+  return table.empty() ? "" : table.html();
+}
+
 std::string whole_text(const RecipeOutcome& r) {
   std::string text = fmt::format(
       "The whole begins to bear at a solid fraction of {} ({}): {} by levels, {} by rods (gap {}; packings lie {} "
@@ -129,12 +138,15 @@ std::string check_text(const RecipeCheckSummary& c) {
   return fmt::format(
       "Check: the {} coarsest levels with all their grains ({} of span {}) begin to bear at {}; put together from "
       "levels "
-      "{} ({}): {}. By levels it is {}, by rods {}; by that the value of the whole has a share of {} of the rods.",
+      "{} ({}): {}. By levels it is {}, by rods {}; {}.",
       c.levels, format_count(c.grains), format_number(c.span, 3), format_number(c.measured.value, 4),
       format_number(c.predicted.onset.value, 4), range_of(c.predicted.onset.low, c.predicted.onset.high, 4),
       c.outside > 0.0 ? "outside by " + format_number(c.outside, 2) + ", and all intervals here are widened by that"
                       : "inside",
-      format_number(c.predicted.levels, 4), format_number(c.predicted.rods, 4), format_number(c.share_of_rods, 2));
+      format_number(c.predicted.levels, 4), format_number(c.predicted.rods, 4),
+      c.weighs ? "by that the value of the whole has a share of " + format_number(c.share_of_rods, 2) + " of the rods"
+               : "between levels that were measured together it does not tell which way does better over more of them: the "
+                 "value of the whole is the middle of both");
 }
 
 }  // namespace
@@ -145,7 +157,7 @@ std::string recipe_section(const RunData& run) {
   std::string body = paragraph(whole_text(r));
   if (r.check) body += paragraph(check_text(*r.check));
   body += figure_row({onset_figure(r), load_figure(r)});
-  body += constituent_table(r) + level_table(r) + shell_table(r);
+  body += modulus_table(r) + constituent_table(r) + level_table(r) + shell_table(r);
   return section("recipe", "From the recipe to the law", body);
 }
 

@@ -69,6 +69,7 @@ struct RecipeCheckSummary {
   double span = 1.0;
   Estimate measured;  ///< phi_J
   OnsetByForms predicted;
+  bool weighs = true;  ///< whether it tells which form does better; else the value is in the middle
   double share_of_rods = 0.5;  ///< in the value of the whole, see LevelForms::lean
   double outside = 0.0;        ///< how far the measured one lies outside the interval, which intervals are widened by
 };
@@ -80,8 +81,26 @@ void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
   visit("measured", s.measured.value);
   visit("measured_standard_error", s.measured.standard_error);
   visit("predicted", s.predicted);
+  visit("weighs_forms", s.weighs);
   visit("share_of_rods", s.share_of_rods);
   visit("outside", s.outside);
+}
+
+/// Constrained modulus between two axial stresses, over logarithmic strain; all over E. NaN: an end of the band does not
+/// go through both.
+struct SecantModulus {
+  double from = 0.0;
+  double to = 0.0;
+  double value = 0.0;
+  double low = kNaN;
+  double high = kNaN;
+};
+
+void fields(auto&& visit, Of<SecantModulus> auto& s) {
+  visit("from", s.from);
+  visit("to", s.to);
+  visit("value", s.value);
+  range_field(visit, "interval", s.low, s.high);
 }
 
 /// Oedometric compression from the start pressure; stresses over E.
@@ -90,6 +109,7 @@ struct RecipeCurve {
   std::vector<double> strain, axial, lateral;
   std::vector<double> low, high;  ///< of the axial stress; empty: not known
   std::string problem;            ///< why it ends, or is not there
+  std::optional<SecantModulus> modulus{};
 };
 
 void fields(auto&& visit, Of<RecipeCurve> auto& s) {
@@ -100,6 +120,7 @@ void fields(auto&& visit, Of<RecipeCurve> auto& s) {
   visit("axial_low", s.low);
   visit("axial_high", s.high);
   visit("problem", s.problem);
+  visit("constrained_modulus", s.modulus, kLeftOut);
 }
 
 /// A level of the shell hierarchy.

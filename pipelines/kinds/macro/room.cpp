@@ -1,0 +1,121 @@
+#include "pipelines/kinds/macro/room.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/rod_packing.h"
+#include "common/core/solid_sphere.h"
+#include "macrosim/macro_packing.h"
+#include "pipelines/kinds/macro/stages.h"
+
+namespace softgrain {
+
+namespace {
+
+/// Shortest period of a cell, in the largest radius: two diameters, and what neighbours are looked for beyond.
+constexpr double kPeriod = 4.1;
+/// Drawn bodies are smaller in the mean than their distribution, now and then.
+constexpr double kMargin = 1.1;
+/// Samples that are drawn at least: what has room must not depend on the seed, which the command line may replace.
+constexpr std::int64_t kDraws = 32;
+/// Bodies that are drawn before the run, of all samples of a scene.
+constexpr double kMostDrawn = 2e7;
+
+Grading sizes_or_power_law(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
+  return sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest);
+}
+
+/// Share of the cell that bodies fill when they jam: that of rods without friction, less with it.
+double jammed_fraction(const MacroSpec& spec) {
+  constexpr double kFrictionless = 0.7654;  // gap of rods
+  constexpr double kLoosest = 0.07;         // less at mu = 0.3 and above
+  constexpr std::size_t kRods = 1000;
+  double fraction = 0.72;  // of grains and soft particles together
+  if (!(spec.soft_share > 0.0))
+    fraction = RodCurve(sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max,
+                                           spec.solid_polydispersity),
+                        kRods)
+                   .at(kFrictionless);
+  return fraction * (1.0 - kLoosest * std::min(1.0, spec.protocol.friction / 0.3));
+}
+
+/// And under a pressure over E: p/E = 0.045 x^1.75, x the loss of pores.
+double fraction_under(double jammed, double pressure) {
+  return std::min(1.0, jammed + (1.0 - jammed) * std::pow(pressure / 0.045, 1.0 / 1.75));
+}
+
+/// Least volume of bodies, over the cube of the largest radius: so that they can be placed, under the first pressure of
+/// the preparation, which is up to 128 times that of its end, and where the test shortens the cell most.
+double needed_volume(const MacroSpec& spec) {
+  constexpr double kPlaced = 0.75;  // that place_loosely() asks for
+  const double period = std::pow(kPeriod, 3);
+  const double jammed = jammed_fraction(spec);
+  const double first = fraction_under(jammed, spec.start_pressure * std::max(1.0, spec.protocol.first_pressure));
+  const double shortened = std::clamp(1.0 - rough_strains(spec).largest_axial, 0.1, 1.0);
+  const double strained = fraction_under(jammed, spec.start_pressure) / std::pow(shortened, 3);
+  return period * std::max({kPlaced, first, strained});
+}
+
+bool needs_room(const MacroSetup& setup) {
+  const MacroSpec& spec = setup.spec;
+  return spec.boundary == Boundary::periodic && !setup.given && !spec.cells && spec.construction == Construction::mixed;
+}
+
+/// Two digits, upwards.
+std::int64_t rounded_up(double number) {
+  const double digit = std::pow(10.0, std::max(0.0, std::floor(std::log10(number)) - 1.0));
+  return static_cast<std::int64_t>(digit * std::ceil(number / digit));
+}
+
+}  // namespace
+
+std::int64_t least_bodies(const MacroSpec& spec) {
+  const Grading solid =
+      sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
+  const Grading soft = sizes_or_power_law(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const double share = spec.soft_share;
+  // Bodies in a unit of volume: shares are by volume.
+  const double number = (share < 1.0 ? (1.0 - share) / solid.mean_volume() : 0.0) +
+                        (share > 0.0 ? share / soft.mean_volume() : 0.0);
+  double largest = 0.0;
+  if (share < 1.0) largest = solid.largest();
+  if (share > 0.0) largest = std::max(largest, soft.largest());
+  return rounded_up(kMargin * needed_volume(spec) * std::pow(largest, 3) * number / kSphereVolume);
+}
+
+std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
+  constexpr double kSurely = 4.0;  // times as many have room, whatever is drawn
+  const MacroSpec& spec = setup.spec;
+  if (!needs_room(setup)) return "";
+  const std::int64_t least = least_bodies(spec);
+  if (static_cast<double>(spec.bodies) >= kSurely * static_cast<double>(least)) return "";
+  const double wanted = needed_volume(spec) / kSphereVolume;
+  double drawn = 0.0;
+  for (std::int64_t k = 0; k < std::max(setup.samples, kDraws) && drawn < kMostDrawn; ++k) {
+    double volume = 0.0;
+    double largest = 0.0;
+    for (const MacroBody& b : drawn_bodies(spec, seed, static_cast<std::uint64_t>(k))) {
+      volume += cube(b.r);
+      largest = std::max(largest, b.r);
+      drawn += 1.0;
+    }
+    if (volume >= wanted * cube(largest)) continue;
+    const double side = kPeriod * largest * std::cbrt(volume / (wanted * cube(largest)));
+    const auto more = static_cast<std::int64_t>(static_cast<double>(spec.bodies) * kMargin * wanted * cube(largest) / volume);
+    return fmt::format(
+        "{} {} are too few for a periodic cell: packed and strained, its shortest side may be as short as {:.3g} m, "
+        "and images of the largest (radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
+        spec.bodies, what, side, largest, kPeriod * largest,
+        std::max(least, rounded_up(static_cast<double>(more))));
+  }
+  return "";
+}
+
+void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed) {
+  const std::string problem = room_problem(setup, seed, "bodies");
+  if (!problem.empty()) macro.mistake(key, problem + ", or boundary = \"walls\"");
+}
+
+}  // namespace softgrain
