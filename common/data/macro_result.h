@@ -1,6 +1,7 @@
 // Stress-strain records of macro runs and of their resolved twins.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -100,8 +101,14 @@ struct StageRecord {
   std::string name;
   StageKind kind = StageKind::oedometric;
   StageKind way = StageKind::oedometric;  ///< of unload, reload and hold: what they go back, forth or stand on
+  /// Axes that go by stress, x, y, z; empty: not recorded, as in files of earlier versions.
+  std::optional<std::array<bool, 3>> by_stress{};
 
-  friend bool operator==(const StageRecord&, const StageRecord&) = default;
+  /// What one of them does not say is no difference.
+  friend bool operator==(const StageRecord& a, const StageRecord& b) {
+    return a.name == b.name && a.kind == b.kind && a.way == b.way &&
+           (!a.by_stress || !b.by_stress || *a.by_stress == *b.by_stress);
+  }
 };
 
 /// What a curve starts from; runs that are set side by side should agree in it. Zeros: not known.
@@ -144,6 +151,7 @@ struct MacroCurve {
   std::vector<double> coordination;           ///< contacts per body (engine "law": force-carrying)
   std::vector<double> residual;               ///< largest net force over mean contact force
   // The rest may be empty: not recorded.
+  std::vector<double> residual_largest;  ///< of all increments since the point before
   std::vector<double> stress_x;
   std::vector<double> stress_y;
   std::vector<double> stress_deviator;      ///< axial (z) minus x
