@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "macrosim/curve_notes.h"
 
 namespace softgrain {
 
@@ -145,6 +146,7 @@ std::string start_remark(const MacroSpec& spec, const CellStart& start) {
   constexpr double kFar = 0.5;
   if (!spec.cells->at_density && std::abs(start.excess_share - 1.0) > kFar)
     add(fmt::format("excess pores are {:.3g} times those of the card at this start pressure", start.excess_share));
+  if (const std::string unloads = no_unloading_text(spec, "the cell law"); !unloads.empty()) add(unloads);
   if (start.without_fines > 0)
     add(fmt::format("{} of {} cells are too small for any fines", start.without_fines, start.content.size()));
   return text;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "common/core/error.h"
 #include "common/core/stopwatch.h"
@@ -37,23 +38,24 @@ void note_range(const MacroSpec& spec, MacroCurve& c) {
 struct CellTest {
   const MacroSpec& spec;
 
-  RelaxationResult step(CellTestState& state, const MacroStage& stage, const Vec3& strain, const Vec3& stress) const {
+  RelaxationResult step(CellTestState& state, const MacroStage& stage, const Vec3& strain,
+                        const std::optional<Vec3>& stress) const {
     const Stopwatch watch;
     const Vec3 stretch{{1.0 - strain[0], 1.0 - strain[1], 1.0 - strain[2]}};
     CellPacking& cells = state.packing;
     CellPoint point;
     try {
-      if (!stage.by_stress() || stress == Vec3{}) {
+      if (!stress) {
         point = cells.strain(stretch, options_of(spec, stage));
       } else {
-        const auto mean = mean_first(spec, stage, stress);
+        const auto mean = mean_first(spec, stage, *stress);
         if (mean) {
           CellRelaxation roughly = options_of(spec, stage);
           roughly.tolerance *= kRoughly;
           (void)cells.press(stretch, *mean, roughly);
           add_cost(state, cells.now());
         }
-        point = cells.press(mean ? Vec3{{1.0, 1.0, 1.0}} : stretch, box_control(spec, stage, stress),
+        point = cells.press(mean ? Vec3{{1.0, 1.0, 1.0}} : stretch, box_control(spec, stage, *stress),
                             options_of(spec, stage));
       }
     } catch (const BadInput& e) {  // a room that has become too small: no fault of the scene
@@ -85,7 +87,7 @@ struct CellTest {
     c.more[kSlidingFaces].push_back(point.sliding);
     c.more[kGuardedCells].push_back(point.guarded);
     record_range(cells, c);
-    note_relaxation(c, rest, c.strain.back(), stage.tolerance);
+    note_unrest(c, state.worst, stage);
   }
 
   void record_range(const CellPacking& cells, MacroCurve& c) const {

@@ -5,6 +5,7 @@
 #include "common/data/snapshot.h"
 #include "common/state/run_control.h"
 #include "macrosim/cell_specimen.h"
+#include "macrosim/curve_notes.h"
 
 namespace softgrain {
 
@@ -12,6 +13,7 @@ struct CellTestState {
   CellPacking packing;
   MacroCurve curve;
   std::int64_t increments = 0;
+  IncrementRest worst{};
   bool over = false;
 };
 

@@ -1,5 +1,7 @@
 #include "macrosim/compression.h"
 
+#include <optional>
+
 #include "common/core/error.h"
 #include "common/core/stopwatch.h"
 #include "common/dynamics/contact_watch.h"
@@ -56,30 +58,30 @@ void record_point(CompressionState& state, const MacroSpec& spec, const MacroSta
   c.residual.push_back(rest.residual);
   record_bodies(state.macro, c);
   if (!spec.splits.empty()) record_grains(state.macro, spec, c);
-  note_relaxation(c, rest, c.strain.back(), stage.tolerance);
+  note_unrest(c, state.worst, stage);
 }
 
 RelaxationResult step_of(MacroSystem& macro, const MacroSpec& spec, const MacroStage& stage, const Vec3& strain,
-                         const Vec3& stress) {
+                         const std::optional<Vec3>& stress) {
   if (macro.dashpots && spec.twin.relaxation == TwinRelaxation::slow_dynamics)
     strain_in_motion(macro, spec, strain);
   else if (strain != Vec3{})
     strain_box(macro.system, macro.box, strain);
   DampedRelaxation<3> relaxation(relaxation_options(spec, stage, macro));
-  if (!stage.by_stress() || stress == Vec3{}) return relaxation.relax(macro.system);
-  if (const auto mean = mean_first(spec, stage, stress)) {
+  if (!stress) return relaxation.relax(macro.system);
+  if (const auto mean = mean_first(spec, stage, *stress)) {
     DampedOptions options = relaxation_options(spec, stage, macro);
     options.tolerance *= kRoughly;
     PressedBox alike(macro.box, *mean);
     DampedRelaxation<3>(options).relax(macro.system, alike);
   }
-  PressedBox pressed(macro.box, box_control(spec, stage, stress));
+  PressedBox pressed(macro.box, box_control(spec, stage, *stress));
   return relaxation.relax(macro.system, pressed);
 }
 
 /// Strains the box and relaxes, the box too where it goes by stress; what it cost goes to the curve.
 RelaxationResult counted_step(CompressionState& state, const MacroSpec& spec, const MacroStage& stage,
-                              const Vec3& strain, const Vec3& stress) {
+                              const Vec3& strain, const std::optional<Vec3>& stress) {
   const Stopwatch watch;
   const Cost before = state.macro.system.cost;
   MacroSystem& macro = state.macro;
@@ -100,7 +102,7 @@ struct ContactTest {
   const PointRecord& also;
 
   RelaxationResult step(CompressionState& state, const MacroStage& stage, const Vec3& strain,
-                        const Vec3& stress) const {
+                        const std::optional<Vec3>& stress) const {
     return counted_step(state, spec, stage, strain, stress);
   }
   void record(CompressionState& state, const MacroStage& stage, std::int64_t number,

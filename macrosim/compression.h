@@ -5,6 +5,7 @@
 
 #include "common/data/macro_result.h"
 #include "common/state/run_control.h"
+#include "macrosim/curve_notes.h"
 #include "macrosim/macro_system.h"
 #include "macrosim/test_protocol.h"
 
@@ -15,6 +16,7 @@ struct CompressionState {
   MacroSystem macro;
   MacroCurve curve;             ///< what was recorded so far; curve.strain.size() says where to go on
   std::int64_t increments = 0;  ///< done since, on the way to the next point
+  IncrementRest worst{};        ///< of these, the one that ended farthest from rest
   bool over = false;            ///< ended before its last point
 };
 
@@ -25,7 +27,8 @@ using PointRecord = std::function<void(const MacroSystem&, MacroCurve&)>;
 /// then relaxes the bodies, together with the axes that go by stress. Records strain (nominal from the start; of the
 /// short form "shear" logarithmic from the end of the preload, which is recorded at -preload .. 0), stresses on the box
 /// and from contacts, coordination, fabric, residual, and the forces between bodies of the last point.
-/// Points that did not converge make the curve not usable, with a note; so does a law asked beyond its range that does
+/// Increments that did not converge make the curve not usable, with a note, whether a point follows them or further
+/// increments; so does a law asked beyond its range that does
 /// not allow it, and a stress that cannot be reached, and the test ends there. Throws NotUsable (lost grain) and
 /// Interrupted.
 void compress(CompressionState& state, const MacroSpec& spec, const RunControl<CompressionState>& control = {},

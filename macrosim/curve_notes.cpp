@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+
+#include "common/core/error.h"
+#include "macrosim/test_protocol.h"
 
 namespace softgrain {
 
@@ -27,11 +32,62 @@ void note_out_of_reach(MacroCurve& c, const MacroStage& stage, const Vec3& asked
                        stage.record.name, c.strain.back(), off_text(c, stage, asked), c.note);
 }
 
-void note_relaxation(MacroCurve& c, const RelaxationResult& rest, double strain, double tolerance) {
+void note_relaxation(MacroCurve& c, const RelaxationResult& rest, double strain, double tolerance,
+                     const std::string& of) {
   if (rest.end == RelaxationEnd::converged) return;
   c.usable = false;
-  c.note = "relaxation " + to_string(rest.end) + " at strain " + std::to_string(strain) + " (residual " +
-           std::to_string(rest.residual) + " of the mean contact force, wanted " + std::to_string(tolerance) + ")";
+  c.note = fmt::format("relaxation {} at strain {:.6f}{} (residual {:.6f} of the mean contact force, wanted {:.6f})",
+                       to_string(rest.end), strain, of, rest.residual, tolerance);
+}
+
+void require_finite(const RelaxationResult& rest, const MacroCurve& c) {
+  if (std::isfinite(rest.residual)) return;
+  throw NotUsable(fmt::format("macro run '{}': relaxation diverged beyond strain {:.6f}", c.engine,
+                              c.strain.empty() ? 0.0 : c.strain.back()));
+}
+
+void note_unrest(MacroCurve& c, const IncrementRest& worst, const MacroStage& stage) {
+  const double residual = worst.rest.residual;
+  const double largest =
+      c.residual_largest.empty() ? 0.0 : *std::max_element(c.residual_largest.begin(), c.residual_largest.end());
+  c.residual_largest.resize(c.strain.size() - 1, 0.0);  // a test that an earlier version began did not record it
+  c.residual_largest.push_back(residual);
+  if (worst.rest.end == RelaxationEnd::converged || (!c.usable && residual < largest)) return;
+  const bool one = stage.increments_per_step == 1 || c.residual_largest.size() == 1;
+  note_relaxation(c, worst.rest, c.strain.back(), stage.tolerance,
+                  one ? ""
+                      : fmt::format(", increment {} of the {} before it", worst.number, stage.increments_per_step));
+}
+
+void note_free_sides(MacroCurve& c, const std::vector<MacroStage>& stages) {
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    const auto number = static_cast<std::int64_t>(k);
+    const auto first = static_cast<std::size_t>(first_point(stages, number));
+    if (first + 1 >= c.strain.size()) return;
+    const Vec3 began{{c.stress_x[first], c.stress_y[first], c.stress_axial[first]}};
+    std::string axes;
+    for (int a = 0; a < 3; ++a) {
+      const AxisDrive& drive = stages[k].axis[static_cast<std::size_t>(a)];
+      if (drive.by_stress && drive.as_at == number && began[a] == 0.0)
+        axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);
+    }
+    if (axes.empty()) continue;
+    c.note += fmt::format("{}stage '{}' began without stress along {}, which it holds: its sides are free",
+                          c.note.empty() ? "" : "; ", stages[k].record.name, axes);
+  }
+}
+
+std::string no_unloading_text(const MacroSpec& spec, const std::string& law) {
+  if (spec.test != MacroTest::stages) return "";
+  std::string names;
+  for (const MacroStage& stage : spec.stages)
+    if (stage.record.kind == StageKind::unload && names.size() < 60)
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", stage.record.name);
+  if (names.empty()) return "";
+  return fmt::format(
+      "{} has no unloading branch: it gives back what it took, and the unloading modulus of {} is the loading modulus "
+      "of the law, not that of the material",
+      law, names);
 }
 
 void record_law_use(MacroCurve& c, const LawUse& use) {

@@ -1,7 +1,9 @@
 // What a curve says of itself when something was not as it should be: the same words for all engines.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/data/macro_result.h"
 #include "common/dynamics/contact_watch.h"
@@ -10,12 +12,35 @@
 
 namespace softgrain {
 
-/// A relaxation that did not converge makes the curve not usable. `tolerance` is what was asked for.
-void note_relaxation(MacroCurve& curve, const RelaxationResult& rest, double strain, double tolerance);
+/// A relaxation of one increment of a test and the number of that increment, from 1 after each recorded point.
+struct IncrementRest {
+  RelaxationResult rest;
+  std::int64_t number = 0;
+};
+
+/// A relaxation that did not converge makes the curve not usable. `tolerance` is what was asked for; `of` says which
+/// one it was, where that is not plain.
+void note_relaxation(MacroCurve& curve, const RelaxationResult& rest, double strain, double tolerance,
+                     const std::string& of = "");
+
+/// Throws NotUsable for a relaxation whose forces are no longer finite: there is no state to go on from.
+void require_finite(const RelaxationResult& rest, const MacroCurve& curve);
+
+/// After a point was recorded: the relaxation of the increments up to it that ended farthest from rest. Its residual is
+/// recorded (MacroCurve::residual_largest), and one that did not converge makes the curve not usable: points that
+/// follow it start from a state that was not at rest. The note is about the worst one of the whole test.
+void note_unrest(MacroCurve& curve, const IncrementRest& worst, const MacroStage& stage);
 
 /// A stage whose stress the packing does not bear makes the curve not usable: what was asked along axes that go by
 /// stress, what there is, and where. After note_relaxation().
 void note_out_of_reach(MacroCurve& curve, const MacroStage& stage, const Vec3& asked);
+
+/// At the end of a test: stages that hold axes at the stress with which they began, where that was none. Their sides
+/// are free, which is another test than in a sample that bore something.
+void note_free_sides(MacroCurve& curve, const std::vector<MacroStage>& stages);
+
+/// What is to be said of a law without unloading branch in a test that unloads; empty where nothing is unloaded.
+std::string no_unloading_text(const MacroSpec& spec, const std::string& law);
 
 /// Records how far laws were asked at a point; nothing for twins, which have no fitted law, and without soft particles.
 void record_law_use(MacroCurve& curve, const LawUse& use);

@@ -70,21 +70,35 @@ void close_box(MacroSystem& out, const MacroSpec& spec, const MacroPacking& pack
   for (const MacroBody& b : packing.bodies) out.largest_radius = std::max(out.largest_radius, b.r);
 }
 
-/// Solid grains go on bearing what they bore along their contacts when the preparation ended; what soft particles bore
-/// is that of hard bodies, and forgotten.
-void load_springs(System3& s, const MacroPacking& packing) {
-  if (packing.springs.empty()) return;
+/// Springs between solid grains that a preparation with friction left, by the slots of their grains in a system.
+std::vector<BodySpring> solid_springs(const MacroSystem& macro, const MacroPacking& packing) {
+  std::vector<Slot> slot(packing.bodies.size(), -1);
+  for (std::size_t u = 0; u < macro.body.size(); ++u)
+    if (const std::int32_t b = macro.body[u]; b < macro.bodies && !packing.bodies[at(b)].soft)
+      slot[at(b)] = static_cast<Slot>(u);
+  std::vector<BodySpring> out;
+  for (const BodySpring& b : packing.springs)
+    if (slot[at(b.i)] >= 0 && slot[at(b.j)] >= 0) out.push_back({slot[at(b.i)], slot[at(b.j)], b.spring});
+  return out;
+}
+
+/// Solid grains go on bearing what they bore along their contacts when the preparation ended, in a run by laws and in
+/// its twin; what soft particles bore is that of hard bodies, and forgotten. Slots of solid grains lie in the order of
+/// their bodies in both.
+void load_springs(const MacroSpec& spec, const MacroPacking& packing, MacroSystem& macro) {
+  if (packing.springs.empty() || !(spec.friction > 0.0)) return;
+  System3& s = macro.system;
+  const std::vector<BodySpring> springs = solid_springs(macro, packing);
   rebuild_neighbours(s);
   auto& list = s.contacts;
   for (const ContactSection& section : list.sections) {
     if (section.geometry != Geometry::sphere_sphere) continue;
     auto c = at(section.begin);
-    for (const BodySpring& b : packing.springs) {
+    for (const BodySpring& b : springs) {
       const auto before = [&](std::size_t k) { return list.i[k] != b.i ? list.i[k] < b.i : list.j[k] < b.j; };
       while (c < at(section.end) && before(c)) ++c;
       if (c == at(section.end)) break;
-      const bool solid = !packing.bodies[at(b.i)].soft && !packing.bodies[at(b.j)].soft;
-      if (list.i[c] == b.i && list.j[c] == b.j && solid) list.spring[c] = b.spring;
+      if (list.i[c] == b.i && list.j[c] == b.j) list.spring[c] = b.spring;
     }
   }
 }
@@ -138,6 +152,7 @@ MacroSystem make_twin(const MacroSpec& spec, const MacroPacking& packing, const 
   }
   if (shelled) add_shells(out, spec, packing, contents);
   close_box(out, spec, packing, 1);
+  load_springs(spec, packing, out);
   return out;
 }
 
@@ -171,7 +186,7 @@ MacroSystem make_law_system(const MacroSpec& spec, const MacroPacking& packing, 
               solid_sphere(b.x, b.r, b.soft ? spec.density * inner_solid_fraction : spec.density, b.soft ? 1 : 0));
   }
   close_box(out, spec, packing, 2);
-  if (spec.friction > 0.0) load_springs(out.system, packing);
+  load_springs(spec, packing, out);
   return out;
 }
 

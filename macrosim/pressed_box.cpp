@@ -50,6 +50,8 @@ PressedBox::Sums PressedBox::feel(System3& s) {
   Sums sums;
   for (int k = 0; k < 3; ++k) {
     if (!control_.by_stress[static_cast<std::size_t>(k)]) force_[k] = 0.0;
+    // A free side that nothing pushes stays where it is: no stress would bring it back.
+    if (control_.free(k) && force_[k] >= 0.0) force_[k] = velocity_[k] = 0.0;
     sums.power += force_[k] * velocity_[k];
     sums.speed2 += velocity_[k] * velocity_[k] / inverse_mass_;
     sums.pull2 += force_[k] * force_[k] * inverse_mass_;

@@ -68,7 +68,10 @@ MacroCurve blank_curve(const MacroSpec& spec, const MacroPacking& packing, const
   curve.engine = engine;
   curve.test = spec.test;
   curve.boundary = spec.boundary;
-  for (const MacroStage& stage : stages_of(spec)) curve.stages.push_back(stage.record);
+  for (const MacroStage& stage : stages_of(spec)) {
+    curve.stages.push_back(stage.record);
+    curve.stages.back().by_stress = {stage.axis[0].by_stress, stage.axis[1].by_stress, stage.axis[2].by_stress};
+  }
   curve.sample = sample;
   curve.bodies = static_cast<std::int64_t>(packing.bodies.size());
   curve.soft = packing.soft_count();

@@ -31,13 +31,17 @@ BoxControl box_control(const MacroSpec& spec, const MacroStage& stage, const Vec
 std::optional<BoxControl> mean_first(const MacroSpec& spec, const MacroStage& stage, const Vec3& stress);
 inline constexpr double kRoughly = 10.0;
 
-/// State: `curve`, `increments` done since its last point, and `over`. Engine, for a state:
-///   RelaxationResult step(State&, const MacroStage&, const Vec3& strain, const Vec3& stress): one increment, to rest;
+/// State: `curve`, `increments` done since its last point, of these the one that is farthest from rest, `worst`, and
+/// `over`. Engine, for a state:
+///   RelaxationResult step(State&, const MacroStage&, const Vec3& strain, const std::optional<Vec3>& stress): one
+///     increment, to rest; without a stress no axis is held by one, while a stress of zero leaves the sides free;
 ///   void record(State&, const MacroStage&, std::int64_t number, const RelaxationResult&): a point of stage `number`;
+///     the relaxations of the increments before it are judged by note_unrest();
 ///   LawUse watch(State&): how far laws are asked; refused: the test ends;
 ///   void note_use(State&, const LawUse& last): at its end, what is to be said of that;
 ///   bool ended(State&): a test that goes on had ended so.
-/// A stress that the packing cannot bear ends the test: what comes after would start from nowhere.
+/// A stress that the packing cannot bear ends the test: what comes after would start from nowhere. Throws NotUsable
+/// where forces are no longer finite.
 template <class State, class Engine>
 void run_stages(State& state, const MacroSpec& spec, const Engine& engine, const RunControl<State>& control) {
   constexpr const char* kDoing = "straining; all up to here is saved";
@@ -54,14 +58,20 @@ void run_stages(State& state, const MacroSpec& spec, const Engine& engine, const
       return (static_cast<double>(point) + way) / static_cast<double>(points);
     };
     RelaxationResult rest;
-    Vec3 asked{};
-    if (point == 0) rest = engine.step(state, stage, {}, {});
+    std::optional<Vec3> asked;
+    if (point == 0) {
+      rest = engine.step(state, stage, {}, std::nullopt);
+      require_finite(rest, state.curve);
+      state.worst = {rest, 1};
+    }
     const auto starts = point > 0 ? stage_starts(stages, state.curve, point) : std::vector<Vec3>{};
     while (point > 0 && state.increments < stage.increments_per_step) {
       const std::int64_t n = (at.number - 1) * stage.increments_per_step + state.increments + 1;
-      asked = stress_at(stage, n, starts);
+      if (stage.by_stress()) asked = stress_at(stage, n, starts);
       rest = engine.step(state, stage, strain_increment(stage, n), asked);
+      require_finite(rest, state.curve);
       ++state.increments;
+      if (state.increments == 1 || farther_from_rest(rest, state.worst.rest)) state.worst = {rest, state.increments};
       if (stage.by_stress() && rest.end != RelaxationEnd::converged) break;
       // After the last one the point is recorded, which needs what the relaxation said.
       if (state.increments < stage.increments_per_step) keeper.between_points(state, share(), kDoing);
@@ -70,11 +80,14 @@ void run_stages(State& state, const MacroSpec& spec, const Engine& engine, const
     engine.record(state, stage, at.stage, rest);
     const LawUse use = engine.watch(state);
     if (point > 0 && stage.by_stress() && rest.end != RelaxationEnd::converged) {
-      note_out_of_reach(state.curve, stage, asked);
+      note_out_of_reach(state.curve, stage, *asked);
       state.over = true;
     }
     const bool last = point + 1 == points || state.over;
-    if (last || use.refused > 0) engine.note_use(state, use);
+    if (last || use.refused > 0) {
+      engine.note_use(state, use);
+      note_free_sides(state.curve, stages);
+    }
     keeper.at_point(state, static_cast<double>(point + 1) / static_cast<double>(points), kDoing);
     if (use.refused > 0 || state.over) return;
   }

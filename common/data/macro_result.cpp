@@ -33,7 +33,8 @@ constexpr Column kColumns[] = {{"strain", "1", &MacroCurve::strain, {-kInfinity,
                                {"residual", "1", &MacroCurve::residual, kNotNegative}};
 
 /// May be absent.
-constexpr Column kOptionalColumns[] = {{"stress_x", "Pa", &MacroCurve::stress_x},
+constexpr Column kOptionalColumns[] = {{"residual_largest", "1", &MacroCurve::residual_largest, kNotNegative},
+                                       {"stress_x", "Pa", &MacroCurve::stress_x},
                                        {"stress_y", "Pa", &MacroCurve::stress_y},
                                        {"stress_deviator", "Pa", &MacroCurve::stress_deviator},
                                        {"fabric", "1", &MacroCurve::fabric},
@@ -57,12 +58,40 @@ void write_if_any(const h5::Group& group, const MacroCurve& curve, const Column&
   if (!(curve.*c.values).empty()) write_quantity(group, curve, c);
 }
 
+constexpr const char* kStageAxes = "stage_stress_axes";
+
+/// One line per stage: the axes that go by stress, or none; nothing where they are not known.
+void write_stage_axes(const h5::Group& group, const std::vector<StageRecord>& stages) {
+  std::string text;
+  for (const StageRecord& s : stages) {
+    if (!s.by_stress) return;
+    std::string axes;
+    for (std::size_t k = 0; k < 3; ++k)
+      if ((*s.by_stress)[k]) axes += "xyz"[k];
+    text += (axes.empty() ? "none" : axes) + "\n";
+  }
+  group.attribute(kStageAxes, text);
+}
+
+void read_stage_axes(const h5::Group& group, std::vector<StageRecord>& stages) {
+  if (!group.has_attribute(kStageAxes)) return;
+  std::istringstream lines(group.text(kStageAxes));
+  std::string line;
+  for (StageRecord& s : stages) {
+    if (!std::getline(lines, line) || (line != "none" && line.find_first_not_of("xyz") != std::string::npos))
+      throw FileTrouble(fmt::format("attribute '{}': '{}' are no axes", kStageAxes, line));
+    const auto has = [&](char axis) { return line != "none" && line.find(axis) != std::string::npos; };
+    s.by_stress = {has('x'), has('y'), has('z')};
+  }
+}
+
 /// One line per stage: its kind, the kind whose way it goes, its name.
 void write_stage_records(const h5::Group& group, const std::vector<StageRecord>& stages) {
   if (stages.empty()) return;
   std::string text;
   for (const StageRecord& s : stages) text += fmt::format("{} {} {}\n", to_string(s.kind), to_string(s.way), s.name);
   group.attribute("stages", text);
+  write_stage_axes(group, stages);
   std::string stresses;
   bool any = false;
   for (const StageRecord& s : stages) {
@@ -100,6 +129,7 @@ std::vector<StageRecord> read_stage_records(const h5::Group& group) {
     stages.push_back(record);
   }
   read_modulus_stresses(group, stages);
+  read_stage_axes(group, stages);
   return stages;
 }
 

@@ -103,10 +103,13 @@ struct StageRecord {
   StageKind way = StageKind::oedometric;  ///< of unload, reload and hold: what they go back, forth or stand on
   /// Stresses [Pa], ascending, between which its modulus is taken; zeros: as stage_results.h says for its kind.
   std::array<double, 2> modulus_stress{};
+  /// Axes that go by stress, x, y, z; empty: not recorded, as in files of earlier versions.
+  std::optional<std::array<bool, 3>> by_stress{};
 
-  /// Of what the stage does: how its curve is evaluated makes no other one.
+  /// Of what the stage does: how its curve is evaluated makes no other one, nor what one of them does not say.
   friend bool operator==(const StageRecord& a, const StageRecord& b) {
-    return a.name == b.name && a.kind == b.kind && a.way == b.way;
+    return a.name == b.name && a.kind == b.kind && a.way == b.way &&
+           (!a.by_stress || !b.by_stress || *a.by_stress == *b.by_stress);
   }
 };
 
@@ -150,6 +153,7 @@ struct MacroCurve {
   std::vector<double> coordination;           ///< contacts per body (engine "law": force-carrying)
   std::vector<double> residual;               ///< largest net force over mean contact force
   // The rest may be empty: not recorded.
+  std::vector<double> residual_largest;  ///< of all increments since the point before
   std::vector<double> stress_x;
   std::vector<double> stress_y;
   std::vector<double> stress_deviator;      ///< axial (z) minus x

@@ -17,6 +17,9 @@ struct BoxControl {
   double least_stress = 0.0;        ///< which counts for this at least [Pa]
   double largest_strain = 2e-3;     ///< per pass
   double farthest = HUGE_VAL;       ///< logarithmic strain in all at which the stress is given up as out of reach
+
+  /// Whether an axis is held by no stress at all.
+  [[nodiscard]] bool free(int axis) const { return by_stress[static_cast<std::size_t>(axis)] && stress[axis] == 0.0; }
 };
 
 }  // namespace softgrain

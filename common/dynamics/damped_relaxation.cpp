@@ -6,6 +6,7 @@
 #include "common/core/in_pieces.h"
 #include "common/core/quad.h"
 #include "common/dynamics/residual.h"
+#include "common/dynamics/thread_choice.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 #include "common/neighbours/skin.h"
@@ -141,6 +142,7 @@ void DampedRelaxation<D>::move_all(System<D>& s, const Fire::Steering& steering,
 template <int D>
 RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* frame) {
   RelaxationResult result;
+  PassThreads threads;
   stop_motion(s.particles);
   const auto& turn = s.particles.inverse_inertia;
   turns_ = std::any_of(turn.begin(), turn.end(), [](double inverse) { return inverse > 0.0; });
@@ -163,6 +165,7 @@ RelaxationResult DampedRelaxation<D>::relax(System<D>& s, RelaxingFrame<D>* fram
       if (frame != nullptr) frame->see(result);
       if (result.end != RelaxationEnd::not_run) break;
       stop_if_interrupted("relaxing");
+      if (result.passes > 0) threads.passed(kMassInterval, s.contacts.size());
       scale_masses(s, frame);
     }
     const Fire::Steering steering = steer(s, frame);

@@ -27,4 +27,12 @@ struct RelaxationResult {
   double residual = 0.0;  ///< largest net force over mean contact force (or floor)
 };
 
+/// Whether a relaxation ended farther from rest than another one: it did not converge where that did, or left a larger
+/// residual.
+inline bool farther_from_rest(const RelaxationResult& a, const RelaxationResult& b) {
+  const bool rests = a.end == RelaxationEnd::converged;
+  if (rests != (b.end == RelaxationEnd::converged)) return !rests;
+  return !(a.residual <= b.residual);  // what is not a number is farthest
+}
+
 }  // namespace softgrain

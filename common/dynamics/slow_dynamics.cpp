@@ -4,6 +4,7 @@
 
 #include "common/dynamics/force_pass.h"
 #include "common/dynamics/scaled_masses.h"
+#include "common/dynamics/thread_choice.h"
 #include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 
@@ -22,9 +23,11 @@ void run_steps(System3& system, const Drive& drive, double dt, std::int64_t step
   if (drive) drive(system, 1.0);
   VelocityVerlet<3> integrator(dt);
   integrator.initialise(system);
+  PassThreads threads;
   for (std::int64_t k = 0; k < steps; ++k) {
     stop_if_interrupted("relaxing");
     integrator.step(system);
+    threads.passed(1, system.contacts.size());
   }
   if (drive) drive(system, -1.0);
 }

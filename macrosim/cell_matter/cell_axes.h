@@ -85,6 +85,9 @@ class CellPacking::Axes {
       for (std::size_t i = 0; i < p.sites_.size(); ++i)
         for (int k = 0; k < 3; ++k) force_[k] -= p.forces_.force[i][k] * (p.sites_[i].x[k] - p.room_.centre()[k]);
     hold(force_);
+    // A free side that nothing pushes stays where it is: no stress would bring it back.
+    for (int k = 0; k < 3; ++k)
+      if (control_.free(k) && force_[k] >= 0.0) force_[k] = velocity_[k] = 0.0;
   }
 
   /// Axes alike take the mean; those that go by strain have none.

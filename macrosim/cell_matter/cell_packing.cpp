@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "common/core/error.h"
@@ -82,6 +83,17 @@ void CellPacking::stretch(const Vec3& factor) {
     for (int k = 0; k < 3; ++k) s.x[k] = c[k] + (s.x[k] - c[k]) * factor[k];
 }
 
+namespace {
+
+/// Of the relaxations of the parts of a strain the one that ended farthest from rest, with the passes of all.
+void add_part(const RelaxationResult& part, RelaxationResult& all) {
+  const std::int64_t passes = all.passes + part.passes;
+  if (all.end == RelaxationEnd::not_run || farther_from_rest(part, all)) all = part;
+  all.passes = passes;
+}
+
+}  // namespace
+
 /// The affine part of a strain, then to rest; where that leaves a cell without pores, in parts.
 CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const CellRelaxation& options) {
   for (int k = 0; k < 3; ++k)
@@ -110,12 +122,9 @@ CellPoint CellPacking::step(const Vec3& factor, const BoxControl* control, const
       continue;
     }
     --left;
-    if (left == 0 && control != nullptr) {
-      Axes axes(*this, *control);
-      end = rest(options, &axes);
-    } else {
-      end = rest(options, nullptr);
-    }
+    std::optional<Axes> axes;
+    if (left == 0 && control != nullptr) axes.emplace(*this, *control);
+    add_part(rest(options, axes ? &*axes : nullptr), end);
     springs_.keep(forces_.springs);
   }
   CellPoint point = now();

@@ -87,6 +87,8 @@ void FixSoftgrainRelax::steer_box(double* sums) {
   make_alike(box_force_);
   for (int k = 0; k < 3; ++k) {
     if (!by_stress_[static_cast<std::size_t>(k)]) box_force_[k] = 0.0;
+    // A free side that nothing pushes stays where it is: no stress would bring it back.
+    if (asked_[k] == 0.0 && box_force_[k] >= 0.0) box_force_[k] = box_velocity_[k] = 0.0;
     sums[0] += box_force_[k] * box_velocity_[k];
     sums[1] += box_velocity_[k] * box_velocity_[k] / box_inverse_mass_;
     sums[2] += box_force_[k] * box_force_[k] * box_inverse_mass_;

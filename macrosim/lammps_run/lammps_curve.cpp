@@ -81,7 +81,8 @@ void add_point(const PointRow& row, const MacroSpec& spec, const std::vector<Mac
   c.cost += {static_cast<std::int64_t>(row[Point::passes]), static_cast<std::int64_t>(row[Point::looked_at]),
              row[Point::seconds]};
   const auto passes = static_cast<std::int64_t>(row[Point::passes]);
-  note_relaxation(c, {end_of(row[Point::end]), passes, row[Point::residual]}, strain, stage.tolerance);
+  const auto increment = static_cast<std::int64_t>(row[Point::unrest_at]);
+  note_unrest(c, {{end_of(row[Point::unrest_end]), passes, row[Point::unrest]}, increment}, stage);
   if (row[Point::over] > 0.0)
     note_out_of_reach(c, stage, {{row[Point::asked_x], row[Point::asked_y], row[Point::asked_z]}});
   record_law_use(c, law_use(row));
@@ -97,6 +98,7 @@ void add_points(const std::vector<PointRow>& rows, const MacroSpec& spec, MacroC
   const std::vector<MacroStage> stages = stages_of(spec);
   for (const PointRow& row : rows) add_point(row, spec, stages, curve);
   if (!rows.empty() && curve.soft > 0) note_law_use(curve, law_use(rows.back()), curve.strain.back());
+  note_free_sides(curve, stages);
 }
 
 std::vector<double> normal_forces(const std::vector<DumpedContact>& contacts) {

@@ -54,12 +54,19 @@ enum class Point : std::size_t {
   asked_y,
   asked_z,
   over,
+  unrest,
+  unrest_at,
+  unrest_end,
   count
 };
 
+/// Columns of tables that earlier versions began ("points 2"): those before `unrest`.
+inline constexpr std::size_t kEarlierColumns = static_cast<std::size_t>(Point::unrest);
+
 /// Forces of bodies on walls [N], pushing positive; branch: force times branch [N m]; end: 1 converged, 2 capped,
 /// 3 diverged; looked_at: near pairs in all passes; stress: on the box [Pa], asked: of axes that go by stress; over: 1
-/// where that was not reached. Columns of walls are 0 in a periodic cell.
+/// where that was not reached; unrest: residual of the increment since the point before that ended farthest from rest,
+/// which one of them it is, and how it ended. Columns of walls are 0 in a periodic cell.
 inline constexpr std::array<PointColumn, static_cast<std::size_t>(Point::count)> kPointColumns{{
     {"point", "v_point"},
     {"strain", "v_strain"},
@@ -102,9 +109,13 @@ inline constexpr std::array<PointColumn, static_cast<std::size_t>(Point::count)>
     {"asked_y", "v_wanty"},
     {"asked_z", "v_wantz"},
     {"over", "v_over"},
+    {"unrest", "v_unrest"},
+    {"unrest_at", "v_unrest_at"},
+    {"unrest_end", "v_unrest_end"},
 }};
 
 /// First words of points.txt; the name of the scene follows (scene_key).
-inline constexpr const char* kPointsHead = "# softgrain points 2";
+inline constexpr const char* kPointsHead = "# softgrain points 3";
+inline constexpr const char* kEarlierPointsHead = "# softgrain points 2";
 
 }  // namespace softgrain::lammps

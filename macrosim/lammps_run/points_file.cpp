@@ -8,6 +8,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/io/text_file.h"
@@ -17,7 +18,12 @@ namespace softgrain::lammps {
 
 namespace {
 
-std::string head_line(const std::string& key) { return fmt::format("{}, scene {}", kPointsHead, key); }
+std::string head_line(const std::string& key, bool earlier = false) {
+  return fmt::format("{}, scene {}", earlier ? kEarlierPointsHead : kPointsHead, key);
+}
+
+/// Columns that every test has.
+std::size_t columns_of(bool earlier) { return earlier ? kEarlierColumns : kPointColumns.size(); }
 
 /// Lines that end with a newline: what follows the last one was cut short.
 std::vector<std::string> whole_lines(const std::string& text) {
@@ -34,8 +40,10 @@ std::vector<std::string> lines_of(const std::string& path) {
   return std::filesystem::exists(path) ? whole_lines(read_text(path)) : std::vector<std::string>{};
 }
 
-PointRow parse(const std::string& line, const std::string& where, std::size_t more) {
+PointRow parse(const std::string& line, const std::string& where, std::size_t more, bool earlier) {
+  const std::size_t columns = columns_of(earlier);
   PointRow row;
+  row.earlier = earlier;
   std::istringstream words(line);
   std::string word;
   std::size_t k = 0;
@@ -44,14 +52,16 @@ PointRow parse(const std::string& line, const std::string& where, std::size_t mo
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
     if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(x))
       throw FileTrouble(where + ": '" + word + "' is no finite number");
-    if (k < row.values.size())
+    if (k < columns)
       row.values[k] = x;
     else
       row.more.push_back(x);
     ++k;
   }
-  if (k != row.values.size() + more)
-    throw FileTrouble(fmt::format("{}: {} numbers, {} expected", where, k, row.values.size() + more));
+  if (k != columns + more) throw FileTrouble(fmt::format("{}: {} numbers, {} expected", where, k, columns + more));
+  if (!earlier) return row;
+  for (const auto& [here, there] : {std::pair{Point::unrest, Point::residual}, {Point::unrest_end, Point::end}})
+    row.values[static_cast<std::size_t>(here)] = row[there];
   return row;
 }
 
@@ -72,8 +82,10 @@ std::vector<PointRow> read_points(const std::string& directory, const std::strin
   const auto lines = lines_of(path);
   const auto copy = lines_of(directory + "/" + kPointsCopy);
   if (lines.empty()) return {};
-  if (!lines[0].starts_with(kPointsHead)) throw FileTrouble(path + ": not a table of points of softgrain");
-  if (lines[0] != head_line(key)) throw BadInput(path + ": belongs to another scene, seed or law than this run");
+  const bool earlier = lines[0].starts_with(kEarlierPointsHead);
+  if (!earlier && !lines[0].starts_with(kPointsHead)) throw FileTrouble(path + ": not a table of points of softgrain");
+  if (lines[0] != head_line(key, earlier))
+    throw BadInput(path + ": belongs to another scene, seed or law than this run");
   const std::size_t both = std::min(lines.size(), copy.size());
   if (lines.size() > copy.size() + 1 || copy.size() > lines.size() + 1)
     throw FileTrouble(fmt::format("{}: has {} lines, its copy {} has {}: one of them is damaged", path, lines.size(),
@@ -83,20 +95,22 @@ std::vector<PointRow> read_points(const std::string& directory, const std::strin
     const std::string where = fmt::format("{}, line {}", path, k + 1);
     if (lines[k] != copy[k])
       throw FileTrouble(fmt::format("{}: differs from its copy {}: one of them is damaged", where, kPointsCopy));
-    if (!lines[k].starts_with('#')) take(parse(lines[k], where, more.size()), where, rows);
+    if (!lines[k].starts_with('#')) take(parse(lines[k], where, more.size(), earlier), where, rows);
   }
   return rows;
 }
 
 void write_points(const std::string& directory, const std::string& key, const std::vector<PointRow>& rows,
                   const std::vector<std::string>& more) {
-  std::string text = head_line(key) + "\n#";
-  for (const PointColumn& c : kPointColumns) text += std::string(" ") + c.name;
+  const bool earlier = !rows.empty() && rows.front().earlier;  // its script is there too, and goes on writing such rows
+  const std::size_t columns = columns_of(earlier);
+  std::string text = head_line(key, earlier) + "\n#";
+  for (std::size_t k = 0; k < columns; ++k) text += std::string(" ") + kPointColumns[k].name;
   for (const std::string& name : more) text += " " + name;
   text += "\n";
   for (const PointRow& row : rows) {
     text += fmt::format("{}", row.values[0]);
-    for (std::size_t k = 1; k < row.values.size(); ++k) text += fmt::format(" {}", row.values[k]);
+    for (std::size_t k = 1; k < columns; ++k) text += fmt::format(" {}", row.values[k]);
     for (const double x : row.more) text += fmt::format(" {}", x);
     text += "\n";
   }

@@ -13,6 +13,7 @@ namespace softgrain::lammps {
 struct PointRow {
   std::array<double, static_cast<std::size_t>(Point::count)> values{};
   std::vector<double> more{};  ///< of columns that the scene asks for beside
+  bool earlier = false;        ///< of a table that an earlier version began: without the columns from `unrest` on
 
   [[nodiscard]] double operator[](Point p) const { return values[static_cast<std::size_t>(p)]; }
 };

@@ -87,6 +87,18 @@ std::string counting() {
          "variable seconds equal $(v_seconds+f_clock:%.17g)\n";
 }
 
+std::string unrest_begins() {
+  return "variable unrest equal 0\nvariable unrest_at equal 0\nvariable unrest_end equal 1\n";
+}
+
+std::string unrest_watch() {
+  return "# of all increments the one that ended farthest from rest is recorded\n"
+         "if \"(${end} != 1 && ${unrest_end} == 1) || ((${end} != 1) == (${unrest_end} != 1) && &\n"
+         "    $(v_residual:%.17g) >= $(v_unrest:%.17g))\" then &\n"
+         "  \"variable unrest equal $(v_residual:%.17g)\" \"variable unrest_at equal ${k}\" &\n"
+         "  \"variable unrest_end equal ${end}\"\n";
+}
+
 std::string heads(const ScriptScene& s) {
   return section("Heads of the tables of points") + fmt::format(
                                                         "variable file index {} {}\n"
@@ -176,7 +188,8 @@ std::string test_loop(const ScriptScene& s) {
       "label point\n"
       "variable passes equal 0\n"
       "variable looked_at equal 0\n"
-      "variable seconds equal 0\n"
+      "variable seconds equal 0\n" +
+      unrest_begins() +
       "# point 0 is the start at rest: relaxed once, without strain\n"
       "variable k loop $((v_point==0)+(v_point>0)*v_increments)\n"
       "label increment\n"
@@ -186,7 +199,7 @@ std::string test_loop(const ScriptScene& s) {
   text +=
       fmt::format("if \"${{end}} == 3\" then &\n  'print \"${{point}} $(v_strain:%.17g)\" file {}' &\n  \"quit 0\"\n",
                   kDivergedFile);
-  return text + "next k\njump SELF increment\n";
+  return text + unrest_watch() + "next k\njump SELF increment\n";
 }
 
 std::string recording(const ScriptScene& s) {

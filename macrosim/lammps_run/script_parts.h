@@ -45,6 +45,10 @@ std::string kept_states();
 /// After a run: how the relaxation ended, and what it adds to the cost of the point.
 std::string counting();
 
+/// At the begin of a point, and after the relaxation of each of its increments: which of them ended farthest from rest.
+std::string unrest_begins();
+std::string unrest_watch();
+
 /// Names of the tables of points, at the beginning of a test.
 std::string heads(const ScriptScene& scene);
 

@@ -113,7 +113,8 @@ std::string stage_loop(const ScriptScene& s) {
       "label point\n"
       "variable passes equal 0\n"
       "variable looked_at equal 0\n"
-      "variable seconds equal 0\n";
+      "variable seconds equal 0\n" +
+      unrest_begins();
   for (std::size_t k = stages.size(); k-- > 1;)
     text += fmt::format("if \"${{point}} > {}\" then \"jump SELF stage{}\"\n",
                         first_point(stages, static_cast<std::int64_t>(k)), k + 1);
@@ -147,7 +148,7 @@ std::string stage_loop(const ScriptScene& s) {
   text +=
       fmt::format("if \"${{end}} == 3\" then &\n  'print \"${{point}} $(v_strain:%.17g)\" file {}' &\n  \"quit 0\"\n",
                   kDivergedFile);
-  return text +
+  return text + unrest_watch() +
          "# a stress that is not reached ends the test\n"
          "if \"${point} > 0 && ${pressed} > 0 && ${end} != 1\" then &\n"
          "  \"variable over equal 1\" \"variable k delete\" \"jump SELF recorded\"\n"

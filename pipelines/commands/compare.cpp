@@ -86,10 +86,12 @@ std::optional<CompareSide> side_of(const std::string& path, const RunEntry& entr
 
 void add_norms(const CompareResult& result, const std::string& run, SetSummary& set) {
   for (const MacroPart& part : result.macro) {
-    const MeanError& m = part.result.axial_difference;
-    if (m.n > 0)
-      set.norms.push_back({run, "axial stress, " + part.candidate_engine + " against " + part.reference_engine,
-                           100.0 * m.mean, 100.0 * m.error, ""});
+    for (const ComparedQuantity& q : headline_of(part.result))
+      if (!q.is_ratio && q.value.n > 0)
+        set.norms.push_back({run,
+                             (q.what == "stress" ? "axial stress" : q.what) + ", " + part.candidate_engine +
+                                 " against " + part.reference_engine,
+                             100.0 * q.value.mean, 100.0 * q.value.error, ""});
   }
 }
 

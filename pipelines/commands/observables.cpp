@@ -75,25 +75,35 @@ Columns force_columns(const Measurements& data) {
   return out;
 }
 
+/// Adds what one sample recorded; `samples`: how many have come to each row.
+void add_to_rows(const std::vector<double>& values, std::vector<double>& sum, std::vector<double>& samples) {
+  sum.resize(std::max(sum.size(), values.size()), 0.0);
+  samples.resize(sum.size(), 0.0);
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    sum[row] += values[row];
+    samples[row] += 1.0;
+  }
+}
+
+/// Means over the samples that came to a point: others broke off before it.
 Columns macro_columns(const std::vector<MacroCurve>& curves) {
   std::string law;
   for (const MacroCurve& c : curves)
     if (law.empty() && !c.twin()) law = c.engine;
   Columns out{{"strain", {}}, {"stress", {}}, {"lateral_stress", {}}, {"coordination", {}}};
-  double samples = 0.0;
+  std::vector<std::vector<double>> samples(out.size());
   for (const MacroCurve& c : curves) {
     if (c.engine != law) continue;
-    samples += 1.0;
     const std::vector<double>* const parts[] = {&c.strain, &c.stress_axial, &c.stress_lateral, &c.coordination};
-    for (std::size_t k = 0; k < out.size(); ++k) {
-      std::vector<double>& sum = out[k].second;
-      sum.resize(std::max(sum.size(), c.strain.size()), 0.0);
-      for (std::size_t row = 0; row < parts[k]->size(); ++row) sum[row] += (*parts[k])[row];
-    }
+    for (std::size_t k = 0; k < out.size(); ++k) add_to_rows(*parts[k], out[k].second, samples[k]);
   }
-  if (samples == 0.0 || out.front().second.empty()) throw BadInput("observables: the macro run recorded nothing");
-  for (auto& [name, values] : out)
-    for (double& x : values) x /= samples;
+  const std::size_t rows = out.front().second.size();
+  if (rows == 0) throw BadInput("observables: the macro run recorded nothing");
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    std::vector<double>& values = out[k].second;
+    for (std::size_t row = 0; row < values.size(); ++row) values[row] /= samples[k][row];
+    values.resize(rows, std::nan(""));  // what no sample recorded
+  }
   return out;
 }
 

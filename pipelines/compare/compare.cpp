@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/data/macro_band.h"
+#include "pipelines/compare/stage_match.h"
 
 namespace softgrain {
 namespace {
@@ -52,42 +52,81 @@ double square_integral(double width, double left, double right) {
 }
 
 /// NaN in place of an error: the lateral stress is not recorded by every test.
-double difference_or_nan(const MacroCurve& c, const MacroCurve& r, const std::vector<double>& cy,
-                         const std::vector<double>& ry) {
+template <class Difference>
+double value_or_nan(const Difference& difference) {
   try {
-    return relative_difference(abscissa_of(c), cy, abscissa_of(r), ry);
+    return difference();
   } catch (const BadInput&) {
     return kNaN;
   }
 }
 
-double value_or_nan(const MacroCurve& c, const std::vector<double>& y, double at) {
-  return y.size() == c.strain.size() && !y.empty() ? interpolate_linear(abscissa_of(c), y, at) : kNaN;
+double ratio_or_nan(double a, double b) { return b == 0.0 ? kNaN : a / b; }
+
+/// Stresses of both at the end of what they have in common.
+struct EndStresses {
+  double axial_candidate = kNaN;
+  double axial_reference = kNaN;
+  double lateral_candidate = kNaN;
+  double lateral_reference = kNaN;
+};
+
+void add_ends(const EndStresses& end, SampleComparison& s) {
+  s.axial_end_ratio = ratio_or_nan(end.axial_candidate, end.axial_reference);
+  s.lateral_end_ratio = ratio_or_nan(end.lateral_candidate, end.lateral_reference);
+  s.lateral_stress_ratio_candidate = ratio_or_nan(end.lateral_candidate, end.axial_candidate);
+  s.lateral_stress_ratio_reference = ratio_or_nan(end.lateral_reference, end.axial_reference);
+}
+
+/// Tests whose strain goes one way: over their strain.
+void compare_strained(const MacroCurve& c, const MacroCurve& r, SampleComparison& s) {
+  s.axial_difference = relative_difference(c.strain, c.stress_axial, r.strain, r.stress_axial);
+  s.lateral_difference =
+      value_or_nan([&] { return relative_difference(c.strain, c.stress_lateral, r.strain, r.stress_lateral); });
+  const auto [low, high] = common_range(c.strain, r.strain);
+  s.strain_low = low;
+  s.strain_high = high;
+  const auto at_end = [at = high](const MacroCurve& of, const std::vector<double>& y) {
+    return y.size() == of.strain.size() && !y.empty() ? interpolate_linear(of.strain, y, at) : kNaN;
+  };
+  add_ends({at_end(c, c.stress_axial), at_end(r, r.stress_axial), at_end(c, c.stress_lateral),
+            at_end(r, r.stress_lateral)},
+           s);
+}
+
+/// Stage by stage, and of each what it does not impose.
+void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& s) {
+  const std::vector<MatchedStage> stages = match_stages(c, r);
+  s.axial_difference = staged_difference(stages, c.stress_axial, r.stress_axial, Compared::axial);
+  s.lateral_difference = value_or_nan(
+      [&] { return staged_difference(stages, c.stress_lateral, r.stress_lateral, Compared::lateral); });
+  s.deviator_difference = value_or_nan(
+      [&] { return staged_difference(stages, c.stress_deviator, r.stress_deviator, Compared::deviator); });
+  s.strain_difference = value_or_nan([&] { return strain_difference(stages, c, r); });
+  s.unloading_ratio = unloading_ratio(c, r);
+  for (const MatchedStage& stage : stages) s.axial_imposed = s.axial_imposed || imposed(stage.record, Compared::axial);
+  const MatchedStage& last = stages.back();
+  const double end = common_part(last)[1];
+  s.strain_low = c.strain[stages.front().candidate.point.front()];
+  s.strain_high = value_at(last.candidate, c.strain, end);
+  const auto at_end = [&](const MacroCurve& of, const StageSide& side, const std::vector<double>& y) {
+    return y.size() == of.strain.size() ? value_at(side, y, end) : kNaN;
+  };
+  add_ends({at_end(c, last.candidate, c.stress_axial), at_end(r, last.reference, r.stress_axial),
+            at_end(c, last.candidate, c.stress_lateral), at_end(r, last.reference, r.stress_lateral)},
+           s);
+  s.end_imposed = imposed(last.record, Compared::axial);
+  if (s.end_imposed) s.axial_end_ratio = kNaN;
 }
 
 SampleComparison compare_sample(const MacroCurve& candidate, const MacroCurve& reference) {
   SampleComparison s;
   s.sample = candidate.sample;
   s.test = candidate.test;
-  const std::vector<double> x_c = abscissa_of(candidate);
-  const std::vector<double> x_r = abscissa_of(reference);
-  s.axial_difference = relative_difference(x_c, candidate.stress_axial, x_r, reference.stress_axial);
-  s.lateral_difference = difference_or_nan(candidate, reference, candidate.stress_lateral, reference.stress_lateral);
-  s.strain_difference = candidate.test == MacroTest::stages
-                            ? difference_or_nan(candidate, reference, candidate.strain, reference.strain)
-                            : kNaN;
-  const auto [low, high] = common_range(x_c, x_r);
-  s.strain_low = interpolate_linear(x_c, candidate.strain, low);
-  s.strain_high = interpolate_linear(x_c, candidate.strain, high);
-  const double axial_c = interpolate_linear(x_c, candidate.stress_axial, high);
-  const double axial_r = interpolate_linear(x_r, reference.stress_axial, high);
-  const double lateral_c = value_or_nan(candidate, candidate.stress_lateral, high);
-  const double lateral_r = value_or_nan(reference, reference.stress_lateral, high);
-  const auto ratio = [](double a, double b) { return b == 0.0 ? kNaN : a / b; };
-  s.axial_end_ratio = ratio(axial_c, axial_r);
-  s.lateral_end_ratio = ratio(lateral_c, lateral_r);
-  s.lateral_stress_ratio_candidate = ratio(lateral_c, axial_c);
-  s.lateral_stress_ratio_reference = ratio(lateral_r, axial_r);
+  if (candidate.test == MacroTest::stages)
+    compare_staged(candidate, reference, s);
+  else
+    compare_strained(candidate, reference, s);
   s.in_band = share_in_band(candidate, reference, false);
   s.end_in_band = share_in_band(candidate, reference, true);
   s.band_width = end_band_width(candidate);
@@ -124,6 +163,7 @@ MeanError mean_of(const std::vector<SampleComparison>& samples, double SampleCom
 }
 
 void note_undefined(const SampleComparison& s, Comparison& result) {
+  if (s.end_imposed) return;
   const auto note = [&](double ratio, const char* side) {
     if (!std::isfinite(ratio))
       result.undefined.push_back(
@@ -161,6 +201,8 @@ void add_means(Comparison& result) {
   result.axial_difference = mean_of(result.samples, &SampleComparison::axial_difference);
   result.lateral_difference = mean_of(result.samples, &SampleComparison::lateral_difference);
   result.strain_difference = mean_of(result.samples, &SampleComparison::strain_difference);
+  result.deviator_difference = mean_of(result.samples, &SampleComparison::deviator_difference);
+  result.unloading_ratio = mean_of(result.samples, &SampleComparison::unloading_ratio);
   result.axial_end_ratio = mean_of(result.samples, &SampleComparison::axial_end_ratio);
   result.lateral_stress_ratio_candidate = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_candidate);
   result.lateral_stress_ratio_reference = mean_of(result.samples, &SampleComparison::lateral_stress_ratio_reference);
@@ -171,31 +213,55 @@ void add_means(Comparison& result) {
 
 }  // namespace
 
-std::vector<double> abscissa_of(const MacroCurve& c) {
-  if (c.test != MacroTest::stages) return c.strain;
-  std::vector<double> points(c.strain.size());
-  std::iota(points.begin(), points.end(), 0.0);
-  return points;
+std::vector<double> values_at_points(const MacroCurve& of, const std::vector<double>& column, const MacroCurve& points) {
+  std::vector<double> out(points.strain.size(), kNaN);
+  const auto take = [](const StageSide& there, const StageSide& here, const std::vector<double>& y, bool first,
+                       std::vector<double>& values) {
+    const double rounding = 1e-9 * (there.at.back() - there.at.front());
+    for (std::size_t k = first ? 0 : 1; k < here.point.size(); ++k) {
+      const double at = std::clamp(here.at[k], there.at.front(), there.at.back());
+      if (std::abs(at - here.at[k]) <= rounding) values[here.point[k]] = value_at(there, y, at);
+    }
+  };
+  if (points.test == MacroTest::stages) {
+    for (const MatchedStage& s : match_stages(of, points)) take(s.candidate, s.reference, column, s.first, out);
+    return out;
+  }
+  StageSide there{{}, of.strain};
+  StageSide here{{}, points.strain};
+  for (StageSide* side : {&there, &here})
+    for (std::size_t k = 0; k < side->at.size(); ++k) side->point.push_back(k);
+  if (!there.at.empty()) take(there, here, column, true, out);
+  return out;
 }
 
 double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, bool end) {
   constexpr double kBears = 0.05;
   const auto band = band_of(candidate, BandOf::axial, BandPart::all);
   if (!band || reference.stress_axial.empty()) return kNaN;
-  const std::vector<double> x = abscissa_of(candidate);
-  const std::vector<double> x_r = abscissa_of(reference);
   const double bears = kBears * *std::max_element(reference.stress_axial.begin(), reference.stress_axial.end());
-  const double rounding = 1e-9 * (x_r.back() - x_r.front());
+  const std::vector<double> stress = values_at_points(reference, reference.stress_axial, candidate);
+  const std::vector<bool> given = imposed_points(candidate, Compared::axial);
   std::vector<double> inside;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const double at = std::clamp(x[k], x_r.front(), x_r.back());
-    if (std::abs(at - x[k]) > rounding) continue;
-    const double stress = interpolate_linear(x_r, reference.stress_axial, at);
-    if (stress < bears) continue;
-    inside.push_back(stress >= band->low[k] && stress <= band->high[k] ? 1.0 : 0.0);
+  for (std::size_t k = 0; k < stress.size(); ++k) {
+    if (given[k] || !(stress[k] >= bears)) continue;
+    inside.push_back(stress[k] >= band->low[k] && stress[k] <= band->high[k] ? 1.0 : 0.0);
   }
   if (inside.empty()) return kNaN;
   return end ? inside.back() : mean_error(inside).mean;
+}
+
+std::vector<ComparedQuantity> headline_of(const Comparison& c) {
+  const bool staged = !c.samples.empty() && c.samples.front().test == MacroTest::stages;
+  if (!staged) return {{"stress", c.axial_difference}};
+  std::vector<ComparedQuantity> out{{"deviator", c.deviator_difference},
+                                    {"strain along axes that go by stress", c.strain_difference},
+                                    {"unloading modulus over that of the twin", c.unloading_ratio, true},
+                                    {"axial stress where it is not given", c.axial_difference}};
+  const bool any = std::any_of(c.samples.begin(), c.samples.end(), [](const auto& s) { return s.axial_imposed; });
+  if (!any) out.back().what = "axial stress";
+  std::erase_if(out, [](const ComparedQuantity& q) { return q.value.n == 0; });
+  return out;
 }
 
 double end_band_width(const MacroCurve& c) {

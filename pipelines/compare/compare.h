@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "common/data/macro_result.h"
 
@@ -26,9 +27,9 @@ double relative_difference(const std::vector<double>& candidate_x, const std::ve
 /// Value of a piecewise linear curve inside its range.
 double interpolate_linear(const std::vector<double>& x, const std::vector<double>& y, double at);
 
-/// What curves are set side by side over: strain, or, in tests in stages, whose strain goes forth and back, the number
-/// of the recorded point.
-std::vector<double> abscissa_of(const MacroCurve& curve);
+/// A column of one curve at the recorded points of another one of the same test: at the same strain, in tests in
+/// stages where match_stages() has them together; NaN where the curve does not come.
+std::vector<double> values_at_points(const MacroCurve& of, const std::vector<double>& column, const MacroCurve& points);
 
 /// One sample seen by both sides.
 struct SampleComparison {
@@ -36,10 +37,16 @@ struct SampleComparison {
   MacroTest test{};
   double strain_low = 0.0;  ///< common range of strain
   double strain_high = 0.0;
-  double axial_difference = 0.0;    ///< relative L2 difference of the axial stress over abscissa_of()
-  double lateral_difference = 0.0;  ///< of the lateral stress; NaN when it was not recorded or is zero
-  double strain_difference = 0.0;   ///< of the axial strain; NaN where every test strains alike
-  double axial_end_ratio = 0.0;     ///< candidate over reference at the end of the common range
+  /// Relative L2 difference of the axial stress over strain; in tests in stages over match_stages(), of the stages that
+  /// do not impose it: NaN where all do.
+  double axial_difference = 0.0;
+  double lateral_difference = 0.0;    ///< of the lateral stress, likewise; NaN too when it was not recorded or is zero
+  double deviator_difference = kNaN;  ///< of tests in stages, likewise
+  double strain_difference = kNaN;    ///< of the strains of axes that go by stress; NaN where none does
+  double unloading_ratio = kNaN;      ///< mean over the stages that unload: modulus over that of the reference
+  bool axial_imposed = false;         ///< some stage imposes the axial stress
+  bool end_imposed = false;           ///< the last one does
+  double axial_end_ratio = 0.0;  ///< candidate over reference at the end of the common range; NaN where it is imposed
   double lateral_end_ratio = 0.0;
   double lateral_stress_ratio_candidate = 0.0;  ///< lateral over axial stress at the end of the common range
   double lateral_stress_ratio_reference = 0.0;
@@ -57,6 +64,8 @@ struct Comparison {
   MeanError axial_difference;          ///< over samples
   MeanError lateral_difference;
   MeanError strain_difference;
+  MeanError deviator_difference;
+  MeanError unloading_ratio;
   MeanError axial_end_ratio;
   MeanError lateral_stress_ratio_candidate;
   MeanError lateral_stress_ratio_reference;
@@ -71,9 +80,18 @@ struct Comparison {
 /// Throws BadInput when nothing remains to compare, or when one side holds the same test and sample twice.
 Comparison compare_curves(const std::vector<MacroCurve>& candidate, const std::vector<MacroCurve>& reference);
 
+/// What is said first of a comparison: of tests in stages what these do not impose, deviator, strains and unloading
+/// moduli before the axial stress, of others the axial stress. Only what there is.
+struct ComparedQuantity {
+  std::string what;
+  MeanError value;
+  bool is_ratio = false;  ///< else a relative difference
+};
+std::vector<ComparedQuantity> headline_of(const Comparison& comparison);
+
 /// Share of the reference's axial stresses that lie in the 95 % band of the candidate, at the candidate's points where
-/// both have values and the reference bears 5 % of its largest or more; `end`: the last of these points alone. NaN: the
-/// candidate has no band, or there are no such points.
+/// both have values, the test does not impose them, and the reference bears 5 % of its largest or more; `end`: the last
+/// of these points alone. NaN: the candidate has no band, or there are no such points.
 double share_in_band(const MacroCurve& candidate, const MacroCurve& reference, bool end);
 
 /// Half the width of the band over the axial stress, at the end; NaN without band.

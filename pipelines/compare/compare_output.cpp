@@ -1,6 +1,7 @@
 // A comparison as JSON and as a table for people.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/data/fields.h"
@@ -22,7 +23,9 @@ json to_json(const SampleComparison& s) {
           {"strain_range", {s.strain_low, s.strain_high}},
           {"axial_difference", number(s.axial_difference)},
           {"lateral_difference", number(s.lateral_difference)},
+          {"deviator_difference", number(s.deviator_difference)},
           {"strain_difference", number(s.strain_difference)},
+          {"unloading_modulus_ratio", number(s.unloading_ratio)},
           {"axial_end_ratio", number(s.axial_end_ratio)},
           {"lateral_end_ratio", number(s.lateral_end_ratio)},
           {"lateral_stress_ratio",
@@ -38,7 +41,9 @@ json to_json(const MacroPart& part) {
           {"reference_engine", part.reference_engine},
           {"axial_difference", to_json(c.axial_difference)},
           {"lateral_difference", to_json(c.lateral_difference)},
+          {"deviator_difference", to_json(c.deviator_difference)},
           {"strain_difference", to_json(c.strain_difference)},
+          {"unloading_modulus_ratio", to_json(c.unloading_ratio)},
           {"axial_end_ratio", to_json(c.axial_end_ratio)},
           {"lateral_stress_ratio",
            {{"candidate", to_json(c.lateral_stress_ratio_candidate)},
@@ -134,8 +139,19 @@ std::string text_of(const MacroPart& part) {
   const Comparison& c = part.result;
   std::string out =
       fmt::format("macro: {} against {}, {} samples\n", part.candidate_engine, part.reference_engine, c.samples.size());
-  out += fmt::format("  axial stress, relative L2 difference    {}\n", percent(c.axial_difference));
-  out += fmt::format("  lateral stress, relative L2 difference  {}\n", percent(c.lateral_difference));
+  const bool given = std::any_of(c.samples.begin(), c.samples.end(), [](const auto& s) { return s.axial_imposed; });
+  if (c.deviator_difference.n > 0)
+    out += fmt::format("  deviator, relative L2 difference        {}\n", percent(c.deviator_difference));
+  if (c.strain_difference.n > 0)
+    out += fmt::format("  strains of axes that go by stress       {}\n", percent(c.strain_difference));
+  if (c.unloading_ratio.n > 0)
+    out += fmt::format("  unloading modulus over the reference's  {}\n",
+                       with_error(c.unloading_ratio.mean, c.unloading_ratio.error));
+  if (c.axial_difference.n > 0 || !given)
+    out += fmt::format("  axial stress, relative L2 difference    {}{}\n", percent(c.axial_difference),
+                       given ? ", where it is not given" : "");
+  if (c.lateral_difference.n > 0 || !given)
+    out += fmt::format("  lateral stress, relative L2 difference  {}\n", percent(c.lateral_difference));
   out += fmt::format("  axial stress ratio at the end           {}\n",
                      with_error(c.axial_end_ratio.mean, c.axial_end_ratio.error));
   out += fmt::format("  lateral over axial stress at the end    {} against {}\n",

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
 #include "common/data/macro_band.h"
 #include "macrosim/twin_places.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/compare/stage_match.h"
 
 namespace softgrain {
 
@@ -44,9 +46,40 @@ double difference(const std::vector<double>& xa, const std::vector<double>& a, c
   }
 }
 
+/// NaN where curves cannot be compared, and where the test imposes it throughout.
+double stage_difference(const MacroCurve& c, const MacroCurve& twin, Compared what) {
+  const auto column = [&](const MacroCurve& of) -> const std::vector<double>& {
+    return what == Compared::axial ? of.stress_axial : of.stress_deviator;
+  };
+  try {
+    return staged_difference(match_stages(c, twin), column(c), column(twin), what);
+  } catch (const BadInput&) {
+    return kNaN;
+  }
+}
+
+double axial_difference(const MacroCurve& c, const MacroCurve& twin) {
+  if (c.test == MacroTest::stages && twin.test == MacroTest::stages) return stage_difference(c, twin, Compared::axial);
+  return difference(c.strain, c.stress_axial, twin.strain, twin.stress_axial);
+}
+
+double strain_error(const MacroCurve& c, const MacroCurve& twin) {
+  if (c.test != MacroTest::stages || twin.test != MacroTest::stages) return kNaN;
+  try {
+    return strain_difference(match_stages(c, twin), c, twin);
+  } catch (const BadInput&) {
+    return kNaN;
+  }
+}
+
+/// Whether the stress that a test ends with along z is one that was asked for.
+bool ends_imposed(const MacroCurve& c) {
+  const std::vector<bool> given = imposed_points(c, Compared::axial);
+  return !given.empty() && given.back();
+}
+
 double deviator_difference(const MacroCurve& c, const MacroCurve& twin) {
-  if (c.test == MacroTest::stages)
-    return difference(abscissa_of(c), c.stress_deviator, abscissa_of(twin), twin.stress_deviator);
+  if (c.test == MacroTest::stages) return stage_difference(c, twin, Compared::deviator);
   if (c.test != MacroTest::shear) return kNaN;
   const auto [xa, a] = sheared(c);
   const auto [xb, b] = sheared(twin);
@@ -99,14 +132,24 @@ MeanError mean_of(const Pairs& pairs, const std::function<double(const MacroCurv
   return finite_mean(values);
 }
 
-/// Mean axial stresses; empty where the curves do not have the same points.
-std::vector<double> mean_axial(const Curves& curves) {
-  std::vector<double> mean(curves.front()->strain.size(), 0.0);
+/// Replaces a column by its mean over the curves; false where these do not have the same points.
+bool take_mean(const Curves& curves, std::vector<double> MacroCurve::*column, MacroCurve& out) {
+  std::vector<double> mean((curves.front()->*column).size(), 0.0);
   for (const MacroCurve* c : curves) {
-    if (c->stress_axial.size() != mean.size()) return {};
-    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += c->stress_axial[i] / static_cast<double>(curves.size());
+    if ((c->*column).size() != mean.size()) return false;
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += (c->*column)[i] / static_cast<double>(curves.size());
   }
-  return mean;
+  out.*column = std::move(mean);
+  return true;
+}
+
+/// Mean stresses and strains; empty where the curves do not have the same points.
+std::optional<MacroCurve> mean_curve(const Curves& curves) {
+  MacroCurve out = *curves.front();
+  for (const auto column : {&MacroCurve::strain, &MacroCurve::strain_x, &MacroCurve::strain_y, &MacroCurve::strain_z,
+                            &MacroCurve::stress_x, &MacroCurve::stress_y, &MacroCurve::stress_axial})
+    if (!take_mean(curves, column, out)) return std::nullopt;
+  return out;
 }
 
 /// Relative L2 difference of mean curves; its error is that of curves that differ by the standard error of the mean of
@@ -117,22 +160,24 @@ MeanError difference_of_means(const Pairs& pairs) {
   Curves mine;
   Curves twins;
   for (const auto& [c, t] : pairs) mine.push_back(c), twins.push_back(t);
-  const std::vector<double> a = mean_axial(mine);
-  std::vector<double> b = mean_axial(twins);
-  if (a.empty() || a.size() != b.size()) return out;
-  const std::vector<double> x = abscissa_of(*twins.front());
-  const double value = difference(abscissa_of(*mine.front()), a, x, b);
+  const auto a = mean_curve(mine);
+  const auto b = mean_curve(twins);
+  if (!a || !b) return out;
+  const double value = axial_difference(*a, *b);
   if (!std::isfinite(value)) return out;
   out.n = pairs.size();
   out.mean = value;
   if (pairs.size() < 2) return out;
-  std::vector<double> off = b;
-  for (std::size_t i = 0; i < b.size(); ++i) {
+  MacroCurve off = *b;
+  std::vector<std::vector<double>> at_points;  // of the engine, where its twin has points
+  for (const auto& [c, t] : pairs) at_points.push_back(values_at_points(*c, c->stress_axial, *t));
+  for (std::size_t i = 0; i < off.stress_axial.size(); ++i) {
     std::vector<double> apart;
-    for (const auto& [c, t] : pairs) apart.push_back(c->stress_axial[i] - t->stress_axial[i]);
-    off[i] += mean_error(apart).error;
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      if (std::isfinite(at_points[k][i])) apart.push_back(at_points[k][i] - pairs[k].second->stress_axial[i]);
+    if (apart.size() > 1) off.stress_axial[i] += mean_error(apart).error;
   }
-  out.error = difference(x, off, x, b);
+  out.error = axial_difference(off, *b);
   return out;
 }
 
@@ -151,7 +196,9 @@ double places_ratio(const MacroCurve& twin, const std::string& engine, const cha
 double own_noise(const MacroCurve& c) {
   const auto again = c.more.find(kAgainAxial);
   if (again == c.more.end()) return kNaN;
-  return difference(abscissa_of(c), again->second, abscissa_of(c), c.stress_axial) / std::numbers::sqrt2;
+  MacroCurve second = c;
+  second.stress_axial = again->second;
+  return axial_difference(second, c) / std::numbers::sqrt2;
 }
 
 /// A crowd law goes over its contacts once for the sums of each particle and once for the forces.
@@ -163,11 +210,15 @@ double visits(const MacroCurve& c) {
 TwinErrors errors_against(const Pairs& pairs) {
   using C = const MacroCurve&;
   TwinErrors e;
-  e.axial = mean_of(
-      pairs, [](C c, C t) { return difference(abscissa_of(c), c.stress_axial, abscissa_of(t), t.stress_axial); });
+  e.pairs = pairs.size();
+  e.staged = !pairs.empty() && pairs.front().first->test == MacroTest::stages;
+  e.axial = mean_of(pairs, axial_difference);
   e.axial_of_mean = difference_of_means(pairs);
-  e.axial_end = mean_of(pairs, [](C c, C t) { return ratio(last(c.stress_axial), last(t.stress_axial)); });
+  e.axial_end = mean_of(
+      pairs, [](C c, C t) { return ends_imposed(c) ? kNaN : ratio(last(c.stress_axial), last(t.stress_axial)); });
   e.deviator = mean_of(pairs, deviator_difference);
+  e.strains = mean_of(pairs, strain_error);
+  e.unloading = mean_of(pairs, unloading_ratio);
   e.lateral_ratio = mean_of(pairs, [](C c, C t) { return lateral_ratio(c) - lateral_ratio(t); });
   e.coordination = mean_of(pairs, [](C c, C t) { return last(c.coordination_bodies) - last(t.coordination_bodies); });
   e.fabric = mean_of(pairs, [](C c, C t) { return last(c.fabric_bodies) - last(t.fabric_bodies); });
@@ -232,14 +283,20 @@ std::string cell(const MeanError& m, int digits = 4) {
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : ""; }
 
 void add_cells(const TwinErrors& e, std::vector<std::string>& row) {
-  for (const MeanError* m : {&e.axial, &e.axial_of_mean, &e.axial_end, &e.deviator, &e.lateral_ratio, &e.coordination,
-                             &e.fabric, &e.force_mean, &e.force_distance})
+  for (const MeanError* m : {&e.axial, &e.axial_of_mean, &e.axial_end, &e.deviator, &e.strains, &e.unloading,
+                             &e.lateral_ratio, &e.coordination, &e.fabric, &e.force_mean, &e.force_distance})
     row.push_back(cell(*m, 3));
-  row.push_back(e.axial.n > 0 ? cell(e.speedup_evaluations) : "");
-  row.push_back(e.axial.n > 0 ? cell(e.speedup_seconds) : "");
+  row.push_back(e.pairs > 0 ? cell(e.speedup_evaluations) : "");
+  row.push_back(e.pairs > 0 ? cell(e.speedup_seconds) : "");
 }
 
 }  // namespace
+
+ComparedQuantity headline_of(const TwinErrors& e) {
+  if (e.deviator.n > 0 && e.staged) return {"deviator", e.deviator};
+  if (e.axial.n > 0) return {"stress", e.axial};
+  return {"strain along axes that go by stress", e.strains};
+}
 
 std::pair<double, double> mean_and_variation(const std::vector<double>& forces) {
   const MeanError m = mean_error(forces);
@@ -295,7 +352,7 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
     table.header.push_back(fmt::format("force on {} at the twin's places: law/twin", partner));
   for (const auto& [ignored, twin] : words<Twin>)
     for (const char* what : {"stress error", "stress error of the mean", "end stress ratio", "deviator error",
-                             "lateral/axial difference", "coordination difference", "fabric difference",
+                             "strain error", "unloading modulus ratio", "lateral/axial difference", "coordination difference", "fabric difference",
                              "mean force ratio", "force KS distance", "fewer evaluations", "faster"})
       table.header.push_back(fmt::format("{}: {}", twin, what));
   for (const EngineScore& s : scores) {

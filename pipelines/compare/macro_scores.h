@@ -7,15 +7,20 @@
 
 #include "common/core/statistics.h"
 #include "common/data/macro_result.h"
+#include "pipelines/compare/compare.h"
 
 namespace softgrain {
 
 /// Differences of one engine from one twin, over the samples that both ran usably.
 struct TwinErrors {
+  std::size_t pairs = 0;  ///< samples that both ran usably
+  bool staged = false;    ///< the test is one in stages: what these impose does not count in the differences
   MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference, per sample
   MeanError axial_of_mean;       ///< the same of the mean curves over the samples; error by jackknife over them
   MeanError axial_end;           ///< axial stress over that of the twin, at the end
   MeanError deviator;            ///< shear and stages: relative L2 difference of axial minus x stress after the preload
+  MeanError strains;             ///< stages: the same of the strains of axes that go by stress
+  MeanError unloading;           ///< stages: unloading modulus over that of the twin
   MeanError lateral_ratio;       ///< lateral over axial stress at the end, minus that of the twin
   MeanError coordination;        ///< of bodies at the end, minus that of the twin
   MeanError fabric;              ///< of bodies at the end, minus that of the twin
@@ -60,6 +65,9 @@ struct EngineScore {
 /// One score per engine, in the order in which engines first appear. Unusable curves count nowhere; differences that
 /// cannot be had (no twin, zero stress) are left out of the means.
 std::vector<EngineScore> score_engines(const std::vector<MacroCurve>& curves);
+
+/// The difference that is said first, and that laws are ordered by: what the test does not impose.
+ComparedQuantity headline_of(const TwinErrors& errors);
 
 /// Mean and coefficient of variation (sample deviation over mean); NaN without forces.
 std::pair<double, double> mean_and_variation(const std::vector<double>& forces);

@@ -14,6 +14,7 @@
 #include "common/data/law_remarks.h"
 #include "common/dynamics/force_pass.h"
 #include "common/io/text_file.h"
+#include "macrosim/curve_notes.h"
 
 namespace softgrain {
 
@@ -120,7 +121,7 @@ std::string stand_ins(const LawTableEntry& entry, const LawSources& sources) {
 
 /// A card serves grains of another nu or mu at the scene's own risk; what is inside a soft particle of an experiment is
 /// not known.
-std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {
+std::function<std::string(const System3&)> measured_note(const LawCard& card, const MacroSpec& spec) {
   const SoftParticleSpec& measured = card.spec;
   if (card.from_experiment() || (measured.poisson_ratio == spec.poisson_ratio && measured.friction == spec.friction))
     return nullptr;
@@ -128,6 +129,22 @@ std::function<std::string(const System3&)> card_note(const LawCard& card, const 
       "the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, mu = {:g}",
       measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction);
   return [text](const System3&) { return text; };
+}
+
+bool has_soft(const System3& s) {
+  const auto& material = s.particles.material;
+  return std::find(material.begin(), material.end(), 1) != material.end();  // of make_law_system
+}
+
+std::function<std::string(const System3&)> card_note(const LawCard& card, const MacroSpec& spec) {
+  const auto measured = measured_note(card, spec);
+  const std::string unloads = no_unloading_text(spec, "the pair law");
+  if (unloads.empty()) return measured;
+  return [measured, unloads](const System3& s) {
+    const std::string text = measured ? measured(s) : "";
+    if (!has_soft(s)) return text;
+    return text + (text.empty() ? "" : "; ") + unloads;
+  };
 }
 
 /// Keys that choose among what a table offers.
@@ -209,6 +226,14 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
   const CrowdLaws laws = make_crowd_laws(entry, choices);
   choices.friction = spec.wall_friction;
   choices.wall_friction = spec.wall_friction;
+  const std::string unloads =
+      sources.unloading
+          ? ""
+          : no_unloading_text(spec, entry.retreat_measured
+                                        ? fmt::format("the {} law as it is taken (unloading = true takes the branch "
+                                                      "that was measured)",
+                                                      to_string(form))
+                                        : fmt::format("the {} law", to_string(form)));
   const RangeCheck check(entry, form);
   const SoftLaws soft{laws.soft_solid, laws.solid_soft, make_crowd_laws(entry, choices).soft_plane, laws.soft_soft};
   return {to_string(form),
@@ -217,8 +242,10 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
           identity_of(form, entry.solid_fraction, spec, entry.spec, soft),
           tag_of(entry, sources, form),
           [=](const System3& s) {
-            const std::string note = check.note(s);
-            return remark + (remark.empty() || note.empty() ? "" : "; ") + note;
+            std::string text = remark;
+            for (const std::string& one : {check.note(s), has_soft(s) ? unloads : std::string()})
+              text += (text.empty() || one.empty() ? "" : "; ") + one;
+            return text;
           }};
 }
 

@@ -157,11 +157,19 @@ EngineSummary summary_of(const std::vector<MacroCurve>& curves, const std::strin
   return out;
 }
 
+namespace {
+
+std::optional<double> mean_if_any(const MeanError& m) { return m.n > 0 ? std::optional(m.mean) : std::nullopt; }
+
+}  // namespace
+
 ComparisonSummary summary_of(const Comparison& c) {
   ComparisonSummary out{c.axial_difference.mean,
                         c.axial_difference.error,
                         c.lateral_difference.mean,
-                        c.strain_difference.n > 0 ? std::optional(c.strain_difference.mean) : std::nullopt,
+                        mean_if_any(c.strain_difference),
+                        mean_if_any(c.deviator_difference),
+                        mean_if_any(c.unloading_ratio),
                         c.axial_end_ratio.mean,
                         c.lateral_stress_ratio_candidate.mean,
                         c.lateral_stress_ratio_reference.mean,

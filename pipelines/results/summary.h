@@ -288,10 +288,13 @@ void fields(auto&& visit, Of<SampleDifference> auto& s) {
 
 /// Law runs against the shelled twin, see Comparison.
 struct ComparisonSummary {
-  double stress_error = kNaN;  ///< relative L2 difference of the axial stress, mean over samples
+  /// Relative L2 difference of the axial stress, mean over samples; in tests in stages of those that do not impose it.
+  double stress_error = kNaN;
   double stress_error_standard_error = kNaN;
   double lateral_stress_error = kNaN;
-  std::optional<double> strain_error;  ///< of the axial strain, of tests in stages
+  std::optional<double> strain_error;  ///< of tests in stages: of the strains of axes that go by stress
+  std::optional<double> deviator_error{};
+  std::optional<double> unloading_modulus_ratio{};  ///< law over twin
   double end_stress_ratio = kNaN;
   double lateral_stress_ratio_law = kNaN;
   double lateral_stress_ratio_resolved = kNaN;
@@ -306,6 +309,8 @@ void fields(auto&& visit, Of<ComparisonSummary> auto& s) {
   visit("stress_error_standard_error", s.stress_error_standard_error);
   visit("lateral_stress_error", s.lateral_stress_error);
   visit("strain_error", s.strain_error, kLeftOut);
+  visit("deviator_error", s.deviator_error, kLeftOut);
+  visit("unloading_modulus_ratio", s.unloading_modulus_ratio, kLeftOut);
   visit("end_stress_ratio", s.end_stress_ratio);
   visit("lateral_stress_ratio_law", s.lateral_stress_ratio_law);
   visit("lateral_stress_ratio_resolved", s.lateral_stress_ratio_resolved);

@@ -205,6 +205,16 @@ std::vector<RunEntry> make_runs(const std::vector<ReadyRun>& ready, const RunPla
   return entries;
 }
 
+/// What a key that is swept does not change although its name may be taken to say so.
+void note_swept_keys(const RunPlan& plan, SetSummary& summary) {
+  for (const SweptKey& one : plan.over)
+    if (one.key == "macro.mu")
+      summary.head.remarks.emplace_back(
+          "macro.mu changes the friction between the particles of the scene alone: the law of soft particles stays the "
+          "one that was measured, with grains of its own friction inside; for grains of another friction measure a law "
+          "with them");
+}
+
 SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEntry> entries) {
   SetSummary summary;
   const std::string title = scene.root().text("title", "");
@@ -214,6 +224,7 @@ SetSummary summarise(const Scene& scene, const RunPlan& plan, std::vector<RunEnt
   summary.runs = std::move(entries);
   summary.points = points_of(summary.over, summary.runs);
   summary.head.title = (title.empty() ? fs::path(scene.path()).stem().string() : title) + ": " + varied_text(summary);
+  note_swept_keys(plan, summary);
   for (const RunEntry& run : summary.runs)
     if (run.status != RunStatus::good)
       summary.head.reject(

@@ -257,6 +257,36 @@ TEST(MacroPreparation, WhatCannotBePreparedSaysHowFarItCame) {
   }
 }
 
+/// What contacts bore at the end of a preparation with friction, twins begin with as runs by laws do: without soft
+/// particles both are the same bodies, and have the same bits.
+TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
+  for (const Preparation p : {Preparation::fast, Preparation::slow, Preparation::frictionless})
+    for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
+      MacroSpec spec = prepared_by(p, 60);
+      spec.soft_share = 0.0;
+      spec.boundary = boundary;
+      spec.steps = 1;
+      spec.increments_per_step = 1;
+      spec.strain_end = 0.005;
+      spec.twin.relaxation = TwinRelaxation::damped;
+      const MacroPacking packing = make_macro_packing(spec, 1, 0);
+      EXPECT_EQ(packing.springs.empty(), p == Preparation::frictionless);
+      const auto run = [&](MacroSystem macro, const std::string& engine) {
+        CompressionState state;
+        state.macro = std::move(macro);
+        state.curve = begin_curve(spec, packing, state.macro, engine, 0);
+        compress(state, spec);
+        return state.curve;
+      };
+      const MacroCurve law = run(make_law_system(spec, packing, {}, 1.0), "law");
+      for (const MacroCurve& twin : {run(make_shelled_system(spec, packing, {}, 1, 0), "shelled"),
+                                     run(make_free_system(spec, packing, {}, 1, 0), "free")}) {
+        EXPECT_EQ(twin.stress_axial, law.stress_axial) << to_string(p);
+        EXPECT_EQ(twin.stress_lateral, law.stress_lateral) << to_string(p);
+      }
+    }
+}
+
 TEST(MacroPreparation, TellsHowFarItIs) {
   for (const Preparation p : {Preparation::frictionless, Preparation::fast, Preparation::dense}) {
     std::vector<double> shares;

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
+#include "common/core/error.h"
 #include "common/data/shell_packing.h"
 #include "macrosim/compression.h"
 #include "macrosim/macro_packing.h"
+#include "macrosim/staged_test.h"
 
 namespace softgrain {
 namespace {
@@ -233,6 +236,102 @@ TEST(MacroStages, AFrictionalPackingUnloadsStiffer) {
     };
     EXPECT_GT(slope(6, 7), 1.1 * slope(5, 6)) << to_string(boundary);
   }
+}
+
+/// Nothing touches, and stages that hold what they begin with hold none: they are told apart from an oedometer by what
+/// drives them. Sides that are pushed give way, and stay where they are when nothing pushes them.
+TEST(MacroStages, SidesThatBeginWithoutStressAreFree) {
+  for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
+    MacroSpec spec = packed_spec(boundary);
+    MacroStage triaxial = plain_stage(StageKind::triaxial);
+    triaxial.axis[2].value = 0.1;
+    triaxial.increments_per_step = 5;
+    hold_sides(triaxial, 0);
+    MacroStage hold = plain_stage(StageKind::hold);
+    hold.steps = 1;
+    for (AxisDrive& drive : hold.axis) drive = {true, 0.0, 1};
+    spec.stages = {triaxial, hold};
+    MacroPacking packing = make_macro_packing(spec, 1, 0);
+    const auto apart = [&](const MacroSpec& of) {
+      MacroPacking wide = packing;
+      for (MacroBody& b : wide.bodies) b.x = wide.low + (b.x - wide.low) * 1.01;
+      wide.high = wide.low + (wide.high - wide.low) * 1.01;
+      CompressionState state;
+      state.macro = make_law_system(of, wide, pair_soft_laws({}, {}, 0.0), 1.0);
+      state.curve = begin_curve(of, wide, state.macro, "law", 0);
+      compress(state, of);
+      return state.curve;
+    };
+    const MacroCurve c = apart(spec);
+    ASSERT_TRUE(c.usable) << c.note;
+    ASSERT_EQ(c.strain.size(), 5U);
+    EXPECT_EQ(c.stress_x[0], 0.0);
+    const double off = 1.001 * triaxial.tolerance / 3.0 * least_stress(spec);
+    for (std::size_t k = 0; k < c.strain.size(); ++k) {
+      EXPECT_LE(std::abs(c.stress_x[k]), off) << to_string(boundary) << " " << k;
+      EXPECT_LE(std::abs(c.stress_y[k]), off) << to_string(boundary) << " " << k;
+    }
+    EXPECT_LT(c.strain_x[3], -0.005);
+    EXPECT_GT(c.strain_x[3], -0.2) << "the sides flew off";
+    EXPECT_NE(c.note.find("stage 'triaxial' began without stress along x, y, which it holds: its sides are free"),
+              std::string::npos)
+        << c.note;
+    MacroSpec oedometric = spec;
+    oedometric.stages.resize(1);
+    oedometric.stages[0].axis[0] = oedometric.stages[0].axis[1] = {};
+    EXPECT_GT(apart(oedometric).stress_x[3], 100.0 * off) << "what it was taken for";
+  }
+}
+
+/// An engine whose relaxations end as they are told to.
+struct ToldEngine {
+  std::vector<RelaxationResult>& ends;
+  std::vector<bool>& held;  ///< which increments had an axis that goes by stress
+
+  RelaxationResult step(CompressionState&, const MacroStage&, const Vec3&, const std::optional<Vec3>& stress) const {
+    const RelaxationResult end = ends.front();
+    ends.erase(ends.begin());
+    held.push_back(stress.has_value());
+    return end;
+  }
+  static void record(CompressionState& state, const MacroStage& stage, std::int64_t, const RelaxationResult& rest) {
+    MacroCurve& c = state.curve;
+    c.strain.push_back(0.1 * static_cast<double>(c.strain.size()));
+    for (auto* column : {&c.stress_x, &c.stress_y, &c.stress_axial}) column->push_back(0.0);
+    c.residual.push_back(rest.residual);
+    note_unrest(c, state.worst, stage);
+  }
+  static LawUse watch(CompressionState&) { return {}; }
+  static void note_use(CompressionState&, const LawUse&) {}
+  static bool ended(CompressionState&) { return false; }
+};
+
+/// All increments count, also those that are not recorded; the worst of the test is the one that is said.
+TEST(MacroStages, IncrementsThatDoNotComeToRestAreSaid) {
+  constexpr RelaxationEnd kRest = RelaxationEnd::converged;
+  constexpr RelaxationEnd kCapped = RelaxationEnd::capped;
+  MacroSpec spec;
+  spec.steps = 2;
+  spec.increments_per_step = 3;
+  const auto run = [&](std::vector<RelaxationResult> ends) {
+    CompressionState state;
+    std::vector<bool> held;
+    run_stages(state, spec, ToldEngine{ends, held}, RunControl<CompressionState>{});
+    EXPECT_EQ(held, std::vector<bool>(7, false));
+    return state.curve;
+  };
+  const RelaxationResult good{kRest, 10, 0.009};
+  const MacroCurve rests = run({good, good, {kRest, 10, 0.0095}, good, good, good, good});
+  EXPECT_TRUE(rests.usable);
+  EXPECT_EQ(rests.residual_largest, (std::vector<double>{0.009, 0.0095, 0.009}));
+  const MacroCurve capped = run({good, good, {kCapped, 10, 0.5}, good, {kCapped, 10, 0.02}, good, good});
+  EXPECT_FALSE(capped.usable);
+  EXPECT_EQ(capped.residual, (std::vector<double>{0.009, 0.009, 0.009}));
+  EXPECT_EQ(capped.residual_largest, (std::vector<double>{0.009, 0.5, 0.02}));
+  EXPECT_NE(capped.note.find("capped at strain 0.100000, increment 2 of the 3 before it (residual 0.5"),
+            std::string::npos)
+      << capped.note;
+  EXPECT_THROW((void)run({good, good, {RelaxationEnd::diverged, 10, HUGE_VAL}}), NotUsable);
 }
 
 /// The short forms are stages too: the same bits.

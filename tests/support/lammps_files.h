@@ -31,6 +31,9 @@ inline lammps::PointRow point_row(double number, double strain) {
   set(Point::end, 1.0);
   set(Point::looked_at, 1234.0);
   set(Point::seconds, 0.5);
+  set(Point::unrest, 0.003);
+  set(Point::unrest_at, 1.0);
+  set(Point::unrest_end, 1.0);
   return row;
 }
 

@@ -289,7 +289,23 @@ TEST_F(Tables, GapsAndOtherWordsAreRefused) {
   refused("\n1 ", "\nnan ");
   refused("\n1 ", "\none ");
   refused("\n1 0.1 ", "\n1 ");
-  refused("# softgrain points 2", "# softgrain points 9");
+  refused("# softgrain points 3", "# softgrain points 9");
+}
+
+/// A run that an earlier version began is taken up as it is: its script is there too, and writes rows of its time.
+TEST_F(Tables, OfAnEarlierVersionAreReadAndGoneOnWith) {
+  PointRow row = with(with(point_row(0.0, 0.0), Point::residual, 0.004), Point::end, 2.0);
+  row.earlier = true;
+  lammps::write_points(directory_.path(), "key", {row, with(row, Point::number, 1.0)});
+  const std::string text = read_text(points());
+  EXPECT_TRUE(text.starts_with("# softgrain points 2, scene key\n"));
+  EXPECT_EQ(text.find("unrest"), std::string::npos);
+  const auto rows = read();
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_TRUE(rows[1].earlier);
+  EXPECT_EQ(rows[1][Point::over], row[Point::over]);
+  EXPECT_EQ(rows[1][Point::unrest], 0.004);
+  EXPECT_EQ(rows[1][Point::unrest_end], 2.0);
 }
 
 /// Test of four points, with tables and restart files as a run leaves them.
@@ -421,10 +437,31 @@ TEST_F(Curves, RowsBecomeWhatOurOwnEngineRecords) {
 }
 
 TEST_F(Curves, WhatWentWrongIsSaidAsWithOurOwnEngine) {
-  lammps::add_points({point_row(0, 0.0), with(point_row(1, 0.1), Point::end, 2.0), point_row(2, 0.2)}, spec_, curve_);
+  // The point itself came to rest, the first of the two increments before it did not.
+  const PointRow capped = with(with(point_row(1, 0.1), Point::unrest_end, 2.0), Point::unrest, 0.4);
+  lammps::add_points({point_row(0, 0.0), capped, point_row(2, 0.2)}, spec_, curve_);
   EXPECT_FALSE(curve_.usable);
   EXPECT_EQ(curve_.note,
-            "relaxation capped at strain 0.100000 (residual 0.003000 of the mean contact force, wanted 0.010000)");
+            "relaxation capped at strain 0.100000, increment 1 of the 2 before it (residual 0.400000 of the mean "
+            "contact force, wanted 0.010000)");
+  EXPECT_EQ(curve_.residual[1], 0.003);
+  EXPECT_EQ(curve_.residual_largest, (std::vector<double>{0.003, 0.4, 0.003}));
+}
+
+/// The script keeps the increment that ended farthest from rest, of short forms and of stages.
+TEST(LammpsFiles, ScriptsWatchEveryIncrement) {
+  for (const MacroSpec& spec : {spec_of(MacroTest::oedometric), staged_spec()}) {
+    const std::string text = script_of(spec);
+    const std::size_t reset = text.find("variable unrest equal 0\n");
+    const std::size_t watch = text.find("\"variable unrest equal $(v_residual:%.17g)\"");
+    const std::size_t next = text.find("next k\n");
+    ASSERT_NE(reset, std::string::npos);
+    ASSERT_NE(watch, std::string::npos);
+    EXPECT_LT(reset, text.find("label increment\n"));
+    EXPECT_LT(text.find("label increment\n"), watch);
+    EXPECT_LT(watch, next);
+    EXPECT_NE(text.find("$(v_unrest_end:%.17g)"), std::string::npos);
+  }
 }
 
 TEST_F(Curves, ARefusedLawEndsTheTest) {

@@ -49,6 +49,22 @@ std::string end_line(const std::vector<MacroCurve>& curves) {
                      stress.size() > 1 ? "samples, mean" : "sample");
 }
 
+/// What law and twin differ by, of tests in stages in what these do not impose.
+std::string difference_line(const Comparison& c) {
+  const std::vector<ComparedQuantity> all = headline_of(c);
+  if (all.size() == 1 && all.front().what == "stress")
+    return fmt::format("Stress by the law differs from the resolved twin by {} %",
+                       format_with_error(100 * c.axial_difference.mean, 100 * c.axial_difference.error));
+  std::string text = "Law and resolved twin differ";
+  const char* before = ": ";
+  for (const ComparedQuantity& q : all) {
+    text += before + q.what + (q.is_ratio ? " " + format_with_error(q.value.mean, q.value.error)
+                                          : fmt::format(" {} %", format_with_error(100 * q.value.mean, 100 * q.value.error)));
+    before = ", ";
+  }
+  return all.empty() ? "Law and resolved twin: the test imposes all that could differ" : text;
+}
+
 std::string macro_line(const std::vector<MacroCurve>& macro) {
   const auto laws = curves_of(macro, "law");
   const auto twins = curves_of(macro, "shelled");
@@ -56,11 +72,9 @@ std::string macro_line(const std::vector<MacroCurve>& macro) {
   try {
     const Comparison c = compare_curves(laws, twins);
     if (!c.undefined.empty()) return "Law and resolved twin: " + c.undefined.front() + ".";
-    return fmt::format(
-        "Stress by the law differs from the resolved twin by {} % ({} samples); {} times fewer contact "
-        "evaluations, {} times faster.",
-        format_with_error(100 * c.axial_difference.mean, 100 * c.axial_difference.error), c.samples.size(),
-        format_number(c.speedup_contact_evaluations, 3), format_number(c.speedup_seconds, 3));
+    return fmt::format("{} ({} samples); {} times fewer contact evaluations, {} times faster.", difference_line(c),
+                       c.samples.size(), format_number(c.speedup_contact_evaluations, 3),
+                       format_number(c.speedup_seconds, 3));
   } catch (const BadInput& error) {
     return error.what();
   }
@@ -79,8 +93,11 @@ void add_comparison(const std::vector<MacroCurve>& macro, std::vector<RunValue>&
   try {
     const Comparison c = compare_curves(laws, twins);
     if (!c.undefined.empty()) return;
-    out.push_back({"stress of the law, off from the twin", "%", 100.0 * c.axial_difference.mean,
-                   100.0 * c.axial_difference.error});
+    for (const ComparedQuantity& q : headline_of(c)) {
+      const double unit = q.is_ratio ? 1.0 : 100.0;
+      out.push_back({q.is_ratio ? q.what : q.what + " of the law, off from the twin", q.is_ratio ? "" : "%",
+                     unit * q.value.mean, unit * q.value.error});
+    }
     out.push_back({"contact evaluations of the twin over those of the law", "", c.speedup_contact_evaluations});
   } catch (const BadInput&) {  // no sample with two usable curves: said elsewhere
   }

@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "pipelines/compare/compare.h"
+#include "pipelines/compare/stage_match.h"
 #include "pipelines/kinds/macro/results.h"
 #include "pipelines/report/engine_style.h"
 #include "pipelines/report/html.h"
@@ -71,17 +72,30 @@ Plot stress_plot(const std::vector<MacroCurve>& curves, MacroTest test, bool axi
   return plot;
 }
 
+/// At the points of the twin; not a number where a test in stages imposes it, or the law does not come.
+std::vector<double> values_of_law(const MacroCurve& law, const MacroCurve& twin, Stress member) {
+  const Compared what = member == &MacroCurve::stress_axial ? Compared::axial : Compared::lateral;
+  try {
+    std::vector<double> out = values_at_points(law, law.*member, twin);
+    const std::vector<bool> given = imposed_points(twin, what);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (given[i]) out[i] = kNaN;
+    return out;
+  } catch (const BadInput&) {  // said below
+    return std::vector<double>(twin.strain.size(), kNaN);
+  }
+}
+
 /// (law - twin)/twin at the points of the twin, where the twin's stress is above 2 % of its largest.
 Series difference_series(const MacroCurve& law, const MacroCurve& twin, Stress member) {
   Series s;
-  const std::vector<double> x_law = abscissa_of(law);
-  const std::vector<double> x_twin = abscissa_of(twin);
+  const std::vector<double> by_law = values_of_law(law, twin, member);
   const double floor = std::max(0.02 * *std::max_element((twin.*member).begin(), (twin.*member).end()), 0.0);
   for (std::size_t i = 0; i < twin.strain.size(); ++i) {
     const double reference = (twin.*member)[i];
-    if (reference <= floor || x_twin[i] < x_law.front() || x_twin[i] > x_law.back()) continue;
+    if (reference <= floor || !std::isfinite(by_law[i])) continue;
     s.x.push_back(100.0 * twin.strain[i]);
-    s.y.push_back(100.0 * (interpolate_linear(x_law, law.*member, x_twin[i]) / reference - 1.0));
+    s.y.push_back(100.0 * (by_law[i] / reference - 1.0));
   }
   return s;
 }
@@ -161,12 +175,13 @@ std::string comparison_table(const Comparison& c) {
              mean_text(c.lateral_stress_ratio_reference, 1)});
   std::string out = table.html();
   out += paragraph(
-      "Difference: square root of ∫(law − twin)² over ∫ twin², over the common strain range, of tests in stages over "
-      "the "
-      "recorded points. Mean over samples ± standard error.");
-  if (c.strain_difference.n > 0)
-    out +=
-        paragraph("Axial strain, over the recorded points: difference " + mean_text(c.strain_difference, 100) + " %.");
+      "Difference: square root of ∫(law − twin)² over ∫ twin², over the common strain range, of tests in stages stage "
+      "by stage without those that impose it. Mean over samples ± standard error.");
+  for (const ComparedQuantity& q : headline_of(c)) {
+    if (c.samples.front().test != MacroTest::stages) break;
+    out += paragraph("In stages, " + q.what + ": " +
+                     (q.is_ratio ? mean_text(q.value, 1) : "difference " + mean_text(q.value, 100) + " %") + ".");
+  }
   if (std::isfinite(c.speedup_seconds)) {
     out +=
         paragraph(fmt::format("Speed-up of the law over the resolved twin: {} in seconds, {} in contact evaluations.",

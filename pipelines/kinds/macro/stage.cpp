@@ -26,16 +26,36 @@ namespace softgrain {
 
 namespace {
 
-void write_progress(const h5::Group& group, const CompressionState& state) {
+/// How far a test has come, beside its curve and the state of its bodies.
+template <class State>
+void write_place(const h5::Group& group, const State& state) {
   group.attribute("increments", state.increments);
   group.attribute("over", static_cast<std::int64_t>(state.over));
+  group.attribute("worst_increment", state.worst.number);
+  group.attribute("worst_end", static_cast<std::int64_t>(state.worst.rest.end));
+  group.attribute("worst_residual", state.worst.rest.residual);
+}
+
+/// States of earlier versions do not have the last three: nothing is known of their increments then.
+template <class State>
+void read_place(const h5::Group& group, State& state) {
+  state.increments = group.integer("increments");
+  state.over = group.has_attribute("over") && group.integer("over") != 0;
+  state.worst = {{RelaxationEnd::converged, 0, 0.0}, state.increments};
+  if (!group.has_attribute("worst_increment")) return;
+  state.worst.number = group.integer("worst_increment");
+  state.worst.rest.end = static_cast<RelaxationEnd>(std::clamp<std::int64_t>(group.integer("worst_end"), 0, 3));
+  state.worst.rest.residual = group.number("worst_residual");
+}
+
+void write_progress(const h5::Group& group, const CompressionState& state) {
+  write_place(group, state);
   write_macro_curve(group.create("curve"), state.curve);
   write_system(group.create("system"), state.macro.system);
 }
 
 void read_progress(const h5::Group& group, CompressionState& state) {
-  state.increments = group.integer("increments");
-  state.over = group.has_attribute("over") && group.integer("over") != 0;
+  read_place(group, state);
   state.curve = read_macro_curve(group.open("curve"));
   read_system(group.open("system"), state.macro.system);
 }
@@ -104,14 +124,12 @@ struct CellRun {
   using State = CellTestState;
 
   static void write(const h5::Group& group, const State& s) {
-    group.attribute("increments", s.increments);
-    group.attribute("over", static_cast<std::int64_t>(s.over));
+    write_place(group, s);
     write_macro_curve(group.create("curve"), s.curve);
     write_cell_state(group.create("cells"), s.packing.state());
   }
   void read(const h5::Group& group, State& s) const {
-    s.increments = group.integer("increments");
-    s.over = group.integer("over") != 0;
+    read_place(group, s);
     s.curve = read_macro_curve(group.open("curve"));
     s.packing = CellPacking(cell_law_of(spec.cells->card, spec.youngs_modulus), read_cell_state(group.open("cells")),
                             spec.boundary == Boundary::periodic);

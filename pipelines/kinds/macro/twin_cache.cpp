@@ -12,7 +12,7 @@ namespace softgrain {
 namespace {
 
 /// Raised whenever the same key would give another curve.
-constexpr int kTwinSchema = 1;
+constexpr int kTwinSchema = 2;
 
 class Bytes {
  public:

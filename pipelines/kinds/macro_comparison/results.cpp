@@ -18,14 +18,17 @@ std::string scene_line(const ComparedCurves& scene) {
   const std::vector<EngineScore> scores = score_engines(scene.curves);
   const EngineScore* best = nullptr;
   for (const EngineScore& s : scores) {
-    if (s.shelled.axial.n == 0 || s.twin()) continue;
-    if (best == nullptr || s.shelled.axial.mean < best->shelled.axial.mean) best = &s;
+    if (headline_of(s.shelled).value.n == 0 || s.twin()) continue;
+    if (best == nullptr || headline_of(s.shelled).value.mean < headline_of(best->shelled).value.mean) best = &s;
   }
   if (best == nullptr) return "";
+  const ComparedQuantity off = headline_of(best->shelled);
+  const MeanError& unloading = best->shelled.unloading;
   return fmt::format(
-      "{}: the {} comes closest, stress off by {} % from the shelled twin; {} times fewer contact evaluations.",
-      scene.name, engine_name(best->engine),
-      format_with_error(100.0 * best->shelled.axial.mean, 100.0 * best->shelled.axial.error),
+      "{}: the {} comes closest, {} off by {} % from the shelled twin{}; {} times fewer contact evaluations.",
+      scene.name, engine_name(best->engine), off.what, format_with_error(100.0 * off.value.mean, 100.0 * off.value.error),
+      unloading.n > 0 ? ", unloading modulus " + format_with_error(unloading.mean, unloading.error) + " times its own"
+                      : "",
       format_number(best->shelled.speedup_evaluations, 3));
 }
 
@@ -39,9 +42,9 @@ std::vector<RunValue> values_of(const RunData& run) {
   std::vector<RunValue> out;
   for (const ComparedCurves& scene : run.macro_scenes)
     for (const EngineScore& s : score_engines(scene.curves))
-      if (s.shelled.axial.n > 0 && !s.twin())
-        out.push_back({fmt::format("stress off from the twin ({}, {})", scene.name, s.engine), "%",
-                       100.0 * s.shelled.axial.mean, 100.0 * s.shelled.axial.error});
+      if (const auto [what, off, ratio] = headline_of(s.shelled); off.n > 0 && !s.twin())
+        out.push_back({fmt::format("{} off from the twin ({}, {})", what, scene.name, s.engine), "%", 100.0 * off.mean,
+                       100.0 * off.error});
   return out;
 }
 

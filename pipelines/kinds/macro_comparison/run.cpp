@@ -106,9 +106,14 @@ std::string people_text(const std::vector<SceneResult>& results, const Run& run)
     for (const EngineScore& s : r.scores) {
       text +=
           fmt::format("{}, {}: axial stress {:.4g} Pa, {:.3g} s per sample", r.name, s.engine, s.axial.mean, s.seconds);
-      if (s.shelled.axial.n > 0 && std::isfinite(s.shelled.speedup_evaluations))
-        text += fmt::format("; against shelled: stress error {:.3g} %, {:.3g} times fewer contact evaluations",
-                            100.0 * s.shelled.axial.mean, s.shelled.speedup_evaluations);
+      const ComparedQuantity off = headline_of(s.shelled);
+      if (off.value.n > 0 && std::isfinite(s.shelled.speedup_evaluations))
+        text += fmt::format("; against shelled: {} error {:.3g} %, {}{:.3g} times fewer contact evaluations", off.what,
+                            100.0 * off.value.mean,
+                            s.shelled.unloading.n > 0
+                                ? fmt::format("unloading modulus {:.3g} times its own, ", s.shelled.unloading.mean)
+                                : "",
+                            s.shelled.speedup_evaluations);
       text += "\n";
     }
   return text + "table: " + run.path("table.md") + "\n";

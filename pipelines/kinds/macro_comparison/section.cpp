@@ -123,7 +123,8 @@ std::string macro_scenes_section(const RunData& run) {
   for (const ComparedCurves& scene : scenes) body += scene_part(compared.scenes, scene);
   if (!body.empty())
     body += paragraph(
-        "Stress error: square root of ∫(engine − twin)² over ∫ twin² along the strain. Coordination, fabric (zz − xx) "
+        "Stress error: square root of ∫(engine − twin)² over ∫ twin² along the strain, of tests in stages stage by "
+        "stage without those that impose it. Coordination, fabric (zz − xx) "
         "and "
         "forces are those between bodies at the end, a soft particle being one body. Mean over samples +- standard "
         "error.");

@@ -11,13 +11,15 @@ namespace softgrain {
 
 /// Null where there is no value.
 inline std::optional<MeanError> known(const MeanError& m) { return m.n > 0 ? std::optional(m) : std::nullopt; }
-inline std::optional<TwinErrors> known(const TwinErrors& e) { return e.axial.n > 0 ? std::optional(e) : std::nullopt; }
+inline std::optional<TwinErrors> known(const TwinErrors& e) { return e.pairs > 0 ? std::optional(e) : std::nullopt; }
 
 void fields(auto&& visit, const TwinErrors& e) {
   visit("stress_error", known(e.axial));
   visit("stress_error_of_mean", known(e.axial_of_mean));
   visit("end_stress_ratio", known(e.axial_end));
   visit("deviator_error", known(e.deviator));
+  visit("strain_error", known(e.strains));
+  visit("unloading_modulus_ratio", known(e.unloading));
   visit("lateral_ratio_difference", known(e.lateral_ratio));
   visit("coordination_difference", known(e.coordination));
   visit("fabric_difference", known(e.fabric));

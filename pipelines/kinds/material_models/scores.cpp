@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/limits.h"
+#include "pipelines/compare/stage_match.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/results.h"
 
@@ -55,11 +56,36 @@ Pairs pairs_of(const ModelRun& run, std::string& remark) {
   return out;
 }
 
+/// Points that a test in stages does not impose, of a column of each side.
+struct FreeColumns {
+  std::vector<double> model;
+  std::vector<double> truth;
+  std::size_t first = 0;  ///< in them, of the point that was meant
+};
+
+FreeColumns without_imposed(const std::vector<double>& model, const std::vector<double>& truth,
+                            const std::vector<bool>& given, std::size_t first) {
+  FreeColumns out;
+  for (std::size_t k = 0; k < std::min(model.size(), truth.size()); ++k) {
+    if (k < given.size() && given[k]) continue;
+    out.first += k < first ? 1 : 0;
+    out.model.push_back(model[k]);
+    out.truth.push_back(truth[k]);
+  }
+  return out;
+}
+
+double free_difference(const std::vector<double>& model, const std::vector<double>& truth,
+                       const std::vector<bool>& given, std::size_t first) {
+  const FreeColumns columns = without_imposed(model, truth, given, first);
+  return relative_difference(columns.model, columns.truth, columns.first);
+}
+
 /// Standard error of an error that every pair has by itself; NaN with one.
-double scatter_of(const Pairs& pairs, Column column, std::size_t first) {
+double scatter_of(const Pairs& pairs, Column column, const std::vector<bool>& given, std::size_t first) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < pairs.truth.size(); ++k)
-    errors.push_back(relative_difference(column(pairs.model[k]), column(pairs.truth[k]), first));
+    errors.push_back(free_difference(column(pairs.model[k]), column(pairs.truth[k]), given, first));
   return errors.size() > 1 ? mean_error(errors).error : kNaN;
 }
 
@@ -152,12 +178,16 @@ ModelScore score(const ModelRun& run, bool blind) {
   const auto end = static_cast<std::size_t>(std::max_element(strain.begin(), strain.end()) - strain.begin());
   const auto t = mean_of(truth, axial_of);
   const auto m = mean_of(pairs.model, axial_of);
-  s.axial = relative_difference(m, t, first);
-  s.lateral = relative_difference(mean_of(pairs.model, lateral_of), mean_of(truth, lateral_of), first);
-  s.axial_error = scatter_of(pairs, axial_of, first);
-  s.lateral_error = scatter_of(pairs, lateral_of, first);
-  s.axial_at_2 = excess(m, t, two);
-  s.axial_at_end = excess(m, t, end);
+  // What the test imposes both have: it says nothing of a model.
+  const std::vector<bool> axial = imposed_points(truth.front(), Compared::axial);
+  const std::vector<bool> lateral = imposed_points(truth.front(), Compared::lateral);
+  const auto free = [&](std::size_t k) { return k < axial.size() && !axial[k]; };
+  s.axial = free_difference(m, t, axial, first);
+  s.lateral = free_difference(mean_of(pairs.model, lateral_of), mean_of(truth, lateral_of), lateral, first);
+  s.axial_error = scatter_of(pairs, axial_of, axial, first);
+  s.lateral_error = scatter_of(pairs, lateral_of, lateral, first);
+  s.axial_at_2 = free(two) ? excess(m, t, two) : kNaN;
+  s.axial_at_end = free(end) ? excess(m, t, end) : kNaN;
   s.truth_error = error_at(truth, end);
   if (run.truth->variant->setup.spec.test == MacroTest::shear) {
     const auto q_truth = mean_of(truth, ratio_of);

@@ -210,6 +210,15 @@ PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, c
 
 std::string rounded(double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : "(undefined)"; }
 
+std::string difference_text(const Comparison& c) {
+  std::string text;
+  for (const ComparedQuantity& q : headline_of(c))
+    text += (text.empty() ? "" : ", ") +
+            (q.is_ratio ? fmt::format("{} {:.2f}", q.what, q.value.mean)
+                        : fmt::format("{} differs by {} %", q.what, rounded(100.0 * q.value.mean)));
+  return text;
+}
+
 std::string people_text(const PipelineSetup& setup, const PipelineResult& r) {
   std::string text = fmt::format("{} packings measured, laws fitted:\n", r.measured.data.packings.size());
   for (const PairLaw& law : r.card.pairs) text += "  " + law_line(law) + "\n";
@@ -217,16 +226,14 @@ std::string people_text(const PipelineSetup& setup, const PipelineResult& r) {
   const bool crowd = r.pair_comparison.has_value();
   if (r.comparison)
     text += fmt::format(
-        "macro{} against its resolved twin: stress differs by {} %, {} times fewer contact evaluations, {} times less "
-        "time\n",
+        "macro{} against its resolved twin: {}, {} times fewer contact evaluations, {} times less time\n",
         !crowd                 ? ""
         : setup.measured_table ? ", law of all neighbours at once (measured above),"
                                : ", law of all neighbours at once (from the table),",
-        rounded(100.0 * r.comparison->axial_difference.mean), rounded(r.comparison->speedup_contact_evaluations),
+        difference_text(*r.comparison), rounded(r.comparison->speedup_contact_evaluations),
         rounded(r.comparison->speedup_seconds));
   if (crowd)
-    text += fmt::format("macro, pair law (as published, measured above): stress differs by {} %\n",
-                        rounded(100.0 * r.pair_comparison->axial_difference.mean));
+    text += fmt::format("macro, pair law (as published, measured above): {}\n", difference_text(*r.pair_comparison));
   for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
   return text;
 }

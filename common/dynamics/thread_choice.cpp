@@ -1,0 +1,90 @@
+#include "common/dynamics/thread_choice.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <ctime>
+
+namespace softgrain {
+
+namespace {
+
+/// Share of their cores that threads have to get; waiting for the slowest takes some of it on a quiet machine too.
+constexpr double kServed = 0.75;
+/// How much faster the other choice must be.
+constexpr double kFaster = 0.9;
+/// And how much slower than at the last trial everything must be for a new one at once.
+constexpr double kSlower = 2.0;
+constexpr int kFirstWait = 4;
+constexpr int kLongestWait = 256;
+/// Shorter blocks say nothing: other programs come and go in slices of a few milliseconds [s].
+constexpr double kBlockSeconds = 0.02;
+
+double cpu_seconds() {
+  timespec now{};
+  if (clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) != 0) return 0.0;
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+ThreadChoice& choice_of(int threads) {
+  thread_local ThreadChoice choice(threads);
+  if (choice.all() != threads) choice = ThreadChoice(threads);
+  return choice;
+}
+
+}  // namespace
+
+void ThreadChoice::judge_trial(double pace) {
+  trial_ = false;
+  settled_ = std::min(pace, before_);
+  if (pace < kFaster * before_) {
+    wait_ = kFirstWait;
+  } else {
+    on_all_ = !on_all_;
+    wait_ = std::min(2 * wait_, kLongestWait);
+  }
+  left_ = wait_;
+}
+
+void ThreadChoice::took(const Block& block) {
+  if (all_ < 2 || !(block.work > 0.0) || !(block.seconds > 0.0)) return;
+  const double pace = block.seconds / block.work;
+  if (trial_) return judge_trial(pace);
+  if (left_ > 0 && !(on_all_ && pace > kSlower * settled_)) {
+    --left_;
+    return;
+  }
+  if (on_all_ && block.cpu_seconds >= kServed * static_cast<double>(all_) * block.seconds) return;
+  before_ = pace;
+  trial_ = true;
+  on_all_ = !on_all_;
+}
+
+PassThreads::PassThreads() {
+  const int threads = omp_get_max_threads();
+  if (threads < 2 || omp_in_parallel() != 0) return;
+  before_ = threads;
+  begin_block();
+}
+
+PassThreads::~PassThreads() {
+  if (before_ > 0) omp_set_num_threads(before_);
+}
+
+void PassThreads::begin_block() {
+  omp_set_num_threads(choice_of(before_).threads());
+  clock_ = {};
+  cpu_begin_ = cpu_seconds();
+  work_ = 0.0;
+}
+
+void PassThreads::passed(std::int64_t passes, std::int64_t pairs) {
+  if (before_ == 0) return;
+  work_ += static_cast<double>(passes) * static_cast<double>(pairs + 1);
+  const double seconds = clock_.seconds();
+  if (seconds < kBlockSeconds) return;
+  choice_of(before_).took({seconds, cpu_seconds() - cpu_begin_, work_});
+  begin_block();
+}
+
+}  // namespace softgrain

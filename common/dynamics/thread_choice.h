@@ -1,0 +1,62 @@
+// Whether passes go on all threads or on one: where other programs want the cores as well, threads wait for each other
+// several times in every pass, and one alone can be ten times as fast.
+#pragma once
+
+#include <cstdint>
+
+#include "common/core/stopwatch.h"
+
+namespace softgrain {
+
+/// Decides by what blocks of passes took. Times decide who works, never what comes out: sums have the same bits for any
+/// number of threads. All threads are the rule. Where they did not get their cores, a block on one thread is tried, and
+/// one it stays while that is faster; all are tried again now and then. Trials that change nothing become ever rarer.
+class ThreadChoice {
+ public:
+  explicit ThreadChoice(int all) : all_(all) {}
+
+  struct Block {
+    double seconds = 0.0;      ///< on the clock
+    double cpu_seconds = 0.0;  ///< of all threads of the program together
+    double work = 0.0;         ///< in any unit that takes about as long each time
+  };
+
+  [[nodiscard]] int all() const { return all_; }
+  /// Threads of the next block.
+  [[nodiscard]] int threads() const { return on_all_ ? all_ : 1; }
+  void took(const Block& block);
+
+ private:
+  void judge_trial(double pace);
+
+  int all_;
+  bool on_all_ = true;
+  bool trial_ = false;    ///< the next block is one
+  double before_ = 0.0;   ///< time per work before the trial [s]
+  double settled_ = 0.0;  ///< of what was kept at the last trial [s]
+  int wait_ = 4;          ///< blocks between two trials
+  int left_ = 0;          ///< of them
+};
+
+/// Takes the threads of the program for passes, by the choice that all relaxations of a thread share, and gives them
+/// back at its end. Does nothing inside of parallel work, and with one thread.
+class PassThreads {
+ public:
+  PassThreads();
+  ~PassThreads();
+  PassThreads(const PassThreads&) = delete;
+  PassThreads& operator=(const PassThreads&) = delete;
+
+  /// Passes were made since the last call, each over so many pairs.
+  void passed(std::int64_t passes, std::int64_t pairs);
+
+ private:
+  void begin_block();
+
+  int before_ = 0;  ///< threads; 0: nothing is chosen
+  Stopwatch clock_;
+  double cpu_begin_ = 0.0;
+  double work_ = 0.0;
+};
+
+}  // namespace softgrain
