@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/few_samples.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/results.h"
 #include "pipelines/report/engine_style.h"
@@ -41,6 +42,11 @@ std::string cell(const std::optional<MeanError>& m, double unit = 1.0) {
   return m ? format_with_error(m->mean / unit, m->n > 1 ? m->error / unit : 0.0) : "–";
 }
 
+/// A slope whose error is as large as itself is none.
+std::string slope_cell(const std::optional<MeanError>& m, double unit = 1.0) {
+  return !m || is_told_from_zero(m->n, m->mean, m->error) ? cell(m, unit) : "not determined (" + cell(m, unit) + ")";
+}
+
 /// Columns with their prefixes, and what a stage has in them.
 struct StageTable {
   std::vector<std::string> header;
@@ -75,8 +81,8 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
       {"modulus", "at its begin" + modulus_unit, "at its end" + modulus_unit, "Poisson's ratio at its begin"},
       [&](const StageMeans& s) -> std::vector<std::string> {
         const bool holds = s.record.kind == StageKind::hold;
-        return {holds ? "–" : to_string(modulus_of(s.record.way)), cell(s.modulus_begin, modulus.factor),
-                cell(s.modulus_end, modulus.factor), cell(s.poisson_begin)};
+        return {holds ? "–" : to_string(modulus_of(s.record.way)), slope_cell(s.modulus_begin, modulus.factor),
+                slope_cell(s.modulus_end, modulus.factor), slope_cell(s.poisson_begin)};
       }};
   const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
                          "lateral stress" + stress_unit, "q/p", "largest q/p"},
