@@ -12,6 +12,7 @@
 #include "calibrate/crowd_side_fits.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
@@ -30,36 +31,45 @@ CrowdModel starting_model(Crowd form) {
   return model;
 }
 
+/// What a fitted number is: any, one that is not negative, or the logarithm of one.
+enum class NumberKind { any, positive, logarithm };
+
 /// A fitted number with its error and, where there are replicates, their interval. The covariance of a fit to
-/// neighbours takes the law of planes for exact; replicates, which fit both anew, do not: the larger error holds.
-Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<double>& replicates, bool logarithm) {
+/// neighbours takes the law of planes for exact; replicates, which fit both anew, do not: the larger error holds. Both
+/// are widened for the few packings that there are.
+Estimate estimate(const LeastSquaresFit& fit, std::size_t j, const std::vector<double>& replicates,
+                  std::size_t packings, NumberKind kind) {
   const double value = fit.parameters[j];
   double sd = fit.standard_deviations.empty() ? HUGE_VAL : fit.standard_deviations[j];
+  const bool positive = kind == NumberKind::positive;
   auto [low, high] = interval95(replicates);
   if (replicates.size() < kEnoughReplicates) {
-    low = value - 1.96 * sd;
-    high = value + 1.96 * sd;
+    const double half = student95(static_cast<double>(packings) - 1.0) * sd;
+    low = positive ? std::max(0.0, value - half) : value - half;
+    high = value + half;
   } else {
+    std::tie(low, high) = widened(value, low, high, few_samples_factor(packings), positive);
     sd = std::max(sd, scatter_of(replicates));
   }
-  if (!logarithm) return {value, sd, low, high};
+  if (kind != NumberKind::logarithm) return {value, sd, low, high};
   return {std::exp(value), std::exp(value) * sd, std::exp(low), std::exp(high)};
 }
 
 class Filler {
  public:
-  Filler(const FormFit& fit, std::vector<std::vector<double>> columns) : fit_(fit), columns_(std::move(columns)) {}
+  Filler(const FormFit& fit, std::vector<std::vector<double>> columns, std::size_t packings)
+      : fit_(fit), columns_(std::move(columns)), packings_(packings) {}
 
   void planes(CrowdLaw& law) const {
-    law.a = estimate(fit_.planes, 0, columns_[0], true);
-    law.b = estimate(fit_.planes, 1, columns_[1], false);
-    law.delta = estimate(fit_.planes, 2, columns_[2], false);
+    law.a = estimate(fit_.planes, 0, columns_[0], packings_, NumberKind::logarithm);
+    law.b = estimate(fit_.planes, 1, columns_[1], packings_, NumberKind::positive);
+    law.delta = estimate(fit_.planes, 2, columns_[2], packings_, NumberKind::positive);
     const CrowdCoupling& m = fit_.model.form.coupling;
     law.m0.value = m.m0;
     if (fit_.model.crowd != Crowd::directional) return;
-    law.m0 = estimate(fit_.planes, 3, columns_[3], false);
-    law.m1 = estimate(fit_.planes, 4, columns_[4], false);
-    law.m2 = estimate(fit_.planes, 5, columns_[5], false);
+    law.m0 = estimate(fit_.planes, 3, columns_[3], packings_, NumberKind::any);
+    law.m1 = estimate(fit_.planes, 4, columns_[4], packings_, NumberKind::any);
+    law.m2 = estimate(fit_.planes, 5, columns_[5], packings_, NumberKind::any);
   }
 
   void partners(CrowdLaw& law, const std::vector<CrowdStates>& states, const PartnerFit& own) const {
@@ -67,8 +77,8 @@ class Filler {
     for (std::size_t k = 0; k < ratios; ++k) {
       PartnerRow row{own.kind,
                      own.ratios[k],
-                     estimate(own.fit, k, columns_[own.first + k], true),
-                     estimate(own.fit, ratios, columns_[own.first + ratios], false),
+                     estimate(own.fit, k, columns_[own.first + k], packings_, NumberKind::logarithm),
+                     estimate(own.fit, ratios, columns_[own.first + ratios], packings_, NumberKind::positive),
                      0.0,
                      0.0};
       describe(row, states);
@@ -94,6 +104,7 @@ class Filler {
 
   const FormFit& fit_;
   std::vector<std::vector<double>> columns_;
+  std::size_t packings_;
 };
 
 /// The replicates as rows of crowd_numbers() of this law.
@@ -228,7 +239,7 @@ FittedLaw make_law(const CrowdMeasurements& data, const std::vector<CrowdStates>
   law.parameters = static_cast<int>(fit.planes.parameters.size());
   const FormRefits refits = refit_form(data, states, form, fit, options);
   law.replicates_failed = refits.failed;
-  const Filler filler(fit, refits.columns);
+  const Filler filler(fit, refits.columns, data.packings.size());
   filler.planes(law);
   for (const PartnerFit& own : fit.partners) filler.partners(law, states, own);
   law.replicates = replicate_rows(law, fit, refits.columns);

@@ -9,6 +9,7 @@
 
 #include "calibrate/bootstrap.h"
 #include "calibrate/least_squares.h"
+#include "common/core/few_samples.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
 
@@ -27,10 +28,10 @@ Estimate guessed(double value) { return {value, kUnknown, -kUnknown, kUnknown}; 
 SlideLaw borrowed(const SlideLaw& from) { return {guessed(from.kt_ratio.value), guessed(from.friction.value), false}; }
 
 /// Mean over configurations; each draw takes as many of its own with replacement. `of` finds the values by
-/// configuration.
+/// configuration. Widened for the few packings that there are.
 template <class Of>
-Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& drawn, std::uint64_t seed,
-                     const Of& of) {
+Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& drawn, int packings,
+                     std::uint64_t seed, const Of& of) {
   Estimate out = guessed(mean_error(of(measured)).mean);
   std::vector<double> means;
   for (std::size_t r = 0; r < drawn.size(); ++r) {
@@ -42,7 +43,9 @@ Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& 
     means.push_back(sample.mean());
   }
   if (means.size() < kEnoughReplicates) return out;
-  std::tie(out.low, out.high) = interval95(means);
+  const auto [low, high] = interval95(means);
+  const double factor = packings > 1 ? few_samples_factor(static_cast<std::size_t>(packings)) : 1.0;
+  std::tie(out.low, out.high) = widened(out.value, low, high, factor, true);
   out.standard_error = scatter_of(means);
   return out;
 }
@@ -230,7 +233,7 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
     if ((measured.*kind).kt_ratio.empty()) return fallback;
     const auto part = [&](std::vector<double> SideValues::Slides::*quantity) {
       return estimate_of(
-          measured, drawn, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
+          measured, drawn, entry.packings, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
     };
     return {part(&SideValues::Slides::kt_ratio), part(&SideValues::Slides::friction)};
   };
@@ -239,7 +242,7 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
     if (!law.rolls) return;
     const auto part = [&](std::vector<double> SideValues::Slides::*quantity) {
       return estimate_of(
-          measured, drawn, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
+          measured, drawn, entry.packings, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
     };
     law.rolling = part(&SideValues::Slides::rolling);
     law.rolling_friction = part(&SideValues::Slides::rolling_friction);
@@ -253,7 +256,7 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
   const auto retreat = [&](SideValues::Slides SideValues::*kind, Estimate& s) {
     if ((measured.*kind).retreat.empty()) return false;
     s = estimate_of(
-        measured, drawn, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).retreat; });
+        measured, drawn, entry.packings, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).retreat; });
     return true;
   };
   entry.retreat = guessed(1.0);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
@@ -135,38 +136,63 @@ std::vector<double> log_moduli_of_samples(const StateSamples& data, const StateP
   return out;
 }
 
-/// Probability of a scatter of ln K between groups as large as this, in units of that of samples within groups (F test
-/// of one way, exact for normal scatter); 1 where there is nothing to compare.
-double collapse_probability(const StateSamples& data, const std::vector<double>& log_moduli) {
+/// Scatter of ln K between groups.
+struct Collapse {
+  /// Of a scatter as large as this, in units of that of samples within groups (F test of one way, exact for normal
+  /// scatter); 1 where there is nothing to compare.
+  double probability = 1.0;
+  double deviation = 0.0;  ///< between groups, that of samples within them taken off
+
+  /// Whether one K for all groups is refused.
+  [[nodiscard]] bool refused() const { return probability < 0.05; }
+};
+
+Collapse collapse_of(const StateSamples& data, const std::vector<double>& log_moduli) {
   const std::size_t groups = data.groups.size();
   std::vector<std::vector<double>> of_group(groups);
   for (std::size_t s = 0; s < log_moduli.size(); ++s) of_group[data.samples[s].group].push_back(log_moduli[s]);
   const double all = mean_error(log_moduli).mean;
   double between = 0.0;
   double within = 0.0;
+  double shares = 0.0;  // of the variance within a group that its mean still has
+  std::vector<double> means;
   for (const auto& values : of_group) {
     const MeanError own = mean_error(values);
     between += static_cast<double>(values.size()) * (own.mean - all) * (own.mean - all);
+    shares += 1.0 / static_cast<double>(values.size());
+    means.push_back(own.mean);
     for (const double v : values) within += (v - own.mean) * (v - own.mean);
   }
   const double up = static_cast<double>(groups) - 1.0;
   const double down = static_cast<double>(log_moduli.size() - groups);
-  if (up < 1.0 || down < 1.0 || !(within > 0.0)) return 1.0;
-  return gsl_cdf_fdist_Q(between / up / (within / down), up, down);
+  if (up < 1.0 || down < 1.0 || !(within > 0.0)) return {};
+  const double scatter = mean_error(means).deviation;
+  const double of_means = within / down * shares / static_cast<double>(groups);
+  return {gsl_cdf_fdist_Q(between / up / (within / down), up, down),
+          std::sqrt(std::max(0.0, scatter * scatter - of_means))};
 }
 
-StateEstimate estimated(double value, const std::vector<double>& replicates, int degrees) {
+/// Of what a number can be.
+struct StateBounds {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// `more`: another deviation, of what replicates do not know. Within the bounds of what it is.
+StateEstimate estimated(double value, const std::vector<double>& replicates, int degrees, const StateBounds& bounds,
+                        double more = 0.0) {
   if (degrees < 1 || replicates.size() < 2) return {value, kInfinity, -kInfinity, kInfinity};
-  const double error = mean_error(replicates).deviation;
-  const double half = gsl_cdf_tdist_Pinv(0.975, degrees) * error;
-  return {value, error, value - half, value + half};
+  const double error = std::hypot(mean_error(replicates).deviation, more);
+  const double half = student95(degrees) * error;
+  return {value, error, std::max(bounds.low, value - half), std::min(bounds.high, value + half)};
 }
 
 class StateBootstrap {
  public:
+  /// `between`: standard deviation of ln K between groups, where these have a K of their own.
   StateBootstrap(const StateSamples& data, const StateFitOptions& options, const LeastSquaresFit& shared,
-                 const LeastSquaresFit& separate)
-      : data_(data), options_(options), shared_(data, options.form, false), fit_(shared.parameters) {
+                 const LeastSquaresFit& separate, double between)
+      : data_(data), options_(options), shared_(data, options.form, false), fit_(shared.parameters), between_(between) {
     const StateProblem own(data, options.form, true);
     const auto n = static_cast<double>(data.samples.size());
     const auto groups = static_cast<double>(data.groups.size());
@@ -197,11 +223,15 @@ class StateBootstrap {
  private:
   [[nodiscard]] std::vector<std::vector<double>> draw(RandomStream& random) const {
     std::vector<std::vector<double>> out;
+    std::vector<double> own(data_.groups.size(), fit_[0]);
+    if (between_ > 0.0)
+      for (double& log_modulus : own) log_modulus += between_ * random.normal();
     for (const StateSample& s : data_.samples) {
       const auto from = static_cast<std::size_t>(random.below(data_.samples.size()));
       std::vector<double> phi;
       for (std::size_t i = 0; i < s.phi.size(); ++i)
-        phi.push_back(shared_.slopes(fit_, s.group, s.pressure[i]).value +
+        phi.push_back(phi_slopes(options_.form, own[s.group], fit_[1], fit_[shared_.onset_at(s.group)], s.pressure[i])
+                          .value +
                       residual_at(data_.samples[from], residual_[from], s.log_pressure[i]));
       out.push_back(std::move(phi));
     }
@@ -212,6 +242,7 @@ class StateBootstrap {
   const StateFitOptions& options_;
   StateProblem shared_;
   std::vector<double> fit_;
+  double between_;
   std::vector<std::vector<double>> residual_;
 };
 
@@ -240,6 +271,36 @@ void describe_scatter(const StateSamples& data, const StateProblem& problem, Sta
   out.sample_deviation = out.degrees > 0 ? std::sqrt(offsets / out.degrees) : kInfinity;
 }
 
+/// K may be off by this factor to either side; beyond, curves do not determine it.
+constexpr double kWidestFactor = 10.0;
+/// Points that must be left when every number has taken one.
+constexpr int kLeastFreedom = 3;
+
+/// Why the numbers are no result; empty: they are.
+std::string not_determined(const StateSamples& data, const StateFit& fit) {
+  const auto numbers = static_cast<int>(fit.fit.parameters.size());
+  const auto points = static_cast<int>(data.points);
+  if (points - numbers < kLeastFreedom)
+    return fmt::format(
+        "too few points: {} of {} sample{} for {} numbers (K, n, phi_J of each packing), at least {} are needed: "
+        "record more points along the test, or more samples",
+        points, data.samples.size(), data.samples.size() == 1 ? "" : "s", numbers, numbers + kLeastFreedom);
+  const StateEstimate& k = fit.modulus;
+  if (std::isfinite(k.error) && !(k.high < kWidestFactor * k.value && k.low * kWidestFactor > k.value))
+    return fmt::format("K is not determined: its 95 % interval is {:.2g} to {:.2g}{}", k.low, k.high,
+                       fit.one_modulus ? "" : ", since packings have a K of their own");
+  return "";
+}
+
+std::string message_of(const StateFit& fit) {
+  if (fit.degrees < 1) return "fitted; one sample in every group: errors are not known";
+  if (fit.one_modulus) return "fitted";
+  return fmt::format(
+      "fitted; one K for all packings is refused (as much scatter has a probability of {:.2g}): intervals hold that of "
+      "K between packings",
+      fit.collapse_probability);
+}
+
 }  // namespace
 
 StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const StateFitOptions& options) {
@@ -259,32 +320,36 @@ StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const Stat
     out.message = "no fit: " + (out.fit.usable() ? separate.message : out.fit.message);
     return out;
   }
-  out.replicates = StateBootstrap(data, options, out.fit, separate).run();
-  const auto of = [&](std::size_t k) {
+  const Collapse collapse = collapse_of(data, log_moduli_of_samples(data, own, separate.parameters));
+  out.collapse_probability = collapse.probability;
+  out.one_modulus = !collapse.refused();
+  const double between = out.one_modulus ? 0.0 : collapse.deviation;
+  describe_scatter(data, shared, options.form, out);
+  if (!out.one_modulus) out.degrees = std::min(out.degrees, static_cast<int>(data.groups.size()) - 1);
+  out.replicates = StateBootstrap(data, options, out.fit, separate, between).run();
+  const auto of = [&](std::size_t k, const StateBounds& bounds, double more = 0.0) {
     std::vector<double> values;
     for (const auto& r : out.replicates) values.push_back(r[k]);
-    return estimated(out.fit.parameters[k], values, out.degrees);
+    return estimated(out.fit.parameters[k], values, out.degrees, bounds, more);
   };
-  const StateEstimate log_modulus = of(0);
+  const StateEstimate log_modulus = of(0, {-kInfinity, kInfinity}, between);
   out.modulus = {std::exp(log_modulus.value), std::exp(log_modulus.value) * log_modulus.error,
                  std::exp(log_modulus.low), std::exp(log_modulus.high)};
-  out.exponent = of(1);
+  out.exponent = of(1, {0.0, kInfinity});
   const std::vector<double> moduli(separate.parameters.begin(),
                                    separate.parameters.begin() + static_cast<std::ptrdiff_t>(data.groups.size()));
   std::vector<double> values;
   for (std::size_t g = 0; g < out.groups.size(); ++g) {
-    out.groups[g].onset = of(shared.onset_at(g));
+    out.groups[g].onset = of(shared.onset_at(g), {0.0, 1.0});
     values.push_back(out.groups[g].own_modulus = std::exp(moduli[g]));
   }
   const MeanError moments = mean_error(values);
   out.modulus_scatter = moments.deviation_or_zero() / moments.mean;
-  out.collapse_probability = collapse_probability(data, log_moduli_of_samples(data, own, separate.parameters));
-  describe_scatter(data, shared, options.form, out);
-  out.usable = static_cast<double>(out.replicates.size()) >= kLeastReplicates * options.replicates;
-  out.message = !out.usable
+  out.message = static_cast<double>(out.replicates.size()) < kLeastReplicates * options.replicates
                     ? fmt::format("only {} of {} replicates could be fitted", out.replicates.size(), options.replicates)
-                : out.degrees < 1 ? "fitted; one sample in every group: errors are not known"
-                                  : "fitted";
+                    : not_determined(data, out);
+  out.usable = out.message.empty();
+  if (out.usable) out.message = message_of(out);
   return out;
 }
 

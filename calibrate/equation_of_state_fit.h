@@ -44,10 +44,12 @@ struct StateFit {
   double pressure_deviation =
       0.0;  ///< rms of ln(p/p_fit) within samples (each at its own onset): how well the form holds
   double sample_deviation = 0.0;  ///< of the onsets of samples within their groups
-  int degrees = 0;                ///< samples less groups: what intervals know of the scatter
+  /// Of the intervals: samples less groups; where one K for all is refused, groups less one if that is fewer.
+  int degrees = 0;
   double modulus_scatter = 0.0;   ///< standard deviation over mean of own_modulus
   double collapse_probability =
       0.0;  ///< of a scatter between groups as large as this if K is the same for all; below 0.05 it hardly is
+  bool one_modulus = true;  ///< whether one K for all groups is not refused by that
   std::vector<std::vector<double>> replicates;  ///< ln K, n, phi_J of the groups
   int left_out = 0;                             ///< points without pressure
 
@@ -66,10 +68,13 @@ struct StateFit {
 /// replacement on the fitted model, scaled by sqrt(N/(N - G)) for the N samples that determined G onsets, and fit
 /// again. Intervals are Student's, N - G degrees. This takes the scatter to be alike in all groups; a group of one
 /// sample then has an error too. Whether K is the same for all
-/// is judged by the ln K of single samples: their scatter between groups against that within (F test).
-/// Throws BadInput for curves that read_state_curves refuses and options
-/// out of range. Not usable with the reason: no convergence, parameters that the data do not determine. With one sample
-/// in every group errors are infinite, and the message says so.
+/// is judged by the ln K of single samples: their scatter between groups against that within (F test). Where one K is
+/// refused (probability below 0.05), groups are the units: replicates give every group a K of its own, drawn with the
+/// deviation of ln K between groups, intervals have G - 1 degrees (or N - G), and that of K is of the K of another
+/// packing of this kind: it holds the deviation between packings beside the error of their mean.
+/// Throws BadInput for curves that read_state_curves refuses and options out of range. Not usable with the reason: no
+/// convergence, fewer than three points more than numbers, an interval of K that is wider than a factor of ten to
+/// either side. With one sample in every group errors are infinite, and the message says so.
 StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const StateFitOptions& options = {});
 
 }  // namespace softgrain

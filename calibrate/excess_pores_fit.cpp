@@ -1,12 +1,12 @@
 #include "calibrate/excess_pores_fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 
@@ -104,12 +104,13 @@ class ExcessProblem {
   double high_ = 0.0;
 };
 
-/// Student's interval about `value`; unknown where samples tell no error.
-Estimate student_estimate(double value, const std::vector<double>& replicates, int degrees, double widening = 1.0) {
+/// Student's interval about `value`, not below `least`; unknown where samples tell no error.
+Estimate student_estimate(double value, const std::vector<double>& replicates, int degrees, double widening = 1.0,
+                          double least = 0.0) {
   if (degrees < 1 || replicates.size() < 2) return {value, kInfinity, -kInfinity, kInfinity};
   const double error = widening * mean_error(replicates).deviation;
-  const double half = gsl_cdf_tdist_Pinv(0.975, degrees) * error;
-  return {value, error, value - half, value + half};
+  const double half = student95(degrees) * error;
+  return {value, error, std::max(least, value - half), value + half};
 }
 
 /// Of the logarithm of a number, as that of the number.
@@ -194,8 +195,8 @@ ExcessPoresFit fit_excess_pores(const StateFit& states, const MixtureGroups& gro
     drawn.log_decay.push_back(refit.parameters[1]);
   }
   out.many = student_estimate(fit.parameters[0], drawn.many, states.degrees, out.widening);
-  out.many.low = std::max(0.0, out.many.low);
-  out.decay = exponential(student_estimate(fit.parameters[1], drawn.log_decay, states.degrees, out.widening));
+  out.decay =
+      exponential(student_estimate(fit.parameters[1], drawn.log_decay, states.degrees, out.widening, -kInfinity));
   double largest = 0.0;
   for (const MixturePores& m : out.mixtures) largest = std::max(largest, m.ratio);
   out.band = band_of(drawn, pores.coarse, fit.parameters[0], std::exp(fit.parameters[1]), largest, states.degrees,

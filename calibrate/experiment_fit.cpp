@@ -174,6 +174,27 @@ PackingRun run_of(const ForceCurve& sample, std::size_t index, PairKind kind) {
   return run;
 }
 
+/// The covariance of `turned` numbers q from that of p, to first order: q = T(p) with T as in mirrored().
+std::vector<double> turned_covariance(const std::vector<double>& covariance, const std::array<double, 7>& q,
+                                      double stretch, double series) {
+  std::array<std::array<double, 7>, 7> slope{};  // dq_i/dp_j
+  slope[2][2] = stretch;
+  const double log_stretch = std::log(stretch);
+  for (const std::size_t a : kRowOfA) {
+    const std::size_t b = a + 1;
+    // q_a = f p_a stretch^-p_b
+    slope[a][a] = (a == kRowOfA[0] ? 1.0 : series) * std::pow(stretch, -q[b]);
+    slope[a][b] = -log_stretch * q[a];
+    slope[b][b] = 1.0;
+  }
+  std::vector<double> out(49, 0.0);
+  for (std::size_t i = 0; i < 7; ++i)
+    for (std::size_t j = 0; j < 7; ++j)
+      for (std::size_t k = 0; k < 7; ++k)
+        for (std::size_t l = 0; l < 7; ++l) out[i * 7 + j] += slope[i][k] * covariance[k * 7 + l] * slope[j][l];
+  return out;
+}
+
 /// The law of the kind that was not measured.
 FitReport mirrored(const FitReport& measured) {
   const bool to_pair = measured.law.kind == PairKind::soft_solid;
@@ -202,13 +223,13 @@ FitReport mirrored(const FitReport& measured) {
   law.table = {};
   law.band_delta.clear();
   law.bands.clear();
-  law.covariance = replicate_covariance(out.replicates);
   const auto value = [](const ThresholdPowerLaw& l) { return std::array{l.a.value, l.b.value}; };
   const auto n = value(measured.law.normal);
   const auto i = value(measured.law.tangential_initial);
   const auto s = value(measured.law.tangential_secant);
   const auto p = turned({n[0], n[1], measured.law.normal.delta.value, i[0], i[1], s[0], s[1]});
-  const bool known = out.replicates.size() >= 2;
+  const bool known = std::isfinite(measured.law.normal.a.standard_error) && law.covariance.size() == 49;
+  if (known) law.covariance = turned_covariance(measured.law.covariance, p, stretch, series);
   law.normal = estimated_law(out, p, 0, known);
   if (law.has_tangential_initial) law.tangential_initial = estimated_law(out, p, 1, known);
   if (law.has_tangential_secant) law.tangential_secant = estimated_law(out, p, 2, known);

@@ -65,6 +65,9 @@ class IntervalFits {
         layout_(shape_.present),
         problem_(joint_problem(curves, shape_)),
         kinks_(kinks(curves, limit)) {
+    for (const FitCurve& c : curves)
+      for (const double d : c.means.delta)
+        if (d > 0.0) smallest_ = std::min(smallest_, d);
     options_.scale_covariance = false;
     options_.thorough = false;
     options_.max_iterations = 200;
@@ -104,7 +107,9 @@ class IntervalFits {
     JointFit out;
     out.parameters = layout_.unpack(shape_, fit.parameters);
     const double tolerance = 1e-9 * kinks_.back();
-    out.delta_at_zero = out.parameters.delta <= tolerance;  // a limit of zero fixes the threshold there
+    out.delta_at_zero = out.parameters.delta <= tolerance ||  // a limit of zero fixes the threshold there
+                        !threshold_shows(out.parameters);
+    if (out.delta_at_zero) out.parameters.delta = 0.0;
     out.delta_at_limit = out.parameters.delta >= kinks_.back() - tolerance;
     for (std::size_t j = 0; j < kLawCurves; ++j) {
       const double b = out.parameters.exponent[j];
@@ -113,6 +118,14 @@ class IntervalFits {
     }
     out.fit = std::move(fit);
     return out;
+  }
+
+  /// Whether c = -a delta^b is anything beside the force at the smallest overlap that was measured.
+  [[nodiscard]] bool threshold_shows(const JointParameters& p) const {
+    constexpr double kNothing = 1e-6;
+    for (std::size_t j = 0; j < kLawCurves; ++j)
+      if (p.present[j] && std::pow(p.delta / smallest_, p.exponent[j]) > kNothing) return true;
+    return false;
   }
 
   /// -1, 0, +1: the solution sits on the lower end of interval k, inside, on the upper end.
@@ -127,6 +140,7 @@ class IntervalFits {
   JointLayout layout_;
   LeastSquaresProblem problem_;
   std::vector<double> kinks_;
+  double smallest_ = std::numeric_limits<double>::infinity();  ///< measured overlap
   LeastSquaresOptions options_;
 };
 

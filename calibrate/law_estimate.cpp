@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "calibrate/bootstrap.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 
 namespace softgrain {
@@ -54,20 +57,34 @@ double constant_error(const std::vector<double>& covariance, std::size_t i, std:
   return std::sqrt(std::max(variance, 0.0));
 }
 
-/// 95 % interval of the replicates of a value. Those of residuals may lean to one side, because the best threshold
-/// follows the noise of the points around it: the longer side then counts for both.
+/// 95 % interval of the replicates of a value that cannot be negative. Those of residuals may lean to one side, because
+/// the best threshold follows the noise of the points around it: the longer side then counts for both. Those of packings
+/// are too close to the value where packings are few.
 std::pair<double, double> interval_of(const FitReport& report, double value, std::vector<double> replicates) {
   const auto [low, high] = interval95(std::move(replicates));
-  if (!report.from_residuals || !std::isfinite(low) || !std::isfinite(high)) return {low, high};
+  if (!std::isfinite(low) || !std::isfinite(high)) return {low, high};
+  if (!report.from_residuals) {
+    const double factor = report.drawn_packings > 1 ? few_samples_factor(report.drawn_packings) : 1.0;
+    return widened(value, low, high, factor, true);
+  }
   const double half = std::max(value - low, high - value);
-  return {value - half, value + half};
+  return {std::max(0.0, value - half), value + half};
 }
 
+/// All replicates alike: what never scattered says nothing of how far off it may be.
+bool tells_nothing(double value, double low, double high) {
+  constexpr double kRounding = 1e-12;
+  return std::isfinite(low) && !(high - low > kRounding * std::abs(value));
+}
+
+/// `sign`: -1 of a number that is never above 0.
 template <class Pick>
-Estimate estimate(double value, double error, const FitReport& report, Pick pick) {
+Estimate estimate(double value, double error, const FitReport& report, Pick pick, double sign = 1.0) {
   std::vector<double> values;
-  for (const auto& r : report.replicates) values.push_back(pick(r));
-  const auto [low, high] = interval_of(report, value, std::move(values));
+  for (const auto& r : report.replicates) values.push_back(sign * pick(r));
+  auto [low, high] = interval_of(report, sign * value, std::move(values));
+  if (tells_nothing(value, low, high)) return {value, kInfinity, -kInfinity, kInfinity};
+  if (sign < 0.0) std::tie(low, high) = std::pair{-high, low == 0.0 ? 0.0 : -low};
   return {value, error, low, high};
 }
 
@@ -129,7 +146,7 @@ ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double
   law.delta = estimate(p[2], error(2), report, [](const auto& r) { return r[2]; });
   law.c =
       estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity,
-               report, [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); });
+               report, [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); }, -1.0);
   return law;
 }
 
@@ -148,7 +165,8 @@ std::vector<Band> law_band(const FitReport& report, LawCurve curve, std::span<co
     for (const auto& r : report.replicates) values.push_back(value(r[i], r[i + 1], r[2], d));
     const double at = value(best.a.value, best.b.value, best.delta.value, d);
     const auto [low, high] = interval_of(report, at, std::move(values));
-    out.push_back({d, at, low, high});
+    const bool none = at > 0.0 && tells_nothing(at, low, high);
+    out.push_back(none ? Band{d, at, -kInfinity, kInfinity} : Band{d, at, low, high});
   }
   return out;
 }

@@ -123,6 +123,24 @@ void judge_fit(Work& w) {
           fmt::format("exponent of the {} is at its bound {:.4g}", kCurveNames[j], joint.parameters.exponent[j]));
 }
 
+/// Overlaps above the threshold that hold the normal force, less its numbers a, b and delta.
+std::ptrdiff_t normal_freedom(const Work& w) {
+  const std::vector<double>& delta = w.means[0].delta;
+  const auto above = std::count_if(delta.begin(), delta.end(), [&](double d) { return d > w.joint.parameters.delta; });
+  return above - static_cast<std::ptrdiff_t>(kClearNeeded[0]);
+}
+
+/// Why the points say no errors of the normal law; empty: they do. Single curves that go through all their points have
+/// no residuals to tell errors by; packings scatter even then.
+std::string without_errors(const Work& w, bool from_residuals) {
+  const std::ptrdiff_t freedom = normal_freedom(w);
+  if (freedom >= (from_residuals ? 1 : 0)) return "";
+  const auto needed = static_cast<std::ptrdiff_t>(kClearNeeded[0]);
+  return fmt::format("{} overlap{} above the threshold for the {} numbers a, b and delta: errors are not determined, "
+                     "{} are needed",
+                     freedom + needed, freedom + needed == 1 ? "" : "s", needed, needed + (from_residuals ? 1 : 0));
+}
+
 void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   report.from_residuals = options.experiment && report.law.packings < options.min_packings;
   const bool enough = report.from_residuals || report.law.packings >= options.min_packings;
@@ -131,7 +149,10 @@ void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
                                     report.law.packings == 1 ? "" : "s", options.min_packings));
   else if (options.replicates < 1)
     w.reasons.emplace_back("no bootstrap replicates were asked for");
-  if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient) return;
+  const std::string unknown = without_errors(w, report.from_residuals);
+  if (!unknown.empty()) w.reasons.push_back(unknown);
+  if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient || !unknown.empty()) return;
+  report.drawn_packings = report.from_residuals ? 0 : static_cast<std::size_t>(report.law.packings);
   BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor};
   const std::uint64_t stream = static_cast<std::uint64_t>(report.law.kind) + 1;
   BootstrapResult result =
@@ -153,8 +174,8 @@ void fill_law(const FitOptions& options, Work& w, FitReport& report) {
   PairLaw& law = report.law;
   law.covariance.assign(49, 0.0);
   run_bootstrap(options, w, report);
-  const bool errors_known =
-      (report.from_residuals ? report.replicates.size() >= 2 : law.packings >= 2) && !w.joint.fit.rank_deficient;
+  const bool errors_known = (report.from_residuals ? report.replicates.size() >= 2 : law.packings >= 2) &&
+                            !w.joint.fit.rank_deficient && without_errors(w, report.from_residuals).empty();
   if (errors_known)
     law.covariance = report.from_residuals
                          ? replicate_covariance(report.replicates)
@@ -231,6 +252,7 @@ void add_bands(PairLaw& law, const FitReport& report) {
   const auto add = [&](const char* name, LawCurve curve) {
     LawBandRows rows{name, {}, {}};
     for (const Band& b : law_band(report, curve, law.band_delta)) {
+      if (!std::isfinite(b.low) || !std::isfinite(b.high)) return;  // not determined: no band
       rows.low.push_back(b.low);
       rows.high.push_back(b.high);
     }

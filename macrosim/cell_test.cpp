@@ -84,6 +84,7 @@ struct CellTest {
     double solid = 0.0;
     for (const CellContent& content : cells.content()) solid += content.solid;
     c.more[kSolidFraction].push_back(solid / point.volume);
+    c.more[kBulkDensity].push_back(spec.density * solid / point.volume);
     c.more[kSlidingFaces].push_back(point.sliding);
     c.more[kGuardedCells].push_back(point.guarded);
     record_range(cells, c);

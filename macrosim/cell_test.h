@@ -31,6 +31,7 @@ void test_cells(CellTestState& state, const MacroSpec& spec, const RunControl<Ce
 /// Names of columns of MacroCurve::more.
 inline constexpr const char* kSlidingFaces = "sliding_faces";
 inline constexpr const char* kGuardedCells = "guarded_cells";
+inline constexpr const char* kBulkDensity = "bulk_density";  ///< mass of all grains over the volume [kg/m^3]
 
 /// Coarse grains and soft particles where they are now; no contacts.
 Snapshot cell_snapshot(const CellPacking& packing, const MacroPacking& bodies);

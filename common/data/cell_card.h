@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/core/limits.h"
 #include "common/core/words.h"
 #include "common/data/law_card.h"
 
@@ -34,6 +35,8 @@ struct CellCard {
   double pressure_high = 0.0;
   double mixture_high = 0.0;  ///< largest V_f/V_c measured; the smallest is 0
   // Measured on grains and a preparation of these; another one has other numbers.
+  double youngs_modulus = kNaN;  ///< E [Pa]; NaN: the card does not say (older ones)
+  double density = kNaN;         ///< of the grains, mean over their solid volume [kg/m^3]; NaN: not said
   double poisson_ratio = 0.0;
   double grain_friction = 0.0;
   std::string preparation;      ///< its name

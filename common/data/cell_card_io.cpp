@@ -72,6 +72,9 @@ void write_range(Out out, const CellCard& card) {
 
 void write_measured(Out out, const CellCard& card) {
   fmt::format_to(out, "\n# Grains and preparation; others have other numbers.\n[measured]\n");
+  if (is_known(card.youngs_modulus))
+    fmt::format_to(out, "E = {}  # [Pa]; a scene may have another one: stresses go with it\n", real(card.youngs_modulus));
+  if (is_known(card.density)) fmt::format_to(out, "density = {}  # [kg/m^3]\n", real(card.density));
   fmt::format_to(out, "nu = {}\nmu = {}\n", real(card.poisson_ratio), real(card.grain_friction));
   fmt::format_to(out, "preparation = {}\n", quoted(card.preparation));
   fmt::format_to(out, "start_pressure = {}  # p/E of its end\n", real(card.start_pressure));
@@ -102,6 +105,8 @@ std::string read_words_of(const SceneTable& t, const char* key) {
 }
 
 void read_measured(const SceneTable& t, CellCard& card) {
+  if (t.has("E")) card.youngs_modulus = t.number("E", Unit::pressure, Range::positive());
+  if (t.has("density")) card.density = t.number("density", Unit::density, Range::positive());
   card.poisson_ratio = t.number("nu", Unit::none, Range{-1.0, 0.5, true, false});
   card.grain_friction = t.number("mu", Unit::none, Range::not_negative());
   card.preparation = read_words_of(t, "preparation");

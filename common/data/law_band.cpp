@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {
@@ -70,7 +71,20 @@ bool part_has_covariance(const PairLaw& law, LawPart part) {
                      [&](std::size_t k) { return law.covariance[k * kParameters + k] > 0.0; });
 }
 
+/// Of a standard error, over packings with Student's t: with seven of them 2.45. Residuals of single curves are many.
+double half_width(const PairLaw& law, double variance) {
+  const bool over_packings = law.band_origin != kFromResiduals && law.packings > 1;
+  return (over_packings ? student95(law.packings - 1) : kNormal95) * std::sqrt(variance);
+}
+
 LawInterval around(double value, double half) { return {std::max(0.0, value - half), value + half, kFromCovariance}; }
+
+/// Empty where the width is that of rounding: what never scattered says nothing of how far off it may be.
+std::optional<LawInterval> unless_nothing(double value, double half) {
+  constexpr double kRounding = 1e-12;
+  if (value > 0.0 && !(half > kRounding * value)) return std::nullopt;
+  return around(value, half);
+}
 
 /// Linear between the points of the band; empty outside.
 std::optional<LawInterval> inside(const LawBand& band, double delta) {
@@ -124,11 +138,11 @@ std::optional<LawBand> linearised_band(const PairLaw& law, LawPart part, const s
   bool any = false;
   const ThresholdPowerLaw& fitted = part_of(law, part);
   for (const double overlap : delta) {
-    const double half = kNormal95 * std::sqrt(variance(law, part, value_gradient(fitted, overlap)));
+    const double half = half_width(law, variance(law, part, value_gradient(fitted, overlap)));
     const LawInterval at = around(fitted.value(overlap), half);
     band.low.push_back(at.low);
     band.high.push_back(at.high);
-    any = any || half > 0.0;
+    any = any || half > 1e-12 * at.high;
   }
   if (!any) return std::nullopt;
   return band;
@@ -139,13 +153,13 @@ std::optional<LawInterval> value_interval(const PairLaw& law, LawPart part, doub
     if (const auto at = inside(*band, delta)) return at;
   if (!part_has_covariance(law, part)) return std::nullopt;
   const ThresholdPowerLaw& fitted = part_of(law, part);
-  return around(fitted.value(delta), kNormal95 * std::sqrt(variance(law, part, value_gradient(fitted, delta))));
+  return unless_nothing(fitted.value(delta), half_width(law, variance(law, part, value_gradient(fitted, delta))));
 }
 
 std::optional<LawInterval> slope_interval(const PairLaw& law, LawPart part, double delta) {
   if (!part_has_covariance(law, part)) return std::nullopt;
   const ThresholdPowerLaw& fitted = part_of(law, part);
-  return around(fitted.derivative(delta), kNormal95 * std::sqrt(variance(law, part, slope_gradient(fitted, delta))));
+  return unless_nothing(fitted.derivative(delta), half_width(law, variance(law, part, slope_gradient(fitted, delta))));
 }
 
 }  // namespace softgrain

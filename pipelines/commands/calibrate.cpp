@@ -12,6 +12,7 @@
 #include "pipelines/commands/calibrate_crowd.h"
 #include "pipelines/commands/calibrate_curves.h"
 #include "pipelines/law/fit_settings.h"
+#include "pipelines/law/fit_text.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/run/run_context.h"
 
@@ -63,23 +64,11 @@ json options_json(const FitOptions& o) {
 
 std::string people_line(const FitReport& report, const SoftParticleSpec& spec) {
   const PairLaw& law = report.law;
-  std::string line = fmt::format("{}: {}", to_string(law.kind), to_string(law.status));
-  if (!law.reason.empty()) line += " - " + law.reason;
-  if (law.normal.b.value <= 0.0) return line + "\n";
-  const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
-  const ThresholdPowerLaw& n = law.normal;
-  line += fmt::format(
-      "\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta = {:.4g} "
-      "[{:.4g}, {:.4g}]",
-      newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value,
-      n.delta.value, n.delta.low, n.delta.high);
-  const std::vector<double> at{law.delta_max};
-  const Band band = law_band(report, LawCurve::normal, at).front();
-  line +=
-      fmt::format("\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]; {} packings, {} points, {} left out (not converged)\n",
-                  band.delta, newton * band.value, newton * band.low, newton * band.high, law.packings, law.points,
-                  report.normal_left_out + report.tangential_left_out);
-  return line;
+  const std::string line = verdict_text(law) + "\n";
+  if (law.normal.b.value <= 0.0) return line;
+  return line + normal_law_text(report, spec) +
+         fmt::format("  {} packings, {} points, {} left out (not converged)\n", law.packings, law.points,
+                     report.normal_left_out + report.tangential_left_out);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "common/io/text_file.h"
 #include "pipelines/law/experiment_summary.h"
 #include "pipelines/law/fit_settings.h"
+#include "pipelines/law/fit_text.h"
 #include "pipelines/report/report.h"
 
 namespace softgrain {
@@ -129,22 +130,12 @@ void note_thinned(const std::vector<ForceCurves>& curves, const std::vector<Draw
 }
 
 std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
-  const PairLaw& law = report.law;
-  std::string line = fmt::format("{}: {}", to_string(law.kind), to_string(law.status));
-  if (!law.reason.empty()) line += " - " + law.reason;
-  if (law.normal.b.value <= 0.0) return line + "\n";
-  const double newton = spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
-  const ThresholdPowerLaw& n = law.normal;
-  const std::vector<double> ends{law.delta_max};
-  const Band band = law_band(report, LawCurve::normal, ends).front();
-  return line +
-         fmt::format(
-             "\n  F = a D^b + c: a = {:.4g} N [{:.4g}, {:.4g}], b = {:.4g} [{:.4g}, {:.4g}], c = {:.3g} N, delta "
-             "= {:.4g} [{:.4g}, {:.4g}]\n  F({:.3g}) = {:.4g} N [{:.4g}, {:.4g}]\n",
-             newton * n.a.value, newton * n.a.low, newton * n.a.high, n.b.value, n.b.low, n.b.high, newton * n.c.value,
-             n.delta.value, n.delta.low, n.delta.high, band.delta, newton * band.value, newton * band.low,
-             newton * band.high);
+  const std::string line = verdict_text(report.law) + "\n";
+  return report.law.normal.b.value <= 0.0 ? line : line + normal_law_text(report, spec);
 }
+
+/// A law by symmetry says itself what it is; all others that are not good are none to use, measured or not.
+bool is_by_symmetry(const PairLaw& law) { return law.points == 0 && law.normal.b.value > 0.0; }
 
 /// Macro scenes ask for both kinds of contact.
 void add_missing_kind(const ExperimentFit& fit, std::vector<std::string>& remarks) {
@@ -191,7 +182,7 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   std::string people;
   for (const FitReport& r : fit.reports) {
     people += force_line(r, fit.card.spec);
-    if (r.law.status == LawStatus::good || r.law.points == 0) continue;  // a law by symmetry says itself what it is
+    if (r.law.status == LawStatus::good || is_by_symmetry(r.law)) continue;
     summary.head.status = RunStatus::not_usable;
     remarks.insert(remarks.begin(),
                    fmt::format("{} law: {}: {}", to_string(r.law.kind), to_string(r.law.status), r.law.reason));

@@ -24,9 +24,6 @@ Where place(const PairLaw& law, double delta) {
   return delta < law.delta_min * (1.0 - kRounding) ? Where::below : Where::inside;
 }
 
-/// The interval of a value at the overlap where the law is taken: of a clamped law at the end of its range.
-Quantity quantity(double value, const std::optional<LawInterval>& interval) { return {value, interval}; }
-
 }  // namespace
 
 std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std::vector<double>& deltas,
@@ -41,15 +38,17 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
     p.delta = delta;
     p.where = place(law, delta);
     p.refused = p.where == Where::beyond && initial.range.beyond == Beyond::error;
-    const double taken = std::min(delta, initial.range.clamp_at());
     const ContactResponse<3> r = ask(initial, delta);
-    p.force = quantity(r.elastic_force, value_interval(law, LawPart::normal, taken));
-    p.stiffness = quantity(r.normal_stiffness, slope_interval(law, LawPart::normal, taken));
+    const bool measured = p.where != Where::beyond;
+    const auto quantity = [&](double value, const auto& interval, LawPart part) {
+      return measured ? Quantity{value, interval(law, part, delta)} : Quantity{value, std::nullopt};
+    };
+    p.force = quantity(r.elastic_force, value_interval, LawPart::normal);
+    p.stiffness = quantity(r.normal_stiffness, slope_interval, LawPart::normal);
     if (has_part(law, LawPart::tangential_initial))
-      p.tangential_initial = quantity(r.tangential_stiffness, value_interval(law, LawPart::tangential_initial, taken));
+      p.tangential_initial = quantity(r.tangential_stiffness, value_interval, LawPart::tangential_initial);
     if (has_part(law, LawPart::tangential_secant))
-      p.tangential_secant =
-          quantity(ask(secant, delta).tangential_stiffness, value_interval(law, LawPart::tangential_secant, taken));
+      p.tangential_secant = quantity(ask(secant, delta).tangential_stiffness, value_interval, LawPart::tangential_secant);
     out.push_back(std::move(p));
   }
   return out;

@@ -56,9 +56,10 @@ std::string cells_text_for_people(const LawFile& file, bool utf8) {
   if (const std::string origin = origin_text(file.origin); !origin.empty()) text += wrapped(origin, 2);
   text += wrapped(
       fmt::format("measured on {} samples each, fines {}, largest over smallest {}, split at {} of the largest grain; "
-                  "nu = {}, mu = {}, prepared '{}' to p/E = {}",
+                  "E = {}, density {}, nu = {}, mu = {}, prepared '{}' to p/E = {}",
                   card.samples, card.fines_sizes, number(card.fines_ratio), number(card.split),
-                  number(card.poisson_ratio), number(card.grain_friction), card.preparation,
+                  is_known(card.youngs_modulus) ? number(card.youngs_modulus) + " Pa" : "not said",
+                  is_known(card.density) ? number(card.density) + " kg/m^3" : "not said", number(card.poisson_ratio), number(card.grain_friction), card.preparation,
                   number(card.start_pressure)),
       2);
   text += fmt::format("\n{} form, {}\n", to_string(card.form), state_text(card));
@@ -66,7 +67,9 @@ std::string cells_text_for_people(const LawFile& file, bool utf8) {
   for (const CellNumber& n : kCellNumbers) {
     const Estimate& e = card.*n.estimate;
     rows.push_back(
-        {n.key, number(e.value), number(e.standard_error, 2), number(e.low) + " .. " + number(e.high), n.meaning});
+        {n.key, number(e.value), std::isfinite(e.standard_error) ? number(e.standard_error, 2) : "-",
+         std::isfinite(e.low) && std::isfinite(e.high) ? number(e.low) + " .. " + number(e.high) : "not determined",
+         n.meaning});
   }
   text += aligned(rows, 2, 2);
   text += wrapped(fmt::format("  holds for p/E = {} to {}, up to {} times as much fines as coarse grains by volume",
@@ -81,6 +84,8 @@ nlohmann::json cell_law_json(const CellCard& card) {
   nlohmann::json out{{"form", to_string(card.form)},
                      {"pressure_range", {card.pressure_low, card.pressure_high}},
                      {"mixture_max", card.mixture_high},
+                     {"E", json_of(card.youngs_modulus)},
+                     {"density", json_of(card.density)},
                      {"nu", card.poisson_ratio},
                      {"mu", card.grain_friction},
                      {"preparation", card.preparation},
@@ -91,7 +96,9 @@ nlohmann::json cell_law_json(const CellCard& card) {
                      {"samples", card.samples}};
   for (const law::CellNumber& n : law::kCellNumbers) {
     const Estimate& e = card.*n.estimate;
-    out[n.key] = {{"value", e.value}, {"standard_error", e.standard_error}, {"interval", {e.low, e.high}}};
+    out[n.key] = {{"value", json_of(e.value)},
+                  {"standard_error", json_of(e.standard_error)},
+                  {"interval", {json_of(e.low), json_of(e.high)}}};
   }
   return out;
 }

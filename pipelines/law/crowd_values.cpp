@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/bootstrap.h"
 #include "common/core/error.h"
+#include "common/data/crowd_interval.h"
 #include "common/data/crowd_replicates.h"
 #include "pipelines/law/crowd_middle.h"
 #include "pipelines/law/law_values.h"
@@ -80,21 +80,13 @@ double overlap_max(const CrowdAnswer& answer, const CrowdQuestion& q, std::strin
     remark +=
         fmt::format("{}ratio {:.4g} was not measured with {} neighbours ({:.4g} to {:.4g})", remark.empty() ? "" : "; ",
                     q.ratio, to_string(q.partner), rows.front().ratio, rows.back().ratio);
-  const auto nearest = std::min_element(rows.begin(), rows.end(), [&](const PartnerRow& a, const PartnerRow& b) {
-    return std::abs(std::log(a.ratio / ratio)) < std::abs(std::log(b.ratio / ratio));
-  });
-  return nearest->overlap_max * std::min(1.0, q.ratio);
-}
-
-std::optional<LawInterval> interval_of(std::vector<double> values) {
-  if (values.size() < kEnough) return std::nullopt;
-  const auto [low, high] = interval95(std::move(values));
-  return LawInterval{low, high, kFromPackings};
+  return measured_overlap(answer.entry, answer.form, q.partner, q.ratio);
 }
 
 /// kt = (kt/kn) kn: both are uncertain, each on its own.
 std::optional<LawInterval> tangential_interval(double kt, const Quantity& kn, const Estimate& ratio) {
-  if (!kn.interval || !(kn.value > 0.0) || !(ratio.value > 0.0)) return std::nullopt;
+  if (!kn.interval || !(kn.value > 0.0) || !(ratio.value > 0.0) || !std::isfinite(ratio.standard_error))
+    return std::nullopt;
   constexpr double kNormal95 = 1.96;
   const double of_kn = 0.5 * (kn.interval->high - kn.interval->low) / kn.value;
   const double of_ratio = kNormal95 * ratio.standard_error / ratio.value;
@@ -119,7 +111,8 @@ std::vector<CrowdLaws> replicate_laws(const LawTable& table, const CrowdQuestion
   return out;
 }
 
-LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, const Estimate& kt_ratio) {
+LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, int packings,
+                  const Estimate& kt_ratio) {
   LawPoint p;
   p.delta = delta;
   p.forces = raw.force;
@@ -130,11 +123,17 @@ LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, c
     force.push_back(r.force.front());
     stiffness.push_back(r.stiffness);
   }
-  p.force = {raw.force.front(), interval_of(std::move(force))};
-  p.stiffness = {raw.stiffness, interval_of(std::move(stiffness))};
+  p.force = {raw.force.front(), refit_interval(raw.force.front(), force, packings)};
+  p.stiffness = {raw.stiffness, refit_interval(raw.stiffness, stiffness, packings)};
   p.tangential_secant = Quantity{raw.tangential, tangential_interval(raw.tangential, p.stiffness, kt_ratio)};
   p.friction_limit = raw.friction * raw.force.front();
   return p;
+}
+
+void forget_intervals(LawPoint& p) {
+  p.force.interval.reset();
+  p.stiffness.interval.reset();
+  if (p.tangential_secant) p.tangential_secant->interval.reset();
 }
 
 }  // namespace
@@ -155,9 +154,11 @@ CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const st
   for (const double delta : deltas) {
     std::vector<Raw> raws;
     for (const CrowdLaws& draw : drawn) raws.push_back(ask(draw, around, delta));
-    LawPoint p = point_of(ask(laws, around, delta), delta, raws, slide_for(out.entry, q.partner).kt_ratio);
+    LawPoint p = point_of(ask(laws, around, delta), delta, raws, out.entry.packings,
+                          slide_for(out.entry, q.partner).kt_ratio);
     p.where = place(out, p);
     p.refused = p.where == Where::beyond && beyond == Beyond::error;
+    if (p.where == Where::beyond) forget_intervals(p);
     out.points.push_back(std::move(p));
   }
   return out;

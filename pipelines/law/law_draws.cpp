@@ -9,6 +9,7 @@
 #include "calibrate/effect_components.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
 #include "common/data/crowd_replicates.h"
@@ -99,10 +100,14 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   LawDraws out;
   out.law = named;
   out.numbers = with_logarithms(crowd_numbers(best));
+  // Refits to few packings scatter too little.
+  const double factor = entry.packings > 1 ? few_samples_factor(static_cast<std::size_t>(entry.packings)) : 1.0;
   LawSources drawn = sources;
   for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
     drawn.table = replicate_of(table, form, r);
     out.draws.push_back(with_logarithms(crowd_numbers(drawn_law_of(law_entry(drawn, fraction, ignored), form))));
+    for (std::size_t k = 0; k < out.numbers.size(); ++k)
+      out.draws.back()[k] = out.numbers[k] + factor * (out.draws.back()[k] - out.numbers[k]);
   }
   out.origin = fmt::format("{} refits to packings drawn with replacement", count);
   out.discrepancy = form_discrepancy(best);
@@ -187,6 +192,10 @@ std::vector<std::vector<double>> pair_draws(const PairLaw& p, std::int64_t count
       std::all_of(covariance.begin(), covariance.end(), [](double c) { return c == 0.0; }))
     throw BadInput("bands: the law card has no covariance of its " + to_string(p.kind) +
                    " law: calibrate it from measurements of several packings (\"softgrain calibrate\")");
+  if (p.band_origin != kFromResiduals && p.packings > 1) {
+    const double students = student95(p.packings - 1) / kNormal95;  // of few packings, as in intervals
+    for (double& c : covariance) c *= students * students;
+  }
   for (std::size_t j = 0; j < kPairNumbers; ++j) {
     if (!kPairLogarithm[j] || !(mean[j] > 0.0)) continue;
     for (std::size_t i = 0; i < kPairNumbers; ++i) {

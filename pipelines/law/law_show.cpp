@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/data/estimate_words.h"
 #include "common/data/law_card_format.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
@@ -16,8 +17,7 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string interval(const Estimate& e) {
-  return std::isfinite(e.low) && std::isfinite(e.high) && e.low < e.high ? number(e.low) + " .. " + number(e.high)
-                                                                         : "-";
+  return interval_known(e.low, e.high) ? number(e.low) + " .. " + number(e.high) : "not determined";
 }
 
 std::string error_text(const Estimate& e) {

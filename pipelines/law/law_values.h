@@ -21,7 +21,8 @@ enum class Where {
   beyond  ///< above the last one: `beyond` of the law says what happens
 };
 
-/// A number with its 95 % interval, where that is known.
+/// A number with its 95 % interval, where that is known: not beyond what was measured, where the scatter of what was
+/// says nothing of how the law goes on.
 struct Quantity {
   double value = 0.0;
   std::optional<LawInterval> interval{};

@@ -25,7 +25,9 @@ struct Response {
 struct Pair {
   PairKind kind = PairKind::soft_solid;
   double ratio = 1.0;
-  double deepest = 0.0;  ///< h [m]
+  double deepest = 0.0;   ///< h [m]
+  double measured = 0.0;  ///< h up to which the law was measured [m]
+  Beyond beyond = Beyond::extrapolate;
   std::function<Response(double)> at;
 };
 
@@ -41,6 +43,10 @@ PairTable tabulate(const Pair& pair, const PairTableChoice& choice) {
   t.meaning =
       fmt::format("soft particle of radius {:.6g} m with a {} of radius {:.6g} m, overlaps to {:.4g} m", t.soft_radius,
                   pair.kind == PairKind::soft_solid ? "solid sphere" : "soft particle", t.other_radius, pair.deepest);
+  if (pair.deepest > pair.measured * (1.0 + 1e-12))
+    t.meaning += fmt::format("; measured to {:.4g} m, {} beyond: nothing says how far off rows with r below {:.6g} are",
+                             pair.measured, pair.beyond == Beyond::clamp ? "clamped" : "extrapolated",
+                             t.soft_radius + t.other_radius - pair.measured);
   const double touch = t.soft_radius + t.other_radius;
   if (!(pair.deepest < std::min(t.soft_radius, t.other_radius) * 2.0) || !(pair.deepest < touch))
     throw BadInput(
@@ -70,7 +76,7 @@ Pair card_pair(const LawCard& card, PairKind kind, double ratio, const PairTable
   const double wanted = choice.delta_max.value_or(law.delta_max);
   if (wanted > law.delta_max && contact.range.beyond == Beyond::error) refuse_depth(wanted, law.delta_max, "Delta");
   const PairConstants constants = contact.pair_constants({choice.radius, choice.radius * ratio, 0.0, 0.0});
-  return {kind, ratio, wanted * constants.a, [=](double overlap) {
+  return {kind, ratio, wanted * constants.a, law.delta_max * constants.a, contact.range.beyond, [=](double overlap) {
             ContactState<3> s;
             s.overlap = overlap;
             s.normal[0] = 1.0;
@@ -140,7 +146,7 @@ Pair table_pair(const LawTable& table, PairKind kind, double ratio, const PairTa
   const auto scaled = [e](const Response& a, double r) {
     return Response{e * r * r * r * a.energy, e * r * r * a.force, e * r * a.stiffness};
   };
-  return {kind, ratio, wanted * r1, [=](double overlap) {
+  return {kind, ratio, wanted * r1, end * r1, beyond, [=](double overlap) {
             Response sum = scaled(own.at(overlap / r1), r1);
             if (kind == PairKind::soft_solid) return sum;
             const Response second = scaled(other.at(overlap / r2), r2);

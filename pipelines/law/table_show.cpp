@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/data/crowd_choice.h"
 #include "pipelines/law/law_show.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
@@ -27,7 +28,7 @@ std::string parameters_text(const LawTableEntry& entry) {
   for (const char* name : {"off by [%]: fitted", "held out", "leave one out", "criterion"}) rows.push_back({name});
   for (const CrowdLaw& law : entry.laws) {
     std::size_t r = 0;
-    rows[r++].push_back(to_string(law.form) + (law.form == entry.best ? " (best)" : ""));
+    rows[r++].push_back(form_label(entry, law));
     for (const CrowdParameterName& p : kCrowdParameters) rows[r++].push_back(with_error(law.*p.estimate));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross}) rows[r++].push_back(percent(x));
     rows[r++].push_back(number(law.criterion, 5));

@@ -104,7 +104,15 @@ std::string values_text(const ValueTable& t, const ValueUnits& u) {
   text += aligned(rows, 0, 0) + legend(t);
   const std::string origin = origin_of(t);
   if (!any_contact(t)) return text;
-  return text + "  " + (origin.empty() ? "no intervals: none are stored with this law" : "intervals: " + origin) + "\n";
+  const bool beyond = std::any_of(t.points.begin(), t.points.end(),
+                                  [](const LawPoint& p) { return p.where == Where::beyond && !p.refused; });
+  const bool inside = std::any_of(t.points.begin(), t.points.end(), [](const LawPoint& p) {
+    return p.where == Where::inside || p.where == Where::below;
+  });
+  if (!origin.empty()) text += "  intervals: " + origin + "\n";
+  if (origin.empty() && inside) text += "  no intervals: none are stored with this law, or none are determined\n";
+  if (beyond) text += "  no interval beyond the measured range: nothing says how far off the law is there\n";
+  return text;
 }
 
 std::string values_csv(const std::vector<ValueTable>& tables, const ValueUnits& u) {

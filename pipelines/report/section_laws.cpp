@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/data/estimate_words.h"
 #include "pipelines/law/law_json.h"
 #include "pipelines/report/html.h"
 #include "pipelines/report/number_format.h"
@@ -19,9 +20,7 @@ struct UnitScale {
 };
 
 std::string interval(const Estimate& e) {
-  return std::isfinite(e.low) && std::isfinite(e.high) && e.low < e.high
-             ? format_number(e.low) + " .. " + format_number(e.high)
-             : "–";
+  return interval_known(e.low, e.high) ? format_number(e.low) + " .. " + format_number(e.high) : "not determined";
 }
 
 /// The parameter in the given unit, empty when it has none.

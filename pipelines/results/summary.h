@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/data/fields.h"
 #include "common/data/macro_result.h"
@@ -223,6 +224,18 @@ void fields(auto&& visit, Of<LawIdentity> auto& law) {
     law.solid_fraction = fraction > 0.0 ? fraction : 0.0;
 }
 
+/// Slopes of a stage whose mean is not told apart from 0 by its samples (95 %).
+inline std::vector<std::string> not_determined(const StageMeans& s) {
+  std::vector<std::string> out;
+  const auto add = [&](const char* name, const std::optional<MeanError>& m) {
+    if (m && !is_told_from_zero(m->n, m->mean, m->error)) out.emplace_back(name);
+  };
+  add("modulus_begin", s.modulus_begin);
+  add("modulus_end", s.modulus_end);
+  add("poisson_begin", s.poisson_begin);
+  return out;
+}
+
 /// Of a stage, in the mean of samples with its error; moduli and stresses in Pa.
 void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("name", s.record.name);
@@ -235,6 +248,8 @@ void fields(auto&& visit, Of<StageMeans> auto& s) {
   visit("modulus_begin", s.modulus_begin, kLeftOut);
   visit("modulus_end", s.modulus_end, kLeftOut);
   visit("poisson_begin", s.poisson_begin, kLeftOut);
+  if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>)
+    visit("not_determined", not_determined(s), kLeftOut);
   visit("axial_strain_end", s.strain_end, kLeftOut);
   visit("volumetric_strain_end", s.volumetric_end, kLeftOut);
   visit("axial_stress_end", s.axial_end, kLeftOut);

@@ -33,6 +33,8 @@ CellCard sample_card() {
   card.pressure_low = 1e-4;
   card.pressure_high = 1e-2;
   card.mixture_high = 4.0;
+  card.youngs_modulus = 5e5;
+  card.density = 2500.0;
   card.poisson_ratio = card.grain_friction = 0.3;
   card.preparation = "fast";
   card.start_pressure = 1e-4;
@@ -133,6 +135,52 @@ TEST_F(CellsMacro, BetweenPlanesAndThroughStagesToo) {
     EXPECT_GT(c.stress_axial[4], c.stress_axial[3]);
     EXPECT_LT(c.stress_axial[6], c.stress_axial[4]);
   }
+}
+
+/// Pressures of the law are over E: with another one, of the card or of the scene, the same curve in other pascals.
+TEST_F(CellsMacro, TakeTheModulusAndTheDensityThatCardAndSceneSay) {
+  expect(run("soft"), 0, {});
+  CellCard stiff = sample_card();
+  stiff.youngs_modulus = 5e10;
+  stiff.density = 3000.0;
+  write_cell_card(stiff, file("cells.toml"));
+  expect(run("card"), 0, {});
+  expect(run("scene", "--set material.E='5 MPa' --set material.density=2000"), 0, {});
+  const MacroCurve soft = curve("soft");
+  const auto same = [&](const std::string& name, double factor, double density) {
+    const MacroCurve c = curve(name);
+    EXPECT_EQ(c.start.youngs_modulus, 5e5 * factor);
+    ASSERT_EQ(c.stress_axial.size(), soft.stress_axial.size());
+    for (std::size_t k = 0; k < c.stress_axial.size(); ++k)
+      EXPECT_NEAR(c.stress_axial[k] / soft.stress_axial[k], factor, 1e-3 * factor) << name << k;
+    EXPECT_NEAR(c.more.at("bulk_density")[0], density * c.more.at("solid_fraction")[0], 1e-9 * density);
+  };
+  same("card", 1e5, 3000.0);
+  same("scene", 10.0, 2000.0);
+  expect(run("other", "--set material.nu=0.2"), 2, {"material.nu", "serves no others"});
+  expect(run("wrong", "--set material.E=-1"), 2, {"material.E"});
+  const std::string check = "check '" + file("scene.toml") + "' --set material.E='5 MPa'";
+  expect(run_the_program(check), 0, {"E of the grains 5e+06 Pa", "measured with 5e+10 Pa"});
+}
+
+TEST_F(CellsMacro, RefuseAStressWhereNobodySaysTheModulus) {
+  CellCard older = sample_card();
+  older.youngs_modulus = older.density = std::nan("");
+  write_cell_card(older, file("cells.toml"));
+  std::string text = read_text(file("scene.toml"));
+  for (const char* key : {"steps = 3\n", "strain = 0.06\n"}) text.erase(text.find(key), std::string(key).size());
+  const std::string isotropic = text + "[[stage]]\nkind = \"isotropic\"\nstress = \"500 Pa\"\nsteps = 2\n";
+  write_text_atomic(file("scene.toml"), isotropic);
+  expect(run("pascals"), 2, {"scene.toml:", "stage.stress", "needs E of the grains", "[material] E"});
+  expect(run("known", "--set material.E='0.5 MPa'"), 0, {});
+  EXPECT_NEAR(curve("known").stress_axial.back() / 500.0, 1.0, 0.01);
+  write_text_atomic(file("scene.toml"), text + "[[stage]]\nkind = \"triaxial\"\nstrain = 0.02\nsteps = 2\n");
+  expect(run("strain"), 0, {});
+  const nlohmann::json summary = nlohmann::json::parse(read_text(file("strain") + "/summary.json"));
+  EXPECT_NE(summary["remarks"].dump().find("E = 500000 Pa"), std::string::npos) << summary["remarks"];
+  write_text_atomic(file("scene.toml"), text + "[[stage]]\nkind = \"triaxial\"\nstrain = 0.02\nsteps = 2\n"
+                                               "lateral_stress = \"50 Pa\"\n");
+  expect(run("sides"), 2, {"stage.lateral_stress"});
 }
 
 TEST_F(CellsMacro, BeginAtTheDensityThatIsGiven) {

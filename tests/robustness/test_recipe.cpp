@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "common/data/cell_card.h"
@@ -58,7 +59,24 @@ TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
                                                  "/material_card.toml' --out '" + directory.file("none") + "'");
   EXPECT_EQ(refused.status, 2) << refused.output;
   EXPECT_NE(refused.output.find("take the card of the cell law"), std::string::npos) << refused.output;
-  EXPECT_GT(read_cell_card(first + "/cell_law.toml").void_ratio.value, 0.0);
+  const CellCard card = read_cell_card(first + "/cell_law.toml");
+  EXPECT_GT(card.void_ratio.value, 0.0);
+  EXPECT_EQ(card.youngs_modulus, 5e5);
+  EXPECT_NE(read_text(first + "/material_card.toml").find("\nE = 500000.0"), std::string::npos);
+  // Summary, report and compare show the numbers that were written, and those of the pair that was measured apart.
+  const std::map<std::string, Estimate> written{{"e_J", card.void_ratio}, {"w_inf", card.excess_many},
+                                                {"K", card.modulus},      {"xi", card.excess_decay},
+                                                {"e_c", card.excess_alone}, {"mu_f", card.friction}};
+  std::size_t shown = 0;
+  for (const nlohmann::json& n : summary["cell_law"]["numbers"])
+    if (const auto at = written.find(n["name"]); at != written.end()) {
+      EXPECT_NEAR(n["value"].get<double>(), at->second.value, 1e-12) << at->first;
+      EXPECT_NEAR(n["standard_error"].get<double>(), at->second.standard_error, 1e-12) << at->first;
+      ++shown;
+    }
+  EXPECT_EQ(shown, written.size());
+  EXPECT_EQ(summary["cell_law"]["numbers_of_two_coarsest_levels"].size(), summary["cell_law"]["numbers"].size());
+  EXPECT_NE(read_text(first + "/report.html").find("of the two coarsest levels alone"), std::string::npos);
   ASSERT_EQ(r["curves"].size(), 3U);
   EXPECT_EQ(r["curves"][1]["name"], "all grains");
   const double law = r["curves"][0]["axial"].back();

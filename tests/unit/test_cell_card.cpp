@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "common/core/error.h"
@@ -31,6 +32,8 @@ CellCard sample_card() {
   c.pressure_low = 1e-4 / 3.0;
   c.pressure_high = 8e-3;
   c.mixture_high = 4.0;
+  c.youngs_modulus = 5e10 / 3.0;
+  c.density = 2650.5;
   c.poisson_ratio = 0.3;
   c.grain_friction = 0.3;
   c.preparation = "fast";
@@ -60,7 +63,7 @@ TEST(CellCardFile, RoundTripIsExact) {
         &CellCard::excess_decay, &CellCard::friction, &CellCard::stiffness, &CellCard::lateral_ratio})
     expect_same_estimate(a.*estimate, b.*estimate);
   for (const auto number :
-       {&CellCard::pressure_low, &CellCard::pressure_high, &CellCard::mixture_high, &CellCard::poisson_ratio,
+       {&CellCard::youngs_modulus, &CellCard::density, &CellCard::pressure_low, &CellCard::pressure_high, &CellCard::mixture_high, &CellCard::poisson_ratio,
         &CellCard::grain_friction, &CellCard::start_pressure, &CellCard::split, &CellCard::fines_ratio})
     EXPECT_EQ(a.*number, b.*number);
   EXPECT_EQ(a.preparation, b.preparation);
@@ -68,6 +71,19 @@ TEST(CellCardFile, RoundTripIsExact) {
   EXPECT_EQ(a.samples, b.samples);
   write_cell_card(b, directory.file("again.toml"));
   EXPECT_EQ(read_text(directory.file("card.toml")), read_text(directory.file("again.toml")));
+}
+
+/// Cards of earlier versions say neither E nor density.
+TEST(CellCardFile, MayNotSayTheModulusOfItsGrains) {
+  const TemporaryDirectory directory;
+  CellCard card = sample_card();
+  card.youngs_modulus = card.density = std::numeric_limits<double>::quiet_NaN();
+  write_cell_card(card, directory.file("card.toml"));
+  const std::string text = read_text(directory.file("card.toml"));
+  EXPECT_EQ(text.find("\nE = "), std::string::npos) << text;
+  const CellCard read = read_cell_card(directory.file("card.toml"));
+  EXPECT_TRUE(std::isnan(read.youngs_modulus));
+  EXPECT_TRUE(std::isnan(read.density));
 }
 
 /// The card of sample_card() with the line that begins so replaced; empty: taken out.

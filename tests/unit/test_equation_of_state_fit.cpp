@@ -171,6 +171,112 @@ TEST(EquationOfStateFit, NoticesGroupsThatHaveModuliOfTheirOwn) {
   EXPECT_GE(same, 7);
 }
 
+/// Packings with a K of their own, normal in ln K about that of Truth.
+std::vector<StateCurve> curves_with_own_moduli(const Truth& t, double deviation, int groups, std::uint64_t seed,
+                                               std::vector<double>& moduli) {
+  RandomStream random(seed, RandomPurpose::test, 9);
+  std::vector<StateCurve> out;
+  moduli.clear();
+  for (int g = 0; g < groups; ++g) {
+    Truth one = t;
+    one.spans = {2.0 + 0.25 * g};
+    one.samples = {2};
+    one.modulus = t.modulus * std::exp(deviation * random.normal());
+    moduli.push_back(one.modulus);
+    for (StateCurve& c : curves_of(one, 7919 * seed + static_cast<std::uint64_t>(g))) out.push_back(std::move(c));
+  }
+  return out;
+}
+
+struct OwnModuli {
+  int mean = 0;       ///< intervals that hold the K about which packings scatter
+  double share = 0.0;  ///< of packings whose K they hold
+  int refused = 0;
+  int exponent = 0;
+  int onset = 0;
+};
+
+OwnModuli own_moduli(double deviation, int groups, int seeds) {
+  OwnModuli out;
+  const Truth t;
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::vector<double> moduli;
+    const auto curves = curves_with_own_moduli(t, deviation, groups, 100 + static_cast<std::uint64_t>(seed), moduli);
+    const StateFit fit = fit_equation_of_state(curves, {StateForm::porosity, 60, 1});
+    EXPECT_TRUE(fit.usable) << fit.message;
+    const auto holds = [](const StateEstimate& e, double x) { return e.low <= x && x <= e.high; };
+    out.mean += holds(fit.modulus, t.modulus) ? 1 : 0;
+    for (const double k : moduli) out.share += (holds(fit.modulus, k) ? 1.0 : 0.0) / (groups * seeds);
+    out.refused += fit.one_modulus ? 0 : 1;
+    out.exponent += holds(fit.exponent, t.exponent) ? 1 : 0;
+    out.onset += holds(fit.groups[0].onset, onset_of(t, fit.groups[0].span)) ? 1 : 0;
+    EXPECT_EQ(fit.message.find("one K for all packings is refused") != std::string::npos, !fit.one_modulus);
+    if (!fit.one_modulus) {
+      EXPECT_EQ(fit.degrees, std::min(groups - 1, groups));
+    }
+  }
+  return out;
+}
+
+/// Intervals from the scatter within packings alone held the K of 1 packing in 22 where K differs between them.
+TEST(EquationOfStateFit, IntervalsHoldTheScatterBetweenPackingsWhereOneModulusIsRefused) {
+  constexpr int kSeeds = 12;
+  const OwnModuli found = own_moduli(0.10, 12, kSeeds);
+  EXPECT_EQ(found.refused, kSeeds);
+  EXPECT_EQ(found.mean, kSeeds);
+  EXPECT_GT(found.share, 0.88);
+  EXPECT_GE(found.exponent, 10);
+  EXPECT_GE(found.onset, 10);
+}
+
+TEST(SlowEquationOfStateFit, IntervalsHoldThePackingsAsOftenAsTheySayWhereTheseDiffer) {
+  constexpr int kSeeds = 200;
+  for (const int groups : {5, 22}) {
+    const OwnModuli found = own_moduli(0.10, groups, kSeeds);
+    EXPECT_GE(found.refused, 0.9 * kSeeds) << groups;
+    EXPECT_GE(found.share, 0.92) << groups;
+    EXPECT_LE(found.share, 0.99) << groups;
+    EXPECT_GE(found.exponent, 0.90 * kSeeds) << groups;
+    EXPECT_GE(found.onset, 0.90 * kSeeds) << groups;
+  }
+}
+
+TEST(EquationOfStateFit, SaysThatFewPointsOrASmallStretchOfPressureDetermineNothing) {
+  Truth t;
+  t.spans = {2.4};
+  t.samples = {1};
+  auto curves = curves_of(t, 1);
+  for (auto& c : curves) c.phi.resize(4), c.pressure.resize(4);
+  const StateFit four = fit_equation_of_state(curves);
+  EXPECT_FALSE(four.usable);
+  EXPECT_NE(four.message.find("too few points: 4 of 1 sample for 3 numbers"), std::string::npos) << four.message;
+  // Twelve points within 2 % of one pressure: K and n may be anything.
+  t.samples = {4};
+  curves = curves_of(t, 2);
+  for (auto& c : curves)
+    for (std::size_t k = 0; k < c.phi.size(); ++k) {
+      RandomStream random(k, RandomPurpose::test, 5);
+      c.pressure[k] = 2e-3 * (1.0 + 0.02 * static_cast<double>(k) / 11.0);
+      c.phi[k] = state_phi(t.form, t.modulus, t.exponent, 0.67, c.pressure[k]) + 1e-4 * random.normal();
+    }
+  const StateFit flat = fit_equation_of_state(curves);
+  EXPECT_FALSE(flat.usable) << flat.modulus.low << " to " << flat.modulus.high;
+}
+
+TEST(EquationOfStateFit, IntervalsStayWithinWhatANumberCanBe) {
+  Truth t;
+  t.spans = {2.4};
+  t.samples = {2};
+  t.scatter = 0.04;
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    const StateFit fit = fitted(t, seed);
+    EXPECT_GE(fit.groups[0].onset.low, 0.0);
+    EXPECT_LE(fit.groups[0].onset.high, 1.0);
+    EXPECT_GE(fit.exponent.low, 0.0);
+    EXPECT_GE(fit.modulus.low, 0.0);
+  }
+}
+
 TEST(EquationOfStateFit, WeightsCountAndPointsWithoutPressureDoNot) {
   Truth t;
   t.scatter = 0.0;

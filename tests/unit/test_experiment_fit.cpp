@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/data/law_band.h"
+#include "pipelines/law/fit_text.h"
 #include "tests/support/synthetic_law.h"
 
 namespace {
@@ -184,6 +185,95 @@ TEST(ExperimentFit, TheMirrorImageTakesHalfOfTheOverlap) {
   EXPECT_NEAR(pair.normal.delta.low, 2.0 * plane.normal.delta.low, 1e-12);
   EXPECT_NEAR(pair.normal.c.value, -pair.normal.a.value * std::pow(pair.normal.delta.value, pair.normal.b.value),
               1e-12);
+}
+
+/// With stiffnesses too: the same errors, in the units of the mirror image.
+TEST(ExperimentFit, TheMirrorImageHasTheErrorsOfWhatItMirrors) {
+  for (const int samples : {1, 8}) {
+    ForceCurves curves = make({.samples = samples, .noise = 0.05, .scatter = 0.1});
+    const auto fit = fit_experiment({curves}, replicates(60), true);
+    ASSERT_EQ(fit.card.pairs.size(), 2U);
+    const ThresholdPowerLaw& plane = fit.card.pairs[0].normal;
+    const ThresholdPowerLaw& pair = fit.card.pairs[1].normal;
+    ASSERT_TRUE(std::isfinite(plane.b.standard_error));
+    EXPECT_NEAR(pair.b.standard_error / plane.b.standard_error, 1.0, 1e-9) << samples;
+    EXPECT_NEAR(pair.delta.standard_error / plane.delta.standard_error, 2.0, 1e-9) << samples;
+    EXPECT_NEAR(pair.c.standard_error / plane.c.standard_error, 1.0, 1e-6) << samples;
+    EXPECT_NEAR(pair.b.low, plane.b.low, 1e-9);
+    EXPECT_NEAR(pair.b.high, plane.b.high, 1e-9);
+    // And of its force at twice the overlap.
+    PairLaw measured = fit.card.pairs[0];
+    PairLaw mirrored = fit.card.pairs[1];
+    measured.bands.clear();
+    mirrored.bands.clear();
+    mirrored.packings = measured.packings;
+    for (const double d : {0.1, 0.2, 0.3}) {
+      const auto a = value_interval(measured, LawPart::normal, d);
+      const auto b = value_interval(mirrored, LawPart::normal, 2.0 * d);
+      ASSERT_TRUE(a && b);
+      EXPECT_NEAR((b->high - b->low) / (a->high - a->low), 1.0, 1e-6) << d;
+    }
+  }
+}
+
+/// A threshold far below all overlaps is none: it was 3e-27 with an interval of no width, and c = -2e-126.
+TEST(ExperimentFit, AThresholdThatDoesNotShowIsNotDetermined) {
+  KnownLaw straight;
+  straight.delta = 0.0;
+  straight.b = 1.5;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const auto fit = fit_experiment({make({.noise = 0.1, .seed = seed, .law = straight})}, replicates(40), false);
+    const ThresholdPowerLaw& n = fit.card.pairs[0].normal;
+    EXPECT_TRUE(n.delta.value == 0.0 || n.delta.value > 1e-4) << n.delta.value;
+    EXPECT_TRUE(n.c.value == 0.0 || n.c.value < -1e-12) << n.c.value;
+    EXPECT_FALSE(std::isfinite(n.delta.high) && !(n.delta.low < n.delta.high)) << "an interval of no width";
+  }
+  const auto exact = fit_experiment({make({.noise = 0.0, .law = straight})}, replicates(20), false);
+  const std::string text = normal_law_text(exact.reports[0], exact.card.spec);
+  EXPECT_NE(text.find("no threshold shows: c and delta are not determined"), std::string::npos) << text;
+}
+
+/// As many numbers as points above the threshold, or fewer: residuals are nothing and say nothing.
+TEST(ExperimentFit, PointsThatTheLawGoesThroughGiveNoInterval) {
+  for (const int points : {2, 3}) {
+    ForceCurves curves = make({.points = 12, .noise = 0.0});
+    auto& normal = curves.samples[0].normal;
+    std::vector<ForcePoint> some{normal[0], normal[1]};  // below the threshold
+    for (int k = 0; k < points; ++k) some.push_back(normal[static_cast<std::size_t>(5 + 3 * k)]);
+    normal = some;
+    const auto fit = fit_experiment({curves}, replicates(40), false);
+    const PairLaw& law = fit.card.pairs[0];
+    EXPECT_EQ(law.status, LawStatus::underdetermined) << points;
+    EXPECT_NE(law.reason.find("errors are not determined"), std::string::npos) << law.reason;
+    for (const Estimate* e : {&law.normal.a, &law.normal.b, &law.normal.delta}) {
+      EXPECT_TRUE(std::isinf(e->standard_error)) << points;
+      EXPECT_TRUE(std::isinf(e->high)) << points;
+    }
+    EXPECT_TRUE(law.bands.empty());
+    const std::string text = normal_law_text(fit.reports[0], fit.card.spec);
+    EXPECT_NE(text.find("[not determined]"), std::string::npos) << text;
+    EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+  }
+}
+
+/// Thresholds, forces and stiffnesses are not negative, c is not positive: neither are the ends of their intervals.
+TEST(ExperimentFit, IntervalsStayWithinWhatANumberCanBe) {
+  KnownLaw low;
+  low.delta = 0.01;
+  low.b = 1.6;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed)
+    for (const int samples : {1, 6}) {
+      const auto fit =
+          fit_experiment({make({.samples = samples, .noise = 0.6, .scatter = 0.1, .seed = seed, .law = low})},
+                         replicates(60), true);
+      for (const FitReport& report : fit.reports) {
+        const ThresholdPowerLaw& n = report.law.normal;
+        for (const Estimate* e : {&n.a, &n.b, &n.delta}) EXPECT_TRUE(e->low >= 0.0 || std::isinf(e->low)) << e->low;
+        EXPECT_TRUE(n.c.high <= 0.0 || std::isinf(n.c.high)) << n.c.high;
+        for (const LawBandRows& rows : fit.card.pairs[0].bands)
+          for (const double x : rows.low) EXPECT_GE(x, 0.0);
+      }
+    }
 }
 
 TEST(ExperimentErrors, KnowHowFarResidualsAreCorrelated) {

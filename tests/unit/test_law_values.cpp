@@ -8,6 +8,7 @@
 #include "common/contact/crowd_table_file.h"
 #include "common/contact/soft_contact_from_card.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/data/crowd_replicates.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/law_difference.h"
@@ -75,7 +76,17 @@ TEST(CardValues, BeyondTheRange) {
   EXPECT_GT(extrapolated[3].force.value, extrapolated[1].force.value);
   const auto clamped = at(Beyond::clamp);
   EXPECT_EQ(clamped[3].force.value, clamped[1].force.value);
-  EXPECT_EQ(clamped[3].force.interval->high, clamped[1].force.interval->high);
+  // Nothing says how far off a law is where nobody measured it: no interval, whatever the law does there.
+  for (const auto* points : {&extrapolated, &clamped}) {
+    const LawPoint& beyond = (*points)[3];
+    EXPECT_TRUE((*points)[1].force.interval && (*points)[1].stiffness.interval);
+    EXPECT_FALSE(beyond.force.interval || beyond.stiffness.interval);
+    EXPECT_FALSE(beyond.tangential_initial->interval || beyond.tangential_secant->interval);
+  }
+  const law::ValueTable far{"soft-solid", LawStatus::good, "", Beyond::extrapolate, false, extrapolated};
+  EXPECT_TRUE(law::values_json(far, {})["values"][3]["force_interval"].is_null());
+  EXPECT_NE(law::values_csv({far}, {}).find(",,,beyond range: extrapolated"), std::string::npos);
+  EXPECT_NE(law::values_text(far, {}).find("no interval beyond the measured range"), std::string::npos);
   const auto refused = at(Beyond::error);
   EXPECT_FALSE(refused[1].refused);
   EXPECT_TRUE(refused[3].refused);
@@ -117,7 +128,11 @@ TEST(CardValues, TheIntervalOfTheSlopeFollowsFromTheCovariance) {
   down.b.value -= 1e-6;
   const double by_b = (up.derivative(0.2) - down.derivative(0.2)) / 2e-6;
   const auto at = slope_interval(pair, LawPart::normal, 0.2);
-  EXPECT_NEAR(0.5 * (at->high - at->low), 1.96 * std::abs(by_b) * kError, 1e-9);
+  // Student's t of seven packings.
+  EXPECT_NEAR(0.5 * (at->high - at->low), 2.446912 * std::abs(by_b) * kError, 1e-9);
+  pair.band_origin = kFromResiduals;
+  const auto many = slope_interval(pair, LawPart::normal, 0.2);
+  EXPECT_NEAR(0.5 * (many->high - many->low), 1.959964 * std::abs(by_b) * kError, 1e-9);
 }
 
 /// The same bands after saving and reading, none when the card was edited.
@@ -228,9 +243,15 @@ TEST(CrowdTables, IntervalsAreThoseOfTheReplicates) {
   const law::Quantity& force = answer.points[0].force;
   EXPECT_EQ(answer.replicates, 41u);
   ASSERT_TRUE(force.interval.has_value());
-  // Quantile p of n numbers in order: number p (n + 1), between 1 and 2 here.
-  EXPECT_NEAR(force.interval->low, 0.8005 * force.value, 1e-12);
-  EXPECT_NEAR(force.interval->high, 1.1995 * force.value, 1e-12);
+  // Quantile p of n numbers in order: number p (n + 1), between 1 and 2 here; then as far as few packings leave open.
+  const double few = few_samples_factor(static_cast<std::size_t>(entry.packings));
+  EXPECT_NEAR(force.interval->low, std::pow(0.8005, few) * force.value, 1e-12);
+  EXPECT_NEAR(force.interval->high, std::pow(1.1995, few) * force.value, 1e-12);
+  // None beyond what was measured, by depth or by volume.
+  const law::CrowdAnswer deep = law::crowd_values({1, {entry}}, q, {0.2, 1.9});
+  EXPECT_EQ(deep.points[1].where, Where::beyond);
+  EXPECT_TRUE(deep.points[0].force.interval && deep.points[0].stiffness.interval);
+  EXPECT_FALSE(deep.points[1].force.interval || deep.points[1].stiffness.interval);
   q.form = Crowd::bag;
   EXPECT_FALSE(law::crowd_values({1, {entry}}, q, {0.2}).points[0].force.interval.has_value());
 }

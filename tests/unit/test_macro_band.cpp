@@ -60,8 +60,23 @@ TEST(MacroBand, TheMeanOverSamplesHasTheIntervalOfStudent) {
   EXPECT_NEAR(ends[0].law, 3.0, 1e-12);
   EXPECT_NEAR(ends[0].discrepancy, 4.0, 1e-12);
   EXPECT_NEAR(ends[0].samples, 12.7062 * 10.0, 1e-2) << "t of one degree of freedom, standard error 10";
-  EXPECT_NEAR(ends[0].high, 100.0 + std::hypot(3.0, 4.0, 127.062), 1e-2);
-  EXPECT_EQ(ends[0].low, 0.0);
+  EXPECT_FALSE(ends[0].determined) << "its error is larger than itself";
+  EXPECT_TRUE(std::isnan(ends[0].low) && std::isnan(ends[0].high));
+  EXPECT_NE(banded_text(ends[0]).find("100 Pa, not determined"), std::string::npos) << banded_text(ends[0]);
+  std::vector<MacroCurve> more = curves;
+  for (std::int64_t k = 2; k < 6; ++k) {
+    more.push_back(curve("law", k, {0.0, k % 2 == 0 ? 90.0 : 110.0}));
+    give_bands(more.back(), 0.03, 0.04);
+  }
+  const BandedEnd known = banded_ends(more)[0];
+  EXPECT_TRUE(known.determined);
+  EXPECT_EQ(known.count, 6);
+  EXPECT_NEAR(known.high, 100.0 + std::hypot(3.0, 4.0, 2.570582 * std::sqrt(120.0 / 6.0)), 1e-2);
+  EXPECT_NEAR(known.high - known.stress, known.stress - known.low, 1e-9);
+  EXPECT_EQ(banded_text(known).find("beyond"), std::string::npos);
+  more[1].law_asked = {100.0, 100.0};
+  more[1].law_beyond = {0.0, 7.0};
+  EXPECT_NE(banded_text(banded_ends(more)[0]).find("at least: 7 % of the contacts are beyond"), std::string::npos);
   curves.erase(curves.begin());
   EXPECT_TRUE(std::isnan(banded_ends(curves)[0].samples));
   EXPECT_NE(banded_text(banded_ends(curves)[0]).find("unknown: one alone"), std::string::npos);

@@ -163,6 +163,7 @@ TEST(RecipeScene, RefusesLevelsThatNoPackingHolds) {
 StateFit fit_of(const RecipeScene& scene, const std::vector<double>& onsets) {
   StateFit fit;
   fit.usable = true;
+  fit.degrees = 12;
   std::vector<double> replicate{0.0, 2.0};
   for (std::size_t v = 0; v < scene.material.variants.size(); ++v) {
     if (scene.material.variants[v].same_packings) continue;
@@ -265,6 +266,18 @@ TEST(RecipeLaw, FollowsTheEquationOfStateFromTheStartPressure) {
     EXPECT_LT(c.low[k], c.axial[k]);
     EXPECT_GT(c.high[k], c.axial[k]);
   }
+  // Beyond the pressures of the fit nothing says how far off the law is.
+  law.pressure_high = (c.axial[4] + 2.0 * c.lateral[4]) / 3.0;
+  const RecipeCurve far = curve_of(law, 0.04, 8);
+  EXPECT_EQ(far.axial, c.axial);
+  EXPECT_EQ(far.low[4], c.low[4]);
+  EXPECT_TRUE(std::isnan(far.low.back()) && std::isnan(far.high.back()));
+  // And where samples tell no error of the onset there is no band at all.
+  law.onset = {0.8, HUGE_VAL, -HUGE_VAL, HUGE_VAL};
+  const RecipeCurve bare = curve_of(law, 0.04, 8);
+  EXPECT_EQ(bare.axial, c.axial);
+  EXPECT_TRUE(bare.low.empty() && bare.high.empty());
+  EXPECT_TRUE(std::isinf(solid_fraction_of(law).high));
 }
 
 /// At rest sides may bear a little more than the axis: the band holds the value there too.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/data/crowd_choice.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/law/law_json.h"
 
@@ -65,9 +66,9 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
   return out;
 }
 
-std::string law_line(const CrowdLaw& law, bool best) {
-  return fmt::format("  {}{}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", to_string(law.form),
-                     best ? " (best)" : "", law.status == LawStatus::good ? "" : to_string(law.status) + ", ",
+std::string law_line(const LawTableEntry& entry, const CrowdLaw& law) {
+  return fmt::format("  {}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", form_label(entry, law),
+                     law.status == LawStatus::good ? "" : to_string(law.status) + ", ",
                      100.0 * law.error_fitted, held_out_text(law), cross_text(law));
 }
 
@@ -139,7 +140,7 @@ std::string entries_text(const LawTable& table) {
   std::string text;
   for (const LawTableEntry& entry : table.entries) {
     text += fmt::format("laws at solid fraction {:.3f} ({} packings):\n", entry.solid_fraction, entry.packings);
-    for (const CrowdLaw& law : entry.laws) text += law_line(law, law.form == entry.best);
+    for (const CrowdLaw& law : entry.laws) text += law_line(entry, law);
   }
   return text;
 }

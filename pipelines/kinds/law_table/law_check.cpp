@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "common/data/card_text.h"
+#include "common/data/crowd_choice.h"
 #include "common/data/crowd_replicates.h"
+#include "common/data/estimate_words.h"
 #include "common/data/law_band.h"
 #include "common/data/law_remarks.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
@@ -71,8 +73,8 @@ std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
 
 void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
   facts["laws"].push_back(verdict_json(law));
-  lines += fmt::format("    {}{}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n",
-                       to_string(law.form), law.form == entry.best ? " (best)" : "", to_string(law.status),
+  lines += fmt::format("    {}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n",
+                       form_label(entry, law), to_string(law.status),
                        law.reason.empty() ? "" : " (" + law.reason + ")", 100.0 * law.error_fitted, held_out_text(law),
                        cross_text(law), partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
 }
@@ -95,12 +97,13 @@ void warn_of_entry(const LawTableEntry& e, Findings& out) {
   const CrowdLaw* best = e.find(e.best);
   constexpr double kFar = 0.15;
   if (best->status != LawStatus::good)
-    out.warn(fmt::format("solid fraction {:.3f}: the best law is {}{}", e.solid_fraction, to_string(best->status),
+    out.warn(fmt::format("solid fraction {:.3f}: the law {} is {}{}", e.solid_fraction, form_label(e, *best),
+                         to_string(best->status),
                          best->reason.empty() ? "" : " (" + best->reason + ")"));
   const double unseen = std::fmax(best->error_cross, best->error_held_out);  // either may be unknown
   if (unseen > kFar)
-    out.warn(fmt::format("solid fraction {:.3f}: the best law is off by {:.0f} % on loadings that it has not seen",
-                         e.solid_fraction, 100.0 * unseen));
+    out.warn(fmt::format("solid fraction {:.3f}: the law {} is off by {:.0f} % on loadings that it has not seen",
+                         e.solid_fraction, form_label(e, *best), 100.0 * unseen));
   for (const PartnerRow& row : best->partners)
     if (row.error > 2.0 * kFar)
       out.warn(fmt::format("solid fraction {:.3f}: {} neighbours of ratio {:.3g} are given back only to {:.0f} %",
@@ -122,12 +125,14 @@ void check_table(const std::string& path, Findings& out) {
 void check_cell_card(const std::string& path, Findings& out) {
   const CellCard card = read_cell_card(path);
   out.add("kind", "cell law",
-          fmt::format("card of the cell law, {} form, for matter without shells: K = {:.4g} ({:.4g} to {:.4g}), n = "
-                      "{:.4g}, p/E from {:.3g} to {:.3g}, up to {:.3g} times as much fines as coarse grains",
-                      to_string(card.form), card.modulus.value, card.modulus.low, card.modulus.high,
-                      card.exponent.value, card.pressure_low, card.pressure_high, card.mixture_high));
+          fmt::format("card of the cell law, {} form, for matter without shells: K = {}, n = {}, E of its grains {}, "
+                      "p/E from {:.3g} to {:.3g}, up to {:.3g} times as much fines as coarse grains",
+                      to_string(card.form), interval_text(card.modulus), interval_text(card.exponent),
+                      is_known(card.youngs_modulus) ? fmt::format("{:.4g} Pa", card.youngs_modulus) : "not said", card.pressure_low, card.pressure_high, card.mixture_high));
   constexpr double kWide = 0.25;
-  if (card.modulus.high - card.modulus.low > kWide * card.modulus.value)
+  if (!interval_known(card.modulus.low, card.modulus.high))
+    out.warn("the interval of K is not determined: two samples of each packing at least would tell it");
+  else if (card.modulus.high - card.modulus.low > kWide * card.modulus.value)
     out.warn(fmt::format("the interval of K is {:.0f} % wide: more samples would narrow it",
                          100.0 * (card.modulus.high - card.modulus.low) / card.modulus.value));
 }
@@ -143,9 +148,9 @@ void check_material_card(const std::string& path, Findings& out) {
   const auto levels = root.tables("level").size();
   out.add(
       "kind", "material",
-      fmt::format("card of a whole material of {} levels, {} form: begins to bear at a solid fraction of {:.4g} "
-                  "({:.4g} to {:.4g}), p/E = {:.4g} x^{:.4g}",
-                  levels, material.text("form"), onset.value, onset.low, onset.high, modulus.value, exponent.value));
+      fmt::format("card of a whole material of {} levels, {} form: begins to bear at a solid fraction of {}, p/E = "
+                  "{:.4g} x^{:.4g}",
+                  levels, material.text("form"), interval_text(onset), modulus.value, exponent.value));
   constexpr double kWide = 0.05;
   if (onset.high - onset.low > kWide)
     out.warn(

@@ -7,6 +7,7 @@
 #include "calibrate/crowd_form_fit.h"
 #include "calibrate/crowd_states.h"
 #include "common/contact/crowd_from_table.h"
+#include "common/data/crowd_choice.h"
 #include "common/data/law_remarks.h"
 #include "pipelines/kinds/law_table/results.h"
 #include "pipelines/report/html.h"
@@ -124,7 +125,7 @@ std::string parameter_table(const LawTableEntry& entry) {
   HtmlTable table({"law", "a", "b", "delta", "m0", "m1", "m2", "error, fitted [%]", "error, held out [%]",
                    "error, leave one out [%]", "information criterion"});
   for (const CrowdLaw& law : entry.laws) {
-    std::vector<std::string> cells{to_string(law.form) + (law.form == entry.best ? " (best)" : "")};
+    std::vector<std::string> cells{form_label(entry, law)};
     for (const Estimate* e : {&law.a, &law.b, &law.delta, &law.m0, &law.m1, &law.m2}) cells.push_back(with_error(*e));
     for (const double x : {law.error_fitted, law.error_held_out, law.error_cross})
       cells.push_back(format_number(100.0 * x, 3));

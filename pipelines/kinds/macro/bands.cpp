@@ -230,6 +230,9 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
         const double own = banded_stress(c, of).back();
         stress.push_back(own);
         end.strain = c.strain.back();
+        ++end.count;
+        if (!c.law_beyond.empty() && !c.law_asked.empty() && c.law_asked.back() > 0.0)
+          end.beyond = std::max(end.beyond, c.law_beyond.back() / c.law_asked.back());
         low[0] += own - law->low.back(), high[0] += law->high.back() - own;
         low[1] += own - off->low.back(), high[1] += off->high.back() - own;
       }
@@ -241,8 +244,12 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
       end.discrepancy = 0.5 * (low[1] + high[1]) / n;
       end.samples = students(stress.size()) * mean.error;
       const double spread = std::isfinite(end.samples) ? end.samples : 0.0;
-      end.low = std::max(0.0, end.stress - std::hypot(low[0] / n, low[1] / n, spread));
+      const double below = std::hypot(low[0] / n, low[1] / n, spread);
+      end.low = end.stress - below;
       end.high = end.stress + std::hypot(high[0] / n, high[1] / n, spread);
+      end.determined = below < end.stress || !(end.stress > 0.0);
+      if (!end.determined) end.low = end.high = kNaN;
+      if (end.determined) end.low = std::max(0.0, end.low);
       out.push_back(end);
     }
   }
@@ -251,11 +258,18 @@ std::vector<BandedEnd> banded_ends(const std::vector<MacroCurve>& curves) {
 
 std::string banded_text(const BandedEnd& e) {
   const auto share = [&](double half) { return e.stress > 0.0 ? 100.0 * half / e.stress : kNaN; };
-  return fmt::format(
-      "{}: {} stress at strain {:.4g}: {:.4g} Pa, 95 % {:.4g} to {:.4g} (law {:.2g} %, discrepancy {:.2g} %, "
-      "samples {})",
-      e.engine, to_string(e.of), e.strain, e.stress, e.low, e.high, share(e.law), share(e.discrepancy),
-      std::isfinite(e.samples) ? fmt::format("{:.2g} %", share(e.samples)) : "unknown: one alone");
+  const std::string interval = e.determined ? fmt::format("95 % {:.4g} to {:.4g}", e.low, e.high)
+                                            : std::string("not determined: its error is as large as itself");
+  const std::string beyond =
+      e.beyond > 0.0 ? fmt::format("; at least: {:.2g} % of the contacts are beyond what the law was measured for, "
+                                   "where no error is known",
+                                   100.0 * e.beyond)
+                     : "";
+  return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, {} (law {:.2g} %, discrepancy {:.2g} %, {}{})",
+                     e.engine, to_string(e.of), e.strain, e.stress, interval, share(e.law), share(e.discrepancy),
+                     std::isfinite(e.samples) ? fmt::format("{} samples {:.2g} %", e.count, share(e.samples))
+                                              : "samples unknown: one alone",
+                     beyond);
 }
 
 std::string bands_text(const std::vector<BandRecord>& bands, const std::vector<BandedEnd>& ends) {

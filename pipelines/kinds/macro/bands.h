@@ -43,7 +43,11 @@ struct BandedEnd {
   double high = 0.0;
   double law = 0.0;
   double discrepancy = 0.0;
-  double samples = 0.0;  ///< Student's, of the mean over samples; NaN with one
+  double samples = 0.0;    ///< Student's, of the mean over samples; NaN with one
+  std::int64_t count = 0;  ///< of samples
+  double beyond = 0.0;     ///< share of the uses of the law at this point beyond what was measured
+  /// False where the interval would hold 0 too: nothing is known of a stress but that it is not larger. Ends are NaN.
+  bool determined = true;
 };
 
 /// Of every engine that has bands.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/data/estimate_words.h"
 #include "common/data/law_remarks.h"
 #include "macrosim/cell_specimen.h"
 #include "macrosim/constructed_packing.h"
@@ -197,10 +198,6 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
   check_volume(table, laws, named.form, entry.solid_fraction, spec, out);
 }
 
-std::string estimate_text(const Estimate& e) {
-  return fmt::format("{:.4g} ({:.4g} to {:.4g})", e.value, e.low, e.high);
-}
-
 /// What the card says of the specimen before anything is placed.
 void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out) {
   const CellCard& card = matter.card;
@@ -211,7 +208,12 @@ void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out)
       (1.0 + mixture) / room_at_pressure(fines_law_of(card, spec.youngs_modulus), mixture, 1.0, pressure);
   out.add("cell_law", {{"form", to_string(card.form)}, {"K", card.modulus.value}, {"n", card.exponent.value}},
           fmt::format("law: cells of fines, {} form, K = {}, n = {}; {}", to_string(card.form),
-                      estimate_text(card.modulus), estimate_text(card.exponent), kMatterWithoutShells));
+                      interval_text(card.modulus), interval_text(card.exponent), kMatterWithoutShells));
+  out.add("E", spec.youngs_modulus,
+          fmt::format("E of the grains {:.4g} Pa, their density {:g} kg/m^3{}", spec.youngs_modulus, spec.density,
+                      is_known(card.youngs_modulus) && card.youngs_modulus != spec.youngs_modulus
+                          ? fmt::format("; the card was measured with {:.4g} Pa", card.youngs_modulus)
+                          : ""));
   out.add("natural_solid_fraction", natural,
           fmt::format("at p/E = {:.3g} the card gives this mixture a solid fraction of {:.4f}", spec.start_pressure,
                       natural));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/core/few_samples.h"
 #include "pipelines/kinds/macro/bands.h"
 #include "pipelines/kinds/macro/check.h"
 #include "pipelines/kinds/macro/first_point.h"
@@ -27,12 +28,18 @@ std::string with_error(const MeanError& m) {
   return m.n > 1 ? fmt::format("{:.4g} +- {:.2g}", m.mean, m.error) : fmt::format("{:.4g}", m.mean);
 }
 
+/// A slope whose error is as large as itself is none.
+std::string modulus_text(const MeanError& m) {
+  if (is_told_from_zero(m.n, m.mean, m.error)) return with_error(m) + " Pa";
+  return fmt::format("not determined ({} Pa, {} samples)", with_error(m), m.n);
+}
+
 /// Moduli and strength of one stage of one engine.
 std::string stage_line(const std::string& engine, const StageMeans& s) {
   std::string line = fmt::format("{}, stage {}:", engine, s.record.name);
   if (const std::string modulus = modulus_text(s); !modulus.empty()) line += " " + modulus + ",";
   if (s.modulus_begin && s.record.kind != StageKind::hold)
-    line += fmt::format(" tangent at its begin {} Pa,", with_error(*s.modulus_begin));
+    line += fmt::format(" tangent at its begin {},", modulus_text(*s.modulus_begin));
   if (s.axial_end) line += fmt::format(" axial stress {} Pa,", with_error(*s.axial_end));
   if (s.ratio_peak) line += fmt::format(" q/p {} at most,", with_error(*s.ratio_peak));
   if (s.ratio_end) line += fmt::format(" {} at its end,", with_error(*s.ratio_end));

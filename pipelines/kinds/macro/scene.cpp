@@ -233,7 +233,6 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
   MacroSetup setup;
   MacroSpec& spec = setup.spec;
   spec.solid_radius_max = spec.soft_radius_max = defaults.shell_radius;
-  spec.youngs_modulus = defaults.youngs_modulus;
   if (is_known(defaults.exponent)) spec.exponent = defaults.exponent;
   if (is_known(defaults.restitution)) spec.twin.restitution = defaults.restitution;
   const auto take = [&](const char* name, double known, double& value, const char* unit) {
@@ -242,6 +241,7 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
     else
       setup.assumed.push_back(fmt::format("{} = {}{}", name, value, unit));
   };
+  take("E", defaults.youngs_modulus, spec.youngs_modulus, " Pa");
   take("nu", defaults.poisson_ratio, spec.poisson_ratio, "");
   take("density", defaults.density, spec.density, " kg/m^3");
   if (is_known(defaults.friction) || !macro.has("mu")) take("mu", defaults.friction, spec.friction, "");
@@ -297,9 +297,30 @@ namespace {
 /// What a card of the cell law knows of grains.
 SoftParticleSpec grains_of(const CellCard& card) {
   SoftParticleSpec spec;
+  spec.youngs_modulus = card.youngs_modulus;
+  spec.density = card.density;
   spec.poisson_ratio = card.poisson_ratio;
   spec.friction = card.grain_friction;
   return spec;
+}
+
+/// [material] of a scene with cells: the numbers of a cell law are over E, so that it serves any; nu and mu it does not.
+void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
+  const SceneTable material = root.table_or_empty("material");
+  for (const char* key : {"nu", "mu"})
+    if (material.has(key))
+      material.mistake(key, "goes without: the cell law was measured with a nu and mu and serves no others");
+  spec.youngs_modulus = material.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
+  spec.density = material.number("density", Unit::density, Range::positive(), spec.density);
+}
+
+/// A stress in Pa says nothing where nobody says the E that stresses of the law are over.
+void require_known_modulus(const SceneTable& root, const std::string& law_file) {
+  for (const SceneTable& stage : root.tables("stage"))
+    for (const char* key : {"stress", "lateral_stress", "stress_x", "stress_y", "stress_z"})
+      if (stage.has(key))
+        stage.mistake(key, "a stress in Pa needs E of the grains, which " + law_file +
+                               " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
 }
 
 /// [fines], and what goes with cells in [macro].
@@ -347,7 +368,10 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
     out.law = read_scene_law(root, law_file);
     out.spec = out.law.cells ? grains_of(*out.law.cells) : measured_spec(out.law);
   }
-  if (root.has("material"))
+  const bool cells = law_file.empty() ? root.has("fines") : out.law.cells.has_value();
+  if (cells)
+    read_cell_material(root, out.spec);
+  else if (root.has("material"))
     root.mistake("material",
                  "goes without: the materials of all bodies are those of the law, which was measured with them");
   const SceneTable macro = root.table("macro");
@@ -355,6 +379,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   read_stages(root, macro, out.setup.spec);
   if (out.law.cells) {
     read_cells(root, macro, *out.law.cells, out.setup);
+    if (!is_known(out.spec.youngs_modulus)) require_known_modulus(root, law_file);
   } else {
     if (!law_file.empty() && root.has("fines"))
       root.mistake("fines", "goes with a card of the cell law (see the guide)");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/few_samples.h"
 #include "pipelines/compare/stage_results.h"
 #include "pipelines/kinds/macro/results.h"
 #include "pipelines/report/engine_style.h"
@@ -49,6 +50,11 @@ std::string between(const StageMeans& s, double unit) {
          (s.record.modulus_stress[1] > 0.0 ? "" : " (" + words + ")");
 }
 
+/// A slope whose error is as large as itself is none.
+std::string slope_cell(const std::optional<MeanError>& m, double unit = 1.0) {
+  return !m || is_told_from_zero(m->n, m->mean, m->error) ? cell(m, unit) : "not determined (" + cell(m, unit) + ")";
+}
+
 /// Columns with their prefixes, and what a stage has in them.
 struct StageTable {
   std::vector<std::string> header;
@@ -84,8 +90,9 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
        "Poisson's ratio at its begin"},
       [&](const StageMeans& s) -> std::vector<std::string> {
         const bool holds = s.record.kind == StageKind::hold;
-        return {holds ? "–" : to_string(modulus_of(s.record.way)), cell(s.modulus, modulus.factor),
-                holds ? "–" : between(s, stress.factor), cell(s.modulus_begin, modulus.factor), cell(s.poisson_begin)};
+        return {holds ? "–" : to_string(modulus_of(s.record.way)), slope_cell(s.modulus, modulus.factor),
+                holds ? "–" : between(s, stress.factor), slope_cell(s.modulus_begin, modulus.factor),
+                slope_cell(s.poisson_begin)};
       }};
   const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
                          "lateral stress" + stress_unit, "q/p", "largest q/p"},

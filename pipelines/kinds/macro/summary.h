@@ -40,6 +40,9 @@ void fields(auto&& visit, Of<BandedEnd> auto& e) {
   visit("law", e.law);
   visit("discrepancy", e.discrepancy);
   visit("samples", e.samples);
+  visit("sample_count", e.count);
+  visit("law_beyond_share", e.beyond);
+  visit("determined", e.determined);
 }
 
 struct MacroRunSummary {

@@ -1,7 +1,6 @@
 #include "pipelines/kinds/material/equation.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "calibrate/response_prediction.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "macrosim/grain_record.h"
@@ -42,8 +42,8 @@ std::optional<StateEstimate> measured_onset(const StateFit& fit, StateForm form,
   if (onsets.empty()) return std::nullopt;
   const MeanError mean = mean_error(onsets);
   if (mean.n < 2) return StateEstimate{mean.mean, kInfinity, -kInfinity, kInfinity};
-  const double half = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(mean.n - 1)) * mean.error;
-  return StateEstimate{mean.mean, mean.error, mean.mean - half, mean.mean + half};
+  const double half = student95(static_cast<double>(mean.n - 1)) * mean.error;
+  return StateEstimate{mean.mean, mean.error, std::max(0.0, mean.mean - half), std::min(1.0, mean.mean + half)};
 }
 
 /// Larger spans take no part, in K and n neither.

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/stage.h"
@@ -15,11 +16,6 @@
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {
-
-std::string interval_text(double value, double low, double high) {
-  return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.4g} ({:.4g} to {:.4g})", value, low, high)
-                                                   : fmt::format("{:.4g}", value);
-}
 
 NamedLaws no_soft_laws() {
   NamedLaws laws;
@@ -268,6 +264,7 @@ std::string equation_text(const EquationSummary& s) {
   std::string text =
       fmt::format("equation of state, {} form: K = {}, n = {}; pressures follow it to {:.2g} %\n", to_string(s.form),
                   text_of(s.modulus), text_of(s.exponent), 100.0 * s.pressure_deviation);
+  if (s.message != "fitted") text += "  " + s.message + "\n";
   for (const OnsetSummary& o : s.onsets)
     text += fmt::format("  {}: phi_J = {}, K by itself {:.4g}\n", o.name, text_of(o.onset), o.own_modulus);
   if (s.onsets.size() > 1)
@@ -328,6 +325,8 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
   s.predictions = predictions(scene, results, run.seed);
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
+  else if (s.equation && s.equation->message != "fitted")
+    s.head.remarks.push_back("equation of state: " + s.equation->message);
   s.head.files["points"] = run.path("material.csv");
   s.head.files["report"] = run.path("report.html");
   return out;

@@ -63,9 +63,6 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
 
 std::string people_text(const MaterialSummary& summary);
 
-/// The interval behind the value, where it is known.
-std::string interval_text(double value, double low, double high);
-
 /// The least and the largest p/E above 0 that take part in the equation of state.
 std::array<double, 2> pressure_range(const std::vector<VariantResult>& results);
 

@@ -138,7 +138,8 @@ std::string share_table(const std::vector<Variant>& variants) {
 }
 
 std::string interval(const StateEstimate& e, int digits = 4) {
-  if (!std::isfinite(e.low) || !std::isfinite(e.high)) return format_number(e.value, digits);
+  if (!std::isfinite(e.low) || !std::isfinite(e.high))
+    return format_number(e.value, digits) + " (interval not determined)";
   return fmt::format("{} ({} to {})", format_number(e.value, digits), format_number(e.low, digits),
                      format_number(e.high, digits));
 }
@@ -193,6 +194,7 @@ std::string equation_part(const std::vector<Variant>& variants, const RunData& r
   out += paragraph(fmt::format(
       "Equation of state, {} form: K = {}, n = {}; pressures follow it to {} % (95 % intervals in brackets).",
       to_string(s.form), interval(s.modulus), interval(s.exponent), format_number(100.0 * s.pressure_deviation, 2)));
+  if (s.message != "fitted") out += paragraph(s.message + ".");
   HtmlTable onsets({"variant", "span", "samples", "φ_J", "K by itself"});
   for (const OnsetSummary& o : s.onsets)
     onsets.row({o.name, format_number(o.span, 3), std::to_string(o.samples), interval(o.onset),

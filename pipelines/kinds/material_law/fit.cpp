@@ -1,13 +1,13 @@
 #include "pipelines/kinds/material_law/fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "calibrate/excess_pores_fit.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "pipelines/kinds/material_law/fines_in_cells.h"
@@ -20,8 +20,8 @@ namespace {
 Estimate mean_of_samples(const std::vector<double>& values) {
   const MeanError m = mean_error(values);
   if (m.n < 2) return {m.mean, kInfinity, -kInfinity, kInfinity};
-  const double half = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(m.n) - 1.0) * m.error;
-  return {m.mean, m.error, m.mean - half, m.mean + half};
+  const double half = student95(static_cast<double>(m.n) - 1.0) * m.error;
+  return {m.mean, m.error, std::max(0.0, m.mean - half), m.mean + half};
 }
 
 class MaterialLawFit {
@@ -54,6 +54,8 @@ class MaterialLawFit {
   void describe() {
     const MacroSpec& spec = result(LawVariant::fines).variant->setup.spec;
     CellCard& card = out_.card;
+    card.youngs_modulus = spec.youngs_modulus;
+    card.density = spec.density;
     card.poisson_ratio = spec.poisson_ratio;
     card.grain_friction = spec.friction;
     card.preparation = to_string(spec.preparation);
@@ -204,6 +206,12 @@ std::string missing_group(const std::vector<VariantResult>& results, const State
 }
 
 }  // namespace
+
+std::vector<LawNumber> numbers_of(const CellCard& card) {
+  return {{"K", card.modulus},          {"n", card.exponent},     {"e_J", card.void_ratio},
+          {"e_c", card.excess_alone},   {"w_inf", card.excess_many}, {"xi", card.excess_decay},
+          {"K0", card.lateral_ratio},   {"mu_f", card.friction},  {"chi", card.stiffness}};
+}
 
 MaterialLaw fit_material_law(const MaterialLawScene& scene, const std::vector<VariantResult>& results,
                              const std::optional<StateFit>& states, std::uint64_t seed) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/material/run.h"
 #include "pipelines/kinds/material_law/fit.h"
@@ -12,7 +13,7 @@ namespace softgrain {
 
 namespace {
 
-std::string text_of(const Estimate& e) { return interval_text(e.value, e.low, e.high); }
+std::string text_of(const Estimate& e) { return interval_text(e); }
 
 std::string law_text(const CellLawSummary& s) {
   std::string text = fmt::format("cell law, {} form:", to_string(s.form));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/data/estimate_words.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/material_law/summary.h"
 #include "pipelines/report/html.h"
@@ -25,15 +26,31 @@ std::string meaning_of(const std::string& name) {
 }
 
 std::string interval_of(const Estimate& e) {
-  if (!std::isfinite(e.low) || !std::isfinite(e.high)) return "–";
+  if (!interval_known(e.low, e.high)) return "not determined";
   return fmt::format("{} to {}", format_number(e.low, 3), format_number(e.high, 3));
 }
 
+std::string of_pair(const CellLawSummary& law, const std::string& name) {
+  for (const LawNumber& n : law.of_pair)
+    if (n.name == name) return format_number(n.estimate.value);
+  return "–";
+}
+
 std::string number_table(const CellLawSummary& law) {
-  HtmlTable table({"number", "meaning", "value", "95 % interval"}, 2);
-  for (const LawNumber& n : law.numbers)
-    table.row({n.name, meaning_of(n.name), format_number(n.estimate.value), interval_of(n.estimate)});
-  return table.html();
+  const bool recipe = !law.of_pair.empty();
+  std::vector<std::string> header{"number", "meaning", recipe ? "value on the card" : "value", "95 % interval"};
+  if (recipe) header.emplace_back("of the two coarsest levels alone");
+  HtmlTable table(header, 2);
+  for (const LawNumber& n : law.numbers) {
+    std::vector<std::string> row{n.name, meaning_of(n.name), format_number(n.estimate.value), interval_of(n.estimate)};
+    if (recipe) row.emplace_back(of_pair(law, n.name));
+    table.row(row);
+  }
+  if (!recipe) return table.html();
+  return table.html() +
+         paragraph("The card holds for grains of the coarsest level among everything finer: e_J is that of all finer "
+                   "levels together, and w_inf goes with it. The figures show what was measured on the two coarsest "
+                   "levels alone.");
 }
 
 double half_of(const Estimate& e) { return std::isfinite(e.high) ? 0.5 * (e.high - e.low) : 0.0; }

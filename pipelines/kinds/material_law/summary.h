@@ -82,7 +82,8 @@ struct CellLawSummary {
   bool usable = false;
   StateForm form = StateForm::porosity;
   double split = 0.0;
-  std::vector<LawNumber> numbers;  ///< those that were determined
+  std::vector<LawNumber> numbers;  ///< those that were determined; of a card that was written, its own
+  std::vector<LawNumber> of_pair;  ///< of a recipe: what its two coarsest levels alone came to, before all finer ones
   std::vector<MixtureSummary> mixtures;
   std::optional<BandSummary> band;
   double excess_deviation = 0.0;  ///< root mean square of W/V_c about its form
@@ -96,6 +97,7 @@ void fields(auto&& visit, Of<CellLawSummary> auto& s) {
   visit("form", s.form);
   visit("split", s.split);
   visit("numbers", s.numbers);
+  visit("numbers_of_two_coarsest_levels", s.of_pair, kLeftOut);
   visit("mixtures", s.mixtures);
   visit("band", s.band, kLeftOut);
   visit("excess_deviation", s.excess_deviation);

@@ -9,6 +9,7 @@
 #include "calibrate/state_curves.h"
 #include "common/core/statistics.h"
 #include "common/data/card_text.h"
+#include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/compare/stage_results.h"
 
@@ -25,15 +26,25 @@ MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResu
   return fit_material_law(law, some, states, seed);
 }
 
+double grain_density(const RecipeScene& scene) {
+  if (scene.constituents.empty()) return scene.material.variants.front().setup.spec.density;
+  double mass = 0.0;
+  for (const Constituent& c : scene.constituents) mass += c.volume_share * c.density;
+  return mass;
+}
+
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines) {
   const auto ratio_of = [](double onset) { return 1.0 / onset - 1.0; };
   CellCard card = coarsest;
   const double value = ratio_of(fines.onset.value);
   const double factor = value / coarsest.void_ratio.value;
-  card.void_ratio = {value, fines.onset.standard_error / (fines.onset.value * fines.onset.value),
-                     ratio_of(fines.onset.high), ratio_of(std::max(fines.onset.low, 1e-9))};
+  card.void_ratio = {value, kInfinity, -kInfinity, kInfinity};
+  if (interval_known(fines.onset.low, fines.onset.high))
+    card.void_ratio = {value, fines.onset.standard_error / (fines.onset.value * fines.onset.value),
+                       ratio_of(fines.onset.high), ratio_of(std::max(fines.onset.low, 1e-9))};
   Estimate& many = card.excess_many;
   many = {many.value * factor, many.standard_error * factor, many.low * factor, many.high * factor};
+  card.density = grain_density(scene);
   card.fines_ratio = scene.levels[1].high / scene.sizes.smallest();
   card.fines_sizes = fmt::format("{} levels of a recipe, put together", scene.levels.size() - 1);
   return card;
@@ -112,13 +123,15 @@ ResponseShape shape_of(const RecipeScene& scene, const std::vector<VariantResult
 Estimate lateral_ratio(const ResponseShape& shape) {
   if (shape.ratio.empty()) return {};
   const double half = kNormal95 * shape.ratio_deviation.back();
-  return {shape.ratio.back(), shape.ratio_deviation.back(), shape.ratio.back() - half, shape.ratio.back() + half};
+  return {shape.ratio.back(), shape.ratio_deviation.back(), std::max(0.0, shape.ratio.back() - half),
+          shape.ratio.back() + half};
 }
 
 Estimate solid_fraction_of(const WholeLaw& law) {
   const auto at = [&](double onset) {
     return state_phi(law.form, law.modulus.value, law.exponent.value, onset, law.start_pressure);
   };
+  if (!interval_known(law.onset.low, law.onset.high)) return {at(law.onset.value), kInfinity, -kInfinity, kInfinity};
   const double low = at(law.onset.low);
   const double high = at(law.onset.high);
   return {at(law.onset.value), 0.5 * (high - low) / kNormal95, low, high};
@@ -132,6 +145,7 @@ RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps) {
   };
   const auto axial = [](double p, double ratio) { return 3.0 * p / (1.0 + 2.0 * ratio); };
   const ResponseShape& shape = law.shape;
+  const bool known = interval_known(law.onset.low, law.onset.high);
   for (std::int64_t k = 0; k <= steps; ++k) {
     const double e = strain * static_cast<double>(k) / static_cast<double>(steps);
     const double factor = straight(shape.strain, shape.factor, e);
@@ -147,8 +161,15 @@ RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps) {
     out.strain.push_back(e);
     out.axial.push_back(value);
     out.lateral.push_back(ratio * value);
+    if (!known) continue;
+    const double p = (value + 2.0 * out.lateral.back()) / 3.0;
+    if (law.pressure_high > 0.0 && p > kHardlyBeyond * law.pressure_high) {  // nothing says how far off it is there
+      out.low.push_back(kNaN);
+      out.high.push_back(kNaN);
+      continue;
+    }
     out.low.push_back(std::min(low, value));
-    out.high.push_back(std::max(high, value));
+    out.high.push_back(std::max(high, value));  // an onset of 1 leaves no pores to press
   }
   return out;
 }
@@ -157,7 +178,8 @@ void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval
   if (curves.empty() || curves.front().axial.size() < 2) return;
   if (!(interval[1] > 0.0)) {  // so far as the lower end of its band comes
     const RecipeCurve& first = curves.front();
-    const double low = first.low.empty() ? first.axial.back() : first.low.back();
+    const auto known = std::find_if(first.low.rbegin(), first.low.rend(), [](double x) { return std::isfinite(x); });
+    const double low = known == first.low.rend() ? first.axial.back() : *known;
     interval[1] = low > first.axial.front() ? low : first.axial.back();
     interval[0] = std::max(first.axial.front(), 0.5 * interval[1]);
   }
@@ -199,8 +221,10 @@ void write_material_card(const RecipeScene& scene, const WholeLaw& law, const st
                  estimate_text(ratio));
   fmt::format_to(out, "\n[range]\npressure = [{}, {}]  # p/E of the fit\n", real(law.pressure_low),
                  real(law.pressure_high));
-  fmt::format_to(out, "\n[measured]\nnu = {}\nmu = {}\npreparation = {}\nstart_pressure = {}\nsamples = {}\n",
-                 real(spec.poisson_ratio), real(spec.friction), quoted(to_string(spec.preparation)),
+  fmt::format_to(out,
+                 "\n[measured]\nE = {}  # [Pa]\ndensity = {}  # [kg/m^3], mean over the solid volume\n"
+                 "nu = {}\nmu = {}\npreparation = {}\nstart_pressure = {}\nsamples = {}\n",
+                 real(spec.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction), quoted(to_string(spec.preparation)),
                  real(spec.start_pressure), scene.material.variants.front().setup.samples);
   for (const RecipeLevel& level : scene.levels)
     fmt::format_to(out, "\n[[level]]\nradius_min = {}  # m\nradius_max = {}\nvolume_share = {}\n", real(level.low),

@@ -15,6 +15,9 @@ namespace softgrain {
 MaterialLaw fit_coarsest(const RecipeScene& scene, const std::vector<VariantResult>& results,
                          const std::optional<StateFit>& states, std::uint64_t seed);
 
+/// Of the grains of the whole, mean over their solid volume [kg/m^3].
+double grain_density(const RecipeScene& scene);
+
 /// The same among everything finer: e_J is theirs by `fines`, and w_inf goes with it, as pores of LevelForms do.
 CellCard among_all_fines(const RecipeScene& scene, const CellCard& coarsest, const OnsetByForms& fines);
 
@@ -46,12 +49,16 @@ Estimate solid_fraction_of(const WholeLaw& law);
 
 /// Oedometric compression from the start pressure, `steps` points to `strain`: p by phi = phi_0/(1 - strain) times the
 /// factor of the shape, axial stress 3 p/(1 + 2 K0); beyond the strain that was measured the shape stays. The band
-/// holds the ends of the onset, and of factor and ratio twice their deviations among packings.
+/// holds the ends of the onset, and of factor and ratio twice their deviations among packings; it has NaN
+/// where the pressure is beyond that of the fit, and is empty where the onset has no interval.
 RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps);
 
 /// Sets the constrained moduli of all curves between the same two axial stresses over E; zeros: from half the stress
 /// where the lower end of the first one's band ends to that. A curve that does not go through both has none.
 void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval);
+
+/// Pressures this little above those of the fit are not yet called extrapolated.
+inline constexpr double kHardlyBeyond = 1.05;
 
 /// Lateral over axial stress where the shape ends.
 Estimate lateral_ratio(const ResponseShape& shape);

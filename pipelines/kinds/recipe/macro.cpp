@@ -8,6 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
 #include "common/core/statistics.h"
+#include "common/data/estimate_words.h"
 #include "pipelines/kinds/macro/packing_source.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_models/models.h"
@@ -90,6 +91,7 @@ RecipeCurve mean_curve(const std::string& name, const std::vector<MacroCurve>& c
 RecipeCurve press_in_cells(const RecipeScene& scene, const CellCard& card, double strain, const Run& run,
                            std::vector<MacroCurve>& kept) {
   RecipeCurve out = cells_curve(scene, card, strain, "cell law", "cells", run, kept);
+  if (!interval_known(card.void_ratio.low, card.void_ratio.high)) return out;
   CellCard low = card;
   low.void_ratio.value = card.void_ratio.high;  // looser fines bear less
   CellCard high = card;

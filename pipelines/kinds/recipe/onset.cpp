@@ -11,6 +11,7 @@
 #include "calibrate/bootstrap.h"
 #include "calibrate/rod_packing.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/statistics.h"
 
 namespace softgrain {
@@ -51,7 +52,7 @@ using Onsets = std::vector<double>;
 }  // namespace
 
 struct LevelForms::Parts {
-  Parts(const RecipeScene& s, const StateFit& fit) : scene(s) {
+  Parts(const RecipeScene& s, const StateFit& fit) : scene(s), degrees(fit.degrees) {
     const auto& variants = scene.material.variants;
     estimate.assign(variants.size(), 0.0);
     measured.resize(variants.size());
@@ -111,6 +112,7 @@ struct LevelForms::Parts {
   }
 
   const RecipeScene& scene;
+  int degrees;  ///< that replicates know of the scatter by
   Onsets estimate;
   std::vector<Estimate> measured;
   std::vector<Onsets> replicates;
@@ -149,12 +151,17 @@ OnsetByForms LevelForms::joined_onset(std::size_t first, std::size_t count, doub
   }
   Estimate& e = out.onset;
   e.value = out.levels + parts_->share_of_rods * (out.rods - out.levels);
-  if (levels.empty()) {
+  if (levels.empty() || parts_->degrees < 1) {
     e = {e.value, kInfinity, -kInfinity, kInfinity};
     return out;
   }
-  const auto [levels_low, levels_high] = interval95(levels);
-  const auto [rods_low, rods_high] = interval95(by_rods);
+  const double students = student95(parts_->degrees) / kNormal95;
+  const auto interval = [&](double value, const std::vector<double>& replicates) {
+    const auto [low, high] = interval95(replicates);
+    return widened(value, low, high, students, true);
+  };
+  const auto [levels_low, levels_high] = interval(out.levels, levels);
+  const auto [rods_low, rods_high] = interval(out.rods, by_rods);
   const double misfit = kNormal95 * parts_->deviation;
   // Replicates need not lie about the estimate: both forms are inside, and with them the value.
   e.low = std::max(0.0, std::min({levels_low, rods_low - misfit, out.levels, out.rods}) - widen);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "common/data/estimate_words.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/kinds/material_law/results.h"
 #include "pipelines/kinds/recipe/run.h"
@@ -15,10 +16,9 @@ std::vector<HeadLine> lines_of(const report::RunData& run) {
   if (r.levels.empty() || !r.onset) return {};
   return {
       {"Recipe",
-       fmt::format("{} levels, largest over smallest {}; begins to bear at a solid fraction of {} ({} to {}); a cubic "
-                   "metre holds {} grains.",
-                   r.levels.size(), report::format_number(r.span, 3), report::format_number(r.onset->value, 4),
-                   report::format_number(r.onset->low, 4), report::format_number(r.onset->high, 4),
+       fmt::format("{} levels, largest over smallest {}; begins to bear at a solid fraction of {}; a cubic metre holds {} "
+                   "grains.",
+                   r.levels.size(), report::format_number(r.span, 3), interval_text(*r.onset),
                    report::format_number(r.grains_per_cubic_metre, 2))}};
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "common/core/error.h"
+#include "common/data/estimate_words.h"
 #include "common/io/text_file.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/material_law/results.h"
@@ -189,6 +191,7 @@ class RecipeRun {
       const CellCard card =
           among_all_fines(scene_, fitted.card, forms.joined_onset(1, scene_.levels.size() - 1, widen));
       write_cell_card(card, run_.path(kCellLawFile), run_.provenance);
+      summary_.law.of_pair = std::exchange(summary_.law.numbers, numbers_of(card));
       head().files["cell_law"] = run_.path(kCellLawFile);
       std::vector<MacroCurve> kept;
       out().curves.push_back(press_in_cells(scene_, card, end, run_, kept));
@@ -238,12 +241,15 @@ class RecipeRun {
     if (summary_.law.numbers.empty() || !summary_.law.usable) head().status = RunStatus::not_usable;
     const RecipeCurve& whole = out().curves.front();
     const double p = (whole.axial.back() + 2.0 * whole.lateral.back()) / 3.0;
-    constexpr double kHardly = 1.05;
-    if (p > kHardly * law_.pressure_high)
+    if (p > kHardlyBeyond * law_.pressure_high)
       head().remarks.push_back(
           fmt::format("at a strain of {:.3g} the pressure is {:.2g} E, above all that the equation "
-                      "of state was fitted to ({:.2g} E): it is extrapolated there",
+                      "of state was fitted to ({:.2g} E): it is extrapolated there, without an interval",
                       end, p, law_.pressure_high));
+  }
+
+  static std::string end_of_band(const std::vector<double>& ends, std::size_t k) {
+    return k < ends.size() && std::isfinite(ends[k]) ? fmt::format("{:.8g}", ends[k]) : "";
   }
 
   [[nodiscard]] TextTable table() const {
@@ -251,8 +257,7 @@ class RecipeRun {
     for (const RecipeCurve& c : summary_.recipe.curves)
       for (std::size_t k = 0; k < c.strain.size(); ++k)
         t.rows.push_back({c.name, fmt::format("{:.6g}", c.strain[k]), fmt::format("{:.8g}", c.axial[k]),
-                          fmt::format("{:.8g}", c.lateral[k]), c.low.empty() ? "" : fmt::format("{:.8g}", c.low[k]),
-                          c.high.empty() ? "" : fmt::format("{:.8g}", c.high[k])});
+                          fmt::format("{:.8g}", c.lateral[k]), end_of_band(c.low, k), end_of_band(c.high, k)});
     return t;
   }
 
@@ -263,7 +268,7 @@ class RecipeRun {
   RecipeSummary summary_;
 };
 
-std::string text_of(const Estimate& e) { return interval_text(e.value, e.low, e.high); }
+std::string text_of(const Estimate& e) { return interval_text(e); }
 
 std::string recipe_text(const RecipeSummary& s) {
   const RecipeOutcome& r = s.recipe;
@@ -292,7 +297,9 @@ std::string recipe_text(const RecipeSummary& s) {
   for (const RecipeCurve& c : r.curves) {
     if (c.axial.empty()) continue;
     text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}", c.name, c.axial.back(),
-                        c.low.empty() ? "" : fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back()),
+                        c.low.empty()                    ? ""
+                        : std::isfinite(c.low.back()) ? fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back())
+                                                      : " (extrapolated: no interval)",
                         c.strain.back());
     if (c.modulus)
       text += fmt::format("; constrained modulus {} E from {:.3g} to {:.3g} E",

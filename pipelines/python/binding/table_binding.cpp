@@ -5,7 +5,8 @@
 #include <sstream>
 
 #include "common/contact/crowd_from_table.h"
-#include "common/core/statistics.h"
+#include "common/core/limits.h"
+#include "common/data/crowd_interval.h"
 #include "common/data/crowd_replicates.h"
 #include "pipelines/python/binding/binding_tools.h"
 
@@ -88,17 +89,39 @@ std::vector<CrowdLaws> drawn_laws(const LawTable& table, Crowd form, const Table
   return out;
 }
 
-/// 2.5 and 97.5 % quantiles over the laws, state by state.
-void band(const std::vector<CrowdLaws>& drawn, const std::vector<law::CrowdNeighbour>& around, LawOutput what,
-          int which, std::span<const double> overlap, std::span<double> low, std::span<double> high) {
+/// Whether each state lies beyond what was measured: a single overlap, or the equivalent volume.
+std::vector<char> beyond_range(const CrowdLaws& laws, const std::vector<law::CrowdNeighbour>& around,
+                               const LawTableEntry& entry, Crowd form, std::span<const double> overlap) {
+  constexpr double kRounding = 1e-9;
+  const std::size_t neighbours = around.size();
+  std::vector<char> out(overlap.size() / neighbours, 0);
+  std::vector<double> volume(out.size());
+  crowd_array(laws, around, LawOutput::volume, 0, overlap, volume);
+  for (std::size_t k = 0; k < neighbours; ++k) {
+    const double end = measured_overlap(entry, form, around[k].kind, around[k].ratio);
+    for (std::size_t s = 0; s < out.size(); ++s)
+      if (overlap[s * neighbours + k] > end * (1.0 + kRounding)) out[s] = 1;
+  }
+  for (std::size_t s = 0; s < out.size(); ++s)
+    if (entry.volume_max > 0.0 && volume[s] > entry.volume_max * (1.0 + kRounding)) out[s] = 1;
+  return out;
+}
+
+/// 95 % intervals over the laws of replicates about the law itself, state by state.
+void band(const CrowdLaws& laws, const std::vector<CrowdLaws>& drawn, int packings,
+          const std::vector<law::CrowdNeighbour>& around, LawOutput what, int which, std::span<const double> overlap,
+          std::span<double> low, std::span<double> high) {
+  std::vector<double> value(low.size());
+  crowd_array(laws, around, what, which, overlap, value);
   std::vector<double> rows(drawn.size() * low.size());
   for (std::size_t r = 0; r < drawn.size(); ++r)
     crowd_array(drawn[r], around, what, which, overlap, std::span(rows).subspan(r * low.size(), low.size()));
   std::vector<double> one(drawn.size());
   for (std::size_t k = 0; k < low.size(); ++k) {
     for (std::size_t r = 0; r < drawn.size(); ++r) one[r] = rows[r * low.size() + k];
-    low[k] = quantile(one, 0.025);
-    high[k] = quantile(one, 0.975);
+    const auto interval = refit_interval(value[k], one, packings);
+    low[k] = interval ? interval->low : kNaN;
+    high[k] = interval ? interval->high : kNaN;
   }
 }
 
@@ -157,12 +180,16 @@ std::optional<std::pair<Array, Array>> TableBinding::interval(const TableChoice&
   const std::span<double> to_low = view(low);
   const std::span<double> to_high = view(high);
   const pybind11::gil_scoped_release others_may_run;
-  require_allowed(laws_of(entry, form, choice, scale), around, entry, choice, in);
+  const CrowdLaws laws = laws_of(entry, form, choice, scale);
+  require_allowed(laws, around, entry, choice, in);
   const std::vector<CrowdLaws> drawn = drawn_laws(table_, form, choice, scale);
   for (std::size_t at = 0; at < to_low.size(); at += kChunk) {
     const std::size_t n = std::min(kChunk, to_low.size() - at);
-    band(drawn, around, output, which, in.subspan(at * around.size(), n * around.size()), to_low.subspan(at, n),
-         to_high.subspan(at, n));
+    const std::span<const double> some = in.subspan(at * around.size(), n * around.size());
+    band(laws, drawn, entry.packings, around, output, which, some, to_low.subspan(at, n), to_high.subspan(at, n));
+    const std::vector<char> beyond = beyond_range(laws, around, entry, form, some);
+    for (std::size_t k = 0; k < n; ++k)
+      if (beyond[k] != 0) to_low[at + k] = to_high[at + k] = kNaN;
   }
   return std::pair{std::move(low), std::move(high)};
 }

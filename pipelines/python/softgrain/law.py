@@ -114,15 +114,16 @@ class CardLaw(Law):
 
     def force_interval(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
         """95 % interval of force(): (low, high), from the bootstrap beside the card, else linearised from its covariance; None when
-        the card keeps neither."""
+        the card keeps neither; NaN beyond what was measured."""
         return self._interval(kind, "force", delta, radius, modulus, False, beyond)
 
     def stiffness_interval(self, delta, kind="soft-solid", *, radius=None, modulus=None, beyond=None):
-        """95 % interval of stiffness(): (low, high), linearised from the covariance; None without one."""
+        """95 % interval of stiffness(): (low, high), linearised from the covariance; None without one, NaN beyond what was
+        measured."""
         return self._interval(kind, "stiffness", delta, radius, modulus, False, beyond)
 
     def tangential_interval(self, delta, kind="soft-solid", *, slope="initial", radius=None, modulus=None, beyond=None):
-        """95 % interval of tangential_stiffness(): (low, high), or None."""
+        """95 % interval of tangential_stiffness(): (low, high), or None; NaN beyond what was measured."""
         return self._interval(kind, "tangential", delta, radius, modulus, _is_secant(slope), beyond)
 
     def inside(self, delta, kind="soft-solid"):
@@ -200,11 +201,12 @@ class TableLaw(Law):
         return self._even("volume", delta, partner, ratio, arrangement, None, None, choice)
 
     def force_interval(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
-        """95 % interval of force(): (low, high), from the refits beside the table; None when it keeps none."""
+        """95 % interval of force(): (low, high), from the refits beside the table; None when it keeps none; NaN beyond what was
+        measured."""
         return self._even_interval("force", delta, partner, ratio, arrangement, radius, modulus, choice)
 
     def stiffness_interval(self, delta, partner="plane", *, ratio=1.0, arrangement="one", radius=None, modulus=None, **choice):
-        """95 % interval of stiffness(): (low, high), or None."""
+        """95 % interval of stiffness(): (low, high), or None; NaN beyond what was measured."""
         return self._even_interval("stiffness", delta, partner, ratio, arrangement, radius, modulus, choice)
 
     def forces(self, overlap, direction, partner="plane", ratio=1.0, *, radius=None, modulus=None, **choice):

@@ -1,0 +1,36 @@
+#include "common/core/few_samples.h"
+
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/limits.h"
+#include "common/core/statistics.h"
+
+namespace softgrain {
+
+double student95(double degrees) { return degrees >= 1.0 ? gsl_cdf_tdist_Pinv(0.975, degrees) : kInfinity; }
+
+double few_samples_factor(std::size_t samples) {
+  if (samples < 2) return kInfinity;
+  const auto n = static_cast<double>(samples);
+  return std::sqrt(n / (n - 1.0)) * student95(n - 1.0) / kNormal95;
+}
+
+std::pair<double, double> widened(double value, double low, double high, double factor, bool positive) {
+  const auto away = [&](double end) {
+    if (!std::isfinite(end)) return end;
+    if (positive && value > 0.0 && end > 0.0) return value * std::pow(end / value, factor);
+    return end == value ? value : value + factor * (end - value);
+  };
+  const double least = away(std::min(low, value));
+  return {positive ? std::max(0.0, least) : least, away(std::max(high, value))};
+}
+
+bool is_told_from_zero(std::size_t samples, double mean, double error) {
+  if (samples < 2) return true;
+  return std::abs(mean) > student95(static_cast<double>(samples) - 1.0) * error;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,76 @@
+// What few samples leave open, and how estimates are put into words.
+#include "common/core/few_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/limits.h"
+#include "common/data/crowd_choice.h"
+#include "common/data/estimate_words.h"
+
+namespace softgrain {
+namespace {
+
+TEST(FewSamples, WidenByStudentsT) {
+  EXPECT_NEAR(student95(1.0), 12.7062, 1e-4);
+  EXPECT_NEAR(student95(6.0), 2.446912, 1e-6);
+  EXPECT_EQ(student95(0.0), kInfinity);
+  EXPECT_NEAR(few_samples_factor(7), std::sqrt(7.0 / 6.0) * 2.446912 / 1.959964, 1e-6);
+  EXPECT_NEAR(few_samples_factor(100000), 1.0, 1e-4);
+  EXPECT_EQ(few_samples_factor(1), kInfinity);
+}
+
+TEST(FewSamples, WidenEachSideAndStayAboveZero) {
+  const auto linear = widened(1.0, 0.5, 3.0, 2.0, false);
+  EXPECT_EQ(linear, std::make_pair(0.0, 5.0));
+  EXPECT_EQ(widened(0.1, -0.2, 0.3, 2.0, false).first, -0.5);
+  const auto positive = widened(1.0, 0.5, 4.0, 2.0, true);
+  EXPECT_NEAR(positive.first, 0.25, 1e-12);
+  EXPECT_NEAR(positive.second, 16.0, 1e-12);
+  EXPECT_EQ(widened(0.1, 0.0, 0.3, 3.0, true).first, 0.0);
+  EXPECT_NEAR(widened(0.0, 0.0, 0.2, 3.0, true).second, 0.6, 1e-12);
+  EXPECT_EQ(widened(1.0, -kInfinity, kInfinity, 2.0, false), std::make_pair(-kInfinity, kInfinity));
+}
+
+TEST(FewSamples, TellZeroApartOrDoNot) {
+  EXPECT_FALSE(is_told_from_zero(2, 310.0, 40.6));  // t of one degree: 516
+  EXPECT_TRUE(is_told_from_zero(2, 310.0, 20.0));
+  EXPECT_FALSE(is_told_from_zero(6, -0.17, 0.5));
+  EXPECT_TRUE(is_told_from_zero(6, -0.17, 0.05));
+  EXPECT_TRUE(is_told_from_zero(1, 0.1, kNaN));
+}
+
+TEST(EstimateWords, SayWhatIsNotDetermined) {
+  EXPECT_EQ(interval_text(0.0447, 0.0441, 0.0453), "0.0447 (0.0441 to 0.0453)");
+  EXPECT_EQ(interval_text(0.438, -kInfinity, kInfinity), "0.438 (interval not determined)");
+  EXPECT_EQ(interval_text(0.438, 0.438, 0.438), "0.438 (interval not determined)");
+  EXPECT_EQ(bracket_text({1.0, 0.1, 0.8, 1.2}, 100.0), "100 [80, 120]");
+  EXPECT_EQ(bracket_text({132.9, 0.0, 132.9, 132.9}), "132.9 [not determined]");
+  // Ends that differ are not the same text.
+  EXPECT_EQ(bracket_text({132.90002, 0.0, 132.9, 132.9001}), "132.9 [132.9, 132.9001]");
+}
+
+CrowdLaw law_of(Crowd form, double error, LawStatus status = LawStatus::good) {
+  CrowdLaw law;
+  law.form = form;
+  law.error_cross = error;
+  law.status = status;
+  return law;
+}
+
+TEST(FormLabel, SaysWhetherErrorsOrASceneChose) {
+  LawTableEntry entry;
+  entry.laws = {law_of(Crowd::pair, 0.5), law_of(Crowd::bag, 0.2), law_of(Crowd::directional, 0.1)};
+  entry.best = Crowd::directional;
+  EXPECT_EQ(form_label(entry, entry.laws[2]), "directional (best)");
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag");
+  entry.best = Crowd::bag;
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (chosen by the scene)");
+  EXPECT_EQ(form_label(entry, entry.laws[2]), "directional");
+  entry.laws[2].status = LawStatus::underdetermined;  // what the data do not determine is not preferred
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (best)");
+}
+
+}  // namespace
+}  // namespace softgrain
