@@ -132,7 +132,8 @@ void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   else if (options.replicates < 1)
     w.reasons.emplace_back("no bootstrap replicates were asked for");
   if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient) return;
-  BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor};
+  BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor,
+                       options.zeroed_below};
   const std::uint64_t stream = static_cast<std::uint64_t>(report.law.kind) + 1;
   BootstrapResult result =
       report.from_residuals ? residual_bootstrap(input, options.given_errors, options.replicates, options.seed, stream)
