@@ -18,6 +18,7 @@ struct BootstrapInput {
   JointParameters start;                      ///< the fit to the full ensemble
   std::vector<double> threshold_shares = {};  ///< further starts: the threshold of `start` times these
   double scatter_floor = 0.0;                 ///< of experiment_errors(), for redrawn residuals
+  std::vector<double> zeroed_below = {};      ///< see FitOptions
 };
 
 struct BootstrapResult {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calibrate/bootstrap.h"
+#include "calibrate/force_offset.h"
 #include "calibrate/law_estimate.h"
 
 namespace softgrain {
@@ -252,6 +253,25 @@ void add_mirror(ExperimentFit& out) {
   add(out, std::move(other));
 }
 
+/// Returns whether a sample has an offset that its readings do not determine.
+bool take_off_offsets(ForceCurves& curves, std::vector<double>& zeroed_below) {
+  bool open = false;
+  for (const ForceOffset& o : subtract_offsets(curves)) {
+    open = open || !o.determined;
+    if (!o.determined) continue;
+    zeroed_below.resize(curves.samples.size(), 0.0);
+    zeroed_below[o.sample] = o.below;
+  }
+  return open;
+}
+
+void question(PairLaw& law) {
+  if (law.status != LawStatus::good && law.status != LawStatus::underdetermined) return;
+  law.status = LawStatus::underdetermined;
+  law.reason += std::string(law.reason.empty() ? "" : " ") +
+                "The forces do not vanish with the overlap: an offset that too few readings without contact determine.";
+}
+
 }  // namespace
 
 PreparedCurves prepare_curves(const ForceCurves& curves) {
@@ -305,12 +325,15 @@ ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOp
   out.card.spec = curves.front().spec;
   out.card.relaxation = kExperiment;
   out.card.intervals.clear();
-  for (const ForceCurves& one : curves) {
-    const PreparedCurves prepared = prepare_curves(one);
+  out.curves = curves;
+  for (ForceCurves& one : out.curves) {
     FitOptions o = options;
+    const bool open = options.subtract_offset && take_off_offsets(one, o.zeroed_below);
+    const PreparedCurves prepared = prepare_curves(one);
     o.experiment = true;
     o.given_errors = prepared.errors;
     FitReport report = fit_pair_law(prepared.data, one.kind, o);
+    if (open) question(report.law);
     out.remarks.insert(out.remarks.end(), one.remarks.begin(), one.remarks.end());
     if (!prepared.note.empty()) out.remarks.push_back(prepared.note);
     if (report.from_residuals)

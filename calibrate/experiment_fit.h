@@ -26,11 +26,13 @@ CurveMeans mean_curve(const ForceCurves& curves);
 
 struct ExperimentFit {
   LawCard card;
+  std::vector<ForceCurves> curves;  ///< as they were fitted: without the offsets that were found
   std::vector<FitReport> reports;
   std::vector<std::string> remarks;
 };
 
-/// Fits every pair kind. `mirror`: a kind that was not measured follows from the other one, by symmetry: two equal
+/// Fits every pair kind. A constant force that is read without contact is taken off first, and said (force_offset.h); a
+/// curve that asks for one which its readings do not determine makes the law underdetermined. `mirror`: a kind that was not measured follows from the other one, by symmetry: two equal
 /// soft particles that press on each other are each pressed on a plane at half the overlap,
 ///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D) = kt_soft-solid(D/2)/2.
 /// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so.

@@ -40,6 +40,21 @@ void ResidualDraws::prepare(std::size_t j) {
     }
 }
 
+/// As the measured samples were: by the mean of what lies below the threshold, so that its error is in the intervals.
+void ResidualDraws::set_to_zero(CurveSamples& drawn) const {
+  const std::size_t n = drawn.delta.size();
+  for (std::size_t i = 0; i < drawn.packings && i < input_.zeroed_below.size(); ++i) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t k = 0; k < n && drawn.delta[k] < input_.zeroed_below[i]; ++k) {
+      if (std::isnan(drawn.value[i * n + k])) continue;
+      sum += drawn.value[i * n + k];
+      count += 1.0;
+    }
+    for (std::size_t k = 0; count > 0.0 && k < n; ++k) drawn.value[i * n + k] -= sum / count;
+  }
+}
+
 FitCurves ResidualDraws::draw(RandomStream& random) const {
   FitCurves out = input_.curves;
   for (std::size_t j = 0; j < kLawCurves; ++j) {
@@ -61,6 +76,7 @@ FitCurves ResidualDraws::draw(RandomStream& random) const {
         drawn.value[i * n + k] = curves_[j].fitted[k] + number * amplitude;
       }
     }
+    if (j == 0) set_to_zero(drawn);
     out[j].means = means_of(drawn);
     out[j].sigma = experiment_errors(drawn, out[j].means, given_[j], input_.scatter_floor);
   }

@@ -25,6 +25,7 @@ class ResidualDraws {
     std::size_t block = 1;          ///< points
   };
   void prepare(std::size_t curve);
+  void set_to_zero(CurveSamples& drawn) const;
 
   const BootstrapInput& input_;
   std::array<Curve, kLawCurves> curves_;

@@ -153,7 +153,8 @@ void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   if (!unknown.empty()) w.reasons.push_back(unknown);
   if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient || !unknown.empty()) return;
   report.drawn_packings = report.from_residuals ? 0 : static_cast<std::size_t>(report.law.packings);
-  BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor};
+  BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor,
+                       options.zeroed_below};
   const std::uint64_t stream = static_cast<std::uint64_t>(report.law.kind) + 1;
   BootstrapResult result =
       report.from_residuals ? residual_bootstrap(input, options.given_errors, options.replicates, options.seed, stream)

@@ -36,6 +36,10 @@ struct FitOptions {
   /// alone, and with fewer than min_packings samples intervals from residuals.
   bool experiment = false;
   std::vector<GivenError> given_errors;  ///< of the normal force over E Rs^2, when the experiment states them
+  /// Of each sample the Delta below which its readings made the zero of the force (0: not so); a redrawn sample is set
+  /// to zero again.
+  std::vector<double> zeroed_below{};
+  bool subtract_offset = true;  ///< of an experiment: constant forces without contact (force_offset.h) are taken off
 };
 
 /// What a fit found beside the law itself.

@@ -32,10 +32,11 @@ const PairLaw& usable_law(const LawCard& card, PairKind kind) {
   return *law;
 }
 
-/// The stiffness that was asked for, else the one that was fitted, else none.
-PowerTerm tangential_term(const PairLaw& law, bool use_secant) {
+/// The stiffness that was asked for, else the one that was fitted, else a share of the normal one.
+PowerTerm tangential_term(const LawCard& card, const PairLaw& law, bool use_secant) {
   const bool secant = law.has_tangential_secant && (use_secant || !law.has_tangential_initial);
-  if (!secant && !law.has_tangential_initial) return {};
+  if (!has_tangential(law))
+    return {assumed_kt_ratio(card, law) * law.normal.a.value * law.normal.b.value, law.normal.b.value - 1.0, 0.0};
   const ThresholdPowerLaw& chosen = secant ? law.tangential_secant : law.tangential_initial;
   require_sound(chosen, law.kind, "tangential");
   return term(chosen);
@@ -48,7 +49,7 @@ SoftContact make_soft_contact(const LawCard& card, PairKind kind, double modulus
   const PairLaw& law = usable_law(card, kind);
   SoftContact out;
   out.normal = term(law.normal);
-  out.tangential = tangential_term(law, use_secant);
+  out.tangential = tangential_term(card, law, use_secant);
   out.delta = law.normal.delta.value;
   out.modulus = modulus;
   out.friction = friction;

@@ -1,5 +1,6 @@
 #include "common/data/card_text.h"
 #include "common/core/limits.h"
+#include "common/io/text_encoding.h"
 #include "common/packing/grading_scene.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ std::string real(double value) {
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) {
+  for (const char c : replaced_utf8(text)) {  // a file name may be any bytes, TOML must be UTF-8
     if (c == '"' || c == '\\') out += '\\';
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       out += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(c)));

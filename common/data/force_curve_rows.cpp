@@ -22,7 +22,7 @@ void CurveRows::read() {
     const std::size_t sample = sample_of(row);
     const double delta = overlap(row);
     if (delta < 0.0)
-      ++before_touch_;
+      add_before_touch(row, sample);
     else if (is_rotated(row))
       out_.samples[sample].tangential.push_back(tangential(row, delta));
     else
@@ -30,7 +30,7 @@ void CurveRows::read() {
   }
   if (before_touch_ > 0)
     out_.remarks.push_back(
-        fmt::format("{}: {} points before touch (negative overlap) are left out", file_.path(), before_touch_));
+        fmt::format("{}: {} points before touch (negative overlap) are left out of the fit", file_.path(), before_touch_));
   if (dropped_ > 0)
     out_.remarks.push_back(fmt::format("{}: {} points of unloading are left out", file_.path(), dropped_));
   note_falls();
@@ -70,17 +70,24 @@ TangentialPoint CurveRows::tangential(const CsvRow& row, double delta) const {
 }
 
 std::size_t CurveRows::sample_of(const CsvRow& row) {
-  const std::string name =
-      at_.sample == CurveLayout::none ? std::filesystem::path(file_.path()).stem().string() : row.cells[at_.sample];
+  const bool all = at_.sample == CurveLayout::none;
+  const std::string file = at_.sample_name.empty() ? std::filesystem::path(file_.path()).stem().string() : at_.sample_name;
+  const std::string name = all ? file : row.cells[at_.sample];
   if (name.empty())
     throw BadInput(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),
                                file_.columns()[at_.sample].title));
   const auto [known, is_new] = index_.try_emplace(name, out_.samples.size());
   if (is_new) {
-    out_.samples.push_back({name, {}, {}});
+    out_.samples.push_back({name, {}, {}, {}});
     lines_.emplace_back();
   }
   return known->second;
+}
+
+/// Such readings say where the zero of the force is.
+void CurveRows::add_before_touch(const CsvRow& row, std::size_t sample) {
+  ++before_touch_;
+  if (const auto force = file_.number(row, at_.fn, Unit::force)) out_.samples[sample].before_touch.push_back(*force);
 }
 
 void CurveRows::add_normal(const CsvRow& row, double delta, std::size_t index) {

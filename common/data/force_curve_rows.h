@@ -14,6 +14,7 @@ namespace softgrain {
 struct CurveLayout {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t hn = none, delta = none, fn = none, error = none, sample = none, ht = none, ft = none, kt = none;
+  std::string sample_name;  ///< of all rows, by a comment; empty: the file's
 };
 
 /// Reads the rows of one file into samples.
@@ -32,6 +33,7 @@ class CurveRows {
   [[nodiscard]] bool is_rotated(const CsvRow& row) const;
   [[nodiscard]] TangentialPoint tangential(const CsvRow& row, double delta) const;
   std::size_t sample_of(const CsvRow& row);  ///< index into the samples
+  void add_before_touch(const CsvRow& row, std::size_t sample);
   void add_normal(const CsvRow& row, double delta, std::size_t index);
   void add_stiffness(const CsvRow& row, double delta, ForceCurve& sample) const;
   void note_falls();

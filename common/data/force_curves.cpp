@@ -24,7 +24,7 @@ struct ColumnName {
 const std::vector<ColumnName>& column_names() {
   static const std::vector<ColumnName> names{
       {"hn", {"hn", "h_n", "h", "overlap", "displacement", "indentation"}},
-      {"Delta", {"delta", "delta_n", "strain"}},
+      {"Delta", {"delta", "delta_n", "hn/rs", "h/rs"}},
       {"Fn", {"fn", "f_n", "f", "force", "normal force", "load"}},
       {"standard error", {"se", "error", "standard error", "standard_error", "stderr", "fn_se", "fn error", "sigma"}},
       {"sample", {"sample", "specimen", "test", "packing"}},
@@ -54,9 +54,22 @@ std::string known_columns(const std::string& found) {
   throw BadInput(fmt::format("{}: no column {}; found {}", file.where(file.header_line()), wanted, found));
 }
 
+/// Of spheres a strain may be the overlap over the radius or over the diameter, and the fit differs by a power of two.
+void refuse_ambiguous(const CsvFile& file) {
+  const CsvNames ambiguous{"strain", "compressive strain", "compression", "deformation", "epsilon", "eps", "h/d", "h/2r"};
+  for (const CsvColumn& c : file.columns())
+    if (std::find(ambiguous.begin(), ambiguous.end(), c.name) != ambiguous.end())
+      throw BadInput(
+          fmt::format("{}: column \"{}\": over which length is it? Give the overlap as hn [mm] (also overlap, "
+                      "displacement, indentation), or over the radius Rs as Delta; a strain over the diameter of the "
+                      "soft particle is half of Delta",
+                      file.where(file.header_line()), c.title));
+}
+
 CurveLayout layout_of(const CsvFile& file, std::vector<std::string>& remarks) {
   CurveLayout layout;
   std::string unused;
+  refuse_ambiguous(file);
   for (std::size_t c = 0; c < file.columns().size(); ++c) {
     bool known = false;
     for (std::size_t q = 0; q < column_names().size(); ++q) {
@@ -97,57 +110,62 @@ void require_columns(const CsvFile& file, const CurveLayout& at) {
   unit(at.kt, Unit::stiffness, "kt [N/mm]");
 }
 
-/// A number from a comment of the file.
-std::optional<double> setting(const CsvFile& file, const std::vector<std::string>& keys, Unit unit,
-                              const Range& range) {
-  const auto found = file.setting(keys);
-  if (!found) return std::nullopt;
-  const auto complain = [&](const std::string& problem) {
-    throw BadInput(fmt::format("{}: {} = {}: {}", file.where(found->line), found->key, found->value, problem));
-  };
-  double value = 0.0;
-  try {
-    value = parse_quantity(found->value, unit);
-  } catch (const BadInput& e) {
-    complain(e.what());
-  }
-  if (value < range.low || value > range.high || (range.low_open && value == range.low))
-    complain(fmt::format("must be {} {}{}", range.low_open ? "above" : "at least", range.low,
-                         std::isfinite(range.high) ? fmt::format(" and at most {}", range.high) : ""));
-  return value;
-}
+/// What comments of a press test may say.
+const CsvNames kKind{"kind", "contact"};
+const CsvNames kRadius{"rs", "radius", "shell radius", "r", "particle radius", "radius rs"};
+const CsvNames kModulus{"e", "modulus", "youngs modulus", "young modulus", "elastic modulus", "e modulus"};
+const CsvNames kPoisson{"nu", "poisson ratio", "poissons ratio", "poisson number", "poisson"};
+const CsvNames kFriction{"mu", "friction", "friction coefficient", "coefficient of friction"};
+const CsvNames kDensity{"density", "rho", "grain density"};
+const CsvNames kSample{"sample", "specimen", "test"};
 
 PairKind kind_of(const CsvFile& file, const ForceCurveOptions& options) {
-  if (options.kind) return *options.kind;
-  const auto said = file.setting({"kind"});
+  const auto said = file.word(kKind);
+  if (!said && options.kind) return *options.kind;
   if (!said)
     throw BadInput(file.path() +
                    ": which contact was measured? Give --kind soft-solid or soft-soft, or a comment \"# kind = "
                    "soft-solid\"");
-  if (const auto kind = from_word<PairKind>(said->value)) return *kind;
-  throw BadInput(fmt::format("{}: kind = {}: must be soft-solid or soft-soft", file.where(said->line), said->value));
+  const auto kind = from_word<PairKind>(said->value);
+  if (!kind)
+    throw BadInput(
+        fmt::format("{}: {} = {}: must be soft-solid or soft-soft", file.where(said->line), said->title, said->value));
+  if (options.kind && *options.kind != *kind)
+    throw BadInput(fmt::format("{}: {} = {} contradicts {} {}: leave one of them out", file.where(said->line),
+                               said->title, said->value, options.kind_from, to_string(*options.kind)));
+  return *kind;
+}
+
+/// What the file and `beside` it say, which must be the same.
+std::optional<double> agreed(const CsvFile& file, const CsvNames& names, Unit unit, const std::optional<double>& beside,
+                             const char* from, const char* si) {
+  constexpr double kRounding = 1e-9;
+  const auto value = file.quantity(names, unit, Range::positive());
+  if (!value || !beside) return value ? value : beside;
+  if (std::abs(*value - *beside) <= kRounding * *value) return beside;
+  const CsvSetting said = *file.setting(names);
+  throw BadInput(fmt::format("{}: {} = {} ({:g} {}) contradicts {} {:g} {}: leave one of them out",
+                             file.where(said.line), said.title, said.value, *value, si, from, *beside, si));
 }
 
 SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) {
-  const auto radius = options.shell_radius
-                          ? options.shell_radius
-                          : setting(file, {"rs", "radius", "shell_radius"}, Unit::length, Range::positive());
+  const auto radius = agreed(file, kRadius, Unit::length, options.shell_radius, options.radius_from, "m");
   if (!radius)
     throw BadInput(file.path() +
                    ": the radius of the soft particle is needed: --radius \"16 mm\", or a comment \"# Rs = 16 mm\"");
-  const auto modulus = options.youngs_modulus
-                           ? options.youngs_modulus
-                           : setting(file, {"e", "modulus", "youngs_modulus"}, Unit::pressure, Range::positive());
+  const auto modulus = agreed(file, kModulus, Unit::pressure, options.youngs_modulus, options.modulus_from, "Pa");
   if (!modulus)
     throw BadInput(
         file.path() +
         ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
         "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
   SoftParticleSpec spec = unknown_soft_particle(*radius, *modulus);
-  spec.poisson_ratio =
-      setting(file, {"nu", "poisson_ratio"}, Unit::none, Range::closed(-0.99, 0.5)).value_or(spec.poisson_ratio);
-  spec.friction = setting(file, {"mu", "friction"}, Unit::none, Range::not_negative()).value_or(spec.friction);
-  spec.density = setting(file, {"density", "rho"}, Unit::density, Range::positive()).value_or(spec.density);
+  const auto take = [&](double& value, const CsvNames& names, Unit unit, const Range& range) {
+    value = file.quantity(names, unit, range).value_or(value);
+  };
+  take(spec.poisson_ratio, kPoisson, Unit::none, Range::closed(-0.99, 0.5));
+  take(spec.friction, kFriction, Unit::none, Range::not_negative());
+  take(spec.density, kDensity, Unit::density, Range::positive());
   return spec;
 }
 
@@ -198,11 +216,20 @@ void share_spec(std::vector<ForceCurves>& curves) {
 
 }  // namespace
 
+SaidByFile said_by_comments(const CsvFile& table) {
+  return {table.setting(kKind).has_value(), table.setting(kRadius).has_value(), table.setting(kModulus).has_value()};
+}
+
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options) {
   const CsvFile file = CsvFile::read(path);
   ForceCurves out;
-  const CurveLayout at = layout_of(file, out.remarks);
+  CurveLayout at = layout_of(file, out.remarks);
   require_columns(file, at);
+  file.require_known_comments({kRadius, kModulus, kKind, kPoisson, kFriction, kDensity, kSample}, "a press test");
+  if (const auto sample = file.word(kSample)) at.sample_name = sample->value;
+  if (!at.sample_name.empty() && at.sample != CurveLayout::none)
+    throw BadInput(fmt::format("{}: samples are named by the column \"{}\": leave the comment out",
+                               file.where(file.setting(kSample)->line), file.columns()[at.sample].title));
   out.kind = kind_of(file, options);
   out.spec = spec_of(file, options);
   out.has_errors = at.error != CurveLayout::none;

@@ -10,6 +10,8 @@
 
 namespace softgrain {
 
+class CsvFile;
+
 /// One state of increasing normal overlap.
 struct ForcePoint {
   double delta = 0.0;                                       ///< Delta = hn/Rs
@@ -22,6 +24,7 @@ struct ForceCurve {
   std::string name;
   std::vector<ForcePoint> normal;           ///< Delta rising
   std::vector<TangentialPoint> tangential;  ///< angle_deg = 180 ht / (pi Rs); all count as converged
+  std::vector<double> before_touch{};       ///< forces read at negative overlaps [N], which no law is fitted to
 };
 
 /// All tests of one pair kind.
@@ -33,7 +36,6 @@ struct ForceCurves {
   std::vector<std::string> remarks;  ///< columns that were not used, points that were left out
 };
 
-/// What the command line says beside the file; it wins over comments in the file.
 /// What to do with points behind the largest overlap so far.
 enum class Unloading { refuse, drop };
 
@@ -41,10 +43,14 @@ template <>
 inline constexpr auto words<Unloading> = word_list<Unloading>({{Unloading::refuse, "refuse"},
                                                                {Unloading::drop, "drop"}});
 
+/// What is said beside the file, for what the file does not say; both must not contradict each other.
 struct ForceCurveOptions {
   std::optional<PairKind> kind;
   std::optional<double> shell_radius;    ///< Rs [m]
   std::optional<double> youngs_modulus;  ///< E [Pa]
+  const char* kind_from = "--kind";      ///< who says each, for messages
+  const char* radius_from = "--radius";
+  const char* modulus_from = "--modulus";
   Unloading unloading = Unloading::refuse;
   double initial_angle_deg = 0.05;  ///< a column kt is taken as the slope over +- this angle
   double secant_angle_deg = 1.0;    ///< Ft is interpolated at this angle
@@ -53,10 +59,17 @@ struct ForceCurveOptions {
 /// Reads one CSV file. Columns (any order, name [unit]): hn or overlap (with a unit of length) or Delta; Fn or force;
 /// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
 /// prestrain), or kt. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
-/// "# E = 0.5 MPa", "# nu = ...", "# mu = ...", "# density = ...".
+/// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; other comments that name
+/// a value are refused.
 /// Throws BadInput with file and line: unknown unit, missing value, number that is not finite, overlap that falls, too
-/// few points (5), kind, Rs or E not given.
+/// few points (5), kind, Rs or E not given or said twice in different ways.
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options);
+
+/// Whether the comments of a table say what ForceCurveOptions may say beside it.
+struct SaidByFile {
+  bool kind = false, shell_radius = false, youngs_modulus = false;
+};
+SaidByFile said_by_comments(const CsvFile& table);
 
 /// See force_scale.h; of all samples together.
 std::vector<std::string> implausible_forces(const ForceCurves& curves);

@@ -24,6 +24,12 @@ const PairLaw* LawCard::find(PairKind kind) const {
   return nullptr;
 }
 
+double assumed_kt_ratio(const LawCard& card, const PairLaw& law) {
+  constexpr double kUnknown = 0.3;  // as scenes take nu of grains that nobody named
+  if (is_known(law.kt_ratio)) return law.kt_ratio;
+  return mindlin_ratio(is_known(card.spec.poisson_ratio) ? card.spec.poisson_ratio : kUnknown);
+}
+
 std::string measured_text(const LawCard& card) {
   if (card.from_experiment()) return "from an experiment";
   return "measured with the " + card.relaxation + " relaxation";

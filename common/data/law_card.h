@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -78,8 +79,10 @@ struct PairLaw {
   ThresholdPowerLaw tangential_secant;   ///< secant at secant_angle_deg
   double initial_angle_deg = 0.05;
   double secant_angle_deg = 1.0;
-  bool has_tangential_initial = false;  ///< whether it was fitted; without it soft contacts have no tangential spring
+  bool has_tangential_initial = false;  ///< whether it was fitted; without both kt is assumed
   bool has_tangential_secant = false;
+  /// kt/kn that runs take where neither was fitted; NaN: not said, see assumed_kt_ratio().
+  double kt_ratio = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> covariance;  ///< 7 x 7 row-major over kLawParameterNames; rows of unfitted parameters are zero
   double delta_min = 0.0;          ///< validity: range of Delta that was fitted
   double delta_max = 0.0;
@@ -110,6 +113,17 @@ struct LawCard {
   /// Whether none of our relaxations measured it, but somebody's experiment.
   [[nodiscard]] bool from_experiment() const { return relaxation == kExperiment; }
 };
+
+/// kt/kn of the contact of two elastic spheres at no load along the plane: 2 (1 - nu)/(2 - nu) [Mindlin 1949,
+/// doi:10.1115/1.4009973].
+constexpr double mindlin_ratio(double poisson_ratio) { return 2.0 * (1.0 - poisson_ratio) / (2.0 - poisson_ratio); }
+
+/// Whether a tangential stiffness was measured.
+inline bool has_tangential(const PairLaw& law) { return law.has_tangential_initial || law.has_tangential_secant; }
+
+/// kt over the slope of the normal force where kt was not measured: what the card says, else Mindlin's ratio of its nu
+/// (0.3 where that is not known).
+double assumed_kt_ratio(const LawCard& card, const PairLaw& law);
 
 /// "measured with the damped relaxation", "from an experiment".
 std::string measured_text(const LawCard& card);

@@ -96,6 +96,8 @@ PairLaw read_pair(const SceneTable& table) {
                   law.has_tangential_initial, good);
   read_tangential(table.table("tangential_secant"), law.tangential_secant, law.secant_angle_deg,
                   law.has_tangential_secant, good);
+  if (table.has("tangential_assumed"))
+    law.kt_ratio = table.table("tangential_assumed").number("kt_ratio", Unit::none, Range::closed(0.0, 2.0));
   law.covariance = read_covariance(table);
   return law;
 }

@@ -97,7 +97,16 @@ void write_covariance(Out out, const PairLaw& pair) {
     fmt::format_to(out, "{} = {}\n", kLawParameterNames[k], row(&pair.covariance[k * n], n));
 }
 
-void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
+void write_assumed(Out out, double kt_ratio) {
+  fmt::format_to(out,
+                 "\n# No tangential stiffness was measured. Assumed: kt = kt_ratio dFn/dhn, up to mu Fn. By default\n"
+                 "# Mindlin's 2 (1 - nu)/(2 - nu), nu = 0.3 unless known; 0: no tangential force, whatever mu.\n"
+                 "[pair.tangential_assumed]\nkt_ratio = {}\n",
+                 real(kt_ratio));
+}
+
+void write_pair(Out out, const PairLaw& pair, const LawCard& card) {
+  const SoftParticleSpec& spec = card.spec;
   fmt::format_to(out, "\n[[pair]]\nkind = \"{}\"\nstatus = {}\nreason = {}\n", to_string(pair.kind),
                  quoted(to_string(pair.status)), quoted(pair.reason));
   fmt::format_to(out, "packings = {}\npoints = {}\n", pair.packings, pair.points);
@@ -111,6 +120,7 @@ void write_pair(Out out, const PairLaw& pair, const SoftParticleSpec& spec) {
                  "beyond = \"{}\"  # above delta_max: \"error\", \"clamp\" or \"extrapolate\"; counted either way\n",
                  to_string(pair.beyond));
   for (const LawPartName& part : kLawParts) write_part(out, pair, part, spec);
+  if (!has_tangential(pair) && has_numbers(pair.status)) write_assumed(out, assumed_kt_ratio(card, pair));
   write_covariance(out, pair);
 }
 
@@ -121,7 +131,7 @@ std::string card_text(const LawCard& card, const Provenance& provenance, const s
   const Out out(text);
   write_head(out, card, provenance, table_id);
   write_measurement(out, card);
-  for (const PairLaw& pair : card.pairs) write_pair(out, pair, card.spec);
+  for (const PairLaw& pair : card.pairs) write_pair(out, pair, card);
   return text;
 }
 

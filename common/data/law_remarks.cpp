@@ -28,6 +28,22 @@ std::string slides_text(const LawTableEntry& entry) {
   return text + "; largest moment against rolling: " + rolling;
 }
 
+std::string assumed_kt_text(const LawCard& card) {
+  std::string text;
+  for (const PairLaw& law : card.pairs) {
+    if (has_tangential(law) || !has_numbers(law.status)) continue;
+    const double ratio = assumed_kt_ratio(card, law);
+    text += (text.empty() ? "" : "; ") +
+            (ratio > 0.0
+                 ? fmt::format("tangential stiffness of {} contacts was not measured: kt = {:.3g} dFn/dh is assumed "
+                               "(Mindlin's ratio unless the card says another), up to mu Fn",
+                               to_string(law.kind), ratio)
+                 : fmt::format("{} contacts have no tangential force, whatever mu: the card says kt_ratio = 0",
+                               to_string(law.kind)));
+  }
+  return text;
+}
+
 std::string unloading_text(const LawTableEntry& entry) {
   if (!entry.retreat_measured) return "unloading was not measured";
   std::string text = fmt::format("unloading is {:.2f} times as steep as loading", entry.retreat.value);

@@ -13,6 +13,9 @@ namespace softgrain {
 /// ...".
 std::string slides_text(const LawTableEntry& entry);
 
+/// What runs take for a tangential stiffness that was not measured; empty: it was, of all kinds of contact.
+std::string assumed_kt_text(const LawCard& card);
+
 /// "unloading is 1.16 times as steep as loading", or that it was not measured.
 std::string unloading_text(const LawTableEntry& entry);
 

@@ -4,18 +4,67 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 
 #include "common/core/error.h"
+#include "common/io/csv_words.h"
+#include "common/io/text_encoding.h"
 #include "common/io/text_file.h"
 
 namespace softgrain {
 
-namespace {
+namespace csv {
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
+
+std::string unquoted(const std::string& text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
+CsvColumn column_of(const std::string& title) {
+  CsvColumn column{title, lower(title), ""};
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const std::size_t at = title.find(open);
+    if (at == std::string::npos || title.back() != close) continue;
+    column.name = lower(trimmed(title.substr(0, at)));
+    column.unit = trimmed(title.substr(at + 1, title.size() - at - 2));
+    break;
+  }
+  return column;
+}
+
+namespace {
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+std::string plain_name(const std::string& name) {
+  std::string text = lower(name);
+  for (const auto& [from, to] :
+       {std::pair{"\u2019", ""}, {"'", ""}, {"_", " "}, {"-", " "}, {"\t", " "}, {"µ", "mu"}, {"μ", "mu"}, {"ν", "nu"},
+        {"ρ", "rho"}, {".", " "}})
+    replace_all(text, from, to);
+  replace_all(text, "  ", " ");
+  return trimmed(text);
+}
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+}  // namespace csv
+
+namespace {
 
 /// Cells of a line; a separator within double quotes is text.
 std::vector<std::string> split(const std::string& line, char separator) {
@@ -35,42 +84,39 @@ std::vector<std::string> split(const std::string& line, char separator) {
 
 bool is_missing(const std::string& cell) {
   constexpr std::array kMissing{"", "-", "nan", "na", "n/a"};
-  return std::find(kMissing.begin(), kMissing.end(), lower(cell)) != kMissing.end();
+  return std::find(kMissing.begin(), kMissing.end(), csv::lower(cell)) != kMissing.end();
 }
 
-/// "hn [mm]" or "hn (mm)" into its parts.
-CsvColumn column_of(const std::string& title) {
-  CsvColumn column{title, lower(title), ""};
-  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
-    const std::size_t at = title.find(open);
-    if (at == std::string::npos || title.back() != close) continue;
-    column.name = lower(trimmed(title.substr(0, at)));
-    column.unit = trimmed(title.substr(at + 1, title.size() - at - 2));
-    break;
-  }
-  return column;
+/// What looks like a blank or a minus sign in a spreadsheet and is another character.
+std::string plain_signs(std::string text) {
+  for (const char* blank : {"\u00a0", "\u2009", "\u202f"}) csv::replace_all(text, blank, " ");
+  csv::replace_all(text, "\u2212", "-");
+  return text;
+}
+
+/// The separator of a line "sep=;" that spreadsheets read; 0: it is none.
+char said_separator(const std::string& line) {
+  const std::string words = csv::unquoted(trimmed(line));
+  if (!csv::lower(words).starts_with("sep=") || words.size() > 5) return 0;
+  return words.size() == 4 ? '\t' : words[4];
 }
 
 }  // namespace
 
+bool is_percent(const std::string& unit) { return unit == "%" || csv::lower(unit) == "percent"; }
+
 CsvFile CsvFile::read(const std::string& path) { return parse(read_text(path), path); }
 
-CsvFile CsvFile::parse(const std::string& text, const std::string& path) {
+CsvFile CsvFile::parse(const std::string& bytes, const std::string& path) {
   CsvFile file;
   file.path_ = path;
-  std::size_t at = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // spreadsheets mark UTF-8 with these
-  for (int number = 1; at < text.size(); ++number) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    const std::string words = trimmed(line);
-    at = end + 1;
-    if (words.empty()) continue;
-    if (words.front() == '#')
-      file.read_comment(words, number);
-    else if (file.columns_.empty())
-      file.read_header(words, number);
-    else
-      file.read_row(line, number);
+  const std::string text = plain_signs(utf8_of(bytes));
+  int number = 1;
+  for (std::size_t at = 0; at < text.size(); ++number) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    file.read_line(text.substr(at, end - at), number);
+    const bool pair = end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n';
+    at = end + (pair ? 2 : 1);
   }
   if (file.columns_.empty())
     throw BadInput(path +
@@ -78,22 +124,31 @@ CsvFile CsvFile::parse(const std::string& text, const std::string& path) {
   return file;
 }
 
-void CsvFile::read_comment(const std::string& line, int number) {
-  const std::string words = trimmed(line.substr(std::min(line.find_first_not_of('#'), line.size())));
-  const std::size_t mark = words.find_first_of("=:");
-  if (mark == std::string::npos) return;
-  std::string value = trimmed(words.substr(mark + 1));
-  if (value.size() >= 2 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
-  settings_.push_back({lower(trimmed(words.substr(0, mark))), value, number});
+void CsvFile::read_line(const std::string& line, int number) {
+  const std::string words = trimmed(line);
+  if (words.find_first_not_of(";, \t\"\x1a") == std::string::npos) return;
+  if (words.front() == '#') return read_comment(words, number);
+  if (words.starts_with("\"#")) {  // a spreadsheet quotes cells that hold the separator
+    const std::size_t end = words.find('"', 1);
+    return read_comment(words.substr(1, end == std::string::npos ? end : end - 1), number);
+  }
+  if (!columns_.empty()) return read_row(line, number);
+  const char said = said_separator(line);
+  if (said == 0) return read_header(words, number);
+  separator_ = said;
+  separator_said_ = true;
 }
 
 void CsvFile::read_header(const std::string& line, int number) {
-  for (const char c : {',', '\t', ';'})
-    if (line.find(c) != std::string::npos) separator_ = c;
+  if (!separator_said_)
+    for (const char c : {',', '\t', ';'})
+      if (line.find(c) != std::string::npos) separator_ = c;
   header_line_ = number;
-  for (const std::string& title : split(line, separator_)) {
+  std::vector<std::string> titles = split(line, separator_);
+  while (titles.size() > 1 && titles.back().empty()) titles.pop_back();
+  for (const std::string& title : titles) {
     if (title.empty()) throw BadInput(where(number) + ": header: a column has no name");
-    columns_.push_back(column_of(title));
+    columns_.push_back(csv::column_of(title));
     const std::string& name = columns_.back().name;
     if (!name.empty() && name.find_first_not_of("0123456789.+-e") == std::string::npos)
       throw BadInput(where(number) + ": no header: \"" + title +
@@ -112,11 +167,21 @@ void CsvFile::read_row(const std::string& line, int number) {
   rows_.push_back(std::move(row));
 }
 
-std::optional<CsvSetting> CsvFile::setting(const std::vector<std::string>& keys) const {
-  std::optional<CsvSetting> found;
-  for (const CsvSetting& s : settings_)
-    if (std::find(keys.begin(), keys.end(), s.key) != keys.end()) found = s;
-  return found;
+void CsvFile::require_known_columns(const CsvNames& known, const std::string& what) const {
+  const CsvNames labels{"id", "no", "nr", "index", "name", "label", "comment", "comments", "remark", "remarks", "note",
+                        "notes"};
+  for (const CsvColumn& c : columns_) {
+    const auto is_in = [&](const CsvNames& names) {
+      return std::find(names.begin(), names.end(), c.name) != names.end();
+    };
+    if (is_in(known) || is_in(labels)) continue;
+    const std::string near = nearest_word(c.name, known);
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+    throw BadInput(where(header_line_) + ": column \"" + c.title + "\" is not understood" +
+                   (near.empty() ? "" : "; nearest is \"" + near + "\"") + ": columns of " + what + " are " + list +
+                   "; remove it, or rename it \"comment\"");
+  }
 }
 
 std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Unit unit) const {
@@ -124,10 +189,14 @@ std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Uni
   if (is_missing(cell)) return std::nullopt;
   if (separator_ != ',') std::replace(cell.begin(), cell.end(), ',', '.');
   const CsvColumn& c = columns_[column];
-  const bool own_unit = cell.find(' ') != std::string::npos;
+  const bool percent_sign = unit == Unit::none && cell.back() == '%';
+  if (percent_sign) cell = trimmed(cell.substr(0, cell.size() - 1));
+  const double part = percent_sign || (unit == Unit::none && is_percent(c.unit)) ? 100.0 : 1.0;
+  const bool own_unit = cell.find(' ') != std::string::npos || (!cell.empty() && cell.back() != '.' &&
+                                                                std::isdigit(static_cast<unsigned char>(cell.back())) == 0);
   const bool pure = unit == Unit::none || c.unit.empty();
   try {
-    return parse_quantity(own_unit || pure ? cell : cell + " " + c.unit, unit);
+    return parse_quantity(own_unit || pure ? cell : cell + " " + c.unit, unit) / part;
   } catch (const BadInput& e) {
     throw BadInput(where(row.line) + ": column \"" + c.title + "\": \"" + row.cells[column] + "\" " + e.what());
   }
@@ -139,7 +208,8 @@ void CsvFile::require_unit(std::size_t column, Unit unit, const char* example) c
     throw BadInput(where(header_line_) + ": column \"" + c.title + "\": " + problem);
   };
   if (unit == Unit::none) {
-    if (!c.unit.empty() && c.unit != "1" && c.unit != "-") complain("it has no unit, \"" + c.unit + "\" is given");
+    if (!c.unit.empty() && c.unit != "1" && c.unit != "-" && !is_percent(c.unit))
+      complain("it has no unit, \"" + c.unit + "\" is given");
     return;
   }
   if (c.unit.empty()) complain(std::string("no unit; write it behind the name, e.g. ") + example);

@@ -17,10 +17,13 @@ struct CsvColumn {
   std::string unit;
 };
 
-/// A comment of the form "# E = 0.5 MPa" ("# E: 0.5 MPa").
+/// A comment that names a value: "# E = 0.5 MPa", "# E: 0.5 MPa", "# E [MPa] = 0.5", "# E(MPa): 0.5".
 struct CsvSetting {
-  std::string key;  ///< in lower case
+  std::string title;  ///< the name as written, with its unit
+  std::string key;    ///< the name in lower case, without unit and apostrophes, its words apart by one blank
+  std::string unit;   ///< behind the name, as written; empty: none
   std::string value;
+  bool equals = true;  ///< an equals sign stands between them, not a colon
   int line = 0;
 };
 
@@ -29,42 +32,68 @@ struct CsvRow {
   int line = 0;
 };
 
+/// Names of one quantity, as CsvSetting::key has them.
+using CsvNames = std::vector<std::string>;
+
 class CsvFile {
  public:
-  /// The separator is the first of ";", tab, "," that the header has. With another one than the comma, a comma in a
-  /// number is its decimal mark. Cells may stand in double quotes. Throws BadInput (no header, a row of another
-  /// length), FileTrouble.
+  /// In any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;" says, else the
+  /// first of ";", tab, "," that the header has. With another one than the comma, a comma in a number is its decimal
+  /// mark. Cells may stand in double quotes; empty ones at the end of a line and empty lines count for nothing. Throws
+  /// BadInput (no header, a row of another length), FileTrouble.
   static CsvFile read(const std::string& path);
   /// The same from a text.
-  static CsvFile parse(const std::string& text, const std::string& path);
+  static CsvFile parse(const std::string& bytes, const std::string& path);
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::vector<CsvColumn>& columns() const { return columns_; }
   [[nodiscard]] const std::vector<CsvRow>& rows() const { return rows_; }
   [[nodiscard]] int header_line() const { return header_line_; }
-  /// The last comment with one of these keys (lower case).
-  [[nodiscard]] std::optional<CsvSetting> setting(const std::vector<std::string>& keys) const;
   /// "file:line".
   [[nodiscard]] std::string where(int line) const { return path_ + ":" + std::to_string(line); }
 
-  /// SI value of a cell in the unit of its column; a number with a unit of its own is fine too. Empty cells, "-", "nan"
-  /// and "NA" give nothing. Throws BadInput naming line and column.
+  /// The first comment with one of these names.
+  [[nodiscard]] std::optional<CsvSetting> setting(const CsvNames& names) const;
+  /// The same of a word. Throws BadInput where several comments say different ones.
+  [[nodiscard]] std::optional<CsvSetting> word(const CsvNames& names) const;
+  /// SI value of the comment with one of these names. Throws BadInput for what is no such number or out of range, and
+  /// where several comments contradict each other.
+  [[nodiscard]] std::optional<double> quantity(const CsvNames& names, Unit unit, const Range& range) const;
+  /// As many numbers, apart by blanks or commas, with one unit for all. Likewise.
+  [[nodiscard]] std::optional<std::vector<double>> quantities(const CsvNames& names, Unit unit,
+                                                              std::size_t count) const;
+  /// Throws BadInput for a comment "name [unit] = value" (or "name = value unit") with another name than the known ones:
+  /// whoever wrote it expects it to count. Other comments are free text. `what` the file is, as messages say it.
+  void require_known_comments(const std::vector<CsvNames>& known, const std::string& what) const;
+  /// Throws BadInput for a column that is not among `known` names and no label of rows (id, name, comment, ...).
+  void require_known_columns(const CsvNames& known, const std::string& what) const;
+
+  /// SI value of a cell in the unit of its column; a number with a unit of its own is fine too, and so are percents of
+  /// a number without unit. Empty cells, "-", "nan" and "NA" give nothing. Throws BadInput naming line and column.
   [[nodiscard]] std::optional<double> number(const CsvRow& row, std::size_t column, Unit unit) const;
 
-  /// Throws BadInput at the header unless the unit of the column is one of `unit` (Unit::none: none, "1" or "-").
+  /// Throws BadInput at the header unless the unit of the column is one of `unit` (Unit::none: none, "1", "-" or "%").
   void require_unit(std::size_t column, Unit unit, const char* example) const;
 
  private:
+  void read_line(const std::string& line, int number);
   void read_header(const std::string& line, int number);
   void read_row(const std::string& line, int number);
   void read_comment(const std::string& line, int number);
+  void read_setting(const std::string& text, int number);
+  [[nodiscard]] std::vector<CsvSetting> all_of(const CsvNames& names) const;
+  [[nodiscard]] std::vector<double> values_of(const CsvSetting& setting, Unit unit, std::size_t count) const;
 
   std::string path_;
   char separator_ = ',';
+  bool separator_said_ = false;
   int header_line_ = 0;
   std::vector<CsvColumn> columns_;
   std::vector<CsvRow> rows_;
   std::vector<CsvSetting> settings_;
 };
+
+/// A unit of hundredths.
+bool is_percent(const std::string& unit);
 
 }  // namespace softgrain

@@ -21,6 +21,12 @@ extern "C" herr_t softgrain_note_error(unsigned depth, const H5E_error2_t* entry
   return 0;
 }
 
+constexpr const char* kHeldElsewhere =
+    ": another program holds this file open (a viewer, a notebook, a run that is still going): close it there, or wait, "
+    "and try again";
+
+bool is_locked(const std::string& reason) { return reason.find("unable to lock file") != std::string::npos; }
+
 /// Locks are taken where the file system knows them. The format of HDF5 1.10: small, checksummed headers, and no index
 /// of 2 kB for every data set of one chunk.
 Handle access_list() {
@@ -37,7 +43,10 @@ Handle create_file(const std::string& path) {
   const Handle access = access_list();
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
   Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
-  if (file.id() < 0) throw FileTrouble(path + ": cannot be created" + library_message());
+  if (file.id() < 0) {
+    const std::string reason = library_message();
+    throw FileTrouble(path + (is_locked(reason) ? kHeldElsewhere : ": cannot be created") + reason);
+  }
   return file;
 }
 
@@ -83,8 +92,11 @@ Group open_file(const std::string& path) {
   require_readable_file(path);
   const Handle access = access_list();
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
-  if (file.id() < 0)
-    throw FileTrouble(path + ": cannot be read as HDF5, is it damaged or cut short?" + library_message());
+  if (file.id() < 0) {
+    const std::string reason = library_message();
+    throw FileTrouble(path + (is_locked(reason) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") +
+                      reason);
+  }
   return root_of(std::make_shared<File>(File{std::move(file), path}));
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/core/error.h"
+#include "common/io/quantity.h"
 #include "common/io/scene.h"
 
 namespace softgrain {
@@ -24,12 +25,15 @@ struct KnownUnit {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr KnownUnit kLength[] = {{"m"}, {"km", 3}, {"cm", -2}, {"mm", -3}, {"um", -6}, {"µm", -6}, {"nm", -9}};
-constexpr KnownUnit kMass[] = {{"kg"}, {"t", 3}, {"g", -3}, {"mg", -6}, {"ug", -9}};
+constexpr KnownUnit kMass[] = {{"kg"}, {"t", 3}, {"g", -3}, {"mg", -6}, {"ug", -9}, {"µg", -9}};
 constexpr KnownUnit kTime[] = {{"s"},      {"ms", -3},       {"us", -6},      {"µs", -6},
                                {"ns", -9}, {"min", 0, 60.0}, {"h", 0, 3600.0}};
 constexpr KnownUnit kFrequency[] = {{"Hz"}, {"1/s"}, {"kHz", 3}, {"MHz", 6}, {"1/min", 0, 1.0 / 60.0}};
-constexpr KnownUnit kPressure[] = {{"Pa"}, {"kPa", 3}, {"MPa", 6}, {"GPa", 9}, {"N/m^2"}, {"N/mm^2", 6}, {"bar", 5}};
-constexpr KnownUnit kDensity[] = {{"kg/m^3"}, {"g/cm^3", 3}, {"t/m^3", 3}};
+constexpr KnownUnit kPressure[] = {{"Pa"},         {"kPa", 3},    {"MPa", 6},     {"GPa", 9},     {"N/m^2"},
+                                   {"kN/m^2", 3},  {"MN/m^2", 6}, {"N/mm^2", 6},  {"kN/mm^2", 9}, {"N/cm^2", 4},
+                                   {"kN/cm^2", 7}, {"bar", 5},    {"mbar", 2}};
+constexpr KnownUnit kDensity[] = {{"kg/m^3"}, {"g/cm^3", 3}, {"t/m^3", 3}, {"Mg/m^3", 3}, {"g/cc", 3}, {"g/ml", 3},
+                                  {"kg/l", 3}, {"kg/dm^3", 3}};
 constexpr KnownUnit kVelocity[] = {{"m/s"},      {"cm/s", -2}, {"mm/s", -3},
                                    {"um/s", -6}, {"µm/s", -6}, {"km/h", 0, 1.0 / 3.6}};
 constexpr KnownUnit kAngularVelocity[] = {
@@ -37,7 +41,7 @@ constexpr KnownUnit kAngularVelocity[] = {
 constexpr KnownUnit kForce[] = {{"N"}, {"kN", 3}, {"MN", 6}, {"mN", -3}, {"uN", -6}, {"µN", -6}, {"nN", -9}};
 constexpr KnownUnit kAcceleration[] = {{"m/s^2"}, {"cm/s^2", -2}, {"mm/s^2", -3}};
 constexpr KnownUnit kStiffness[] = {{"N/m"}, {"kN/m", 3}, {"MN/m", 6}, {"GN/m", 9}, {"N/mm", 3}, {"kN/mm", 6}};
-constexpr KnownUnit kAngle[] = {{"deg"}, {"degree"}, {"degrees"}, {"rad", 0, 1.0 / kDegree}};
+constexpr KnownUnit kAngle[] = {{"deg"}, {"degree"}, {"degrees"}, {"\u00b0"}, {"rad", 0, 1.0 / kDegree}};
 
 std::span<const KnownUnit> known_units(Unit unit) {
   switch (unit) {
@@ -86,6 +90,26 @@ std::size_t number_length(std::string_view text) {
   return error == std::errc::invalid_argument ? 0 : static_cast<std::size_t>(end - text.data());
 }
 
+/// As the tables above write it: one micro sign, powers as "^2". "kg/m³", "kg/m3" and "kg/m**3" are "kg/m^3".
+std::string plain_unit(std::string_view name) {
+  std::string out;
+  const auto takes = [&](std::string_view from, std::string_view to) {
+    if (!name.starts_with(from)) return false;
+    out += to;
+    name.remove_prefix(from.size());
+    return true;
+  };
+  while (!name.empty()) {
+    if (takes("\u03bc", "\u00b5") || takes("\u00b2", "^2") || takes("\u00b3", "^3") || takes("**", "^")) continue;
+    const char last = out.empty() ? ' ' : out.back();
+    const bool power = (name.front() == '2' || name.front() == '3') && ((last >= 'a' && last <= 'z') || last == 'N');
+    if (power) out += '^';
+    out += name.front();
+    name.remove_prefix(1);
+  }
+  return out;
+}
+
 /// `number` times 10^power, correctly rounded; nothing when it overflows or underflows.
 std::optional<double> scaled(std::string_view number, int power) {
   const std::size_t mark = number.find_first_of("eE");
@@ -118,7 +142,7 @@ double parse_quantity(const std::string& text, Unit unit) {
   const std::size_t length = number_length(rest);
   if (length == 0) throw BadInput("must be a number, or a number with a unit such as \"16 mm\"");
   const std::string_view number = rest.substr(0, length);
-  const std::string_view name = trim(rest.substr(length));
+  const std::string name = plain_unit(trim(rest.substr(length)));
 
   KnownUnit found{};
   bool known = name.empty();
@@ -131,6 +155,18 @@ double parse_quantity(const std::string& text, Unit unit) {
   const std::optional<double> value = scaled(number, found.power);
   if (!value || !std::isfinite(*value * found.factor)) throw BadInput("is not representable as a number");
   return *value * found.factor;
+}
+
+std::optional<double> quantity_of_any_unit(const std::string& text) {
+  for (const Unit unit : {Unit::none, Unit::length, Unit::mass, Unit::time, Unit::frequency, Unit::pressure,
+                          Unit::density, Unit::velocity, Unit::angular_velocity, Unit::force, Unit::acceleration,
+                          Unit::stiffness, Unit::angle_degree}) {
+    try {
+      return parse_quantity(text, unit);
+    } catch (const BadInput&) {  // another one may know it
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace softgrain

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/core/random.h"
@@ -137,11 +138,25 @@ Grading Grading::sieve_curve(const std::vector<double>& sieve_radius, const std:
           std::move(pieces), dimension};
 }
 
-Grading Grading::list(std::vector<double> radii, int dimension) {
-  std::sort(radii.begin(), radii.end());
+Grading Grading::list(std::vector<double> radii, int dimension, std::vector<double> counts) {
+  if (!counts.empty() && counts.size() != radii.size())
+    throw BadInput(fmt::format("sizes: {} counts of {} radii: one for each", counts.size(), radii.size()));
+  if (std::all_of(counts.begin(), counts.end(), [](double n) { return n == 1.0; })) counts.clear();
+  std::vector<std::pair<double, double>> grains;
+  for (std::size_t k = 0; k < radii.size(); ++k) grains.emplace_back(radii[k], counts.empty() ? 1.0 : counts[k]);
+  std::erase_if(grains, [](const auto& g) { return g.second == 0.0; });
+  std::sort(grains.begin(), grains.end());
   std::vector<SizePiece> pieces;
-  for (const double r : radii) pieces.push_back({r, r, 1.0 + dimension, std::pow(r, dimension)});
-  return {GradingForm::list, fmt::format("radii = [{}]\n", fmt::join(radii, ", ")), std::move(pieces), dimension};
+  std::vector<double> sizes;
+  std::vector<double> numbers;
+  for (const auto& [r, n] : grains) {
+    pieces.push_back({r, r, 1.0 + dimension, n * std::pow(r, dimension)});
+    sizes.push_back(r);
+    numbers.push_back(n);
+  }
+  std::string text = fmt::format("radii = [{}]\n", fmt::join(sizes, ", "));
+  if (!counts.empty()) text += fmt::format("counts = [{}]\n", fmt::join(numbers, ", "));
+  return {GradingForm::list, std::move(text), std::move(pieces), dimension};
 }
 
 std::string Grading::name() const {

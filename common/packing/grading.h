@@ -53,8 +53,9 @@ class Grading {
   /// to 1.
   static Grading sieve_curve(const std::vector<double>& sieve_radius, const std::vector<double>& passing,
                              int dimension = 3);
-  /// These grains, in these numbers.
-  static Grading list(std::vector<double> radii, int dimension = 3);
+  /// These grains, in these numbers: `counts` of each radius (weights by number, any sum), one of each where it is
+  /// empty.
+  static Grading list(std::vector<double> radii, int dimension = 3, std::vector<double> counts = {});
 
   [[nodiscard]] GradingForm form() const { return form_; }
   /// The keys and values that read_grading makes the same distribution of, a line each; equal texts: equal radii.

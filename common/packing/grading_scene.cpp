@@ -16,6 +16,9 @@ namespace {
 
 const Range kExponents = Range::closed(-20.0, 20.0);
 
+/// Shares that differ by less are the same: sums of percents that a spreadsheet rounded.
+constexpr double kRounding = 1e-9;
+
 struct Ends {
   double low = 0.0;
   double high = 0.0;
@@ -92,41 +95,65 @@ struct SieveRow {
   std::string where{};   ///< "file:line"
 };
 
-/// 100 where the column is in percent, 1 where it is a share.
-double whole_of(const CsvFile& csv, std::size_t column) {
-  const std::string& unit = csv.columns()[column].unit;
-  if (unit == "%" || unit == "percent") return 100.0;
-  if (unit.empty() || unit == "1" || unit == "-") return 1.0;
-  throw BadInput(
-      fmt::format("{}passing is in percent of mass or a share: \"passing [%]\", not [{}]", head_of(csv), unit));
+const CsvNames kPassing{"passing",          "finer",           "cumulative passing", "percent passing", "passing percent",
+                        "percent finer",    "% passing",       "passing %",          "% finer",         "finer %",
+                        "cumulative finer", "passing by mass", "mass passing"};
+const CsvNames kOpening{"opening", "sieve", "size", "diameter", "sieve opening", "sieve size"};
+
+bool is_retained(const CsvColumn& c) { return c.name.find("retained") != std::string::npos; }
+
+/// Whether what passes is in percent, by the unit or the name of the column; else it is a share.
+bool passes_in_percent(const CsvFile& csv, std::size_t column) {
+  const CsvColumn& c = csv.columns()[column];
+  if (is_percent(c.unit)) return true;
+  if (!c.unit.empty() && c.unit != "1" && c.unit != "-")
+    throw BadInput(
+        fmt::format("{}passing is in percent of mass or a share: \"passing [%]\", not [{}]", head_of(csv), c.unit));
+  return c.name.find('%') != std::string::npos || c.name.find("percent") != std::string::npos;
+}
+
+std::size_t passing_column(const CsvFile& csv) {
+  for (const std::string& name : kPassing)
+    if (const int k = column_of(csv, {name.c_str()}); k >= 0) return static_cast<std::size_t>(k);
+  const bool retained = std::any_of(csv.columns().begin(), csv.columns().end(), is_retained);
+  throw BadInput(fmt::format("{}needs a column \"passing [%]\", cumulative, of mass{}", head_of(csv),
+                             retained ? "; passing is 100 % less what is retained in all" : ""));
+}
+
+/// What a column says that is none of those that count; masses and what is retained only say the same another way.
+void require_sieve_columns(const CsvFile& csv) {
+  CsvNames known{"opening", "passing"};
+  for (const CsvColumn& c : csv.columns()) {
+    const bool same = is_retained(c) || c.name.starts_with("mass") || c.name.starts_with("mesh");
+    const bool counts = std::find(kPassing.begin(), kPassing.end(), c.name) != kPassing.end() ||
+                        std::find(kOpening.begin(), kOpening.end(), c.name) != kOpening.end();
+    if (same || counts) known.push_back(c.name);
+  }
+  csv.require_known_columns(known, "a sieve curve");
 }
 
 std::vector<SieveRow> sieve_rows(const CsvFile& csv) {
+  csv.require_known_comments({}, "a sieve curve");
   const std::size_t opening =
       length_column(csv, {"opening", "sieve", "size", "diameter", "sieve opening", "sieve size"}, "opening [mm]");
-  const int passing = column_of(csv, {"passing", "finer", "cumulative passing", "percent passing"});
-  if (passing < 0)
-    throw BadInput(fmt::format("{}needs a column \"passing [%]\", cumulative, of mass{}", head_of(csv),
-                               column_of(csv, {"retained", "cumulative retained"}) >= 0
-                                   ? "; passing is 100 % less what is retained in all"
-                                   : ""));
-  const auto column = static_cast<std::size_t>(passing);
-  const double whole = whole_of(csv, column);
+  const std::size_t column = passing_column(csv);
+  require_sieve_columns(csv);
+  const bool percent = passes_in_percent(csv, column);
+  const bool by_name = percent && !is_percent(csv.columns()[column].unit);
   std::vector<SieveRow> rows;
   for (const CsvRow& row : csv.rows()) {
     SieveRow s;
     s.where = csv.where(row.line);
     s.opening = must(csv.number(row, opening, Unit::length), csv, row, "the opening");
-    std::string text = row.cells[column];
-    if (!text.empty() && text.back() == '%') text.pop_back();
-    CsvRow plain = row;
-    plain.cells[column] = text;
-    s.passing = must(csv.number(plain, column, Unit::none), csv, row, "what passes") / whole;
+    s.passing = must(csv.number(row, column, Unit::none), csv, row, "what passes");
+    if (by_name && row.cells[column].back() != '%') s.passing /= 100.0;
     if (!(s.opening > 0.0))
       throw BadInput(s.where + ": an opening must be positive; for a pan give the size of the smallest grains");
+    for (const double end : {0.0, 1.0})
+      if (std::abs(s.passing - end) < kRounding) s.passing = end;
     if (s.passing < 0.0 || s.passing > 1.0)
-      throw BadInput(fmt::format("{}: {:g} passes; allowed: 0 to {}", s.where, s.passing * whole,
-                                 whole == 1.0 ? "1 (a share; write \"passing [%]\" for percent)" : "100 %"));
+      throw BadInput(fmt::format("{}: {} passes; allowed: 0 to {}", s.where, row.cells[column],
+                                 percent ? "100 %" : "1 (a share; write \"passing [%]\" for percent)"));
     rows.push_back(s);
   }
   return rows;
@@ -157,11 +184,11 @@ Grading curve_of(std::vector<SieveRow> rows, int dimension) {
     if (row.opening == before.opening)
       throw BadInput(
           fmt::format("{}: the sieve of {:g} mm is there twice ({})", row.where, 1e3 * row.opening, before.where));
-    if (row.passing < before.passing)
+    if (row.passing < before.passing - kRounding)
       throw BadInput(fmt::format("{}: passing falls to {} on a wider sieve ({}: {}){}", row.where, percent(row.passing),
                                  before.where, percent(before.passing), guess(rows)));
     radius.push_back(0.5 * row.opening);
-    passing.push_back(row.passing);
+    passing.push_back(std::max(row.passing, before.passing));
   }
   for (const auto& [row, wanted] : {std::pair{rows.front(), 0.0}, std::pair{rows.back(), 1.0}})
     if (row.passing != wanted)
@@ -174,7 +201,10 @@ Grading curve_of(std::vector<SieveRow> rows, int dimension) {
 Grading read_curve(const SceneTable& t, int dimension) {
   if (t.has("file")) return read_sieve_curve(t.resolve(t.text("file")), dimension);
   const std::vector<double> openings = t.numbers("openings", Unit::length, Range::positive());
-  const std::vector<double> passing = t.numbers("passing", Unit::none, Range::closed(0.0, 1.0));
+  std::vector<double> passing = t.numbers("passing", Unit::none, Range::closed(-kRounding, 1.0 + kRounding));
+  for (double& share : passing)
+    for (const double end : {0.0, 1.0})
+      if (std::abs(share - end) < kRounding) share = end;
   if (openings.size() != passing.size())
     t.reject("passing", fmt::format("has {} values; openings has {}: one for each", passing.size(), openings.size()));
   std::vector<SieveRow> rows;
@@ -186,7 +216,15 @@ Grading read_list(const SceneTable& t, int dimension) {
   if (t.has("file")) return read_radii(t.resolve(t.text("file")), dimension);
   std::vector<double> radii = t.numbers("radii", Unit::length, Range::positive());
   if (radii.empty()) t.reject("radii", "at least one radius is needed");
-  return Grading::list(std::move(radii), dimension);
+  std::vector<double> counts;
+  if (t.has("counts")) {
+    counts = t.numbers("counts", Unit::none, Range::not_negative());
+    if (counts.size() != radii.size())
+      t.reject("counts", fmt::format("has {} values; radii has {}: one for each", counts.size(), radii.size()));
+    if (std::none_of(counts.begin(), counts.end(), [](double n) { return n > 0.0; }))
+      t.reject("counts", "at least one must be above 0");
+  }
+  return Grading::list(std::move(radii), dimension, std::move(counts));
 }
 
 }  // namespace
@@ -202,16 +240,28 @@ Grading read_sieve_curve(const std::string& path, int dimension) {
 
 Grading read_radii(const std::string& path, int dimension) {
   const CsvFile csv = CsvFile::read(path);
+  csv.require_known_comments({}, "a list of sizes");
   const bool diameters = column_of(csv, {"radius", "r"}) < 0 && column_of(csv, {"diameter", "d"}) >= 0;
   const std::size_t column = diameters ? length_column(csv, {"diameter", "d"}, "diameter [mm]")
                                        : length_column(csv, {"radius", "r"}, "radius [mm]");
+  const int count = column_of(csv, {"count", "number", "frequency", "n"});
+  csv.require_known_columns({csv.columns()[column].name,
+                             count < 0 ? "count" : csv.columns()[static_cast<std::size_t>(count)].name},
+                            "a list of sizes");
+  if (count >= 0) csv.require_unit(static_cast<std::size_t>(count), Unit::none, "count");
   std::vector<double> radii;
+  std::vector<double> counts;
   for (const CsvRow& row : csv.rows()) {
     radii.push_back((diameters ? 0.5 : 1.0) * must(csv.number(row, column, Unit::length), csv, row, "the size"));
     if (!(radii.back() > 0.0)) throw BadInput(fmt::format("{}: a size must be positive", csv.where(row.line)));
+    if (count < 0) continue;
+    counts.push_back(must(csv.number(row, static_cast<std::size_t>(count), Unit::none), csv, row, "the count"));
+    if (!(counts.back() >= 0.0)) throw BadInput(fmt::format("{}: a count must not be negative", csv.where(row.line)));
   }
   if (radii.empty()) throw BadInput(path + ": no sizes");
-  return Grading::list(std::move(radii), dimension);
+  if (count >= 0 && std::none_of(counts.begin(), counts.end(), [](double n) { return n > 0.0; }))
+    throw BadInput(path + ": no size has a count above 0");
+  return Grading::list(std::move(radii), dimension, std::move(counts));
 }
 
 Grading read_grading(const SceneTable& t, int dimension) {

@@ -12,7 +12,7 @@ namespace softgrain {
 
 /// Reads a table with `form` and its keys: "power-law" (exponent, radius_min, radius_max), "fuller" (exponent q),
 /// "log-normal" (radius_median, geometric_deviation), "classes" ([[class]]: radius or radius_min, radius_max, exponent;
-/// volume_share), "sieve-curve" (file, or openings and passing), "list" (radii or file). Files are looked for in the
+/// volume_share), "sieve-curve" (file, or openings and passing), "list" (radii and counts, or file). Files are looked for in the
 /// folder of the scene. Throws BadInput with file and line, FileTrouble.
 Grading read_grading(const SceneTable& table, int dimension = 3);
 
@@ -25,10 +25,11 @@ std::optional<Grading> read_sizes(const SceneTable& table, const std::string& ke
                                   std::initializer_list<const char*> instead, int dimension = 3);
 
 /// A sieve analysis as CSV: columns "opening [mm]" (diameter; also sieve, size, diameter) and "passing [%]" of mass
-/// (also finer; a share without unit). In any order of sizes; from 0 to 100 %. Throws BadInput, FileTrouble.
+/// (also finer, percent passing; a share without unit). In any order of sizes; from 0 to 100 %. Throws BadInput, FileTrouble.
 Grading read_sieve_curve(const std::string& path, int dimension = 3);
 
-/// Radii as CSV: a column "radius [mm]" or "diameter [mm]". Throws BadInput, FileTrouble.
+/// Radii as CSV: a column "radius [mm]" or "diameter [mm]", and "count" (number, frequency, n) of grains of each, one
+/// where it is absent. Throws BadInput, FileTrouble.
 Grading read_radii(const std::string& path, int dimension = 3);
 
 }  // namespace softgrain

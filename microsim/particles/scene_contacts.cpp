@@ -95,7 +95,8 @@ AnyLaw read_linear(const SceneTable& t) {
   law.friction = read_friction(t);
   law.damping = LinearSpring::zeta(read_restitution(t));
   law.normal = t.number("normal_stiffness", Unit::stiffness, Range::positive());
-  law.tangential = t.number("tangential_stiffness", Unit::stiffness, Range::not_negative());
+  if (law.friction > 0.0 || t.has("tangential_stiffness"))  // of no friction it may be left out: it has no effect
+    law.tangential = t.number("tangential_stiffness", Unit::stiffness, Range::not_negative());
   if (law.friction > 0.0 && law.tangential == 0.0) t.mistake("tangential_stiffness", "must be above 0 when mu is");
   return law;
 }

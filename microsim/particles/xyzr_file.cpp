@@ -69,6 +69,7 @@ std::array<double, 4> four_numbers(std::string_view line, const LineReader& read
   std::array<double, 4> out{};
   for (double& value : out) {
     line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
+    if (line.starts_with('+') && !line.starts_with("+-")) line.remove_prefix(1);
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
     if (error != std::errc{} || !std::isfinite(value))
       reader.wrong("must be four finite numbers, " + std::string(what));
@@ -97,6 +98,7 @@ XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_
   LineReader reader(path);
   std::string_view line;
   if (!reader.next(line)) reader.wrong("must be four finite numbers, N Lx Ly Lz");
+  if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // a byte order mark
   const auto head = four_numbers(line, reader, "N Lx Ly Lz");
   XyzrFile file;
   file.box = {{head[1], head[2], head[3]}};

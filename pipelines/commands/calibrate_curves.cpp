@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "calibrate/experiment_fit.h"
+#include "common/data/law_remarks.h"
 #include "common/io/text_file.h"
 #include "pipelines/law/experiment_summary.h"
 #include "pipelines/law/fit_settings.h"
@@ -46,6 +47,7 @@ CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   s.fit = read_fit_settings(t);
   s.curves.unloading = t.choice<Unloading>("unloading", Unloading::refuse);
   s.mirror = t.flag("mirror", false);
+  s.fit.subtract_offset = t.choice("offset", {"subtract", "keep"}, "subtract") == "subtract";
   s.curves.initial_angle_deg = s.fit.initial_angle_deg;
   s.curves.secant_angle_deg = s.fit.secant_angle_deg;
   t.finish();
@@ -175,10 +177,11 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   ExperimentSummary summary;
   std::vector<std::string>& remarks = summary.head.remarks;
   remarks = fit.remarks;
-  for (const ForceCurves& kind : curves)
+  for (const ForceCurves& kind : fit.curves)
     for (const std::string& one : implausible_forces(kind))
       remarks.insert(remarks.begin(), to_string(kind.kind) + ": " + one);
   add_missing_kind(fit, remarks);
+  if (const std::string assumed = assumed_kt_text(fit.card); !assumed.empty()) remarks.push_back(assumed);
   std::string people;
   for (const FitReport& r : fit.reports) {
     people += force_line(r, fit.card.spec);
@@ -187,8 +190,8 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
     remarks.insert(remarks.begin(),
                    fmt::format("{} law: {}: {}", to_string(r.law.kind), to_string(r.law.status), r.law.reason));
   }
-  summary.experiment = drawn_samples(curves);
-  note_thinned(curves, summary.experiment, remarks);
+  summary.experiment = drawn_samples(fit.curves);
+  note_thinned(fit.curves, summary.experiment, remarks);
   for (const std::string& remark : remarks) people += "note: " + remark + "\n";
   people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
   summary.inputs = options.inputs;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -13,6 +12,7 @@
 #include "common/core/statistics.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
+#include "common/io/quantity.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 
@@ -107,14 +107,17 @@ Columns macro_columns(const std::vector<MacroCurve>& curves) {
   return out;
 }
 
-/// "key=value" with a value that is a plain number.
-bool plain_number(const std::string& override_text, std::string& key, double& value) {
-  const std::size_t mark = override_text.find('=');
+/// "key=value" with a value that is a number, with a unit or without: in SI then.
+bool number_of_setting(const std::string& setting, std::string& key, double& value) {
+  const std::size_t mark = setting.find('=');
   if (mark == std::string::npos) return false;
-  key = override_text.substr(0, mark);
-  const std::string text = override_text.substr(mark + 1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size();
+  key = trimmed(setting.substr(0, mark));
+  std::string text = trimmed(setting.substr(mark + 1));
+  const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+  if (quoted) text = text.substr(1, text.size() - 2);
+  const std::optional<double> number = quantity_of_any_unit(text);
+  value = number.value_or(0.0);
+  return number.has_value();
 }
 
 Columns parameter_columns(const std::vector<std::string>& overrides) {
@@ -124,7 +127,7 @@ Columns parameter_columns(const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) {
     std::string key;
     double value = 0.0;
-    if (!plain_number(text, key, value)) continue;
+    if (!number_of_setting(text, key, value)) continue;
     ++times[last(key)];
     out.push_back({key, {value}});
   }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "calibrate/force_offset.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
 #include "common/data/force_scale.h"
 #include "common/io/csv_file.h"
 #include "common/packing/grading_scene.h"
+#include "pipelines/kinds/macro/packing_source.h"
 
 namespace softgrain {
 
@@ -26,20 +28,21 @@ bool has_column(const CsvFile& table, std::initializer_list<const char*> begins)
 ForceCurveOptions stand_ins(const CsvFile& table, Findings& out) {
   ForceCurveOptions options;
   options.unloading = Unloading::drop;
-  const auto missing = [&](std::initializer_list<const char*> keys, const char* option) {
-    const bool said = table.setting({keys.begin(), keys.end()}).has_value();
-    if (!said) out.warn(fmt::format("the file does not say it: softgrain calibrate needs {}", option));
-    return !said;
+  const SaidByFile said = said_by_comments(table);
+  const auto missing = [&](bool is_said, const char* option) {
+    if (!is_said) out.warn(fmt::format("the file does not say it: softgrain calibrate needs {}", option));
+    return !is_said;
   };
-  if (missing({"kind"}, "--kind soft-solid or soft-soft")) options.kind = PairKind::soft_solid;
-  if (missing({"rs", "radius", "shell_radius"}, "--radius \"16 mm\"")) options.shell_radius = 1.0;
-  if (missing({"e", "modulus", "youngs_modulus"}, "--modulus \"0.5 MPa\"")) options.youngs_modulus = 1.0;
+  if (missing(said.kind, "--kind soft-solid or soft-soft")) options.kind = PairKind::soft_solid;
+  if (missing(said.shell_radius, "--radius \"16 mm\"")) options.shell_radius = 1.0;
+  if (missing(said.youngs_modulus, "--modulus \"0.5 MPa\"")) options.youngs_modulus = 1.0;
   return options;
 }
 
 void check_force_curves(const CsvFile& table, Findings& out) {
   const ForceCurveOptions options = stand_ins(table, out);
-  const ForceCurves curves = read_force_curves(table.path(), options);
+  ForceCurves curves = read_force_curves(table.path(), options);
+  (void)subtract_offsets(curves);  // its remarks say it
   std::size_t points = 0;
   double largest_delta = 0.0;
   double largest_force = 0.0;
@@ -70,21 +73,61 @@ void check_grading(const Grading& sizes, const char* what, Findings& out) {
           fmt::format("radii {:.4g} to {:.4g} m", sizes.smallest(), sizes.largest()));
 }
 
+/// Bodies of a macro scene. A periodic packing has bodies that stick out of its cell.
+void check_packing(const CsvFile& table, Findings& out) {
+  MacroPacking packing;
+  bool periodic = false;
+  try {
+    packing = read_packing_file(table.path());
+  } catch (const BadInput&) {
+    if (!table.setting({"box"})) throw;
+    try {
+      packing = read_packing_file(table.path(), Boundary::periodic);
+      periodic = true;
+    } catch (const BadInput&) {
+    }
+    if (!periodic) throw;
+  }
+  const std::int64_t soft = packing.soft_count();
+  const Vec3 size = packing.size();
+  out.add("kind", "packing", fmt::format("{}a packing; the key `packing` of a macro scene takes it", kNoScene));
+  out.add("bodies", packing.bodies.size(), fmt::format("{} bodies, {} of them soft", packing.bodies.size(), soft));
+  out.facts["soft"] = soft;
+  out.add("box", {size[0], size[1], size[2]},
+          fmt::format("box {:.4g} x {:.4g} x {:.4g} m{}", size[0], size[1], size[2],
+                      table.setting({"box"}) ? "" : ", the tightest one around all bodies"));
+  out.add("solid_fraction", packing.solid_fraction(), fmt::format("solid fraction {:.4g}", packing.solid_fraction()));
+  if (periodic) out.warn("bodies stick out of the box: the packing serves boundary = \"periodic\" alone");
+}
+
 }  // namespace
 
 void check_table(const std::string& path, Findings& out) {
   const CsvFile table = CsvFile::read(path);
-  if (has_column(table, {"fn", "f_n", "force", "normal force", "load"}))
+  const auto has = [&](const char* name) {
+    return std::any_of(table.columns().begin(), table.columns().end(),
+                       [&](const CsvColumn& c) { return c.name == name; });
+  };
+  const auto names = [&](std::initializer_list<const char*> parts) {
+    return std::any_of(table.columns().begin(), table.columns().end(), [&](const CsvColumn& c) {
+      return std::any_of(parts.begin(), parts.end(),
+                         [&](const char* part) { return c.name.find(part) != std::string::npos; });
+    });
+  };
+  if (has_column(table, {"fn", "f_n", "force", "normal force", "load"}) || has("f"))
     check_force_curves(table, out);
-  else if (has_column(table, {"passing", "finer"}))
+  else if (has("x") && has("y") && has("z"))
+    check_packing(table, out);
+  else if (names({"passing", "finer", "retained"}))
     check_grading(read_sieve_curve(path), "a sieve curve", out);
-  else if (has_column(table, {"radius", "diameter"}))
+  else if (has_column(table, {"radius", "diameter"}) || has("r") || has("d"))
     check_grading(read_radii(path), "radii of grains", out);
   else
     throw BadInput(
         path +
         ": a table of data, no scene, and none of those that softgrain reads: force over overlap (columns hn "
-        "[mm], Fn [N]), a sieve curve (opening [mm], passing [%]), radii (radius [mm])");
+        "[mm], Fn [N]), a sieve curve (opening [mm], passing [%]), radii (radius [mm]), a packing (x [m], y [m], z "
+        "[m], r [m], kind)");
 }
 
 }  // namespace softgrain

@@ -7,6 +7,7 @@
 
 #include "common/data/estimate_words.h"
 #include "common/data/law_card_format.h"
+#include "common/data/law_remarks.h"
 #include "pipelines/law/law_values.h"
 #include "pipelines/law/terminal_plot.h"
 
@@ -139,6 +140,7 @@ std::string card_text_for_people(const LawFile& file, bool utf8) {
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
   for (const std::string& note : card.notes) text += wrapped("  note: " + note, 4);
+  if (const std::string assumed = assumed_kt_text(card); !assumed.empty()) text += wrapped("  note: " + assumed, 4);
   for (const PairLaw& law : card.pairs) text += "\n" + pair_text(law, card.spec, utf8);
   return text + "\n" +
          wrapped(

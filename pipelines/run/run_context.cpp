@@ -115,7 +115,7 @@ void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string
                         directory_, what));
     if (options_.member && has_ended(read_object(path("summary.json")))) throw HasEnded();
   }
-  write_text_atomic(path(kRunFile), now.dump(2) + "\n");
+  write_text_atomic(path(kRunFile), now.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {

@@ -230,7 +230,56 @@ class TableTest(unittest.TestCase):
             e["solid_fraction"] for e in self.law.card["entry"]))
 
 
+class ArraysTest(unittest.TestCase):
+    """Masks and empty arrays, of cards and tables alike."""
+
+    def asks(self):
+        card, table = softgrain.Law.load(CARD), softgrain.Law.load(TABLE)
+        return (card.force, card.stiffness, card.tangential_stiffness, card.force_interval, table.force, table.stiffness,
+                table.volume, table.force_interval)
+
+    def test_what_is_masked_stays_masked(self):
+        delta = np.ma.array([0.1, 99.0, 0.2], mask=[False, True, False])
+        for ask in self.asks():
+            with self.subTest(ask=ask.__qualname__):
+                got, told = ask(delta, beyond="error"), ask(delta.compressed())
+                for masked, plain in zip(got, told) if isinstance(got, tuple) else ((got, told),):
+                    self.assertTrue(np.ma.isMaskedArray(masked))
+                    np.testing.assert_array_equal(masked.mask, delta.mask)
+                    np.testing.assert_array_equal(masked.compressed(), plain)
+        inside = softgrain.Law.load(CARD).inside(delta)
+        self.assertEqual(inside.tolist(), [True, None, True])
+
+    def test_empty_arrays_give_empty_arrays(self):
+        for ask in self.asks():
+            for empty in ([], np.array([]), np.empty((0, 3)), np.empty((2, 0)), np.array([0.1])[[False]], np.array([], dtype=bool)):
+                got = ask(empty)
+                for one in got if isinstance(got, tuple) else (got,):
+                    self.assertEqual(np.shape(one), np.shape(empty), ask.__qualname__)
+        table = softgrain.Law.load(TABLE)
+        self.assertEqual(table.forces(np.empty((0, 2)), [[1, 0, 0], [-1, 0, 0]]).shape, (0, 2))
+
+    def test_flags_and_what_is_no_number_are_refused(self):
+        table = softgrain.Law.load(TABLE)
+        for wrong in (np.array([True, False]), True, ["0.1"], "0.1", [[0.1], [0.1, 0.2]], np.array([0.1j])):
+            for ask in (*self.asks(), lambda d: table.forces(d, [[1, 0, 0]])):
+                with self.assertRaisesRegex(softgrain.BadInput, "array of numbers"):
+                    ask(wrong)
+        with self.assertRaisesRegex(softgrain.BadInput, "flags choose elements"):
+            table.force(np.array([True]))
+        with self.assertRaisesRegex(softgrain.BadInput, "one column per neighbour"):
+            table.forces([], [[1, 0, 0]])
+
+
 class LoadTest(InEmptyFolder):
+    def test_a_byte_order_mark_is_no_mistake(self):
+        with open("law.toml", "wb") as file:
+            file.write(b"\xef\xbb\xbf" + CARD.read_bytes())
+        self.assertEqual(softgrain.Law.load("law.toml").force(0.2), softgrain.Law.load(CARD).force(0.2))
+        with open("law_table.toml", "wb") as file:
+            file.write(b"\xef\xbb\xbf" + TABLE.read_bytes())
+        self.assertEqual(softgrain.Law.load("law_table.toml").force(0.2), softgrain.Law.load(TABLE).force(0.2))
+
     def test_wrong_files(self):
         with self.assertRaises(softgrain.FileTrouble):
             softgrain.Law.load("nothing.toml")

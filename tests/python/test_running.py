@@ -31,6 +31,18 @@ class RunTest(InEmptyFolder):
         self.assertAlmostEqual(contact["max_overlap"] / overlap, 1.0, delta=1e-3)
         self.assertEqual(os.listdir("."), ["results"])  # the scene's own file went
 
+    def test_a_file_with_a_byte_order_mark(self):
+        from softgrain.toml_text import scene_text
+        with open("beads.toml", "wb") as file:
+            file.write(b"\xef\xbb\xbf" + scene_text(two_beads())[0].encode())
+        self.assertEqual(softgrain.run("beads.toml", progress=False).status, "good")
+        self.assertEqual(softgrain.check("beads.toml").kind, "particles")
+
+    def test_masked_values_are_refused(self):
+        for masked in (np.ma.array([0.1, 0.2], mask=[False, True]), np.ma.masked):
+            with self.assertRaisesRegex(softgrain.BadInput, "time.end .*masked"):
+                softgrain.check(two_beads(time={"end": masked}))
+
     def test_arrays_have_names_and_units(self):
         run = softgrain.run(two_beads(), out="beads", progress=False)
         velocity = run.array("trajectory/velocity")

@@ -250,6 +250,27 @@ TEST_F(Check, TablesOfDataSayWhatTheyAre) {
   EXPECT_TRUE(warned(written("hn [mm], Fn [N]\n1, 1\n2, 2\n3, 3\n4, 4\n5, 5\n"), "--radius"));
   EXPECT_EQ(written("opening [mm], passing [%]\n1, 0\n2, 40\n4, 100\n")["kind"], "a sieve curve");
   EXPECT_EQ(written("radius [mm]\n1\n2\n")["kind"], "radii of grains");
+  EXPECT_EQ(written("opening [mm], percent passing\n1, 0\n2, 40\n4, 100\n")["kind"], "a sieve curve");
+  EXPECT_EQ(written("r [mm], count\n1, 10\n2, 3\n")["kind"], "radii of grains");
+  const std::string bodies =
+      "x [mm], y [mm], z [mm], r [mm], kind\n10, 10, 10, 10, solid\n30, 10, 10, 10, soft\n10, 10, 30, 10, soft\n";
+  const json packing = written("# box [mm] = 0 0 0 80 20 40\n" + bodies);
+  EXPECT_EQ(packing["kind"], "packing");
+  EXPECT_EQ(packing["bodies"], 3);
+  EXPECT_EQ(packing["soft"], 2);
+  EXPECT_NEAR(packing["box"][0].get<double>(), 0.08, 1e-15);
+  EXPECT_NEAR(written(bodies)["box"][0].get<double>(), 0.04, 1e-15);
+  EXPECT_TRUE(warned(written("# box [cm] = -1 -3 -3 9 5 7\n" + bodies + "-10, 10, 30, 10, solid\n"), "periodic"));
+  const auto refused = [&](const std::string& text, const std::string& words) {
+    write_text_atomic(data, text);
+    const test::ProgramOutcome told = run_the_program("check '" + data + "'");
+    EXPECT_EQ(told.status, 2) << told.output;
+    EXPECT_NE(told.output.find(words), std::string::npos) << told.output;
+  };
+  refused("opening [mm], retained [%]\n1, 0\n4, 100\n", "passing is 100 % less what is retained in all");
+  refused("# box = 0 0 0 80 20 40\n" + bodies, "write \"box [mm] = ...\"");
+  refused("# boxx [mm] = 0 0 0 80 20 40\n" + bodies, "nearest is \"box\"");
+  refused("# box [mm] = 0 0 0 80 20 40\n# box [mm] = 0 0 0 80 20 41\n" + bodies, "contradicts line 1");
   write_text_atomic(data, "colour, taste\n1, 2\n");
   const test::ProgramOutcome other = run_the_program("check '" + data + "'");
   EXPECT_EQ(other.status, 2);

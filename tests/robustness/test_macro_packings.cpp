@@ -135,7 +135,7 @@ TEST_F(MacroPackings, AGivenPackingThatIsNoneIsRefusedWithLineAndColumn) {
       {head + "0.01, 0.01, 0.035, 0.01, solid\n", {"bodies.csv:3", "z [m]", "outside the box by 0.5"}},
       {head + "0.01, 0.01, 0.01, 0.01, solid\n0.02, 0.01, 0.01, 0.01, soft\n",
        {"bodies.csv:4", "overlaps the body of line 3 by 1"}},
-      {"# box = 0 0 0 1\nx [m], y [m], z [m], r [m], kind\n0, 0, 0, 1, solid\n", {"bodies.csv:1", "six lengths"}},
+      {"# box = 0 0 0 1\nx [m], y [m], z [m], r [m], kind\n0, 0, 0, 1, solid\n", {"bodies.csv:1", "must be 6 numbers"}},
       {"# box = 0 0 0 1 -1 1\nx [m], y [m], z [m], r [m], kind\n0, 0, 0, 1, solid\n",
        {"bodies.csv:1", "above the low"}},
       {"# box = 0 0 0 1 a 1\nx [m], y [m], z [m], r [m], kind\n0, 0, 0, 1, solid\n", {"bodies.csv:1", "box"}},

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/data/law_card.h"
+#include "common/data/macro_result.h"
 #include "common/data/measurements.h"
 #include "common/io/text_file.h"
 #include "tests/support/markup_check.h"
@@ -126,6 +127,70 @@ TEST_F(OwnData, ACsvGivesALawThatAMacroRunTakes) {
                          file("macro") + "'"),
          0, {});
   expect(run_the_program("check '" + file("law") + "/law.toml'"), 0, {"experiment"});
+}
+
+/// A press test measures no tangential stiffness: without an assumed one mu of a scene changed no digit.
+TEST_F(OwnData, FrictionCountsWithALawOfAPressTest) {
+  write("plane.csv", made_up_curve(1.0));
+  write("macro.toml", kMacro);
+  expect(calibrate("'" + file("plane.csv") + "'", "law", "--kind soft-solid --set mirror=true"), 0,
+         {"tangential stiffness of soft-solid contacts was not measured", "is assumed"});
+  const std::string law = "'" + file("law") + "/law.toml'";
+  EXPECT_NE(read_text(file("law") + "/law.toml").find("[pair.tangential_assumed]"), std::string::npos);
+  expect(run_the_program("law show " + law), 0, {"is assumed"});
+  expect(run_the_program("check " + law), 0, {"is assumed"});
+  std::vector<double> stress;
+  for (const char* mu : {"0", "0.3", "0.6"}) {
+    const std::string out = file(std::string("mu") + mu);
+    expect(run_the_program("macrosim '" + file("macro.toml") + "' --quiet --law " + law + " --set macro.mu=" + mu +
+                           " --set macro.preparation=frictionless --set macro.soft_share=0.9 --out '" + out + "'"),
+           0, {});
+    EXPECT_NE(read_text(out + "/summary.json").find("is assumed"), std::string::npos);
+    stress.push_back(load_macro(out + "/macro.h5").at(0).stress_axial.back());
+  }
+  EXPECT_GT(std::abs(stress[1] - stress[0]), 1e-4 * stress[0]);
+  EXPECT_GT(std::abs(stress[2] - stress[1]), 1e-6 * stress[0]);
+}
+
+TEST_F(OwnData, OptionsThatContradictTheFileAreRefused) {
+  write("plane.csv", "# kind = soft-solid\n" + made_up_curve(1.0));
+  const std::string plane = "'" + file("plane.csv") + "'";
+  expect(calibrate(plane, "x", "--kind soft-soft"), 2, {"plane.csv:1", "kind = soft-solid", "--kind soft-soft"});
+  expect(calibrate(plane, "x", "--radius '32 mm'"), 2, {"plane.csv:2", "Rs = 16 mm", "--radius 0.032 m"});
+  expect(calibrate(plane, "x", "--modulus '1 MPa'"), 2, {"plane.csv:3", "E = 0.5 MPa", "--modulus 1e+06 Pa"});
+  EXPECT_FALSE(fs::exists(file("x") + "/law.toml"));
+  expect(calibrate(plane, "law", "--kind soft-solid --radius 1.6cm --modulus 500kPa"), 0, {"soft-solid: good"});
+  write("scene.toml", kInverse);
+  write("target.csv", "# kind = soft-solid\n# Rs = 20 mm\nDelta, Fn [N]\n0.1, 0\n0.2, 0.1\n0.3, 0.4\n0.4, 0.9\n0.5, 2\n");
+  expect(run_the_program("check '" + file("scene.toml") + "'"), 2, {"Rs = 20 mm", "shell_radius of [packing]"});
+}
+
+TEST_F(OwnData, AForceOffsetIsTakenOff) {
+  std::string text = "# kind = soft-solid\n# Rs = 16 mm\n# E = 0.5 MPa\nhn [mm]; Fn [N]\n";
+  RandomStream random(5, RandomPurpose::test, 0);
+  for (int k = 1; k <= 30; ++k) {
+    const double d = 0.01 * k;
+    text += std::to_string(16.0 * d) + "; " +
+            std::to_string(0.5 + 128.0 * KnownLaw{}.value(d) + 0.002 * normal_number(random)) + "\n";
+  }
+  write("plane.csv", text);
+  const std::string plane = "'" + file("plane.csv") + "'";
+  expect(calibrate(plane, "law"), 0, {"soft-solid: good", "this offset was subtracted"});
+  EXPECT_NEAR(128.0 * load_card(file("law") + "/law.toml").pairs.at(0).normal.value(0.2), 128.0 * KnownLaw{}.value(0.2),
+              0.01);
+  EXPECT_NEAR(summary("law")["experiment"][0]["force"][0].get<double>(), 0.0, 0.02);
+  expect(run_the_program("check " + plane), 0, {"this offset was subtracted"});
+  const ProgramOutcome kept = calibrate(plane, "kept", "--set offset=keep");
+  EXPECT_EQ(kept.output.find("offset was subtracted"), std::string::npos);
+}
+
+/// Names of files may be any bytes.
+TEST_F(OwnData, ANameThatIsNoUtf8GivesACardThatCanBeRead) {
+  write("M\xfcller.csv", "# kind = soft-solid\n" + made_up_curve(1.0));
+  expect(calibrate("'" + file("M\xfcller.csv") + "'", "law"), 0, {});
+  EXPECT_NO_THROW((void)load_card(file("law") + "/law.toml"));
+  EXPECT_TRUE(summary("law").is_object());
+  expect(run_the_program("check '" + file("law") + "'"), 0, {});
 }
 
 /// What the data do not say is not known: absent in the card, read back so, and no twin is made of guesses.
@@ -313,6 +378,10 @@ TEST_F(OwnData, ObservablesAreWrittenAsCalibrationToolsReadThem) {
     EXPECT_NEAR(force, row["force"].get<double>(), 1e-9 * std::abs(force));
   }
   EXPECT_EQ(delta, 0.5);
+  const std::string units = file("iter1/a");
+  (void)run_the_program("microsim '" + file("scene.toml") + "' --quiet --set 'material.E=50 GPa' --set " +
+                        "'packing.shell_radius=\"20 mm\"' --set measure.relaxation=damped --observables '" + units + "'");
+  EXPECT_EQ(read_text(units + "_param.txt"), "# E shell_radius\n5e+10 0.02\n");
   write("grains.toml", "kind = \"particles\"\n");
   expect(run_the_program("microsim '" + file("grains.toml") + "' --observables '" + file("p") + "'"), 2, {"particles"});
 }

@@ -75,15 +75,51 @@ TEST_F(ForceCurveFile, UnitsAndCommentsBecomeSiAndDelta) {
   EXPECT_TRUE(c.remarks.empty());
 }
 
-TEST_F(ForceCurveFile, OptionsWinOverComments) {
-  ForceCurveOptions o;
-  o.kind = PairKind::soft_soft;
-  o.shell_radius = 0.032;
-  o.youngs_modulus = 1e6;
-  const ForceCurves c = read(kGood, o);
-  EXPECT_EQ(c.kind, PairKind::soft_soft);
-  EXPECT_NEAR(c.samples[0].normal[4].delta, 0.125, 1e-15);
-  EXPECT_EQ(c.spec.youngs_modulus, 1e6);
+/// Two laws became one where an option won over what the file says.
+TEST_F(ForceCurveFile, OptionsThatContradictCommentsAreRefused) {
+  ForceCurveOptions same;
+  same.kind = PairKind::soft_solid;
+  same.shell_radius = 0.016;
+  same.youngs_modulus = 5e5;
+  EXPECT_EQ(read(kGood, same).spec.shell_radius, 0.016);
+  ForceCurveOptions kind = same, radius = same, modulus = same;
+  kind.kind = PairKind::soft_soft;
+  radius.shell_radius = 0.032;
+  modulus.youngs_modulus = 1e6;
+  expect_refused(kGood, {"data.csv:2", "kind = soft-solid", "--kind soft-soft"}, kind);
+  expect_refused(kGood, {"data.csv:3", "Rs = 16 mm (0.016 m)", "--radius 0.032 m"}, radius);
+  expect_refused(kGood, {"data.csv:4", "E = 0.5 MPa", "--modulus 1e+06 Pa"}, modulus);
+}
+
+TEST_F(ForceCurveFile, CommentsInOtherSpellingsCount) {
+  std::string text = replaced(kGood, "# Rs: 16 mm", "# Rs [mm] = 16\n# density [kg/m^3] = 2600\n# Poisson ratio = 0.22");
+  text = replaced(text, "# E = \"0.5 MPa\"", "# Young's modulus (MPa): 0.5\n# specimen: ring 7");
+  const ForceCurves c = read(text);
+  EXPECT_DOUBLE_EQ(c.spec.shell_radius, 0.016);
+  EXPECT_DOUBLE_EQ(c.spec.youngs_modulus, 5e5);
+  EXPECT_EQ(c.spec.density, 2600.0);
+  EXPECT_EQ(c.spec.poisson_ratio, 0.22);
+  EXPECT_EQ(c.samples[0].name, "ring 7");
+}
+
+TEST_F(ForceCurveFile, CommentsThatWouldBeLostAreRefused) {
+  expect_refused(replaced(kGood, "# mu = 0.25", "# Rs = 17 mm"), {"data.csv:5", "contradicts line 3"});
+  expect_refused(replaced(kGood, "# mu = 0.25", "# densty [kg/m^3] = 2600"), {"data.csv:5", "densty", "\"density\""});
+  expect_refused(replaced(kGood, "# mu = 0.25", "# temperature [C] = 20"), {"temperature", "may say rs, e, kind, nu"});
+}
+
+/// Over the radius or over the diameter: the law differs by a power of two.
+TEST_F(ForceCurveFile, AStrainIsAskedFor) {
+  expect_refused(replaced(kGood, "hn [mm]", "strain"), {"data.csv:6", "strain", "hn [mm]", "Delta", "half"});
+  expect_refused(replaced(kGood, "hn [mm]", "strain [%]"), {"strain", "Delta"});
+  std::string percent = replaced(kGood, "hn [mm]", "Delta [%]");
+  EXPECT_NEAR(read(percent).samples[0].normal[4].delta, 0.04, 1e-15);
+}
+
+TEST_F(ForceCurveFile, ReadingsBeforeTouchAreKept) {
+  const ForceCurves c = read(replaced(kGood, "0.8, 0\n", "-0.2, 3\n-0.1, 5\n0.8, 0\n"));
+  EXPECT_EQ(c.samples[0].before_touch, (std::vector<double>{0.003, 0.005}));
+  EXPECT_EQ(c.samples[0].normal.size(), 5U);
 }
 
 TEST_F(ForceCurveFile, SemicolonsTabsAndDecimalCommas) {

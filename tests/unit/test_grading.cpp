@@ -217,9 +217,57 @@ TEST_F(GradingFile, WhatIsNoSieveCurveIsSaid) {
       {"opening [mm],passing\n1,0\n4,100\n", "a share; write \"passing [%]\" for percent"},
       {head + "-1,0\n4,100\n", "curve.csv:2: an opening must be positive"},
       {head + "1,0\n4,\n", "curve.csv:3: what passes is missing"},
-      {head + "4,100\n", "at least two sieves"}};
+      {head + "4,100\n", "at least two sieves"},
+      {"# moisture [%] = 3\n" + head + "1,0\n4,100\n", "curve.csv:1: comment \"moisture [%] = 3\" is not understood"},
+      {"opening [mm],passing [%],weight\n1,0,1\n4,100,1\n", "column \"weight\" is not understood"},
+      {"opening [mm],percent passing\n1,0\n4,101\n", "101 passes; allowed: 0 to 100 %"}};
   for (const auto& [text, words] : cases)
     EXPECT_NE(complaint(text).find(words), std::string::npos) << text << "\n" << complaint(text);
+}
+
+/// Sums of what sieves retain end where a spreadsheet rounded them to.
+TEST_F(GradingFile, EndsOfACurveMayBeRounded) {
+  for (const char* end : {"99.99999999999999", "100.00000000000001", "100%", "100 %", "100"})
+    for (const char* start : {"0", "1e-14", "-1e-14", "0%"}) {
+      const Grading g = sieves(std::string("opening [mm],passing [%]\n1,") + start + "\n2,40\n4," + end + "\n");
+      EXPECT_NEAR(g.passing(0.5), 1.0, 1e-12) << start << " to " << end;
+      EXPECT_NEAR(g.passing(0.001), 0.4, 1e-12) << start << " to " << end;
+    }
+  EXPECT_NE(complaint("opening [mm],passing [%]\n1,0\n4,99.9999\n").find("it must go from 0 to 100 %"), std::string::npos);
+  EXPECT_NE(complaint("opening [mm],passing [%]\n1,0\n4,100.0001\n").find("allowed: 0 to 100 %"), std::string::npos);
+  EXPECT_NEAR(sieves("opening [mm],passing [%]\n1,0\n2,100.00000000000001\n4,100\n").passing(1.0), 1.0, 1e-12);
+}
+
+TEST_F(GradingFile, ColumnsMaySayPercentByTheirName) {
+  for (const char* name : {"percent passing", "percent passing [%]", "% passing", "passing %", "Percent finer", "% finer",
+                           "cumulative passing [%]"}) {
+    const Grading g = sieves(std::string("sieve size [mm];") + name + ";% retained\n1;0;40\n2;40;60\n4;100%;0\n");
+    EXPECT_NEAR(g.passing(0.001), 0.4, 1e-12) << name;
+  }
+  EXPECT_NEAR(sieves("opening [mm],passing\n1,0\n2,40%\n4,100 %\n").passing(0.001), 0.4, 1e-12);
+}
+
+TEST_F(GradingFile, AListMayHaveCounts) {
+  const auto list = [&](const std::string& text) {
+    write_text_atomic(directory_.file("list.csv"), text);
+    return read_radii(directory_.file("list.csv"));
+  };
+  RandomStream random(1, RandomPurpose::test, 0);
+  for (const char* head : {"radius [mm],count", "diameter [mm];number", "r [mm],n", "radius [mm],frequency [%]"}) {
+    const bool semicolon = std::string(head).find(';') != std::string::npos;
+    const Grading g = list(std::string(head) + (semicolon ? "\n1;100\n2;5\n3;1\n" : "\n1,100\n2,5\n3,1\n"));
+    const std::vector<double> radii = g.draw(300, random);
+    const double unit = head[0] == 'd' ? 0.0005 : 0.001;
+    EXPECT_NEAR(static_cast<double>(std::count(radii.begin(), radii.end(), unit)), 283.0, 1.0) << head;
+    EXPECT_NEAR(static_cast<double>(std::count(radii.begin(), radii.end(), 2.0 * unit)), 14.0, 1.0) << head;
+    EXPECT_NEAR(static_cast<double>(std::count(radii.begin(), radii.end(), 3.0 * unit)), 3.0, 1.0) << head;
+    EXPECT_EQ(stored_grading(g.text()), g) << head;
+  }
+  EXPECT_EQ(list("radius [mm],count\n1,1\n2,1\n"), list("radius [mm]\n1\n2\n"));
+  EXPECT_EQ(list("radius [mm],count\n1,3\n2,0\n").pieces().size(), 1U);
+  for (const char* text : {"radius [mm],count\n1,-1\n", "radius [mm],count\n1,\n", "radius [mm],count\n1,0\n",
+                           "radius [mm],count [kg]\n1,2\n", "radius [mm],mass\n1,2\n", "# mean = 3 mm\nradius [mm]\n1\n"})
+    EXPECT_THROW((void)list(text), BadInput) << text;
 }
 
 TEST(GradingScene, EveryFormIsRead) {
@@ -239,6 +287,7 @@ TEST(GradingScene, EveryFormIsRead) {
       "radius_max = 5e-3\nvolume_share = 0.7\n");
   EXPECT_NEAR(gap.passing(2e-3), 0.3, 1e-15);
   EXPECT_EQ(read("form = \"list\"\nradii = [1e-3, 2e-3]\n").pieces().size(), 2U);
+  EXPECT_NEAR(read("form = \"list\"\nradii = [1e-3, 2e-3]\ncounts = [8, 1]\n").passing(1.5e-3), 0.5, 1e-12);
   const Grading sieves = read("form = \"sieve-curve\"\nopenings = [\"1 mm\", \"4 mm\"]\npassing = [0.0, 1.0]\n");
   EXPECT_NEAR(sieves.passing(1e-3), 0.5, 1e-12);
   const std::vector<std::pair<std::string, std::string>> wrong{
@@ -247,6 +296,7 @@ TEST(GradingScene, EveryFormIsRead) {
       {"form = \"sieve-curve\"\nopenings = [1e-3, 4e-3]\npassing = [1.0, 0.0]\n", "retained in all"},
       {"form = \"sieve-curve\"\nopenings = [1e-3, 4e-3]\npassing = [0.1, 1.0]\n", "s.toml:3: the curve goes from 10 %"},
       {"form = \"classes\"\n[[class]]\nradius = 1e-3\nvolume_share = 0.3\n", "add up to 0.3"},
+      {"form = \"list\"\nradii = [1e-3]\ncounts = [1, 2]\n", "one for each"},
       {"form = \"list\"\nradii = []\n", "at least one radius"}};
   for (const auto& [text, words] : wrong) {
     try {

@@ -1,5 +1,8 @@
 // HDF5 behind groups: bitwise round trips, damage found, files that appear only when complete.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -43,6 +46,23 @@ class Hdf5 : public testing::Test {
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+
+/// Held by another program it is not damaged.
+TEST_F(Hdf5, AFileThatIsLockedIsSaidToBe) {
+  write_sample("held.h5");
+  const int held = ::open(path("held.h5").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(held, 0);
+  ASSERT_EQ(::flock(held, LOCK_EX | LOCK_NB), 0);
+  try {
+    (void)h5::open_file(path("held.h5"));
+    ADD_FAILURE() << "it was opened";
+  } catch (const FileTrouble& e) {
+    EXPECT_NE(std::string(e.what()).find("another program holds this file open"), std::string::npos) << e.what();
+    EXPECT_EQ(std::string(e.what()).find("damaged"), std::string::npos) << e.what();
+  }
+  ::close(held);
+  EXPECT_NO_THROW((void)h5::open_file(path("held.h5")));
 }
 
 TEST_F(Hdf5, NumbersComeBackBitForBit) {

@@ -146,6 +146,26 @@ TEST_F(LawCardFile, UnusableLawsKeepWhatIsNotKnown) {
   EXPECT_EQ(pair->normal.a.low, -std::numeric_limits<double>::infinity());
 }
 
+TEST_F(LawCardFile, AnAssumedTangentialStiffnessIsWritten) {
+  save_card(card_, path());
+  EXPECT_EQ(read_text(path()).find("tangential_assumed"), std::string::npos);
+  card_.pairs[0].has_tangential_secant = false;
+  card_.spec.poisson_ratio = 0.2;
+  save_card(card_, path());
+  EXPECT_NE(read_text(path()).find("[pair.tangential_assumed]\nkt_ratio = 0.888888888888888"), std::string::npos);
+  EXPECT_NEAR(load_card(path()).pairs[0].kt_ratio, 1.6 / 1.8, 1e-15);
+  EXPECT_NE(message_after("kt_ratio = 0.8", "kt_ratio = 20.8").find("kt_ratio = 20.8"), std::string::npos);
+}
+
+/// A file name may be any bytes; a card that holds the command must stay TOML.
+TEST_F(LawCardFile, ACommandThatIsNoUtf8CanBeReadBack) {
+  Provenance provenance = build_provenance();
+  provenance.command = "softgrain calibrate M\xfcller.csv";
+  card_.pairs[0].reason = "of M\xfcller";
+  save_card(card_, path(), provenance);
+  EXPECT_EQ(load_card(path()).pairs[0].reason, "of M\ufffdller");
+}
+
 TEST_F(LawCardFile, CardAloneIsEnough) {
   save_card(card_, path());
   fs::remove(fs::path(path()).replace_extension(".h5"));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/data/law_remarks.h"
 
 namespace {
 
@@ -49,6 +50,31 @@ TEST(SoftContactFromCard, ScalesWithModulusAndRadius) {
   EXPECT_EQ(law.evaluate(pressed(law, 0.04)).elastic_force, 0.0);
   const SoftContact secant = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, true);
   EXPECT_LT(secant.evaluate(pressed(secant, 0.3)).tangential_stiffness, r.tangential_stiffness);
+}
+
+/// Without a measured kt there was none at all, and mu of a scene changed no digit.
+TEST(SoftContactFromCard, AStiffnessThatWasNotMeasuredIsAssumed) {
+  LawCard card = card_with(PairKind::soft_soft, LawStatus::good);
+  card.pairs[0].has_tangential_initial = card.pairs[0].has_tangential_secant = false;
+  card.spec.poisson_ratio = 0.2;
+  for (const bool secant : {false, true}) {
+    const SoftContact law = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, secant);
+    for (const double ratio : {0.06, 0.3}) {
+      const auto r = law.evaluate(pressed(law, ratio));
+      EXPECT_GT(r.normal_stiffness, 0.0);
+      EXPECT_NEAR(r.tangential_stiffness / r.normal_stiffness, 2.0 * 0.8 / 1.8, 1e-12);
+    }
+    EXPECT_EQ(law.evaluate(pressed(law, 0.04)).tangential_stiffness, 0.0);
+  }
+  card.spec.poisson_ratio = std::nan("");
+  EXPECT_NEAR(assumed_kt_ratio(card, card.pairs[0]), 1.4 / 1.7, 1e-15);
+  card.pairs[0].kt_ratio = 0.5;
+  const SoftContact said = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, false);
+  const auto r = said.evaluate(pressed(said, 0.3));
+  EXPECT_NEAR(r.tangential_stiffness / r.normal_stiffness, 0.5, 1e-12);
+  EXPECT_NE(assumed_kt_text(card).find("kt = 0.5 dFn/dh is assumed"), std::string::npos);
+  card.pairs[0].has_tangential_secant = true;
+  EXPECT_EQ(assumed_kt_text(card), "");
 }
 
 TEST(SoftContactFromCard, UnusableLawsAreRefused) {

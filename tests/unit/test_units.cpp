@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "common/core/error.h"
+#include "common/io/quantity.h"
 #include "common/io/scene.h"
 
 namespace softgrain {
@@ -46,6 +47,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"-9.81 m/s^2", Unit::acceleration, -9.81}, Case{"5 N/mm", Unit::stiffness, 5000.0},
                     Case{"5 kN/m", Unit::stiffness, 5000.0}, Case{"1 deg", Unit::angle_degree, 1.0},
                     Case{"0.05 degree", Unit::angle_degree, 0.05}));
+
+// Greek mu of a keyboard (U+03BC), raised digits, and spellings of laboratories.
+INSTANTIATE_TEST_SUITE_P(
+    Spellings, EveryUnit,
+    testing::Values(Case{"3 \u03bcm", Unit::length, 3e-6}, Case{"3 \u00b5m", Unit::length, 3e-6},
+                    Case{"7 \u03bcs", Unit::time, 7e-6}, Case{"5 \u03bcN", Unit::force, 5e-6},
+                    Case{"5 \u03bcm/s", Unit::velocity, 5e-6}, Case{"5 \u03bcg", Unit::mass, 5e-9},
+                    Case{"2500 kg/m\u00b3", Unit::density, 2500.0}, Case{"2500 kg/m3", Unit::density, 2500.0},
+                    Case{"2500 kg/m**3", Unit::density, 2500.0}, Case{"2.5 g/cm\u00b3", Unit::density, 2500.0},
+                    Case{"2.5 g/cc", Unit::density, 2500.0}, Case{"2.5 kg/dm\u00b3", Unit::density, 2500.0},
+                    Case{"3 N/mm\u00b2", Unit::pressure, 3e6}, Case{"3 N/mm2", Unit::pressure, 3e6},
+                    Case{"3 kN/m\u00b2", Unit::pressure, 3e3}, Case{"3 mbar", Unit::pressure, 300.0},
+                    Case{"-9.81 m/s\u00b2", Unit::acceleration, -9.81}, Case{"90\u00b0", Unit::angle_degree, 90.0}));
+
+TEST(Units, AnyUnitGoesToSi) {
+  EXPECT_EQ(quantity_of_any_unit("50 GPa"), 5e10);
+  EXPECT_EQ(quantity_of_any_unit("0.25"), 0.25);
+  EXPECT_EQ(quantity_of_any_unit("16 mm"), 0.016);
+  EXPECT_EQ(quantity_of_any_unit("2 g/cc"), 2000.0);
+  for (const char* text : {"damped", "", "[0.1, 0.2]", "3 apples", "true"}) EXPECT_FALSE(quantity_of_any_unit(text)) << text;
+}
 
 TEST(Units, FactorsThatAreNoPowersOfTen) {
   EXPECT_DOUBLE_EQ(parse_quantity("36 km/h", Unit::velocity), 10.0);

@@ -7,9 +7,11 @@
 #include <cmath>
 
 #include "calibrate/experiment_fit.h"
+#include "calibrate/force_offset.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
+#include "common/io/csv_file.h"
 
 namespace softgrain {
 
@@ -85,15 +87,36 @@ void read_points(const SceneTable& t, InverseSetup& s) {
   if (s.target.error.size() != n) t.reject("error", fmt::format("must have as many values as delta ({})", n));
 }
 
+/// What the file says of the grains is what the scene says, where it is not what is searched.
+void require_same_grains(const SceneTable& t, const SoftParticleSpec& file, const InverseSetup& s) {
+  for (const auto& [name, member] : {std::pair{"nu", &SoftParticleSpec::poisson_ratio},
+                                     {"mu", &SoftParticleSpec::friction},
+                                     {"density", &SoftParticleSpec::density}}) {
+    const bool searched = std::any_of(s.search.begin(), s.search.end(),
+                                      [name = std::string(name)](const SearchParameter& p) { return p.name == name; });
+    const double said = file.*member;
+    const double scene = s.measure.spec.*member;
+    if (!searched && is_known(said) && std::abs(said - scene) > 1e-9 * std::abs(said))
+      t.mistake("file", fmt::format("says {} = {:g}, the scene {:g}: leave one of them out", name, said, scene));
+  }
+}
+
 /// Mean curve of a file, at evenly spread overlaps within its range.
 void read_file(const Scene& scene, const SceneTable& t, InverseSetup& s) {
+  const std::string path = scene.resolve(t.text("file"));
   ForceCurveOptions options;
-  options.kind = s.kind;
+  if (t.has("contact") || !said_by_comments(CsvFile::read(path)).kind) options.kind = s.kind;
   options.shell_radius = s.measure.spec.shell_radius;
   options.youngs_modulus = s.measure.spec.youngs_modulus;
+  options.kind_from = "contact of [target],";
+  options.radius_from = "shell_radius of [packing],";
+  options.modulus_from = "E of [material],";
   options.unloading = t.choice<Unloading>("unloading", Unloading::refuse);
-  const ForceCurves curves = read_force_curves(scene.resolve(t.text("file")), options);
+  ForceCurves curves = read_force_curves(path, options);
+  (void)subtract_offsets(curves);  // its remarks say it
+  s.kind = curves.kind;
   s.remarks = curves.remarks;
+  require_same_grains(t, curves.spec, s);
   const CurveMeans means = mean_curve(curves);
   const auto points = static_cast<std::size_t>(t.count("points", 3, 1000, 8));
   const double low =

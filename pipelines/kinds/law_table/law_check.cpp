@@ -35,10 +35,8 @@ void warn_of_card(const LawCard& card, Findings& out) {
           fmt::format("{}: grains overlap by up to {:.2g} of the smaller radius at the end of the range: Hertz' law is "
                       "one of small overlaps",
                       name, law.max_overlap));
-    if (has_part(law, LawPart::normal) && !has_part(law, LawPart::tangential_initial) &&
-        !has_part(law, LawPart::tangential_secant))
-      out.warn(name + ": no tangential law: contacts will have no tangential spring");
   }
+  if (const std::string assumed = assumed_kt_text(card); !assumed.empty()) out.warn(assumed);
 }
 
 void check_card(const std::string& path, Findings& out) {

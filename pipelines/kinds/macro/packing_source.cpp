@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
@@ -61,10 +60,12 @@ MacroBody body_of(const CsvFile& csv, const CsvRow& row, const Columns& c) {
   return body;
 }
 
+const CsvNames kBoxNames{"box"};
+
 /// Low and high corner from the comment, else around all bodies.
-void read_box(const CsvFile& csv, MacroPacking& packing) {
-  const auto named = csv.setting({"box [m]", "box"});
-  if (!named) {
+void read_box(const CsvFile& csv, const Columns& c, MacroPacking& packing) {
+  const auto corners = csv.quantities(kBoxNames, Unit::length, 6);
+  if (!corners) {
     packing.low = packing.high = packing.bodies.front().x;
     for (const MacroBody& b : packing.bodies)
       for (int a = 0; a < 3; ++a) {
@@ -73,22 +74,17 @@ void read_box(const CsvFile& csv, MacroPacking& packing) {
       }
     return;
   }
-  std::istringstream words(named->value);
-  std::vector<double> corners;
-  try {
-    for (std::string word; words >> word;) corners.push_back(parse_quantity(word + " m", Unit::length));
-  } catch (const BadInput&) {  // said below
-    corners.clear();
-  }
-  if (corners.size() != 6)
-    throw BadInput(fmt::format("{}: box = {}: must be six lengths in m, the low corner and the high one",
-                               csv.where(named->line), named->value));
-  packing.low = {{corners[0], corners[1], corners[2]}};
-  packing.high = {{corners[3], corners[4], corners[5]}};
+  const CsvSetting said = *csv.setting(kBoxNames);
+  const auto complain = [&](const std::string& problem) {
+    throw BadInput(fmt::format("{}: {} = {}: {}", csv.where(said.line), said.title, said.value, problem));
+  };
+  const bool unit = !said.unit.empty() || said.value.find('m') != std::string::npos;
+  if (!unit && csv.columns()[c.x].unit != "m")
+    complain(fmt::format("no unit, and the columns are in {0}: write \"box [{0}] = ...\"", csv.columns()[c.x].unit));
+  packing.low = {{(*corners)[0], (*corners)[1], (*corners)[2]}};
+  packing.high = {{(*corners)[3], (*corners)[4], (*corners)[5]}};
   for (int a = 0; a < 3; ++a)
-    if (!(packing.low[a] < packing.high[a]))
-      throw BadInput(
-          fmt::format("{}: box = {}: the high corner must be above the low one", csv.where(named->line), named->value));
+    if (!(packing.low[a] < packing.high[a])) complain("the high corner must be above the low one");
 }
 
 /// Of a periodic cell centres alone must be in it.
@@ -136,7 +132,7 @@ void require_apart(const CsvFile& csv, const MacroPacking& packing, Boundary bou
 
 /// A cell must be given, and be longer than two diameters of the largest body. All centres go home into it.
 void make_periodic(const CsvFile& csv, MacroPacking& packing) {
-  if (!csv.setting({"box [m]", "box"}))
+  if (!csv.setting(kBoxNames))
     throw BadInput(fmt::format(
         "{}: a periodic packing says its cell: \"# box [m] = 0 0 0 0.1 0.1 0.1\", the low corner and the high one",
         csv.where(csv.header_line())));
@@ -155,13 +151,15 @@ void make_periodic(const CsvFile& csv, MacroPacking& packing) {
 
 MacroPacking read_packing_file(const std::string& path, Boundary boundary) {
   const CsvFile csv = CsvFile::read(path);
+  csv.require_known_comments({kBoxNames}, "a packing");
   const Columns columns{column_of(csv, "x", Unit::length, "x [m]"), column_of(csv, "y", Unit::length, "y [m]"),
                         column_of(csv, "z", Unit::length, "z [m]"), column_of(csv, "r", Unit::length, "r [m]"),
                         column_of(csv, "kind", Unit::none, "kind")};
+  csv.require_known_columns({"x", "y", "z", "r", "kind"}, "a packing");
   MacroPacking packing;
   for (const CsvRow& row : csv.rows()) packing.bodies.push_back(body_of(csv, row, columns));
   if (packing.bodies.empty()) throw BadInput(csv.where(csv.header_line()) + ": no body");
-  read_box(csv, packing);
+  read_box(csv, columns, packing);
   require_inside(csv, packing, columns, boundary);
   if (boundary == Boundary::periodic) make_periodic(csv, packing);
   require_apart(csv, packing, boundary);

@@ -53,7 +53,7 @@ class StageReader {
     const bool hold = kind == StageKind::hold;
     MacroStage stage;
     stage.record.kind = kind;
-    stage.record.way = goes_a_way(kind) ? kind : way_before(t);
+    stage.record.way = goes_a_way(kind) ? kind : way_before(t, kind);
     stage.steps = t.count("steps", 1, 100000, hold ? 1 : spec_.steps);
     stage.increments_per_step = t.count("increments_per_step", 1, 10000, hold ? 1 : spec_.increments_per_step);
     stage.tolerance =
@@ -65,10 +65,13 @@ class StageReader {
   }
 
   /// The kind of the last stage that goes a way of its own.
-  StageKind way_before(const SceneTable& t) const {
+  StageKind way_before(const SceneTable& t, StageKind kind) const {
     for (auto s = stages_.rbegin(); s != stages_.rend(); ++s)
       if (goes_a_way(s->record.kind)) return s->record.kind;
-    t.mistake("kind", "there is no stage before it whose way it could go");
+    t.mistake("kind", kind == StageKind::hold
+                          ? "a hold keeps what the stage before it left, and none is before it: the preparation has "
+                            "brought the packing to rest already, so leave it out or put it behind another stage"
+                          : "there is no stage before it whose way it could go");
     return StageKind::oedometric;
   }
 

@@ -171,7 +171,8 @@ ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options
     for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));
   });
   const MacroComparisonSummary summary = summarise(setup, results, run);
-  write_text_atomic(run.path("comparison.json"), json_of(summary.compared).dump(2) + "\n");
+  write_text_atomic(run.path("comparison.json"),
+                    json_of(summary.compared).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   write_tables(whole_table(results), run);
   return run.finish(json_of(summary), people_text(results, run));
 }

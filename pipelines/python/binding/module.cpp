@@ -31,8 +31,9 @@ void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const Error& e) {
-    const py::object made = py::module_::import("softgrain.errors")
-                                .attr("error_of")(static_cast<int>(e.status()), error_objects(e.what()).dump());
+    const std::string told = error_objects(e.what()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    const py::object made =
+        py::module_::import("softgrain.errors").attr("error_of")(static_cast<int>(e.status()), told);
     PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(made.ptr())), made.ptr());
   }
 }

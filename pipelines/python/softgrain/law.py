@@ -44,6 +44,26 @@ def _scalar_or_array(values, shape):
     return float(values) if shape == () else values.reshape(shape)
 
 
+def _overlaps(values, name="delta"):
+    """Overlaps as floats, and the mask of what is masked (None: nothing is). BadInput for what is no number, and for flags, which
+    would count as 0 and 1."""
+    masked = np.ma.isMaskedArray(values)
+    hint = ""
+    try:
+        array = values if masked else np.asarray(values)
+        if array.dtype.kind in "iufO" or array.size == 0:
+            return np.asarray(array.filled(0) if masked else array, dtype=float), np.ma.getmaskarray(array) if masked else None
+        hint = f"; flags choose elements: {name}[flags]" if array.dtype.kind == "b" else ""
+    except (TypeError, ValueError):
+        pass
+    raise BadInput([f"{name} = {values!r:.60}: must be a number or an array of numbers{hint}"])
+
+
+def _masked(values, mask):
+    """The answer with the mask of the question."""
+    return values if mask is None else np.ma.masked_array(values, mask=mask)
+
+
 class Law(Drawn):
     """A law that was fitted. Law.load() gives a CardLaw or a TableLaw."""
 
@@ -85,7 +105,7 @@ class CardLaw(Law):
     def __init__(self, path):
         self.path = Path(path)
         self._laws = installation.laws().Card(str(path))
-        self.card = tomllib.loads(self.path.read_text(encoding="utf-8"))
+        self.card = tomllib.loads(self.path.read_text(encoding="utf-8-sig"))
         self.pairs = _pairs(self.card)
         self.shell_radius = float(self.card["measurement"]["shell_radius"])
         self.youngs_modulus = float(self.card["measurement"]["youngs_modulus"])
@@ -129,18 +149,18 @@ class CardLaw(Law):
     def inside(self, delta, kind="soft-solid"):
         """Whether Delta lies in what was measured (an array of flags)."""
         pair = self.pair(kind)
-        delta = np.asarray(delta, dtype=float)
-        return (delta >= pair.delta_min * (1 - 1e-12)) & (delta <= pair.delta_max * (1 + 1e-12))
+        delta, mask = _overlaps(delta)
+        return _masked((delta >= pair.delta_min * (1 - 1e-12)) & (delta <= pair.delta_max * (1 + 1e-12)), mask)
 
     def _values(self, kind, what, delta, radius, modulus, secant, beyond):
-        delta = np.asarray(delta, dtype=float)
+        delta, mask = _overlaps(delta)
         out = self._laws.values(kind, what, delta, self._units(radius, modulus)[what], secant, beyond)
-        return _scalar_or_array(out, delta.shape)
+        return _masked(_scalar_or_array(out, delta.shape), mask)
 
     def _interval(self, kind, what, delta, radius, modulus, secant, beyond):
-        delta = np.asarray(delta, dtype=float)
+        delta, mask = _overlaps(delta)
         found = self._laws.interval(kind, what, delta, self._units(radius, modulus)[what], secant, beyond)
-        return None if found is None else tuple(_scalar_or_array(side, delta.shape) for side in found)
+        return None if found is None else tuple(_masked(_scalar_or_array(side, delta.shape), mask) for side in found)
 
     def figure(self, kind="soft-solid"):
         """Force over Delta with its 95 % band, as a matplotlib figure."""
@@ -173,7 +193,7 @@ class TableLaw(Law):
     def __init__(self, path):
         self.path = Path(path)
         self._laws = installation.laws().Table(str(path))
-        self.card = tomllib.loads(self.path.read_text(encoding="utf-8"))
+        self.card = tomllib.loads(self.path.read_text(encoding="utf-8-sig"))
         main = self.about()
         self.shell_radius = main["shell_radius"]
         self.youngs_modulus = main["youngs_modulus"]
@@ -214,31 +234,36 @@ class TableLaw(Law):
 
         overlap: (..., K), h/R of each, not above 0 where it does not touch; direction: (K, 3), from the centre to the neighbours (need
         not be of length 1); partner and ratio: one for all or one for each. Gives (..., K)."""
-        overlap = np.asarray(overlap, dtype=float)
-        direction = np.atleast_2d(np.asarray(direction, dtype=float))
+        overlap, mask = _overlaps(overlap, "overlap")
+        direction = np.atleast_2d(_overlaps(direction, "direction")[0])
         count = len(direction)
+        if (overlap.shape[-1] if overlap.ndim else 1) != count:
+            raise BadInput([f"overlap: shape {overlap.shape}: must have one column per neighbour, {count}"])
         kinds = [partner] * count if isinstance(partner, str) else list(partner)
         ratios = np.broadcast_to(np.asarray(ratio, dtype=float), count).tolist()
         around = installation.laws().Neighbours(kinds, ratios, direction.tolist())
         states = overlap.reshape(-1, overlap.shape[-1] if overlap.ndim else 1)
         scale = self._units(radius, modulus)["force"]
-        return self._laws.values(_choice(**choice), around, "force", -1, states, scale).reshape(overlap.shape)
+        out = self._laws.values(_choice(**choice), around, "force", -1, states, scale).reshape(overlap.shape)
+        return _masked(out, mask)
 
     def _question(self, delta, partner, ratio, arrangement):
         directions, shares = installation.laws().arrangement(arrangement, 0.5)
         around = installation.laws().Neighbours([partner] * len(shares), [float(ratio)] * len(shares), directions)
-        delta = np.asarray(delta, dtype=float)
         return around, delta.reshape(-1, 1) * np.asarray(shares)
 
     def _even(self, what, delta, partner, ratio, arrangement, radius, modulus, choice):
+        delta, mask = _overlaps(delta)
         around, overlap = self._question(delta, partner, ratio, arrangement)
         out = self._laws.values(_choice(**choice), around, what, 0, overlap, self._units(radius, modulus)[what])
-        return _scalar_or_array(out if np.ndim(delta) else out[0], np.shape(delta))
+        return _masked(_scalar_or_array(out if delta.ndim else out[0], delta.shape), mask)
 
     def _even_interval(self, what, delta, partner, ratio, arrangement, radius, modulus, choice):
+        delta, mask = _overlaps(delta)
         around, overlap = self._question(delta, partner, ratio, arrangement)
         found = self._laws.interval(_choice(**choice), around, what, 0, overlap, self._units(radius, modulus)[what])
-        return None if found is None else tuple(_scalar_or_array(s if np.ndim(delta) else s[0], np.shape(delta)) for s in found)
+        return None if found is None else tuple(_masked(_scalar_or_array(s if delta.ndim else s[0], delta.shape), mask)
+                                                for s in found)
 
     def figure(self, partner="plane", arrangements=("one", "opposite", "cube"), **choice):
         """Force on the first neighbour over Delta for several arrangements, with 95 % bands, as a matplotlib figure."""

@@ -125,7 +125,7 @@ def read_macro(path):
 def read_summary(path):
     """summary.json of a run directory (or the file itself) as a dictionary."""
     path = Path(path)
-    return json.loads((path / "summary.json" if path.is_dir() else path).read_text())
+    return json.loads((path / "summary.json" if path.is_dir() else path).read_text(encoding="utf-8-sig"))
 
 
 class Run(Drawn):

@@ -61,7 +61,7 @@ def _kind(scene, overrides):
     if isinstance(scene, Mapping):
         return scene.get("kind")
     try:
-        return tomllib.loads(Path(scene).read_text(encoding="utf-8")).get("kind")
+        return tomllib.loads(Path(scene).read_text(encoding="utf-8-sig")).get("kind")
     except (OSError, ValueError):
         return None
 

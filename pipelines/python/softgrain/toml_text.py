@@ -26,14 +26,20 @@ def _quoted(text):
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _refuse(path, value):
-    raise BadInput([Mistake(f"{path} = {value!r}: must be a number, a text, True or False, or a list or dict of these",
-                            file="<scene>", key=path.rpartition(".")[2], path=path, value=repr(value),
-                            allowed="must be a number, a text, True or False, or a list or dict of these")])
+def _refuse(path, value, allowed="must be a number, a text, True or False, or a list or dict of these"):
+    raise BadInput([Mistake(f"{path} = {value!r}: {allowed}", file="<scene>", key=path.rpartition(".")[2], path=path,
+                            value=repr(value), allowed=allowed)])
+
+
+def _require_unmasked(value, path):
+    """What is masked is no value, and no number that could be left out."""
+    if np.ma.is_masked(value):
+        _refuse(path, value, "has masked elements: leave them out (array.compressed()) or fill them")
 
 
 def value_text(value, path="value"):
     """One value, tables and lists in one line."""
+    _require_unmasked(value, path)
     value = _plain(value)
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -66,8 +72,9 @@ class _Writer:
     def table(self, content, header, path):
         inner = []
         for key, value in content.items():
-            value = _plain(value)
             place = f"{path}.{key}" if path else str(key)
+            _require_unmasked(value, place)
+            value = _plain(value)
             if isinstance(value, Mapping) or _is_tables(value):
                 inner.append((str(key), value, place))
             elif value is not None:  # None: as if the key were not there

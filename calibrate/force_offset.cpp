@@ -1,0 +1,203 @@
+#include "calibrate/force_offset.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/statistics.h"
+
+namespace softgrain {
+
+namespace {
+
+constexpr std::size_t kLeastReadings = 3;  ///< without force, to tell their scatter
+constexpr std::size_t kLeastPoints = 6;    ///< a, b, delta, the offset, and something to judge them by
+constexpr std::size_t kMostLookedAt = 100;
+
+/// F = offset + scale (Delta^b - delta^b), offset alone below delta.
+struct OffsetLaw {
+  double offset = 0.0;
+  double scale = 0.0;
+  double delta = 0.0;
+  double exponent = 1.0;
+  double misfit = std::numeric_limits<double>::infinity();  ///< weighted sum of squares
+};
+
+/// Points of about even spacing and their weights: errors of a reading about 0.5 % of the range and 5 % of the force.
+struct WeightedCurve {
+  std::vector<ForcePoint> points;
+  std::vector<double> weight;
+
+  explicit WeightedCurve(const std::vector<ForcePoint>& all) {
+    const std::size_t n = std::min(all.size(), kMostLookedAt);
+    for (std::size_t k = 0; k < n; ++k) points.push_back(all[n < 2 ? k : k * (all.size() - 1) / (n - 1)]);
+    const auto [low, high] = std::minmax_element(points.begin(), points.end(), [](const ForcePoint& a, const ForcePoint& b) {
+      return a.force < b.force;
+    });
+    const double range = high->force - low->force;
+    for (const ForcePoint& p : points)
+      weight.push_back(1.0 / (0.005 * range + 0.05 * std::abs(p.force - points.front().force)));
+  }
+};
+
+/// The best offset and scale at this threshold and exponent; without an offset where it must be 0.
+OffsetLaw best_at(const WeightedCurve& curve, double delta, double exponent, bool with_offset) {
+  double w = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t k = 0; k < curve.points.size(); ++k) {
+    const ForcePoint& p = curve.points[k];
+    const double g = p.delta > delta ? std::pow(p.delta, exponent) - std::pow(delta, exponent) : 0.0;
+    const double ww = curve.weight[k] * curve.weight[k];
+    w += ww;
+    x += ww * g;
+    y += ww * p.force;
+    xx += ww * g * g;
+    xy += ww * g * p.force;
+    yy += ww * p.force * p.force;
+  }
+  OffsetLaw law;
+  const double determinant = with_offset ? w * xx - x * x : xx;
+  if (!(determinant > 0.0)) return law;
+  law.delta = delta;
+  law.exponent = exponent;
+  law.scale = with_offset ? (w * xy - x * y) / determinant : xy / xx;
+  if (!(law.scale > 0.0)) return law;
+  law.offset = with_offset ? (y - law.scale * x) / w : 0.0;
+  double misfit = 0.0;  // from the residuals themselves: differences of the sums above lose what a good fit leaves
+  for (std::size_t k = 0; k < curve.points.size(); ++k) {
+    const ForcePoint& p = curve.points[k];
+    const double g = p.delta > delta ? std::pow(p.delta, exponent) - std::pow(delta, exponent) : 0.0;
+    const double r = curve.weight[k] * (p.force - law.offset - law.scale * g);
+    misfit += r * r;
+  }
+  law.misfit = misfit;
+  return law;
+}
+
+/// The best of many thresholds and exponents: rough, but no start can miss it.
+OffsetLaw best_law(const WeightedCurve& curve, bool with_offset) {
+  constexpr int kParts = 4;
+  std::vector<double> thresholds{0.0};
+  double before = 0.0;
+  for (const ForcePoint& p : curve.points) {
+    for (int k = 1; k <= kParts; ++k) thresholds.push_back(before + (p.delta - before) * k / kParts);
+    before = p.delta;
+  }
+  OffsetLaw best;
+  for (const double delta : thresholds)
+    for (double exponent = 0.5; exponent < 6.1; exponent += 0.25)
+      if (const OffsetLaw law = best_at(curve, delta, exponent, with_offset); law.misfit < best.misfit) best = law;
+  return best;
+}
+
+/// Whether later readings are larger or smaller than earlier ones: the onset of the force, or a drift.
+bool has_trend(const std::vector<double>& y) {
+  const std::size_t n = y.size();
+  if (n < 4) return false;
+  const double middle = 0.5 * static_cast<double>(n - 1);
+  const double mean = mean_error(y).mean;
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double x = static_cast<double>(k) - middle;
+    xx += x * x;
+    xy += x * (y[k] - mean);
+    yy += (y[k] - mean) * (y[k] - mean);
+  }
+  const double left = std::max(yy - xy * xy / xx, 0.0) / static_cast<double>(n - 2);
+  const double slope_error = std::sqrt(left / xx);
+  return std::abs(xy / xx) > gsl_cdf_tdist_Pinv(0.995, static_cast<double>(n - 2)) * slope_error && slope_error > 0.0;
+}
+
+/// Readings without force: before touch, and below the threshold up to where they begin to rise.
+std::vector<double> idle_readings(const ForceCurve& sample, double delta) {
+  std::vector<double> out = sample.before_touch;
+  for (const ForcePoint& p : sample.normal)
+    if (p.delta < delta) out.push_back(p.force);
+  while (out.size() > kLeastReadings && has_trend(out)) out.pop_back();
+  return out;
+}
+
+double given_error(const ForceCurve& sample, double delta) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const ForcePoint& p : sample.normal)
+    if (p.delta < delta && std::isfinite(p.error)) {
+      sum += p.error * p.error;
+      count += 1.0;
+    }
+  return count > 0.0 ? std::sqrt(sum) / count : 0.0;
+}
+
+double largest_force(const ForceCurve& sample) {
+  double most = 0.0;
+  for (const ForcePoint& p : sample.normal) most = std::max(most, std::abs(p.force));
+  return most;
+}
+
+/// An offset of one sample; none where nothing speaks for one.
+std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
+  constexpr double kLeastShare = 1e-4;  // of the largest force: less does not matter
+  constexpr double kProbability = 0.9995;
+  if (sample.normal.size() < kLeastPoints || !(largest_force(sample) > 0.0)) return std::nullopt;
+  const WeightedCurve curve(sample.normal);
+  if (!std::all_of(curve.weight.begin(), curve.weight.end(), [](double w) { return std::isfinite(w); }))
+    return std::nullopt;  // all forces are the same
+  const OffsetLaw law = best_law(curve, true);
+  const std::vector<double> idle = idle_readings(sample, law.delta);
+  ForceOffset out;
+  out.below = law.delta;
+  out.readings = idle.size();
+  if (idle.size() >= kLeastReadings) {
+    const MeanError mean = mean_error(idle);
+    out.force = mean.mean;
+    out.error = std::max(mean.error, given_error(sample, law.delta));
+    const double certain = gsl_cdf_tdist_Pinv(kProbability, static_cast<double>(idle.size() - 1)) * out.error;
+    if (std::abs(out.force) > std::max(certain, kLeastShare * largest_force(sample))) return out;
+    return std::nullopt;
+  }
+  constexpr double kClearShare = 0.02;  // of the largest force
+  constexpr double kFarBetter = 0.1;
+  out.force = law.offset;
+  out.determined = false;
+  const bool matters = std::abs(law.offset) > kClearShare * largest_force(sample);
+  if (matters && law.misfit < kFarBetter * best_law(curve, false).misfit) return out;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<ForceOffset> force_offsets(const ForceCurves& curves) {
+  std::vector<ForceOffset> out;
+  for (std::size_t k = 0; k < curves.samples.size(); ++k)
+    if (auto one = offset_of(curves.samples[k])) {
+      one->sample = k;
+      out.push_back(*one);
+    }
+  return out;
+}
+
+std::vector<ForceOffset> subtract_offsets(ForceCurves& curves) {
+  std::vector<ForceOffset> found = force_offsets(curves);
+  for (const ForceOffset& o : found) {
+    ForceCurve& sample = curves.samples[o.sample];
+    const std::string name = fmt::format("{}: sample \"{}\"", to_string(curves.kind), sample.name);
+    if (!o.determined) {
+      curves.remarks.push_back(fmt::format(
+          "{}: forces do not vanish with the overlap; a constant offset of about {:.3g} N would explain it, but {} "
+          "reading{} without contact, and {} are needed to tell: record some before touch, or subtract the zero",
+          name, o.force, o.readings == 0 ? "there is no" : o.readings == 1 ? "there is one" : "there are two",
+          o.readings == 2 ? "s" : "", kLeastReadings));
+      continue;
+    }
+    for (ForcePoint& p : sample.normal) p.force -= o.force;
+    for (double& force : sample.before_touch) force -= o.force;
+    curves.remarks.push_back(
+        fmt::format("{}: {} readings without contact force (before touch, or below Delta = {:.3g}) lie at {:.4g} "
+                    "+- {:.2g} N: this offset was subtracted from all forces of the sample (--set offset=keep leaves it)",
+                    name, o.readings, o.below, o.force, o.error));
+  }
+  return found;
+}
+
+}  // namespace softgrain

@@ -1,0 +1,121 @@
+// A constant force without contact: found, taken off, said; and said to be open where too few readings tell.
+#include "calibrate/force_offset.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibrate/experiment_fit.h"
+#include "common/data/law_band.h"
+#include "tests/support/synthetic_law.h"
+
+namespace {
+
+using namespace softgrain;
+using test::KnownLaw;
+using test::normal_number;
+
+constexpr double kUnit = 128.0;  // E Rs^2 [N] of the default soft particle
+
+struct Pressed {
+  double offset = 0.0;  ///< [N]
+  double noise = 0.002;
+  int points = 30;
+  double first = 0.01;  ///< smallest Delta
+  int before = 0;       ///< readings before touch
+  std::uint64_t seed = 3;
+};
+
+ForceCurves pressed(const Pressed& p) {
+  RandomStream random(p.seed, RandomPurpose::test, 0);
+  ForceCurves out;
+  ForceCurve curve{"A", {}, {}, {}};
+  const auto read = [&](double delta) { return kUnit * KnownLaw{}.value(delta) + p.offset + p.noise * normal_number(random); };
+  for (int k = 0; k < p.before; ++k) curve.before_touch.push_back(read(0.0));
+  for (int k = 0; k < p.points; ++k) {
+    const double d = p.first + (0.3 - p.first) * k / (p.points - 1);
+    curve.normal.push_back({d, read(d), std::nan("")});
+  }
+  out.samples.push_back(std::move(curve));
+  return out;
+}
+
+ExperimentFit fitted(const Pressed& p, bool subtract = true) {
+  FitOptions options;
+  options.replicates = 100;
+  options.subtract_offset = subtract;
+  return fit_experiment({pressed(p)}, options, false);
+}
+
+bool says(const ExperimentFit& fit, const std::string& words) {
+  for (const std::string& r : fit.remarks)
+    if (r.find(words) != std::string::npos) return true;
+  return false;
+}
+
+TEST(ForceOffset, IsTakenOffAndSaid) {
+  for (const double offset : {0.5, -0.5, 0.02}) {
+    const ExperimentFit fit = fitted({.offset = offset});
+    const PairLaw& law = fit.card.pairs.at(0);
+    EXPECT_EQ(law.status, LawStatus::good) << law.reason;
+    EXPECT_TRUE(says(fit, "offset was subtracted")) << offset;
+    for (const double d : {0.1, 0.2, 0.3})
+      EXPECT_NEAR(kUnit * law.normal.value(d), kUnit * KnownLaw{}.value(d), 0.01) << offset << " at " << d;
+    for (const ForcePoint& p : fit.curves[0].samples[0].normal)
+      EXPECT_NEAR(p.force, kUnit * law.normal.value(p.delta), 5.0 * 0.002) << p.delta;
+    const auto band = value_interval(law, LawPart::normal, 0.25);
+    ASSERT_TRUE(band);
+    EXPECT_LE(band->low, KnownLaw{}.value(0.25));
+    EXPECT_GE(band->high, KnownLaw{}.value(0.25));
+  }
+  const ExperimentFit kept = fitted({.offset = 0.5}, false);
+  EXPECT_FALSE(says(kept, "offset"));
+  EXPECT_GT(std::abs(kUnit * (kept.card.pairs.at(0).normal.value(0.2) - KnownLaw{}.value(0.2))), 0.05);
+}
+
+/// Of all curves without one about one in a thousand may be said to have an offset.
+TEST(ForceOffset, IsNotSeenWhereThereIsNone) {
+  int seen = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed)
+    seen += static_cast<int>(force_offsets(pressed({.noise = 0.01, .seed = seed})).size());
+  EXPECT_LE(seen, 2);
+  EXPECT_TRUE(force_offsets(pressed({.noise = 0.0})).empty());
+  EXPECT_TRUE(force_offsets(pressed({.noise = 0.0, .points = 5})).empty());
+  ForceCurves flat = pressed({});
+  for (ForcePoint& p : flat.samples[0].normal) p.force = 0.0;
+  EXPECT_TRUE(force_offsets(flat).empty());
+}
+
+TEST(ForceOffset, ReadingsBeforeTouchAreEnough) {
+  const Pressed late{.offset = 0.5, .first = 0.08, .before = 5};
+  const auto found = force_offsets(pressed(late));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found[0].determined);
+  EXPECT_NEAR(found[0].force, 0.5, 0.005);
+  EXPECT_EQ(fitted(late).card.pairs.at(0).status, LawStatus::good);
+}
+
+TEST(ForceOffset, WhatTooFewReadingsTellIsOpen) {
+  const Pressed late{.offset = 0.5, .first = 0.06};
+  const auto found = force_offsets(pressed(late));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_FALSE(found[0].determined);
+  const ExperimentFit fit = fitted(late);
+  EXPECT_EQ(fit.card.pairs.at(0).status, LawStatus::underdetermined);
+  EXPECT_TRUE(says(fit, "record some before touch")) << fit.remarks.size();
+}
+
+TEST(ForceOffset, EverySampleHasItsOwn) {
+  ForceCurves curves = pressed({.offset = 0.5});
+  curves.samples.push_back(pressed({.offset = -0.2, .seed = 4}).samples[0]);
+  curves.samples.push_back(pressed({.seed = 5}).samples[0]);
+  curves.samples[1].name = "B";
+  curves.samples[2].name = "C";
+  const auto found = subtract_offsets(curves);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[1].force, -0.2, 0.005);
+  EXPECT_EQ(curves.remarks.size(), 2U);
+  EXPECT_TRUE(subtract_offsets(curves).empty());
+}
+
+}  // namespace

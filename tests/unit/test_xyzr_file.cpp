@@ -1,0 +1,28 @@
+// Files of spheres: numbers as other programs write them.
+#include "microsim/particles/xyzr_file.h"
+
+#include <gtest/gtest.h>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
+#include "tests/support/temporary_directory.h"
+
+namespace {
+
+using namespace softgrain;
+
+TEST(XyzrFile, SignsAndMarksAreRead) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.file("a.xyzr");
+  write_text_atomic(path, "\xef\xbb\xbf+2 +1 1.0 1\r\n+0.01 -0.02 +.3 +1e-3\r\n1 2 3 4\r\n");
+  const XyzrFile file = read_xyzr(path);
+  ASSERT_EQ(file.radius.size(), 2U);
+  EXPECT_EQ(file.position[0], (Vec3{{0.01, -0.02, 0.3}}));
+  EXPECT_EQ(file.radius[0], 1e-3);
+  for (const char* wrong : {"+-0.01", "++1", "+"}) {
+    write_text_atomic(path, std::string("1 1 1 1\n") + wrong + " 0 0 1\n");
+    EXPECT_THROW((void)read_xyzr(path), BadInput) << wrong;
+  }
+}
+
+}  // namespace
