@@ -1,6 +1,9 @@
 // [[stage]] of macro scenes: a test in parts.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
 
@@ -10,6 +13,18 @@ namespace softgrain {
 /// `macro`, the table that says everything else of the scene, must not name one. Steps, increments and tolerance of a
 /// stage are those of `spec` unless it says them. Throws BadInput.
 void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec);
+
+/// The same for a part of a scene ([[variant]], [[scene]]), table `t`: without stages or a test of its own it takes
+/// those of `common`, with its own steps, increments and tolerance where a stage says none. Throws BadInput.
+void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec);
+
+/// Refuses keys of a test in `t` that none of the tests that read them takes: the preload of a test without shear, the
+/// strain of tests in stages, steps that every stage says itself. `stages`: the table whose tables `stage` they are, in
+/// tests in stages.
+void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests);
+
+/// Whether `t` says this key of a test itself, or in each of its tables `stage`.
+bool says_in_test(const SceneTable& t, const std::string& key);
 
 /// What a test does to the box, roughly, were all bodies to move with it: for estimates before a run.
 struct RoughStrains {
