@@ -38,7 +38,8 @@ PAGES = {
         ["pipelines/kinds/cohesive_powder/scene.cpp", "pipelines/kinds/cohesive_powder/variants.cpp", "pipelines/run/variant_name.cpp"],
         {"Phi", "z", "Phi_error", "z_error"}, set()),
     "own_data.md": (["pipelines/commands/calibrate_curves.cpp", "pipelines/law/fit_settings.cpp", "pipelines/kinds/inverse/scene.cpp"],
-                    {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"}, {"kind", "title"}),
+                    {"beta", "trials", "mu", "nu", "rmax_over_shell", "exponent", "polydispersity", "material"},
+                    {"kind", "title", "measure", "rmax"}),
     "scene_material.md": (
         ["pipelines/kinds/material/scene.cpp", "pipelines/kinds/material/equation.cpp", "pipelines/run/variant_name.cpp"],
         {"preparation", "start_pressure", "preparation_tolerance", "strain", "steps", "increments_per_step", "preload", "preload_steps",
@@ -50,7 +51,7 @@ PAGES = {
     "scene_recipe.md": (
         ["pipelines/kinds/recipe/scene.cpp"],
         {"material", "packing", "test", "output", "snapshots", "exponent", "radius_max", "count"}, set()),
-    "stages.md": (["pipelines/kinds/macro/stages.cpp"], {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"}, {"stage", "macro"}),
+    "stages.md": (["pipelines/kinds/macro/stages.cpp"], {"strain_x", "strain_y", "strain_z", "stress_x", "stress_y", "stress_z"}, {"stage", "macro", "test"}),
     "sizes.md": (["common/packing/grading_scene.cpp"], set(), {"solid_sizes", "soft_sizes", "disks", "material", "packing", "macro"}),
     "scene_grain_box.md": (["pipelines/kinds/grain_box/scene.cpp", "pipelines/run/variant_name.cpp"], set(), set()),
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "common/io/key_record.h"
 #include "common/io/scene.h"
 
 // toml++ is included by sources only; this is how its version 3 declares the two types.
@@ -36,6 +37,7 @@ struct SceneDocument {
   std::string name;                    ///< of the file, as shown in messages
   std::string source;                  ///< the file as it was read
   std::vector<std::string> overrides;  ///< applied to it
+  std::string variant;                 ///< "variant.0": the one that is laid over it
   std::shared_ptr<toml::table> content;
   std::set<const toml::node*> overridden;     ///< nodes that --set gave
   mutable SceneMistakes* mistakes = nullptr;  ///< null: the first one is thrown
@@ -51,6 +53,7 @@ struct SceneTable::Impl {
   std::shared_ptr<const SceneDocument> document;
   const toml::table* content = nullptr;  ///< null: the table is absent, all fallbacks hold
   std::string name;                      ///< dotted, empty for the root
+  std::string path;                      ///< the same with numbers of elements, as --set writes it
   bool element = false;                  ///< one of an [[array of tables]]
   std::string place;                     ///< "file:line" of the header
   std::size_t line = 0;                  ///< of the header
@@ -63,6 +66,8 @@ struct SceneTable::Impl {
   bool wrong = false;                    ///< anything was noted
   std::map<std::string, std::vector<std::shared_ptr<Impl>>> children;
 
+  /// Tells who takes keys down, if anybody does.
+  void note_asked(const std::string& key, AskedKey asked) const;
   /// The node under `key`, marked as known; null when absent.
   const toml::node* find(const std::string& key);
   /// The same, but absence is an error that names the nearest key that is there.

@@ -57,6 +57,7 @@ std::string shown(const toml::node& node) {
 
 const toml::node* SceneTable::Impl::find(const std::string& key) {
   known.insert(key);
+  note_asked(key, {});
   return content == nullptr ? nullptr : content->get(key);
 }
 
@@ -124,6 +125,7 @@ std::shared_ptr<SceneTable::Impl> SceneTable::Impl::make_child(const std::string
   child->document = document;
   child->content = table;
   child->name = dotted(key);
+  child->path = path.empty() ? key : path + "." + key;
   child->element = is_element;
   child->place = table == nullptr ? place : where(key, *table);
   child->line = table == nullptr ? line : line_of(*table);
@@ -189,6 +191,7 @@ SceneTable SceneTable::table_or_empty(const std::string& key) const {
         return node == nullptr ? nullptr : node->as_table();
       },
       static_cast<const toml::table*>(nullptr));
+  impl_->note_asked(key, {.form = KeyForm::table});
   auto& made = impl_->children[key];
   if (made.empty()) {
     made.push_back(impl_->make_child(key, table, false));
@@ -199,6 +202,7 @@ SceneTable SceneTable::table_or_empty(const std::string& key) const {
 
 std::vector<SceneTable> SceneTable::tables(const std::string& key) const {
   const toml::node* node = impl_->find(key);
+  impl_->note_asked(key, {.form = KeyForm::tables});
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
   auto& made = impl_->children[key];
@@ -208,6 +212,7 @@ std::vector<SceneTable> SceneTable::tables(const std::string& key) const {
     for (const toml::node& element : *array) {
       if (!element.is_table()) impl_->reject(key, element, problem);
       made.push_back(impl_->make_child(key, element.as_table(), true));
+      made.back()->path += "." + std::to_string(made.size() - 1);
     }
     return true;
   };

@@ -158,76 +158,129 @@ T value_of(Table& table, const std::string& key, Read read, const T& stand_in,
       stand_in, word);
 }
 
+/// The value, once who takes keys down knows of it.
+double noted(const Table& table, const std::string& key, Unit unit, const Range& range, double value) {
+  table.note_asked(key, {.form = KeyForm::number, .unit = unit, .range = range, .numbers = {value}});
+  return value;
+}
+
+std::int64_t noted(const Table& table, const std::string& key, std::int64_t low, std::int64_t high,
+                   std::int64_t value) {
+  table.note_asked(key, {.form = KeyForm::count,
+                         .range = Range::closed(static_cast<double>(low), static_cast<double>(high)),
+                         .numbers = {static_cast<double>(value)}});
+  return value;
+}
+
+std::string noted(const Table& table, const std::string& key, std::vector<std::string> words, std::string value) {
+  table.note_asked(key, {.form = words.empty() ? KeyForm::text : KeyForm::choice, .texts = {value}, .words = words});
+  return value;
+}
+
+Vec3 noted(const Table& table, const std::string& key, Unit unit, const Vec3& value) {
+  table.note_asked(key, {.form = KeyForm::vector, .unit = unit, .numbers = {value[0], value[1], value[2]}});
+  return value;
+}
+
+std::vector<double> noted(const Table& table, const std::string& key, Unit unit, const Range& range,
+                          std::vector<double> values) {
+  table.note_asked(key, {.form = KeyForm::numbers, .unit = unit, .range = range, .numbers = values});
+  return values;
+}
+
 }  // namespace
 
 double SceneTable::number(const std::string& key, Unit unit, const Range& range) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, stand_in(range));
+  return noted(*impl_, key, unit, range,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); },
+                   stand_in(range)));
 }
 double SceneTable::number(const std::string& key, Unit unit, const Range& range, double fallback) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, fallback, &fallback);
+  return noted(*impl_, key, unit, range,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, fallback,
+                   &fallback));
 }
 
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, low);
+  return noted(
+      *impl_, key, low, high,
+      value_of(
+          *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, low));
 }
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high,
                                std::int64_t fallback) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, fallback, &fallback);
+  return noted(
+      *impl_, key, low, high,
+      value_of(
+          *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, fallback, &fallback));
 }
 
 bool SceneTable::flag(const std::string& key, bool fallback) const {
-  return value_of(
+  const bool value = value_of(
       *impl_, key, [&](const toml::node& n) { return flag_of(*impl_, key, n); }, fallback, &fallback, true);
+  impl_->note_asked(key, {.form = KeyForm::flag, .numbers = {value ? 1.0 : 0.0}});
+  return value;
 }
 
 std::string SceneTable::text(const std::string& key) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, std::string(), nullptr, true);
+  return noted(*impl_, key, std::vector<std::string>(),
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, std::string(), nullptr,
+                   true));
 }
 std::string SceneTable::text(const std::string& key, const std::string& fallback) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, fallback, &fallback, true);
+  return noted(*impl_, key, std::vector<std::string>(),
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, fallback, &fallback,
+                   true));
 }
 
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words) const {
   return choice(key, std::vector<const char*>(words));
 }
 std::string SceneTable::choice(const std::string& key, const std::vector<const char*>& words) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return choice_of(*impl_, key, n, words); }, std::string(words.front()),
-      nullptr, true);
+  return noted(*impl_, key, std::vector<std::string>(words.begin(), words.end()),
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return choice_of(*impl_, key, n, words); },
+                   std::string(words.front()), nullptr, true));
 }
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words,
                                const std::string& fallback) const {
-  return value_of(
-      *impl_, key,
-      [&](const toml::node& n) {
-        return choice_of(*impl_, key, n, {words.begin(), words.size()});
-      },
-      fallback, &fallback, true);
+  return noted(*impl_, key, std::vector<std::string>(words.begin(), words.end()),
+               value_of(
+                   *impl_, key,
+                   [&](const toml::node& n) {
+                     return choice_of(*impl_, key, n, {words.begin(), words.size()});
+                   },
+                   fallback, &fallback, true));
 }
 
 Vec3 SceneTable::vector3(const std::string& key, Unit unit) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, Vec3{});
+  return noted(*impl_, key, unit,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, Vec3{}));
 }
 Vec3 SceneTable::vector3(const std::string& key, Unit unit, const Vec3& fallback) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, fallback, &fallback);
+  return noted(
+      *impl_, key, unit,
+      value_of(
+          *impl_, key, [&](const toml::node& n) { return vector_of(*impl_, key, n, unit); }, fallback, &fallback));
 }
 
 std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); }, std::vector<double>());
+  return noted(*impl_, key, unit, range,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); },
+                   std::vector<double>()));
 }
 std::vector<double> SceneTable::numbers(const std::string& key, Unit unit, const Range& range,
                                         const std::vector<double>& fallback) const {
-  return value_of(
-      *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); }, fallback, &fallback);
+  return noted(*impl_, key, unit, range,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return numbers_of(*impl_, key, n, unit, range); }, fallback,
+                   &fallback));
 }
 
 std::vector<std::string> SceneTable::texts(const std::string& key) const {
@@ -236,7 +289,9 @@ std::vector<std::string> SceneTable::texts(const std::string& key) const {
     for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(text_of(*impl_, key, element));
     return values;
   };
-  return value_of(*impl_, key, read, std::vector<std::string>(), nullptr, true);
+  const std::vector<std::string> values = value_of(*impl_, key, read, std::vector<std::string>(), nullptr, true);
+  impl_->note_asked(key, {.form = KeyForm::texts, .texts = values});
+  return values;
 }
 
 std::vector<bool> SceneTable::flags(const std::string& key) const {
@@ -245,7 +300,9 @@ std::vector<bool> SceneTable::flags(const std::string& key) const {
     for (const toml::node& element : array_of(*impl_, key, node)) values.push_back(flag_of(*impl_, key, element));
     return values;
   };
-  return value_of(*impl_, key, read, std::vector<bool>(), nullptr, true);
+  const std::vector<bool> values = value_of(*impl_, key, read, std::vector<bool>(), nullptr, true);
+  impl_->note_asked(key, {.form = KeyForm::flags, .numbers = std::vector<double>(values.begin(), values.end())});
+  return values;
 }
 
 }  // namespace softgrain

@@ -37,6 +37,7 @@ toml::table take_variant(toml::table& root, std::size_t number) {
 
 Scene Scene::variant(std::size_t number, const std::vector<std::string>& apart) const {
   auto document = read_document(document_->source, document_->name, document_->overrides);
+  document->variant = "variant." + std::to_string(number);
   toml::table& root = *document->content;
   toml::table over = take_variant(root, number);
   for (const std::string& key : apart) {

@@ -94,23 +94,38 @@ Vec3 read_corner(const SceneTable& t, const std::string& key, int dimension) {
 
 }  // namespace
 
+namespace {
+
+/// Limits of a guard that looks at nothing.
+void refuse_idle(const SceneTable& t, const GuardRule& rule, std::initializer_list<const char*> keys) {
+  if (rule.action != GuardAction::ignore) return;
+  for (const char* key : keys)
+    if (t.has(key)) t.mistake(key, "nothing is watched with action = \"ignore\"");
+}
+
+}  // namespace
+
 GuardSpec read_guards(const SceneTable& t, int dimension) {
   GuardSpec out;
   const SceneTable overlap = t.table_or_empty("overlap");
   out.overlap.limit = overlap.number("limit", Unit::none, Range::positive(), out.overlap.limit);
   out.overlap.action = overlap.choice<GuardAction>("action", out.overlap.action);
+  refuse_idle(overlap, out.overlap, {"limit"});
   const SceneTable energy = t.table_or_empty("energy");
   out.energy.limit = energy.number("limit", Unit::none, Range::positive(), out.energy.limit);
   out.energy.action = energy.choice<GuardAction>("action", out.energy.action);
+  refuse_idle(energy, out.energy, {"limit"});
   const SceneTable escape = t.table_or_empty("escape");
   if (escape.has("low")) out.low = read_corner(escape, "low", dimension);
   if (escape.has("high")) out.high = read_corner(escape, "high", dimension);
   for (int k = 0; out.low && out.high && k < dimension; ++k)
     if (!((*out.low)[k] < (*out.high)[k])) escape.mistake("high", "must be above low along every axis");
   out.escape.action = escape.choice<GuardAction>("action", out.escape.action);
+  refuse_idle(escape, out.escape, {"low", "high"});
   const SceneTable wall = t.table_or_empty("wall");
   out.wall_travel.limit = wall.number("travel", Unit::length, Range::positive(), 0.0);
   out.wall_travel.action = wall.choice<GuardAction>("action", out.wall_travel.action);
+  refuse_idle(wall, out.wall_travel, {"travel"});
   return out;
 }
 

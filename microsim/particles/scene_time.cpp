@@ -191,6 +191,8 @@ SceneTime read_time(const SceneTable& t, const System<D>& system, const std::vec
   const double fraction =
       t.number("step_fraction", Unit::none, Range{0.0, largest_fraction<D>(), true, false}, kDefaultFraction);
   const bool automatic = !t.has("step") || (t.is_text("step") && t.text("step") == "auto");
+  if (!automatic && t.has("step_fraction"))
+    t.mistake("step_fraction", "goes with step = \"auto\", which follows from it; here the step is given");
   if (!sound || !t.sound()) {
     if (!automatic) (void)t.number("step", Unit::time, Range::positive());
     (void)t.count("warm_up_steps", 0, static_cast<std::int64_t>(kMostSteps), 0);

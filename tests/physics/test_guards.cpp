@@ -58,7 +58,8 @@ TEST(Guards, DeepOverlapsAreCountedOrStopTheRun) {
   EXPECT_NE(stopped.reason.find("particle 0 and particle 1 overlap by 0."), std::string::npos) << stopped.reason;
   EXPECT_NE(stopped.reason.find("guards.overlap.limit 0.05"), std::string::npos) << stopped.reason;
   EXPECT_LT(stopped.system.step, counted.system.step) << "ends there";
-  const ParticlesResult ignored = run(impact("3.0", "end = 5e-3\nstep = 2e-6", limit + "\"ignore\"\n"));
+  const ParticlesResult ignored =
+      run(impact("3.0", "end = 5e-3\nstep = 2e-6", "[guards.overlap]\naction = \"ignore\"\n"));
   EXPECT_TRUE(ignored.usable);
   EXPECT_EQ(ignored.guards.overlap.count, 0);
 }

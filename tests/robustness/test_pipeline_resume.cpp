@@ -182,7 +182,7 @@ TEST_F(PipelineResume, LeastWorkGoesOnWithTheSameBits) {
   const auto begin = [&](const std::string& out, bool resume) {
     std::vector<std::string> arguments{"run",       scene(), "--out", directory_.file(out),
                                        "--threads", "1",     "--set", "measure.relaxation=least-work",
-                                       "--quiet"};
+                                       "--set",     "measure.damped={}", "--quiet"};
     if (resume) arguments.emplace_back("--resume");
     return start_program(arguments);
   };

@@ -79,11 +79,14 @@ TEST(PowderStructure, MeshAndRangeOfTheFitAreThoseAsked) {
 TEST(PowderStructure, TableAnalysisIsReadAndChecked) {
   const std::string head = "kind = \"cohesive-powder\"\n[analysis]\n";
   const auto read = [&](const std::string& keys) { return read_powder(Scene::parse(head + keys, "s.toml")).structure; };
-  const PowderStructureOptions o = read("scattering = false\nholes = false\nmesh = 50\nfit_k_max = 2.5\n");
-  EXPECT_FALSE(o.scattering);
-  EXPECT_FALSE(o.holes);
+  const PowderStructureOptions none = read("scattering = false\nholes = false\n");
+  EXPECT_FALSE(none.scattering);
+  EXPECT_FALSE(none.holes);
+  const PowderStructureOptions o = read("holes = false\nmesh = 50\nfit_k_max = 2.5\n");
   EXPECT_EQ(o.mesh, 50.0);
   EXPECT_EQ(o.fit_k_max, 2.5);
+  for (const char* idle : {"scattering = false\nfit_k_max = 2.5\n", "scattering = false\nholes = false\nmesh = 50\n"})
+    EXPECT_THROW((void)read(idle), BadInput) << idle;
   EXPECT_THROW((void)read("mesh = 2\n"), BadInput);
   EXPECT_THROW((void)read("meshes = 50\n"), BadInput);
 }

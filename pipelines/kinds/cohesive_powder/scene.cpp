@@ -33,6 +33,8 @@ void read_contact(const SceneTable& t, PowderSpec& spec) {
   spec.rolling = t.flag("rolling", spec.rolling);
   spec.rolling_stiffness = t.number("rolling_stiffness", Unit::none, Range::positive(), spec.rolling_stiffness);
   spec.rolling_friction = t.number("rolling_friction", Unit::none, Range::not_negative(), spec.rolling_friction);
+  for (const char* key : {"rolling_stiffness", "rolling_friction"})
+    if (!spec.rolling && t.has(key)) t.mistake(key, "goes with rolling = true: nothing resists rolling here");
 }
 
 /// L/a of the start.
@@ -150,6 +152,10 @@ void read_structure(const SceneTable& t, PowderStructureOptions& o) {
   o.holes = t.flag("holes", o.holes);
   o.mesh = t.number("mesh", Unit::none, Range{5.0, 1000.0, false, false}, o.mesh);
   o.fit_k_max = t.number("fit_k_max", Unit::none, Range{0.0, 100.0, true, false}, o.fit_k_max);
+  if (!o.scattering && t.has("fit_k_max"))
+    t.mistake("fit_k_max", "goes with scattering = true: nothing is fitted here");
+  if (!o.scattering && !o.holes && t.has("mesh"))
+    t.mistake("mesh", "goes with scattering or holes, which are found on the mesh");
 }
 
 }  // namespace

@@ -184,6 +184,9 @@ void read_loading(const SceneTable& t, GrainBoxLoading& l) {
   read_end(t, l);
   l.probe_every = t.count("probe_every", 0, 1000000, l.probe_every);
   l.stress_tolerance = t.number("stress_tolerance", Unit::none, Range{0.0, 0.1, true, false}, l.stress_tolerance);
+  const bool by_stress = std::find(l.control.begin(), l.control.end(), AxisControl::stress) != l.control.end();
+  if (!by_stress && t.has("stress_tolerance"))
+    t.mistake("stress_tolerance", "goes with a side that goes by stress (lateral_stress, or control): none does");
   l.max_halvings = static_cast<int>(t.count("max_halvings", 0, 12, l.max_halvings));
 }
 
@@ -303,7 +306,8 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
     const SceneTable walls = root.table_or_empty("walls");
     read_walls(walls, spec);
     read_box(root.table_or_empty("box"), spec);
-    read_generation(root.table_or_empty("generation"), spec.generation);
+    const SceneTable generation = root.table_or_empty("generation");
+    read_generation(generation, spec.generation);
     read_solver(root.table_or_empty("solver"), spec.solver);
     const SceneTable loading = root.table("loading");
     loading.part([&] { read_loading(loading, spec.loading); });
@@ -320,6 +324,9 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
       if (root.sound()) require_memory(root.table_or_empty("box"), spec);
       setup.packs.push_back(spec);
     }
+    if (generation.has("axis") && std::all_of(setup.packs.begin(), setup.packs.end(),
+                                              [](const GrainBoxSpec& pack) { return pack.generation.isotropic; }))
+      generation.mistake("axis", "goes with friction_path = \"uniaxial\": all axes are strained alike");
     setup.packs = repeated(setup.packs, arrangements);
     std::set<std::string> all;
     for (const GrainBoxSpec& pack : setup.packs)

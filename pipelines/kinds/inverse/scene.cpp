@@ -54,6 +54,22 @@ std::vector<SearchParameter> read_search(const SceneTable& t) {
   return out;
 }
 
+/// What is searched has no value of its own.
+void refuse_searched(const SceneTable& root, const std::vector<SearchParameter>& search) {
+  const SceneTable material = root.table_or_empty("material");
+  const SceneTable packing = root.table_or_empty("packing");
+  for (const SearchParameter& p : search)
+    for (const SceneTable& t : {material, packing}) {
+      const std::vector<std::string> keys = t.keys();
+      if (std::find(keys.begin(), keys.end(), p.name) != keys.end())
+        t.mistake(p.name, "is searched: its range stands in [search]");
+    }
+  const bool ratio =
+      std::any_of(search.begin(), search.end(), [](const auto& p) { return p.name == "rmax_over_shell"; });
+  if (ratio && packing.has("rmax"))
+    packing.mistake("rmax", "rmax_over_shell is searched: its range stands in [search]");
+}
+
 /// The largest packings of the box must be drawable too.
 void require_box(const SceneTable& t, const InverseSetup& setup) {
   const std::size_t d = setup.search.size();
@@ -199,6 +215,9 @@ InverseSetup read_inverse(const Scene& scene) {
     search.part([&] {
       if (root.sound()) require_box(search, s);
     });
+    refuse_searched(root, s.search);
+    const SceneTable measure = root.table_or_empty("measure");
+    if (measure.sound()) refuse_idle_protocols(measure, {s.relaxation}, false);
     read_budget(search, s);
     const SceneTable target = root.table("target");
     target.part([&] { read_target(scene, target, s); });

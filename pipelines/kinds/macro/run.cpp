@@ -170,6 +170,8 @@ ReadyMacro ready_macro(const Scene& scene, const CommonOptions& options) {
   ReadyMacro ready{read_macro_scene(scene, options.law), std::nullopt};
   MacroScene& macro = ready.macro;
   if (options.bands > 0) macro.setup.bands = options.bands;
+  if (macro.setup.bands == 0 && scene.root().table("macro").has("band_estimator"))
+    scene.root().table("macro").reject("band_estimator", "goes with bands, the number of draws of the law, or --bands");
   if (macro.law_file.empty())
     scene.root().reject(
         "law", "no law: give --law law.toml (a card) or --law law_table.toml (a table), or the key law in the scene");

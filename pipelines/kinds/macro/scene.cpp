@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/core/error.h"
@@ -51,19 +52,31 @@ void mistake_beside(const SceneTable& t, std::initializer_list<const char*> keys
 
 }  // namespace
 
-/// A name stands for all that defines a preparation; keys beside it replace single parts.
-void read_preparation(const SceneTable& t, MacroSpec& spec) {
+/// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
+void read_preparation(const SceneTable& t, MacroSetup& setup) {
+  MacroSpec& spec = setup.spec;
   spec.preparation = t.choice<Preparation>("preparation", spec.preparation);
-  if (t.has("preparation") || t.has("mu")) spec.protocol = protocol_of(spec.preparation, spec.friction);
+  const bool renewed = t.has("preparation") || t.has("mu");
+  const PreparationProtocol named = protocol_of(spec.preparation, spec.friction);
   spec.start_pressure = t.number("start_pressure", Unit::none, Range{0.0, 1e-2, true, false}, spec.start_pressure);
   PreparationProtocol& p = spec.protocol;
-  p.start_fraction = t.number("start_fraction", Unit::none, Range{0.05, 0.4, false, false}, p.start_fraction);
-  p.inertial_number = t.number("inertial_number", Unit::none, Range::closed(0.0, 1.0), p.inertial_number);
-  p.friction = t.number("compaction_mu", Unit::none, Range::not_negative(), p.friction);
-  p.restitution = t.number("compaction_restitution", Unit::none, Range::closed(0.05, 1.0), p.restitution);
-  p.coarse_share = t.number("coarse_share", Unit::none, Range{0.0, 1.0, true, false}, p.coarse_share);
-  p.first_pressure = t.number("first_pressure", Unit::none, Range::closed(1.0, 1e6), p.first_pressure);
-  p.tolerance = t.number("preparation_tolerance", Unit::none, Range{0.0, 0.1, true, false}, p.tolerance);
+  const auto follows = [&](const char* key) {  // from the name and mu, as nobody said it
+    if (t.has(key)) setup.said.insert(key);
+    return renewed && !setup.said.contains(key);
+  };
+  using Protocol = PreparationProtocol;
+  const auto read = [&](const SceneTable& from, const char* key, double Protocol::*part, const Range& range) {
+    if (follows(key)) p.*part = named.*part;
+    p.*part = from.number(key, Unit::none, range, p.*part);
+  };
+  read(t, "start_fraction", &Protocol::start_fraction, Range::closed(0.05, 0.4));
+  read(t, "inertial_number", &Protocol::inertial_number, Range::closed(0.0, 1.0));
+  read(t, "compaction_mu", &Protocol::friction, Range::not_negative());
+  read(t, "compaction_restitution", &Protocol::restitution, Range::closed(0.05, 1.0));
+  read(t, "coarse_share", &Protocol::coarse_share, Range{0.0, 1.0, true, false});
+  read(t, "first_pressure", &Protocol::first_pressure, Range::closed(1.0, 1e6));
+  read(t, "preparation_tolerance", &Protocol::tolerance, Range{0.0, 0.1, true, false});
+  if (follows("preparation_passes")) p.max_passes = named.max_passes;
   p.max_passes = t.count("preparation_passes", 10, 100000000, p.max_passes);
   if (spec.preparation == Preparation::lammps)
     mistake_beside(t,
@@ -85,7 +98,8 @@ void read_preparation(const SceneTable& t, MacroSpec& spec) {
 
 namespace {
 
-void read_bodies(const SceneTable& t, MacroSpec& spec) {
+void read_bodies(const SceneTable& t, MacroSetup& setup) {
+  MacroSpec& spec = setup.spec;
   spec.boundary = t.choice<Boundary>("boundary", spec.boundary);
   spec.construction = t.choice<Construction>("construction", spec.construction);
   spec.bodies = t.count("bodies", 1, 10000000, spec.bodies);
@@ -104,12 +118,14 @@ void read_bodies(const SceneTable& t, MacroSpec& spec) {
               "construction \"voids\" makes soft particles as large as the holes between solid grains: "
               "give soft_radius_max and soft_polydispersity, or construction \"mixed\"");
   spec.solid_fill = t.number("solid_fill", Unit::none, Range{0.0, 0.74, false, true}, spec.solid_fill);
+  if (spec.construction == Construction::mixed)
+    mistake_beside(t, {"solid_fill"}, "goes with construction = \"voids\", which fills solid grains first");
   if (spec.construction == Construction::voids && spec.soft_share >= 1.0)
     t.mistake("soft_share", "construction \"voids\" needs solid grains: must be below 1");
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.wall_friction = t.number("wall_mu", Unit::none, Range::not_negative(), spec.wall_friction);
   if (spec.boundary == Boundary::periodic) mistake_beside(t, {"wall_mu"}, "a periodic cell has no walls");
-  read_preparation(t, spec);
+  read_preparation(t, setup);
 }
 
 }  // namespace
@@ -136,33 +152,42 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
 
 namespace {
 
-/// `packing`: places, radii and kinds of all bodies from a file; what would make them otherwise has no place beside it.
+/// What a file of a packing says, or what would make another one.
+constexpr std::array kMakingBodies{"bodies",
+                                   "soft_share",
+                                   "construction",
+                                   "exponent",
+                                   "solid_radius_max",
+                                   "solid_polydispersity",
+                                   "soft_radius_max",
+                                   "soft_polydispersity",
+                                   "solid_sizes",
+                                   "soft_sizes",
+                                   "solid_fill",
+                                   "preparation",
+                                   "start_pressure",
+                                   "start_fraction",
+                                   "inertial_number",
+                                   "compaction_mu",
+                                   "compaction_restitution",
+                                   "coarse_share",
+                                   "first_pressure",
+                                   "preparation_tolerance",
+                                   "preparation_passes"};
+
+/// `packing`: places, radii and kinds of all bodies from a file; what would make them otherwise has no place beside it,
+/// nor below a common one. The file is read for the boundary of the table that names it.
 void read_given(const SceneTable& t, MacroSetup& setup) {
-  if (!t.has("packing")) return;
-  mistake_beside(t,
-                 {"bodies",
-                  "soft_share",
-                  "construction",
-                  "exponent",
-                  "solid_radius_max",
-                  "solid_polydispersity",
-                  "soft_radius_max",
-                  "soft_polydispersity",
-                  "solid_sizes",
-                  "soft_sizes",
-                  "solid_fill",
-                  "preparation",
-                  "start_pressure",
-                  "start_fraction",
-                  "inertial_number",
-                  "compaction_mu",
-                  "compaction_restitution",
-                  "coarse_share",
-                  "first_pressure",
-                  "preparation_tolerance",
-                  "preparation_passes"},
-                 "goes without packing, which says where all bodies are");
+  const bool own = t.has("packing");
+  if (!own && !setup.given) return;
+  for (const char* key : kMakingBodies)
+    if (t.has(key))
+      t.mistake(key, own ? "goes without packing, which says where all bodies are"
+                         : "goes without the common packing, which says where all bodies are");
+  if (!own && t.has("boundary"))
+    t.mistake("boundary", "is that of the common packing: give it beside that, or packing here too");
   if (setup.samples > 1) t.mistake("samples", "a packing is one sample: must be 1");
+  if (!own) return;
   t.part([&] {
     const std::string file = t.resolve(t.text("packing"));
     setup.given = read_packing_file(file, setup.spec.boundary);
@@ -272,7 +297,7 @@ constexpr std::int64_t kFewestDraws = 8;
 
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base) {
   MacroSetup setup = base;
-  read_bodies(macro, setup.spec);
+  read_bodies(macro, setup);
   read_test(macro, setup.spec);
   MacroSpec& spec = setup.spec;
   spec.kt_secant =
@@ -323,6 +348,17 @@ void require_known_modulus(const SceneTable& root, const std::string& law_file) 
                                " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
 }
 
+}  // namespace
+
+void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands) {
+  if (!bands) mistake_beside(macro, {"band_estimator"}, "goes with bands, the number of draws of the law");
+  if (!twins)
+    mistake_beside(macro, {"twin_relaxation", "twin_speed", "twin_step_factor", "twin_settle_time"},
+                   "goes with a resolved twin: resolved = true");
+}
+
+namespace {
+
 /// [fines], and what goes with cells in [macro].
 void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard& card, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
@@ -338,6 +374,9 @@ void read_cells(const SceneTable& root, const SceneTable& macro, const CellCard&
     macro.mistake("construction", "\"voids\" goes with soft particles in shells; cells fill all voids");
   if (spec.soft_share >= 1.0) macro.mistake("soft_share", "cells need solid grains: must be below 1");
   mistake_beside(macro, {"wall_mu"}, "walls of cells are smooth");
+  mistake_beside(macro, {"kt"}, "the tangential stiffness of cells is that of the card");
+  mistake_beside(macro, {"law_increments", "noise_samples"},
+                 "goes with laws of soft particles; increments_per_step serves cells");
   const SceneTable fines = root.table("fines");
   CellMatter matter;
   matter.card = card;
@@ -377,6 +416,7 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   const SceneTable macro = root.table("macro");
   out.setup = read_macro_setup(macro, out.spec);
   read_stages(root, macro, out.setup.spec);
+  refuse_idle_test_keys(macro, root, {&out.setup.spec});
   if (out.law.cells) {
     read_cells(root, macro, *out.law.cells, out.setup);
     if (!is_known(out.spec.youngs_modulus)) require_known_modulus(root, law_file);
@@ -387,6 +427,10 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   }
   if (root.sound()) require_macro_memory(macro, out.setup, out.spec);
   if (root.sound()) require_room_for_images(macro, "bodies", out.setup, out.seed);
+  refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
+  if (out.law.table) mistake_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
+  if (out.setup.twins.empty())
+    mistake_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
   out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));
   out.contents = root.count("contents", 1, 100000, out.contents);
   return out;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct MacroSetup {
   std::int64_t law_increments = 1;     ///< of runs with laws, for one of a twin
   std::int64_t noise_samples = 0;      ///< that every engine runs a second time: see slightly_changed()
   std::vector<std::string> assumed{};  ///< "nu = 0.3": of grains, where the law does not say them
+  std::set<std::string> said{};  ///< keys of the preparation that a table gave: others follow from mu and its name
 };
 
 [[nodiscard]] inline bool has_twin(const MacroSetup& setup, Twin twin) {
@@ -46,14 +48,18 @@ MacroSetup read_macro_setup(const SceneTable& macro, const SoftParticleSpec& def
 /// Replaces what a table says, keeps the rest. Throws BadInput.
 MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
 
-/// Parts of [macro] that other kinds of scene share. The first needs spec.friction. Throw BadInput.
-void read_preparation(const SceneTable& t, MacroSpec& spec);
+/// Parts of [macro] that other kinds of scene share. The first needs spec.friction: what no table said follows from it
+/// and from the name of the preparation, what one said stays. Throw BadInput.
+void read_preparation(const SceneTable& t, MacroSetup& setup);
 void read_test(const SceneTable& t, MacroSpec& spec);
 
 /// Twins are filled with packings like the one that was measured. Throws BadInput, at key `resolved`, when the scene
 /// has twins and `spec` of the law in this file does not say what is inside.
 void require_known_contents(const SceneTable& macro, const MacroSetup& setup, const SoftParticleSpec& spec,
                             const std::string& law_file);
+
+/// Refuses keys of the motion of twins where there are none, and of bands likewise.
+void refuse_idle_keys(const SceneTable& macro, bool twins, bool bands);
 
 /// What was assumed because the law does not say it, as a sentence; empty when nothing was.
 std::string assumed_text(const MacroSetup& setup);

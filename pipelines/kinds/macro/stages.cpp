@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -268,16 +269,71 @@ void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval) {
     interval = {ends[0], ends[1]};
 }
 
-void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec) {
-  const std::vector<SceneTable> tables = holder.tables("stage");
-  if (tables.empty()) return;
-  for (const char* key : {"test", "strain", "preload", "preload_steps"})
-    if (macro.has(key)) macro.mistake(key, "goes without [[stage]], which says the whole test");
+namespace {
+
+/// Keys that are defaults of stages.
+constexpr std::array kOfStages{"steps", "increments_per_step", "tolerance"};
+
+void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec) {
   std::vector<MacroStage> stages;
   StageReader reader(spec, stages);
   for (const SceneTable& t : tables) t.part([&] { reader.read(t); });
   spec.test = MacroTest::stages;
   spec.stages = std::move(stages);
+}
+
+/// Of stages that rest only the tolerance follows from that of the test.
+bool each_says(const std::vector<SceneTable>& stages, const std::string& key) {
+  const auto says = [&](const SceneTable& s) {
+    const bool rests = s.is_text("kind") && s.text("kind") == to_string(StageKind::hold);
+    return s.has(key) || (rests && key != "tolerance");
+  };
+  return !stages.empty() && std::all_of(stages.begin(), stages.end(), says);
+}
+
+}  // namespace
+
+void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& spec) {
+  const std::vector<SceneTable> tables = holder.tables("stage");
+  if (tables.empty()) return;
+  for (const char* key : {"test", "strain", "preload", "preload_steps"})
+    if (macro.has(key)) macro.mistake(key, "goes without [[stage]], which says the whole test");
+  take_stages(tables, spec);
+}
+
+void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec) {
+  const std::vector<SceneTable> stages = common.tables("stage");
+  if (t.has("test")) spec.stages.clear();
+  if (t.has("stage") || t.has("test") || stages.empty()) return read_stages(t, t, spec);
+  for (const char* key : {"strain", "preload", "preload_steps"})
+    if (t.has(key))
+      t.mistake(key,
+                "belongs to a test, and the common [[stage]] say what is tested: give test too, which takes their "
+                "place, or [[stage]] of its own");
+  take_stages(stages, spec);
+}
+
+void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests) {
+  const auto none = [&](auto&& takes) {
+    return std::none_of(tests.begin(), tests.end(), [&](const MacroSpec* s) { return takes(*s); });
+  };
+  const auto refuse = [&](const char* key, const char* problem) {
+    if (t.has(key)) t.mistake(key, problem);
+  };
+  if (none([](const MacroSpec& s) { return s.test == MacroTest::shear; }))
+    for (const char* key : {"preload", "preload_steps"})
+      refuse(key, "goes with test = \"shear\": other tests have nothing before them (a test in [[stage]] has)");
+  else if (none([](const MacroSpec& s) { return preload_points(s) > 0; }))
+    refuse("preload_steps", "goes with preload, the strain before the shear");
+  if (none([](const MacroSpec& s) { return s.test != MacroTest::stages; })) {
+    refuse("strain", "goes without [[stage]], which says the whole test");
+    for (const char* key : kOfStages)
+      if (each_says(stages.tables("stage"), key)) refuse(key, "every [[stage]] gives its own");
+  }
+}
+
+bool says_in_test(const SceneTable& t, const std::string& key) {
+  return t.has(key) || each_says(t.tables("stage"), key);
 }
 
 RoughStrains rough_strains(const MacroSpec& spec) {

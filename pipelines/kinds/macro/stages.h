@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "common/io/scene.h"
 #include "macrosim/macro_spec.h"
@@ -15,6 +17,18 @@ void read_stages(const SceneTable& holder, const SceneTable& macro, MacroSpec& s
 
 /// Key `modulus_stress`: the two stresses [Pa] between which moduli are taken; as they were where the table has none.
 void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval);
+
+/// The same for a part of a scene ([[variant]], [[scene]]), table `t`: without stages or a test of its own it takes
+/// those of `common`, with its own steps, increments and tolerance where a stage says none. Throws BadInput.
+void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& spec);
+
+/// Refuses keys of a test in `t` that none of the tests that read them takes: the preload of a test without shear, the
+/// strain of tests in stages, steps that every stage says itself. `stages`: the table whose tables `stage` they are, in
+/// tests in stages.
+void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests);
+
+/// Whether `t` says this key of a test itself, or in each of its tables `stage`.
+bool says_in_test(const SceneTable& t, const std::string& key);
 
 /// What a test does to the box, roughly, were all bodies to move with it: for estimates before a run.
 struct RoughStrains {

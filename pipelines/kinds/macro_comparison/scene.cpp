@@ -24,11 +24,14 @@ bool sound_name(const std::string& name) {
   });
 }
 
-ComparisonScene read_scene(const SceneTable& t, const MacroSetup& base, const SoftParticleSpec& content,
-                           const std::vector<ComparisonScene>& before, std::uint64_t seed, bool sound) {
+ComparisonScene read_scene(const SceneTable& root, const SceneTable& t, const MacroSetup& base,
+                           const SoftParticleSpec& content, const std::vector<ComparisonScene>& before,
+                           std::uint64_t seed, bool sound) {
   ComparisonScene scene;
   scene.setup = read_macro_setup(t, base);
-  read_stages(t, t, scene.setup.spec);
+  read_part_stages(root, t, scene.setup.spec);
+  refuse_idle_test_keys(t, t.has("stage") ? t : root, {&scene.setup.spec});
+  refuse_idle_keys(t, !scene.setup.twins.empty(), scene.setup.bands > 0);
   require_own_preparation(t, scene.setup);
   if (sound) require_macro_memory(t, scene.setup, content);
   if (sound && t.sound()) require_room_for_images(t, "bodies", scene.setup, seed);
@@ -59,7 +62,15 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     if (!macro.has("resolved")) base.twins = {Twin::shelled, Twin::free};
     base.kept_states = read_kept_states(root);
     for (const SceneTable& t : root.tables("scene"))
-      setup.scenes.push_back(read_scene(t, base, setup.spec, setup.scenes, setup.seed, root.sound()));
+      setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, root.sound()));
+    std::vector<const MacroSpec*> tests;
+    for (const ComparisonScene& s : setup.scenes) tests.push_back(&s.setup.spec);
+    if (!tests.empty()) {
+      refuse_idle_test_keys(macro, root, tests);
+      const auto any = [&](auto&& has) { return std::any_of(setup.scenes.begin(), setup.scenes.end(), has); };
+      refuse_idle_keys(macro, any([](const ComparisonScene& s) { return !s.setup.twins.empty(); }),
+                       any([](const ComparisonScene& s) { return s.setup.bands > 0; }));
+    }
     if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
     const SceneTable law = root.table("law");
     law.part([&] { setup.laws = read_law_sources(scene, law); });

@@ -12,6 +12,7 @@
 #include "macrosim/grain_record.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/twin_cache.h"
+#include "pipelines/kinds/material/family.h"
 #include "pipelines/kinds/material/results.h"
 #include "pipelines/run/result_cache.h"
 
@@ -114,6 +115,7 @@ MaterialVariantSummary summary_of(const VariantResult& r) {
   s.name = r.variant->name;
   s.file = r.file;
   s.grains = spec.bodies;
+  s.youngs_modulus = spec.youngs_modulus;
   s.size_ratio = spec.solid_polydispersity;
   s.preparation = spec.preparation;
   s.friction = spec.friction;
@@ -209,16 +211,12 @@ TextTable points_of(const std::vector<VariantResult>& results) {
 
 namespace {
 
-/// Variants of one preparation, friction and form of sizes differ in their span alone.
-std::string material_family(const MaterialVariant& v) {
-  const MacroSpec& spec = v.setup.spec;
-  return fmt::format("{}, mu = {:g}, {}", to_string(spec.preparation), spec.friction,
-                     spec.solid_sizes ? to_string(spec.solid_sizes->form()) : fmt::format("b = {:g}", spec.exponent));
-}
-
-/// And of one loading.
-std::string family_of(const MaterialVariant& v) {
-  return material_family(v) + (v.loading.empty() ? "" : ", " + v.loading);
+/// Empty where variants differ in it.
+std::optional<double> common_modulus(const MaterialScene& scene) {
+  const double first = scene.variants.front().setup.spec.youngs_modulus;
+  for (const MaterialVariant& v : scene.variants)
+    if (v.setup.spec.youngs_modulus != first) return std::nullopt;
+  return first;
 }
 
 /// Packings take part once, by the first of their tests that compresses them: what they do in another is no other
@@ -240,7 +238,7 @@ std::optional<EquationResult> equation(const MaterialScene& scene, const std::ve
   std::vector<EquationInput> inputs;
   for (const VariantResult* r : first_compressed(results)) {
     const MacroSpec& spec = r->variant->setup.spec;
-    inputs.push_back({r->variant->name, spec.solid_polydispersity, family_of(*r->variant), r->curves,
+    inputs.push_back({r->variant->name, spec.solid_polydispersity, family_of(*r->variant, scene.variants), r->curves,
                       spec.solid_sizes ? 0.0 : spec.exponent});
   }
   return equation_of(inputs, scene.equation, seed);
@@ -251,7 +249,8 @@ std::vector<PredictionSummary> predictions(const MaterialScene& scene, const std
   std::vector<PredictionInput> inputs;
   for (const VariantResult& r : results) {
     const MacroSpec& spec = r.variant->setup.spec;
-    inputs.push_back({packings_name(*r.variant), spec.solid_polydispersity, material_family(*r.variant),
+    inputs.push_back({packings_name(*r.variant), spec.solid_polydispersity,
+                      material_family(*r.variant, scene.variants),
                       r.variant->loading, spec.solid_sizes ? 0.0 : spec.exponent, spec.start_pressure, r.curves});
   }
   return predict_spans(inputs, scene.equation, seed);
@@ -293,7 +292,7 @@ std::string people_text(const MaterialSummary& s) {
     for (const StageMeans& m : v.runs.stages) {
       if (m.axial_end && m.ratio_end)
         text += fmt::format("  {}: axial stress {:.4g} E, lateral {:.4g} E, q/p {:.3f}\n", m.record.name,
-                            m.axial_end->mean / s.youngs_modulus, m.lateral_end->mean / s.youngs_modulus,
+                            m.axial_end->mean / modulus_of(s, v), m.lateral_end->mean / modulus_of(s, v),
                             m.ratio_end->mean);
       if (const std::string modulus = modulus_text(m); !modulus.empty()) text += "    " + modulus + "\n";
     }
@@ -305,7 +304,7 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
   MaterialOutcome out;
   MaterialSummary& s = out.summary;
   s.head.title = scene.title;
-  s.youngs_modulus = scene.variants.front().setup.spec.youngs_modulus;
+  s.youngs_modulus = common_modulus(scene);
   for (const VariantResult& r : results) {
     s.variants.push_back(summary_of(r));
     s.head.files[r.variant->name] = run.path(r.file);
@@ -369,7 +368,7 @@ ExitStatus write_only(const MaterialScene& scene, const Run& run) {
   });
   MaterialSummary summary;
   summary.head = {RunStatus::written, scene.title, {"nothing was run"}, {}};
-  summary.youngs_modulus = scene.variants.front().setup.spec.youngs_modulus;
+  summary.youngs_modulus = common_modulus(scene);
   add_directories(scene, run, summary);
   std::string directories;
   for (const auto& [name, directory] : summary.head.files) directories += (directories.empty() ? "" : ", ") + directory;

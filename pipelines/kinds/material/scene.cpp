@@ -71,10 +71,9 @@ void read_splits(const SceneTable& t, MacroSpec& spec) {
 /// Preparations of materials end at a finer tolerance: at 0.03 the curve after one starts too soft.
 constexpr double kPreparationTolerance = 3e-3;
 
-void read_finer_preparation(const SceneTable& t, MacroSpec& spec) {
-  read_preparation(t, spec);
-  if (!t.has("preparation_tolerance") && (t.has("preparation") || t.has("mu")))
-    spec.protocol.tolerance = kPreparationTolerance;
+void read_finer_preparation(const SceneTable& t, MacroSetup& setup) {
+  read_preparation(t, setup);
+  if (!setup.said.contains("preparation_tolerance")) setup.spec.protocol.tolerance = kPreparationTolerance;
 }
 
 }  // namespace
@@ -84,8 +83,7 @@ void read_material_tables(const SceneTable& root, MacroSetup& setup) {
   read_matter(root.table_or_empty("material"), spec);
   read_grains(root.table("grains"), spec);
   spec.protocol = protocol_of(spec.preparation, spec.friction);
-  spec.protocol.tolerance = kPreparationTolerance;
-  read_finer_preparation(root.table_or_empty("packing"), spec);
+  read_finer_preparation(root.table_or_empty("packing"), setup);
   read_test(root.table_or_empty("test"), spec);
 }
 
@@ -131,6 +129,29 @@ class Loadings {
     return numbers;
   }
 
+  /// Refuses keys of tests in the tables of loadings, of the variant that they load, and of the scene that none takes.
+  void refuse_idle(const SceneTable& root, const std::vector<SceneTable>& variants,
+                   const std::vector<std::vector<std::size_t>>& under,
+                   const std::vector<MaterialVariant>& all) const {
+    std::vector<const MacroSpec*> tests;
+    for (const MaterialVariant& v : all) tests.push_back(&v.setup.spec);
+    const SceneTable test = root.table_or_empty("test");
+    if (!tests.empty()) refuse_idle_test_keys(test, root, tests);
+    for (std::size_t k = 0; k < tables_.size(); ++k) {
+      tests.clear();
+      for (const MaterialVariant& v : all)
+        if (v.loading == names_[k]) tests.push_back(&v.setup.spec);
+      if (tests.empty())
+        tables_[k].mistake("name", "no variant is tested under it: key loadings of a variant says which are");
+      else
+        refuse_idle_test_keys(tables_[k], tables_[k], tests);
+    }
+    if (!empty()) refuse_said_twice(variants, under);
+    if (empty() && all.size() == variants.size())
+      for (std::size_t v = 0; v < variants.size(); ++v)
+        refuse_idle_test_keys(variants[v], variants[v].has("stage") ? variants[v] : root, {&all[v].setup.spec});
+  }
+
   /// Those that a variant is tested under.
   [[nodiscard]] std::vector<std::size_t> of_variant(const SceneTable& t) const {
     if (!empty()) {
@@ -168,6 +189,16 @@ class Loadings {
   }
 
  private:
+  /// What a variant says of its tests, and each of its loadings again.
+  void refuse_said_twice(const std::vector<SceneTable>& variants,
+                         const std::vector<std::vector<std::size_t>>& under) const {
+    for (std::size_t v = 0; v < variants.size(); ++v)
+      for (const char* key : {"steps", "increments_per_step", "tolerance", "force_floor", "max_passes"})
+        if (variants[v].has(key) && std::all_of(under[v].begin(), under[v].end(),
+                                                [&](std::size_t k) { return says_in_test(tables_[k], key); }))
+          variants[v].mistake(key, "each [[loading]] of this variant gives its own");
+  }
+
   static void read(const SceneTable& t, MacroSpec& spec) {
     (void)read_variant_name(t);
     read_test(t, spec);
@@ -179,15 +210,14 @@ class Loadings {
 };
 
 /// Keys of all tables of the scene, in one.
-MaterialVariant read_variant(const SceneTable& t, const MacroSetup& base, bool sound) {
+MaterialVariant read_variant(const SceneTable& root, const SceneTable& t, const MacroSetup& base, bool sound) {
   MaterialVariant v{read_variant_name(t), base};
   MacroSpec& spec = v.setup.spec;
   read_matter(t, spec);
   read_grains(t, spec);
-  read_finer_preparation(t, spec);
-  if (t.has("test")) spec.stages.clear();
+  read_finer_preparation(t, v.setup);
   read_test(t, spec);
-  read_stages(t, t, spec);
+  read_part_stages(root, t, spec);
   v.setup.samples = t.count("samples", 1, 10000, v.setup.samples);
   if (sound && t.sound()) require_material_memory(t, v.setup);
   return v;
@@ -236,11 +266,13 @@ MaterialScene read_material(const SceneTable& root) {
     for (MaterialVariant& one : loadings.apply(v, under, plain)) out.variants.push_back(std::move(one));
   };
   const std::vector<SceneTable> variants = root.tables("variant");
+  std::vector<std::vector<std::size_t>> under;
   for (const SceneTable& t : variants) {
-    const MaterialVariant v = read_variant(t, base, sound);
+    const MaterialVariant v = read_variant(root, t, base, sound);
     if (!names.insert(v.name).second) t.mistake("name", "is used twice");
     const std::size_t first = out.variants.size();
-    add(v, loadings.of_variant(t), false);
+    under.push_back(loadings.of_variant(t));
+    add(v, under.back(), false);
     if (root.sound()) require_room(t, out, first);
   }
   if (variants.empty()) {
@@ -248,6 +280,7 @@ MaterialScene read_material(const SceneTable& root) {
     add({kMaterialEngine, base}, loadings.all(), true);
     if (root.sound()) require_room(grains, out, 0);
   }
+  if (root.sound()) loadings.refuse_idle(root, variants, under, out.variants);
   require_names_apart(root, out.variants);
   return out;
 }

@@ -12,6 +12,7 @@ struct MaterialVariantSummary {
   std::string name;
   std::string file;  ///< of its curves
   std::int64_t grains = 0;
+  double youngs_modulus = 0.0;  ///< of its grains [Pa]; 0: as the summary says
   double size_ratio = 0.0;  ///< largest over smallest radius
   Preparation preparation = Preparation::frictionless;
   double friction = 0.0;
@@ -25,6 +26,7 @@ void fields(auto&& visit, Of<MaterialVariantSummary> auto& s) {
   visit("name", s.name);
   visit("file", s.file);
   visit("grains", s.grains);
+  visit("E", s.youngs_modulus);
   visit("size_ratio", s.size_ratio);
   visit("preparation", s.preparation);
   visit("mu", s.friction);
@@ -36,7 +38,7 @@ void fields(auto&& visit, Of<MaterialVariantSummary> auto& s) {
 
 struct MaterialSummary {
   SummaryHead head;
-  double youngs_modulus = 0.0;  ///< E of the grains [Pa]
+  std::optional<double> youngs_modulus;  ///< E of the grains of all variants [Pa]; empty: they differ
   std::vector<MaterialVariantSummary> variants;
   std::optional<EquationSummary> equation;
   std::vector<PredictionSummary> predictions;
@@ -45,11 +47,16 @@ struct MaterialSummary {
 
 void fields(auto&& visit, Of<MaterialSummary> auto& s) {
   fields(visit, s.head);
-  visit("E", s.youngs_modulus);
+  visit("E", s.youngs_modulus, kLeftOut);
   visit("variants", s.variants);
   visit("equation_of_state", s.equation, kLeftOut);
   visit("predictions", s.predictions, kLeftOut);
   visit("engine", s.engine, kLeftOut);
+}
+
+/// E of the grains of a variant [Pa].
+inline double modulus_of(const MaterialSummary& s, const MaterialVariantSummary& v) {
+  return v.youngs_modulus > 0.0 ? v.youngs_modulus : s.youngs_modulus.value_or(0.0);
 }
 
 }  // namespace softgrain

@@ -65,6 +65,8 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
   m.soft_share = t.number("soft_share", Unit::none, Range{0.0, 0.6, false, false}, 0.0);
   if (m.soft_share > 0.0 && m.places == ModelPlaces::truth)
     t.mistake("soft_share", "soft bodies are at places of their own: places = \"own\"");
+  if (m.kind == ModelKind::cells && m.soft_share == 0.0 && t.has("radii"))
+    t.mistake("radii", "are those of soft bodies: goes with soft_share above 0");
   m.mapped = t.flag("mapped", false);
   m.scale = t.number("scale", Unit::none, Range{0.0, 2.0, true, false}, m.scale);
   const std::vector<double> radii = t.numbers("radii", Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});

@@ -66,6 +66,15 @@ void add_overlap(const System<D>& s, Findings& out) {
   if (!beyond.empty()) out.warn("at the start: " + beyond);
 }
 
+/// Of the largest grain; disks may have any unit of length.
+template <int D>
+void warn_of_radius(const System<D>& s, Findings& out) {
+  double largest = 0.0;
+  for (Slot i = 0; i < s.particles.grains; ++i)
+    largest = std::max(largest, s.particles.sphere[static_cast<std::size_t>(i)].r);
+  if (D == 3) out.warn_of_metres("the largest particle", largest);
+}
+
 /// Frames of the trajectory: place, turn, velocity and spin of every body.
 template <int D>
 double recorded_bytes(const ParticlesSceneOf<D>& scene, const System<D>& s) {
@@ -108,6 +117,7 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   out.add("time_step", scene.time.step,
           fmt::format("step {:.4g} s to {:.4g} s: {} steps", scene.time.step, scene.time.end, scene.time.steps));
   add_sizes(out, drawn_sizes(scene));
+  warn_of_radius(s, out);
   if (limit.body >= 0)
     out.add("step_limit", limit.natural_time,
             fmt::format("sqrt(m/k) of the fastest contact: {:.4g} s (grain {})", limit.natural_time, limit.body));

@@ -55,6 +55,8 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     const SceneTable macro = root.table("macro");
     setup.macro = read_macro_setup(macro, setup.measure.spec);
     read_stages(root, macro, setup.macro->spec);
+    refuse_idle_test_keys(macro, root, {&setup.macro->spec});
+    refuse_idle_keys(macro, !setup.macro->twins.empty(), setup.macro->bands > 0);
     setup.macro->kept_states = setup.measure.kept_states;
     require_own_preparation(macro, *setup.macro);
     if (root.sound()) require_macro_memory(macro, *setup.macro, setup.measure.spec);

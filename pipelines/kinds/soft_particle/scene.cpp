@@ -27,6 +27,9 @@ void read_material(const SceneTable& t, SoftParticleSpec& spec) {
 void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
   if (t.has("rmax")) {
     const double rmax = t.number("rmax", Unit::length, Range::positive());
+    if (t.has("rmax_over_shell"))
+      t.mistake("rmax_over_shell",
+                "contradicts rmax: give the radius of the largest grain, or that over shell_radius, not both");
     if (rmax >= spec.shell_radius)
       t.mistake("rmax", "the shell (shell_radius = " + std::to_string(spec.shell_radius) +
                             " m) must be larger than the largest grain");
@@ -123,6 +126,8 @@ MeasurementPlan read_plan(const SceneTable& t, const MeasurementPlan& common) {
     if (a == 0.0) t.mistake("angles_deg", "0 is recorded anyway; leave it out");
   plan.tangential_deltas = t.numbers("tangential_deltas", Unit::none, kDeltaRange,
                                      plan.angles_deg.empty() ? std::vector<double>{} : plan.deltas);
+  if (plan.angles_deg.empty() && !plan.tangential_deltas.empty())
+    t.mistake("tangential_deltas", "goes with angles_deg: nothing is rotated without angles");
   if (t.sound()) require_subset(t, plan.tangential_deltas, plan.deltas);
   return plan;
 }
@@ -143,6 +148,11 @@ void require_increments_used(const SceneTable& measure, Relaxation relaxation, b
               "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
 }
 
+bool rotates(const MeasureSeries& series) {
+  return std::any_of(series.kinds.begin(), series.kinds.end(),
+                     [&](PairKind kind) { return !series.plan(kind).angles_deg.empty(); });
+}
+
 MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64_t packings,
                           const MeasurementPlan& common) {
   MeasureSeries series;
@@ -161,6 +171,27 @@ MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64
 }
 
 }  // namespace
+
+void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxation>& relaxations, bool rotates) {
+  const auto one_of = [&](std::initializer_list<Relaxation> some) {
+    return std::any_of(relaxations.begin(), relaxations.end(), [&](Relaxation r) {
+      return std::find(some.begin(), some.end(), r) != some.end();
+    });
+  };
+  const auto goes_with = [&](const char* table, bool used, const char* relaxation) {
+    if (used || !measure.has(table)) return;
+    const SceneTable t = measure.table_or_empty(table);
+    for (const std::string& key : t.keys())
+      t.mistake(key, fmt::format("nothing is relaxed this way: goes with relaxation = {}", relaxation));
+  };
+  goes_with("damped", one_of({Relaxation::damped}), "\"damped\"");
+  goes_with("published", one_of({Relaxation::published}), "\"published\"");
+  goes_with("least_work", one_of({Relaxation::least_work, Relaxation::slow_dynamics}),
+            "\"least-work\" or \"slow-dynamics\"");
+  if (rotates) return;
+  for (const char* key : {"rotation_step_deg", "shell_turns", "rotation"})
+    if (measure.has(key)) measure.mistake(key, "goes with angles_deg: nothing is rotated in this scene");
+}
 
 void require_drawable(const SceneTable& t, const SoftParticleSpec& spec) {
   constexpr double kMost = 1e7;
@@ -227,6 +258,11 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
     if (measure.sound() && other == setup.series[0].relaxation)
       reference.mistake("relaxation", "the reference must differ from measure.relaxation");
     setup.series.push_back(read_series(reference, other, reference.count("count", 1, 100000, count), common));
+  }
+  if (root.sound()) {
+    std::vector<Relaxation> relaxations;
+    for (const MeasureSeries& s : setup.series) relaxations.push_back(s.relaxation);
+    refuse_idle_protocols(measure, relaxations, std::any_of(setup.series.begin(), setup.series.end(), rotates));
   }
   if (root.sound())
     require_increments_used(measure, setup.series.front().relaxation,

@@ -48,6 +48,10 @@ struct MeasureSetup {
 /// a law whose mean volume is no number).
 void require_drawable(const SceneTable& packing, const SoftParticleSpec& spec);
 
+/// Refuses keys of the tables below [measure] that none of the relaxations takes, and those of rotations where nothing
+/// is rotated.
+void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxation>& relaxations, bool rotates);
+
 /// Reads [material] and what [packing] says of the soft particle (not `count`). Throws BadInput.
 SoftParticleSpec read_soft_particle(const SceneTable& root);
 

@@ -1,0 +1,47 @@
+// Which keys readers ask scenes for, and what they would take: for tests and tools that go over all keys of a kind.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/io/scene.h"
+
+namespace softgrain {
+
+/// How a key was asked for; `any`: only whether it is there, and what it is.
+enum class KeyForm { any, number, count, flag, text, choice, vector, numbers, texts, flags, table, tables };
+
+/// A key that was asked for.
+struct AskedKey {
+  KeyForm form = KeyForm::any;
+  bool given = false;  ///< the scene has it
+  Unit unit = Unit::none;
+  Range range{};                     ///< of numbers and counts
+  std::vector<double> numbers{};     ///< what the reader got: numbers, counts, flags
+  std::vector<std::string> texts{};  ///< the same: texts, words
+  std::vector<std::string> words{};  ///< that a choice allows
+};
+
+/// Takes down, while it lives, the keys that this thread asks scenes for. One at a time.
+class KeyRecord {
+ public:
+  KeyRecord();
+  ~KeyRecord();
+  KeyRecord(const KeyRecord&) = delete;
+  KeyRecord& operator=(const KeyRecord&) = delete;
+
+  /// Of the scene of this name, by path as --set writes it ("material.E", "variant.0.mu"). What a variant that is laid
+  /// over a scene (Scene::variant) is asked for counts for both places.
+  [[nodiscard]] const std::map<std::string, AskedKey>& keys(const std::string& scene) { return keys_[scene]; }
+
+  /// For the sources of common/io: what is known of a key is added to what was.
+  void note(const std::string& scene, const std::string& path, const AskedKey& asked);
+  /// Null: nobody takes keys down.
+  static KeyRecord* current();
+
+ private:
+  std::map<std::string, std::map<std::string, AskedKey>> keys_;
+};
+
+}  // namespace softgrain

@@ -1,0 +1,108 @@
+// Every key of every kind, in every place where it may stand: with another value the run is refused, or its results are
+// others (summary, tables and HDF5 files without times and provenance). The same as EveryKey in tests/unit, which looks
+// at what is read, seen from outside.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "tests/support/changed_keys.h"
+#include "tests/support/keyed_scenes.h"
+#include "tests/support/program.h"
+#include "tests/support/run_comparison.h"
+#include "tests/support/what_is_run.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+namespace fs = std::filesystem;
+
+/// Keys whose effect results cannot show, and where it is seen.
+const std::map<std::string, std::string> kNotInResults{
+    {"kind", "another kind is another scene, with keys of its own"},
+    {"checkpoint.every_steps", "when a state is kept on the way: tests of restarts"},
+    {"checkpoint.every_seconds", "when a state is kept on the way: tests of restarts"},
+    {"time.warm_up_steps", "steps that the measured pace leaves out: a time"},
+};
+
+class SlowEveryKey : public ::testing::TestWithParam<KindScene> {
+ protected:
+  static constexpr int kBroken = 2;
+  static constexpr int kTimeout = 124;
+
+  SlowEveryKey() {
+    write_keyed_files(directory_);
+    write_text_atomic(directory_.file("scene.toml"), GetParam().text);
+  }
+  [[nodiscard]] KeyedText scene() const { return {GetParam().text, directory_.file("scene.toml")}; }
+  [[nodiscard]] std::string out(const std::string& name) const { return directory_.file(name); }
+
+  [[nodiscard]] int run(const std::string& name, const std::string& change = "") const {
+    const std::string line = "timeout 120 '" + std::string(SOFTGRAIN_PROGRAM) + "' " + GetParam().command + " '" +
+                             directory_.file("scene.toml") + "' --quiet --threads 1 --out '" + out(name) + "' " +
+                             (change.empty() ? "" : "--set '" + change + "' ") + ">/dev/null 2>&1 </dev/null";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+struct RunTally {
+  std::size_t refused = 0;
+  std::vector<std::string> too_long{};
+  std::vector<std::string> without_effect{};
+};
+
+TEST_P(SlowEveryKey, ChangesResultsOrIsRefused) {
+  const int base = run("base");
+  ASSERT_TRUE(base == 0 || base == 3) << base;
+  const Keys keys = asked_keys(scene(), [](const Scene& s) { (void)what_is_run(s); });
+  const std::set<std::string> texts = texts_of(keys);
+  std::vector<std::pair<std::string, AskedKey>> all;
+  for (const auto& [path, key] : keys)
+    if (!kNotInResults.contains(path) && stands_for_all(path, keys) && !other_values(key, texts).empty())
+      all.emplace_back(path, key);
+  RunTally tally;
+  std::mutex guard;
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t k = next++; k < all.size(); k = next++) {
+      const auto& [path, key] = all[k];
+      const std::string name = "changed-" + std::to_string(k);
+      std::string same;
+      bool other = false;
+      bool slow = false;
+      for (const std::string& value : other_values(key, texts)) {
+        const int status = run(name, path + "=" + value);
+        if (status == kBroken) continue;
+        slow = slow || status == kTimeout;
+        other = other || status == kTimeout || status != base || !run_differences(out("base"), out(name)).empty();
+        if (!other && same.empty()) same = value;
+        fs::remove_all(out(name));
+        if (other || !same.empty()) break;
+      }
+      const std::lock_guard lock(guard);
+      if (slow) tally.too_long.push_back(path);
+      if (!other && same.empty()) ++tally.refused;
+      if (!other && !same.empty()) tally.without_effect.push_back(path + " = " + same);
+    }
+  };
+  std::vector<std::thread> workers;
+  for (unsigned k = 0; k < std::max(1U, std::thread::hardware_concurrency()); ++k) workers.emplace_back(work);
+  for (std::thread& w : workers) w.join();
+  std::printf("%s: %zu keys and places, %zu refused with every value, %zu stopped after two minutes\n",
+              GetParam().name.c_str(), all.size(), tally.refused, tally.too_long.size());
+  std::string idle;
+  for (const std::string& w : tally.without_effect) idle += "  " + w + "\n";
+  EXPECT_TRUE(idle.empty()) << "taken without effect on results:\n" << idle;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SlowEveryKey, ::testing::ValuesIn(keyed_scenes()), name_of_kind);
+
+}  // namespace

@@ -1,0 +1,175 @@
+// Keys of common tables and of parts of scenes: what they change in what is run, and where they are refused.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "macrosim/test_protocol.h"
+#include "pipelines/kinds/kinds.h"
+#include "pipelines/kinds/macro_comparison/scene.h"
+#include "pipelines/kinds/material/family.h"
+#include "tests/support/keyed_scenes.h"
+#include "tests/support/refusal.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+
+class KeysThatCount : public ::testing::Test {
+ protected:
+  KeysThatCount() { write_keyed_files(directory_); }
+  [[nodiscard]] Scene scene(const std::string& text) const { return Scene::parse(text, directory_.file("s.toml")); }
+  [[nodiscard]] MaterialScene material(const std::string& more) const {
+    return read_material_scene(scene(kHead + more));
+  }
+  [[nodiscard]] MacroComparisonSetup comparison(const std::string& text, const std::string& more) const {
+    return read_macro_comparison(scene(text + more));
+  }
+  void refused(const std::string& text, const std::string& words) const {
+    const Scene s = scene(text);
+    expect_refused<BadInput>([&] { kind_of(s).read(s); }, words);
+  }
+  [[nodiscard]] std::vector<std::string> warnings(const std::string& text) const {
+    Findings out;
+    const Scene s = scene(text);
+    kind_of(s).check(s, "", out);
+    return out.warnings();
+  }
+
+  inline static const std::string kHead = "kind = \"material\"\n[grains]\ncount = 80\nratio = 1.5\n";
+  inline static const std::string kStages =
+      "[[stage]]\nkind = \"isotropic\"\nstrain = 0.02\n[[stage]]\nkind = \"triaxial\"\nstrain = 0.02\nsteps = 9\n";
+  TemporaryDirectory directory_;
+};
+
+TEST_F(KeysThatCount, AVariantsStepsAreThoseOfCommonStages) {
+  const MaterialScene m = material(
+      "[test]\nsteps = 3\n" + kStages +
+      "[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\nsteps = 5\nincrements_per_step = 7\ntolerance = 1e-4\n");
+  const auto stages = [&](std::size_t v) { return stages_of(m.variants.at(v).setup.spec); };
+  EXPECT_EQ(stages(0)[0].steps, 3);
+  EXPECT_EQ(stages(1)[0].steps, 5);
+  EXPECT_EQ(stages(1)[1].steps, 9) << "said by the stage";
+  EXPECT_EQ(stages(1)[0].increments_per_step, 7);
+  EXPECT_EQ(stages(1)[1].increments_per_step, 7);
+  EXPECT_EQ(stages(1)[0].tolerance, 1e-4);
+}
+
+TEST_F(KeysThatCount, AScenesStepsAreThoseOfCommonStages) {
+  const auto c =
+      comparison(comparison_stages(), "name = \"a\"\n[[scene]]\nname = \"b\"\nsteps = 5\ntolerance = 1e-4\n");
+  EXPECT_EQ(stages_of(c.scenes.at(0).setup.spec)[0].steps, 3);
+  EXPECT_EQ(stages_of(c.scenes.at(1).setup.spec)[0].steps, 5);
+  EXPECT_EQ(stages_of(c.scenes.at(1).setup.spec)[1].tolerance, 1e-4);
+}
+
+TEST_F(KeysThatCount, KeysOfATestAreRefusedBesideCommonStages) {
+  for (const char* key : {"strain = 0.1", "preload = 0.01", "preload_steps = 2"}) {
+    refused(kHead + kStages + "[[variant]]\nname = \"a\"\n" + key + "\n", "the common [[stage]] say what is tested");
+    refused(comparison_stages() + key + "\n", "the common [[stage]] say what is tested");
+  }
+  const MaterialScene m = material(kStages + "[[variant]]\nname = \"a\"\ntest = \"isotropic\"\nstrain = 0.1\n");
+  EXPECT_EQ(stages_of(m.variants.at(0).setup.spec).size(), 1U) << "a test of its own takes their place";
+  refused(kHead + "[test]\nsteps = 3\n[[stage]]\nkind = \"isotropic\"\nstrain = 0.02\nsteps = 9\n",
+          "every [[stage]] gives its own");
+  refused(kHead + "[[variant]]\nname = \"a\"\nsteps = 4\n[[loading]]\nname = \"l\"\nsteps = 3\n",
+          "each [[loading]] of this variant gives its own");
+}
+
+TEST_F(KeysThatCount, WhatTheCommonTableSaysOfAPreparationStays) {
+  const std::string common =
+      "[packing]\npreparation = \"fast\"\ncompaction_mu = 0.05\npreparation_tolerance = 1e-3\n";
+  for (const char* own : {"mu = 0.5\n", "preparation = \"slow\"\n"}) {
+    const MaterialScene m = material(common + "first_pressure = 4\n[[variant]]\nname = \"a\"\n" + own);
+    const PreparationProtocol& p = m.variants.at(0).setup.spec.protocol;
+    EXPECT_EQ(p.friction, 0.05) << own;
+    EXPECT_EQ(p.tolerance, 1e-3) << own;
+    EXPECT_EQ(p.first_pressure, 4.0) << own;
+  }
+  const MaterialScene follows = material(
+      "[packing]\npreparation = \"fast\"\n[[variant]]\nname = \"a\"\nmu = 0.5\n[[variant]]\nname = \"b\"\n"
+      "preparation = \"slow\"\n");
+  EXPECT_EQ(follows.variants.at(0).setup.spec.protocol.friction, 0.5) << "nobody said it";
+  EXPECT_EQ(follows.variants.at(0).setup.spec.protocol.tolerance, 3e-3);
+  EXPECT_EQ(follows.variants.at(1).setup.spec.protocol.inertial_number, 1e-3);
+  const auto c = comparison(
+      std::string(kTinyComparison).replace(std::string(kTinyComparison).find("bodies"), 0,
+                                           "compaction_mu = 0.05\npreparation_tolerance = 1e-3\n"),
+      "[[scene]]\nname = \"c\"\nmu = 0.6\npreparation = \"frictionless\"\n");
+  EXPECT_EQ(c.scenes.at(2).setup.spec.protocol.friction, 0.05);
+  EXPECT_EQ(c.scenes.at(2).setup.spec.protocol.tolerance, 1e-3);
+}
+
+TEST_F(KeysThatCount, ASceneBelowACommonPackingMakesNoOther) {
+  EXPECT_EQ(comparison(comparison_packing(), "").scenes.at(0).setup.spec.bodies, 27);
+  for (const char* key : {"soft_share = 0.2", "bodies = 20", "soft_radius_max = 0.01", "solid_radius_max = 0.01",
+                          "solid_polydispersity = 3.0", "start_pressure = 1e-4", "preparation = \"fast\"",
+                          "construction = \"voids\"", "exponent = 3.0"})
+    refused(comparison_packing() + key + "\n", "goes without the common packing");
+  refused(comparison_packing() + "boundary = \"periodic\"\n", "is that of the common packing");
+  refused(comparison_packing() + "samples = 2\n", "a packing is one sample");
+}
+
+TEST_F(KeysThatCount, KeysOfAnotherTestOrLawAreRefused) {
+  const std::string macro = "kind = \"macro\"\n[macro]\nresolved = false\n";
+  refused(macro + "preload = 0.02\n", "goes with test = \"shear\"");
+  refused(macro + "test = \"shear\"\npreload_steps = 3\n", "goes with preload");
+  refused(macro + "twin_speed = 1e-4\n", "goes with a resolved twin");
+  refused(comparison_stages() + "band_estimator = \"draws\"\n", "goes with bands");
+  refused(macro + "solid_fill = 0.3\n", "goes with construction = \"voids\"");
+  const std::string powder = kTinyPowder;
+  for (const char* key : {"rolling_stiffness = 1e-4", "rolling_friction = 0.1"})
+    refused(std::string(powder).replace(powder.find("kappa"), 0, key + std::string("\n")), "goes with rolling = true");
+  const std::string soft = "kind = \"soft-particle\"\n[measure.soft_solid]\ndeltas = [0.1, 0.2]\n";
+  refused(soft + "tangential_deltas = [0.2]\n", "goes with angles_deg");
+  refused(soft + "[measure]\nrotation_step_deg = 0.02\n", "goes with angles_deg");
+  refused(soft + "[measure.damped]\nincrement = 0.01\n", "goes with relaxation = \"damped\"");
+  refused(soft + "[packing]\nrmax = 0.004\nrmax_over_shell = 0.3\n", "rmax_over_shell = 0.3: contradicts rmax");
+}
+
+TEST_F(KeysThatCount, RadiiInMetresByMistakeAreMinded) {
+  const auto minds = [&](const std::string& text) {
+    const std::vector<std::string> all = warnings(text);
+    return std::any_of(all.begin(), all.end(),
+                       [](const std::string& w) { return w.find("are metres") != std::string::npos; });
+  };
+  const std::string ball =
+      "kind = \"particles\"\n[material.a]\ndensity = 2500.0\nE = \"1 MPa\"\nnu = 0.3\n[[contact]]\n"
+      "pair = [\"a\", \"a\"]\nlaw = \"hertz-tsuji\"\nrestitution = 0.5\nmu = 0.3\n[time]\nend = 1e-3\n"
+      "[[particle]]\nmaterial = \"a\"\nposition = [0, 0, 0]\nradius = ";
+  EXPECT_TRUE(minds(ball + "16\n"));
+  EXPECT_FALSE(minds(ball + "0.016\n"));
+  const std::string sizes = "[grains.sizes]\nform = \"log-normal\"\nradius_median = 12\ngeometric_deviation = 1.3\n"
+                            "radius_min = 9\nradius_max = ";
+  EXPECT_TRUE(minds("kind = \"material\"\n[grains]\ncount = 80\n" + sizes + "16\n"));
+  EXPECT_FALSE(minds("kind = \"material\"\n[grains]\ncount = 80\nratio = 1.5\n"));
+}
+
+TEST_F(KeysThatCount, FamiliesOfMaterialsDifferInTheSpanAlone) {
+  const auto families = [&](const std::string& variants, const std::string& head = kHead) {
+    const MaterialScene m = read_material_scene(scene(head + variants));
+    std::set<std::string> out;
+    for (const MaterialVariant& v : m.variants) out.insert(family_of(v, m.variants));
+    return out.size();
+  };
+  const std::string two = "[[variant]]\nname = \"a\"\nratio = 1.4\n[[variant]]\nname = \"b\"\nratio = 2.0\n";
+  EXPECT_EQ(families(two), 1U);
+  EXPECT_EQ(families(two + "count = 200\nsamples = 3\n"), 1U) << "how many there are does not matter";
+  for (const char* key :
+       {"nu = 0.2", "start_pressure = 1e-3", "compaction_mu = 0.1", "exponent = 3.0", "mu = 0.5", "E = 1e6",
+        "start_fraction = 0.2", "test = \"isotropic\"", "strain = 0.1", "preparation = \"slow\"", "tolerance = 1e-3",
+        "preparation_tolerance = 1e-3", "first_pressure = 8.0"})
+    EXPECT_EQ(families(two + key + "\n"), 2U) << key;
+  const auto normal = [](double deviation, double smallest) {
+    return fmt::format("sizes = {{ form = \"log-normal\", radius_median = 0.012, geometric_deviation = {}, "
+                       "radius_min = {}, radius_max = 0.016 }}\n",
+                       deviation, smallest);
+  };
+  const std::string a = "[[variant]]\nname = \"a\"\n" + normal(1.3, 0.009) + "[[variant]]\nname = \"b\"\n";
+  EXPECT_EQ(families(a + normal(1.3, 0.008)), 1U);
+  EXPECT_EQ(families(a + normal(1.4, 0.008)), 2U);
+}
+
+}  // namespace
