@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/data/force_curve_rows.h"
 #include "common/data/force_scale.h"
+#include "common/io/poisson_range.h"
 
 namespace softgrain {
 
@@ -144,8 +145,7 @@ SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) 
         ": E of the grains is needed to make the law dimensionless: --modulus \"0.5 MPa\", or a comment \"# E "
         "= 0.5 MPa\" (a law used with the same E gives back the measured forces)");
   SoftParticleSpec spec = unknown_soft_particle(*radius, *modulus);
-  spec.poisson_ratio =
-      setting(file, {"nu", "poisson_ratio"}, Unit::none, Range::closed(-0.99, 0.5)).value_or(spec.poisson_ratio);
+  spec.poisson_ratio = setting(file, {"nu", "poisson_ratio"}, Unit::none, kPoissonRange).value_or(spec.poisson_ratio);
   spec.friction = setting(file, {"mu", "friction"}, Unit::none, Range::not_negative()).value_or(spec.friction);
   spec.density = setting(file, {"density", "rho"}, Unit::density, Range::positive()).value_or(spec.density);
   return spec;
