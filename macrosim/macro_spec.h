@@ -102,7 +102,8 @@ struct TwinMotion {
   TwinRelaxation relaxation = TwinRelaxation::slow_dynamics;
   double speed = 1.4142e-4;    ///< of neighbours of the largest radius towards each other, over sqrt(E/rho)
   double step_factor = 4.0;    ///< time step over that of the published protocol
-  double settle_time = 240.0;  ///< after each increment, over R sqrt(rho/E), R the largest radius of soft particles
+  double settle_time = 240.0;  ///< after each increment, over R sqrt(rho/E), R = soft_radius_max: the limit of the
+                               ///< scene, whatever the largest soft particle that was drawn
   double restitution = 0.5;    ///< of the grains
 };
 

@@ -1,5 +1,6 @@
 #include "common/data/card_text.h"
 #include "common/core/limits.h"
+#include "common/io/poisson_range.h"
 #include "common/io/text_encoding.h"
 #include "common/packing/grading_scene.h"
 
@@ -63,7 +64,7 @@ const std::vector<SpecLine>& spec_lines() {
   static const std::vector<SpecLine> lines{
       {"shell_radius", &S::shell_radius, Unit::length, Range::positive(), "Rs [m]", true},
       {"youngs_modulus", &S::youngs_modulus, Unit::pressure, Range::positive(), "E [Pa]", true},
-      {"poisson_ratio", &S::poisson_ratio, Unit::none, Range{-1.0, 0.5, true, false}, "nu"},
+      {"poisson_ratio", &S::poisson_ratio, Unit::none, kPoissonRange, "nu"},
       {"friction", &S::friction, Unit::none, Range::not_negative(), "mu"},
       {"density", &S::density, Unit::density, Range::positive(), "[kg/m^3]"},
       {"restitution", &S::restitution, Unit::none, Range::closed(0.0, 1.0), ""},

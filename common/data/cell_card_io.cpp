@@ -8,6 +8,7 @@
 #include "common/core/error.h"
 #include "common/data/card_text.h"
 #include "common/data/cell_card.h"
+#include "common/io/poisson_range.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
 
@@ -107,7 +108,7 @@ std::string read_words_of(const SceneTable& t, const char* key) {
 void read_measured(const SceneTable& t, CellCard& card) {
   if (t.has("E")) card.youngs_modulus = t.number("E", Unit::pressure, Range::positive());
   if (t.has("density")) card.density = t.number("density", Unit::density, Range::positive());
-  card.poisson_ratio = t.number("nu", Unit::none, Range{-1.0, 0.5, true, false});
+  card.poisson_ratio = t.number("nu", Unit::none, kPoissonRange);
   card.grain_friction = t.number("mu", Unit::none, Range::not_negative());
   card.preparation = read_words_of(t, "preparation");
   card.start_pressure = t.number("start_pressure", Unit::none, Range::positive());

@@ -10,6 +10,7 @@
 #include "common/core/error.h"
 #include "common/data/force_curve_rows.h"
 #include "common/data/force_scale.h"
+#include "common/io/poisson_range.h"
 
 namespace softgrain {
 
@@ -163,7 +164,7 @@ SoftParticleSpec spec_of(const CsvFile& file, const ForceCurveOptions& options) 
   const auto take = [&](double& value, const CsvNames& names, Unit unit, const Range& range) {
     value = file.quantity(names, unit, range).value_or(value);
   };
-  take(spec.poisson_ratio, kPoisson, Unit::none, Range::closed(-0.99, 0.5));
+  take(spec.poisson_ratio, kPoisson, Unit::none, kPoissonRange);
   take(spec.friction, kFriction, Unit::none, Range::not_negative());
   take(spec.density, kDensity, Unit::density, Range::positive());
   return spec;

@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/core/limits.h"
+#include "common/core/poisson_ratio.h"
 #include "common/data/columns.h"
 #include "common/data/spec_io.h"
 
@@ -164,9 +165,9 @@ constexpr KnownNumber kLawKnown[] = {{"law_poisson_ratio", &LawIdentity::poisson
 constexpr Number<MacroStart> kStartNumbers[] = {{"radius_min", &MacroStart::radius_min},
                                                 {"radius_max", &MacroStart::radius_max},
                                                 {"youngs_modulus", &MacroStart::youngs_modulus},
-                                                {"poisson_ratio", &MacroStart::poisson_ratio},
                                                 {"friction", &MacroStart::friction},
                                                 {"wall_friction", &MacroStart::wall_friction}};
+constexpr const char* kPoissonName = "poisson_ratio";  // of the start; below zero for auxetic grains
 constexpr Number<MacroStart> kStartSizes[] = {
     {"size_x", &MacroStart::size_x}, {"size_y", &MacroStart::size_y}, {"size_z", &MacroStart::size_z}};
 
@@ -177,6 +178,7 @@ void write_origin(const h5::Group& group, const MacroCurve& curve) {
   if (!curve.start.bodies.empty()) {
     group.attribute("start", curve.start.bodies);
     for (const auto& n : kStartNumbers) group.attribute(n.name, curve.start.*n.value);
+    group.attribute(kPoissonName, curve.start.poisson_ratio);
     for (const auto& n : kStartSizes) group.attribute(n.name, curve.start.*n.value);
   }
   if (curve.law.hash.empty()) return;
@@ -192,6 +194,7 @@ void read_origin(const h5::Group& group, MacroCurve& curve) {
   if (group.has_attribute("start")) {
     curve.start.bodies = group.text("start");
     for (const auto& n : kStartNumbers) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
+    curve.start.poisson_ratio = read_attribute(group, kPoissonName, {kPoissonLowest, kPoissonHighest});
     if (group.has_attribute("size_x"))
       for (const auto& n : kStartSizes) curve.start.*n.value = read_attribute(group, n.name, kNotNegative);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/poisson_ratio.h"
 #include "common/data/columns.h"
 #include "common/data/fields.h"
 #include "common/io/provenance.h"
@@ -23,7 +24,7 @@ constexpr double kAny = std::numeric_limits<double>::max();
 
 constexpr SpecField kFields[] = {{"shell_radius", &SoftParticleSpec::shell_radius, {kLeast, kAny}},
                                  {"youngs_modulus", &SoftParticleSpec::youngs_modulus, {kLeast, kAny}},
-                                 {"poisson_ratio", &SoftParticleSpec::poisson_ratio, {-1.0, 0.5}},
+                                 {"poisson_ratio", &SoftParticleSpec::poisson_ratio, {kPoissonLowest, kPoissonHighest}},
                                  {"friction", &SoftParticleSpec::friction, {0.0, kAny}},
                                  {"density", &SoftParticleSpec::density, {kLeast, kAny}},
                                  {"restitution", &SoftParticleSpec::restitution, {0.0, 1.0}},

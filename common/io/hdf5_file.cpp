@@ -1,6 +1,7 @@
 // Files: opening, and the atomic file.
 #include "common/io/hdf5_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -61,6 +62,13 @@ std::string library_message() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, softgrain_note_error, &text);
   H5Eclear2(H5E_DEFAULT);
+  // Of the system's errors HDF5 tells time, addresses and sizes over several lines; what matters is the system's word.
+  const std::string key = "error message = '";
+  if (const std::size_t begin = text.find(key); begin != std::string::npos) {
+    const std::size_t end = text.find('\'', begin + key.size());
+    text = text.substr(begin + key.size(), end == std::string::npos ? end : end - begin - key.size());
+  }
+  std::replace(text.begin(), text.end(), '\n', ' ');
   return text.empty() ? text : " (" + text + ")";
 }
 
@@ -127,8 +135,9 @@ void AtomicFile::commit() {
   if (impl_->committed) throw FileTrouble(impl_->path + ": already committed");
   Handle& handle = impl_->file->handle;
   const bool flushed = H5Fflush(handle.id(), H5F_SCOPE_GLOBAL) >= 0;
-  const std::string reason = library_message();
+  std::string reason = library_message();
   const bool closed = handle.close();
+  if (reason.empty()) reason = library_message();
   if (!flushed || !closed) throw FileTrouble(impl_->path + ": cannot be written" + reason);
   if (impl_->sealed) seal_file(temporary_name(impl_->path));
   rename_into_place(impl_->path, impl_->keep_previous);

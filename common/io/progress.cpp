@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/io/run_log.h"
+
 namespace softgrain {
 
 namespace {
@@ -41,7 +43,9 @@ Progress::Progress(std::string what, double total, bool quiet)
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       found_at_(start_),
-      last_print_(start_) {}
+      last_print_(start_) {
+  log_text(what_ + ": begins");
+}
 
 Progress::~Progress() { finish(); }
 
@@ -62,6 +66,11 @@ void Progress::finish() {
   if (finished_) return;
   finished_ = true;
   if (printed_) print(true);
+  const std::string time = readable_time(Seconds(std::chrono::steady_clock::now() - start_).count());
+  const double share = total_ > 0.0 ? done_ / total_ : 1.0;
+  constexpr double kWhole = 1.0 - 1e-6;  // sums of shares are rounded
+  log_text(share >= kWhole ? fmt::format("{}: done, {}", what_, time)
+                           : fmt::format("{}: left at {:.0f} % after {}", what_, 100.0 * share, time));
 }
 
 void Progress::print(bool last) {

@@ -7,7 +7,8 @@
 
 namespace softgrain {
 
-/// Thread-safe. Prints nothing for work shorter than about two seconds, or when quiet.
+/// Thread-safe. Prints nothing for work shorter than about two seconds, or when quiet. Beginning and end of all work go
+/// to the log of the run (run_log.h).
 class Progress {
  public:
   Progress(std::string what, double total, bool quiet);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/core/error.h"
+#include "common/core/poisson_ratio.h"
 #include "common/neighbours/hierarchical_grid.h"
 #include "common/statics/symmetry_planes.h"
 
@@ -94,7 +95,7 @@ void require(bool good, const char* what) {
   if (!good) throw BadInput(what);
 }
 
-bool in_range(double youngs_modulus, double nu) { return youngs_modulus > 0.0 && nu > -1.0 && nu <= 0.5; }
+bool in_range(double youngs_modulus, double nu) { return youngs_modulus > 0.0 && is_poisson_ratio(nu); }
 
 void check(const GrainPack& pack) {
   const std::size_t n = pack.position.size();

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "common/core/error.h"
+#include "common/core/poisson_ratio.h"
 #include "common/core/random.h"
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/damped_relaxation.h"
@@ -25,6 +26,7 @@ constexpr RandomPurpose kGrainElasticity{21};
 constexpr RandomPurpose kGrainPositions{22};
 
 constexpr std::int64_t kTrials = 20000;  // per grain
+constexpr double kLowestDrawn = -0.99;   // of nu: scatter must not make a grain infinitely stiff in shear
 constexpr double kFirstStep = 1e-2;      // strain of the loose box per step
 constexpr double kDenserThanAny = 0.80;  // solid fraction at which a pack of these grains must long have jammed
 // A box that has not come to rest after so many passes is close to jamming; what is left is small, and the least-work
@@ -48,7 +50,7 @@ double cut_normal(RandomStream& random) {
 
 std::vector<double> drawn_radii(const GrainBoxSpec& spec, std::uint64_t seed) {
   const GrainBoxMaterial& m = spec.material;
-  RandomStream random(seed, kGrainRadii, 0);
+  RandomStream random(seed, kGrainRadii, spec.arrangement);
   std::vector<double> radii;
   if (m.sizes) radii = m.sizes->draw(static_cast<std::size_t>(spec.grains), random);
   while (radii.size() < static_cast<std::size_t>(spec.grains))
@@ -61,13 +63,13 @@ namespace {
 
 void draw_grains(GrainPack& pack, const GrainBoxSpec& spec, std::uint64_t seed) {
   const GrainBoxMaterial& m = spec.material;
-  RandomStream elasticity(seed, kGrainElasticity, 0);
+  RandomStream elasticity(seed, kGrainElasticity, spec.arrangement);
   pack.radius = drawn_radii(spec, seed);  // the largest first: late grains then find places
   for (std::int64_t n = 0; n < spec.grains; ++n) {
     const double e = m.youngs_modulus * (1.0 + m.youngs_modulus_scatter * cut_normal(elasticity));
     pack.youngs_modulus.push_back(std::max(e, 0.05 * m.youngs_modulus));
     const double nu = m.poisson_ratio * (1.0 + m.poisson_ratio_scatter * cut_normal(elasticity));
-    pack.poisson_ratio.push_back(std::clamp(nu, -0.9, 0.49));
+    pack.poisson_ratio.push_back(std::clamp(nu, std::min(kLowestDrawn, m.poisson_ratio), kPoissonHighest));
   }
 }
 
@@ -123,8 +125,8 @@ class PlacedGrains {
   std::vector<std::vector<std::size_t>> cells_;
 };
 
-void place_grains(GrainPack& pack, const Vec3& lengths, std::uint64_t seed) {
-  RandomStream random(seed, kGrainPositions, 0);
+void place_grains(GrainPack& pack, const Vec3& lengths, std::uint64_t seed, std::uint64_t arrangement) {
+  RandomStream random(seed, kGrainPositions, arrangement);
   PlacedGrains placed(pack, lengths);
   for (std::size_t n = 0; n < pack.radius.size(); ++n) {
     const double r = pack.radius[n];
@@ -224,7 +226,7 @@ GrainPack make_loose_pack(const GrainBoxSpec& spec, std::uint64_t seed) {
     if (lengths[k] <= 2.0 * pack.radius.front())
       throw BadInput(fmt::format("box: side {} of {:.3g} m is too short for a grain of radius {:.3g} m", "xyz"[k],
                                  lengths[k], pack.radius.front()));
-  place_grains(pack, lengths, seed);
+  place_grains(pack, lengths, seed, spec.arrangement);
   add_walls(pack, lengths, spec.walls);
   return pack;
 }

@@ -9,12 +9,13 @@
 
 namespace softgrain {
 
-/// Radii of a pack, largest first.
+/// Radii of a pack, largest first. Random numbers are keyed by the seed and spec.arrangement, not by their sum: no
+/// arrangement of one seed is one of another seed.
 std::vector<double> drawn_radii(const GrainBoxSpec& spec, std::uint64_t seed);
 
 /// Grains at random places without overlap inside a box from the origin to `lengths`; elasticity drawn. Walls in the
-/// order -x +x -y +y -z +z, everything frictionless. Depends on the seed alone. Throws BadInput when the grains do not
-/// fit.
+/// order -x +x -y +y -z +z, everything frictionless. Random numbers are keyed as those of drawn_radii. Throws BadInput
+/// when the grains do not fit.
 GrainPack make_loose_pack(const GrainBoxSpec& spec, std::uint64_t seed);
 
 struct CompactedPack {

@@ -397,7 +397,7 @@ double increment_at(const GrainBoxLoading& loading, double strain) {
 
 GrainBoxResult run_grain_box(const GrainBoxSpec& spec, std::uint64_t seed, GrainBoxState state,
                              const RunControl<GrainBoxState>& control) {
-  return GrainBoxRun(spec, seed + spec.arrangement, std::move(state), control).run();
+  return GrainBoxRun(spec, seed, std::move(state), control).run();
 }
 
 }  // namespace softgrain

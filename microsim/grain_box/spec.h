@@ -81,7 +81,7 @@ struct GrainBoxFit {
 struct GrainBoxSpec {
   std::string name = "pack";      ///< of the variant
   std::string of = "pack";        ///< the name without the number of the arrangement
-  std::uint64_t arrangement = 0;  ///< which of several: added to the seed
+  std::uint64_t arrangement = 0;  ///< which of several: random numbers are keyed by seed and this
   std::int64_t grains = 2740;
   Vec3 aspect{{1.0, 1.0, 1.0}};  ///< box lengths, relative
   double solid_fraction = 0.3;   ///< of the loose arrangement

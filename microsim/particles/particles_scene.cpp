@@ -13,6 +13,7 @@
 #include "microsim/particles/scene_bodies.h"
 #include "microsim/particles/scene_contacts.h"
 #include "microsim/particles/scene_memory.h"
+#include "microsim/particles/scene_places.h"
 #include "microsim/particles/scene_vector.h"
 #include "microsim/particles/scene_walls.h"
 
@@ -200,6 +201,11 @@ ParticlesSceneOf<D> read_particles_scene(const Scene& scene, const std::optional
     read_output(root.table_or_empty("output"), out);
     read_checkpoint(root.table_or_empty("checkpoint"), out);
     out.guards = read_guards(root.table_or_empty("guards"), D);
+    if (root.sound())
+      root.check([&] {
+        for (std::string& r : place_remarks(bodies, s, out.wall_name, out.guards, root.has("cell")))
+          out.remarks.push_back(std::move(r));
+      });
     return out;
   });
 }

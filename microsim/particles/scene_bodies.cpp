@@ -63,6 +63,13 @@ std::ptrdiff_t wall_around(const Builder<D>& b, const Vec<D>& x) {
   return found == b.walls.end() ? -1 : found - b.walls.begin();
 }
 
+/// Of the last particle.
+template <int D>
+void note_outside(Builder<D>& b) {
+  const bool spheres = std::any_of(b.walls.begin(), b.walls.end(), [](const auto& w) { return !w.plane; });
+  if (spheres && b.wall_of.back() < 0) b.out.outside_spheres.push_back(static_cast<Slot>(b.grains.size()) - 1);
+}
+
 template <int D>
 std::ptrdiff_t chosen_wall(const Builder<D>& b, const SceneTable& t, const Vec<D>& x) {
   if (!t.has("inside")) return wall_around(b, x);
@@ -84,6 +91,7 @@ void add_table(Builder<D>& b, const SceneTable& t) {
   body.spin = read_spin<D>(t);
   b.grains.push_back(body);
   b.wall_of.push_back(chosen_wall(b, t, body.x));
+  if (!t.has("inside")) note_outside(b);
   b.out.where.push_back(t.where("position"));
 }
 
@@ -116,6 +124,7 @@ void add_file(Builder<D>& b, const SceneTable& t) {
     const Vec<D> x = flat<D>(file.position[k], b.out.many_file, k);
     b.grains.push_back(solid_grain(x, file.radius[k], density, material));
     b.wall_of.push_back(wall_around(b, x));
+    note_outside(b);
   }
 }
 
@@ -134,6 +143,7 @@ void add_drawn(Builder<D>& b, const SceneTable& root, const SceneTable& t, const
   for (std::size_t k = 0; k < drawn.position.size(); ++k) {
     b.grains.push_back(solid_grain(drawn.position[k], drawn.radius[k], density, material));
     b.wall_of.push_back(wall_around(b, drawn.position[k]));
+    note_outside(b);
   }
   b.out.sizes = std::move(drawn.sizes);
   b.out.drawn = std::move(drawn.radius);

@@ -26,6 +26,8 @@ struct SceneBodies {
   std::vector<double> drawn;       ///< their radii
   std::string drawn_where;         ///< "file:line" of their table
   std::uint64_t seed = 0;          ///< that they were drawn with
+  /// Particles that no sphere-inside of the scene holds, and that do not say that this is meant.
+  std::vector<Slot> outside_spheres{};
 
   /// "file:line" of a particle, for messages.
   [[nodiscard]] std::string where_of(Slot particle) const;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "common/core/error.h"
+#include "common/io/poisson_range.h"
 #include "microsim/particles/scene_soft_laws.h"
 
 namespace softgrain {
@@ -24,7 +25,7 @@ Material read_material(const SceneTable& t, const std::string& name, int dimensi
   }
   if (!t.has("E") && !t.has("nu")) return m;  // enough for laws that need no elasticity
   m.youngs_modulus = t.number("E", Unit::pressure, Range::positive());
-  m.poisson_ratio = t.number("nu", Unit::none, Range{-1.0, 0.5, true, false});
+  m.poisson_ratio = t.number("nu", Unit::none, kPoissonRange);
   return m;
 }
 

@@ -1,5 +1,7 @@
 #include "pipelines/commands/complaints.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "common/core/words.h"
+#include "common/io/run_log.h"
 
 namespace softgrain {
 
@@ -72,6 +75,8 @@ nlohmann::json error_objects(const std::string& messages) {
 
 int complain(ExitStatus status, const std::string& messages, bool as_json) {
   const int number = static_cast<int>(status);
+  log_text(messages);
+  log_text(fmt::format("ended with status {} ({})", number, to_string(status)));
   std::istringstream lines(messages);
   // Not by fmt: it throws where standard error cannot be written, and the status is what is left to tell then.
   for (std::string one; std::getline(lines, one);) (void)std::fputs(("softgrain: " + one + "\n").c_str(), stderr);

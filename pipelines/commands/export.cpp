@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/io/text_file.h"
-#include "pipelines/export/export.h"
+#include "pipelines/export/export_files.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {
@@ -14,10 +14,10 @@ namespace softgrain {
 namespace {
 
 /// Beside what is exported: RUN/export-vtp.
-std::string default_directory(const std::string& run, const std::string& to) {
+std::string default_directory(const std::string& run, ExportFormat format) {
   const std::filesystem::path path(run);
   const std::filesystem::path directory = std::filesystem::is_directory(path) ? path : path.parent_path();
-  return (directory / ("export-" + to)).string();
+  return (directory / export_folder(format)).string();
 }
 
 nlohmann::json to_json(const ExportedSeries& s) {
@@ -45,7 +45,7 @@ ExitStatus command_export(const CommonOptions& options) {
   if (options.inputs.size() != 1) throw BadInput("export: needs one run directory or file of states");
   const std::string& run = options.inputs.front();
   const ExportFormat format = export_format(options.to);
-  const std::string directory = options.out.empty() ? default_directory(run, options.to) : options.out;
+  const std::string directory = options.out.empty() ? default_directory(run, format) : options.out;
   const std::vector<ExportedSeries> all = export_states(run, format, directory);
   if (!options.json) {
     write_standard_output(text_of(all, directory));

@@ -6,6 +6,7 @@
 
 #include "common/io/text_file.h"
 #include "pipelines/report/report.h"
+#include "pipelines/report/run_data.h"
 #include "pipelines/run/run_context.h"
 
 namespace softgrain {
@@ -29,11 +30,16 @@ ExitStatus command_report(const CommonOptions& options) {
     write_report(directory);
   }
   const std::string path = directory + "/report.html";
+  const bool unfinished = report::is_unfinished(directory);
   if (options.json) {
-    const nlohmann::json summary{{"command", "report"}, {"status", "good"}, {"files", {{"report", path}}}};
+    const nlohmann::json summary{
+        {"command", "report"}, {"status", "good"}, {"unfinished_run", unfinished}, {"files", {{"report", path}}}};
     write_standard_output(summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   } else {
-    write_standard_output("report: " + path + "\n");
+    write_standard_output("report: " + path +
+                          (unfinished ? "\nnote: the run has not come to its end; the page says so, and shows what was "
+                                        "there by now\n"
+                                      : "\n"));
   }
   return ExitStatus::good;
 }

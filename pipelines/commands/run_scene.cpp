@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/core/error.h"
+#include "common/io/run_log.h"
 #include "pipelines/kinds/kinds.h"
 #include "pipelines/run/run_context.h"
 #include "pipelines/runs/run_set.h"
@@ -27,9 +28,13 @@ void mind_cores(const CommonOptions& options) {
   const int cores = omp_get_num_procs();
   for (const auto& [option, wanted] : {std::pair<const char*, std::int64_t>{"--threads", options.threads},
                                        std::pair<const char*, std::int64_t>{"--ranks", options.ranks}})
-    if (wanted > cores && !options.quiet)
-      fmt::print(stderr, "softgrain: mind: {} {}: {} here; more than that take turns and are slower than {}\n", option,
-                 wanted, cores == 1 ? "one core" : fmt::format("{} cores", cores), cores);
+    if (wanted > cores) {
+      const std::string text =
+          fmt::format("softgrain: mind: {} {}: {} here; more than that take turns and are slower than {}\n", option,
+                      wanted, cores == 1 ? "one core" : fmt::format("{} cores", cores), cores);
+      log_text(text);
+      if (!options.quiet) (void)std::fputs(text.c_str(), stderr);
+    }
 }
 
 ExitStatus run_scene(const CommonOptions& options, const std::string& command) {

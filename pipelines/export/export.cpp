@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
+#include <optional>
 
 #include "common/core/error.h"
 #include "common/io/scene.h"
 #include "common/io/text_file.h"
+#include "pipelines/export/export_files.h"
 #include "pipelines/snapshots/snapshots.h"
 
 namespace softgrain {
@@ -54,7 +54,11 @@ std::string table(const Series& s) {
 
 class Exporter {
  public:
-  Exporter(ExportFormat format, std::string directory) : format_(format), directory_(std::move(directory)) {}
+  /// What an earlier export of this form left in the directory goes.
+  Exporter(ExportFormat format, std::string directory)
+      : format_(format), directory_(std::move(directory)), list_(directory_, format_) {
+    list_.remove_listed();
+  }
 
   void add(const Snapshot& s) {
     Series& series = series_of(s);
@@ -84,11 +88,8 @@ class Exporter {
     for (Series& known : all_)
       if (known.facts.name == s.series) return known;
     all_.push_back({{s.series, s.kind, 0, 0, {}}, to_string(s.moment_name()), {}});
-    // An index of an earlier export would name states of this one, should it not come to its end.
-    for (const std::string& old : index_files(all_.back())) {
-      std::error_code nothing_there;
-      std::filesystem::remove(directory_ + "/" + old, nothing_there);
-    }
+    // More states than this series has would play after its own.
+    list_.remove_series(s.series);
     return all_.back();
   }
 
@@ -105,6 +106,7 @@ class Exporter {
   }
 
   void write(const std::string& name, const std::string& text) const {
+    list_.add(name);
     write_text_atomic(directory_ + "/" + name, text);
   }
 
@@ -126,6 +128,7 @@ class Exporter {
 
   ExportFormat format_;
   std::string directory_;
+  ExportList list_;
   std::vector<Series> all_;
 };
 
@@ -151,19 +154,20 @@ std::string state_file_name(const Snapshot& snapshot, Holds holds, std::int64_t 
 }
 
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory) {
-  Exporter exporter(format, directory);
-  bool any = false;
+  std::optional<Exporter> exporter;
   for_each_snapshot(run, SnapshotChoice::all, [&](const Snapshot& s) {
-    if (!any) require_writable_directory(directory);
-    any = true;
-    exporter.add(s);
+    if (!exporter) {
+      require_writable_directory(directory);
+      exporter.emplace(format, directory);
+    }
+    exporter->add(s);
   });
-  if (!any)
+  if (!exporter)
     throw BadInput(run +
                    ": holds no states (run.h5, states_*.h5, powder.h5 or grain_box.h5): runs of kind particles, "
                    "soft-particle, pipeline, macro, macro-comparison, cohesive-powder and grain-box keep them, "
                    "unless [output] says snapshots = 0 or record = false");
-  return exporter.finish();
+  return exporter->finish();
 }
 
 }  // namespace softgrain

@@ -54,7 +54,8 @@ struct ExportedSeries {
   std::vector<std::string> files;  ///< to open: the .pvd of a VTP series, the table of a CSV series, the first dump
 };
 
-/// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; every file atomically.
+/// Writes all states of a run (as read_snapshots() takes it) to `directory`, which is made; every file atomically. What
+/// an earlier export of the same form left there is removed first (export_files.h); other files stay.
 /// Throws BadInput when there are none, FileTrouble.
 std::vector<ExportedSeries> export_states(const std::string& run, ExportFormat format, const std::string& directory);
 

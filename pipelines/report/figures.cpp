@@ -1,7 +1,13 @@
 #include "pipelines/report/figures.h"
 
 #include <cctype>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <regex>
+
+#include "common/core/error.h"
+#include "common/io/text_file.h"
 
 namespace softgrain::report {
 
@@ -47,6 +53,46 @@ std::vector<Figure> figures_of(const std::string& html) {
     at = end;
   }
   return figures;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A figure of a report names itself: its file has the name that follows from its title.
+bool is_figure(const fs::path& path) {
+  if (path.extension() != ".svg") return false;
+  std::ifstream file(path);
+  std::string head(4096, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  if (!head.starts_with("<svg") || head.find("aria-label=\"") == std::string::npos) return false;
+  static const std::regex number("-[0-9]+");
+  const std::string own = file_name(label_of(head));
+  const std::string name = path.stem().string();
+  return name.starts_with(own) && (name == own || std::regex_match(name.substr(own.size()), number));
+}
+
+}  // namespace
+
+void remove_figures(const std::string& run_directory) {
+  const fs::path directory = fs::path(run_directory) / "figures";
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (is_figure(entry.path())) found.push_back(entry.path());
+  for (const fs::path& file : found) {
+    fs::remove(file, error);
+    if (error) throw FileTrouble(file.string() + ": of an earlier report, cannot be removed: " + error.message());
+  }
+  if (fs::is_directory(directory, error) && fs::is_empty(directory, error)) fs::remove(directory, error);
+}
+
+void write_figures(const std::string& run_directory, const std::vector<Figure>& figures) {
+  remove_figures(run_directory);
+  fs::create_directories(run_directory + "/figures");
+  for (const Figure& figure : figures)
+    write_text_atomic(run_directory + "/figures/" + figure.name + ".svg", figure.svg);
 }
 
 }  // namespace softgrain::report

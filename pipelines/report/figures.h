@@ -14,4 +14,10 @@ struct Figure {
 /// Every svg element of an HTML body, in order; names are made unique by a number.
 std::vector<Figure> figures_of(const std::string& html);
 
+/// Writes them to DIR/figures in place of those that an earlier report left there. Throws FileTrouble.
+void write_figures(const std::string& run_directory, const std::vector<Figure>& figures);
+
+/// Removes those that a report left in DIR/figures, and the directory when nothing else is in it.
+void remove_figures(const std::string& run_directory);
+
 }  // namespace softgrain::report

@@ -38,10 +38,9 @@ void write_report(const std::string& run_directory) {
   std::string body = sections_of(run);
   body = heading_section(run) + contents(body) + remarks_section(run) + body + next_section(run);
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
-  std::filesystem::create_directories(run_directory + "/figures");
-  for (const Figure& figure : figures_of(body))
-    write_text_atomic(run_directory + "/figures/" + figure.name + ".svg", figure.svg);
-  write_text_atomic(run_directory + "/report.html", page("softgrain: " + name, body));
+  write_figures(run_directory, figures_of(body));
+  write_text_atomic(run_directory + "/report.html",
+                    page("softgrain: " + name + (run.unfinished ? " (unfinished run)" : ""), body));
 }
 
 }  // namespace softgrain

@@ -62,9 +62,15 @@ StiffnessAngles RunData::angles(PairKind kind) const {
   return {found->initial_angle_deg, found->secant_angle_deg};
 }
 
+bool is_unfinished(const std::string& directory) {
+  const auto exists = [&](const char* name) { return fs::exists(directory + "/" + name); };
+  return !exists("summary.json") && (exists(".run") || exists(".runs") || exists("work") || exists("checkpoint.h5"));
+}
+
 RunData load_run(const std::string& directory) {
   if (!fs::is_directory(directory)) throw FileTrouble(directory + ": no such run directory");
   RunData run;
+  run.unfinished = is_unfinished(directory);
   run.directory = directory;
   run.summary = nlohmann::json::object();
   const auto file = [&](const char* name) { return directory + "/" + name; };
@@ -79,6 +85,9 @@ RunData load_run(const std::string& directory) {
   if (exists("comparison.json")) run.macro_scenes = load_scenes(directory), any = true;
   any = any || std::any_of(fs::directory_iterator(directory), fs::directory_iterator(),
                            [](const fs::directory_entry& entry) { return is_result_file(entry.path()); });
+  if (!any && run.unfinished)
+    throw FileTrouble(directory +
+                      ": this run has not come to its end and has no results yet: --resume goes on with it");
   if (!any) throw FileTrouble(directory + ": no run directory: neither summary.json nor a file of results is in it");
   return run;
 }

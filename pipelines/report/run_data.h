@@ -28,7 +28,8 @@ struct ComparedCurves {
 
 struct RunData {
   std::string directory;
-  nlohmann::json summary;  ///< empty object when absent
+  nlohmann::json summary;   ///< empty object when absent
+  bool unfinished = false;  ///< a run that was stopped, or is at work: it has no summary yet
   std::optional<Measurements> measurements;
   std::optional<LawCard> card;
   std::optional<CrowdMeasurements> crowd;
@@ -66,6 +67,9 @@ struct RunData {
  private:
   mutable std::map<std::string, std::shared_ptr<const void>> files_;
 };
+
+/// Whether a directory is that of a run that has not come to its end.
+bool is_unfinished(const std::string& directory);
 
 /// Reads what exists among summary.json, measurements.h5, law.toml, crowd.h5, law_table.toml, macro.h5 and
 /// comparison.json (with the curves that it names). Throws FileTrouble when the directory is missing, holds no results

@@ -14,7 +14,10 @@
 namespace softgrain::report {
 namespace {
 
-std::string status_of(const AnySummary& summary) { return summary.status.empty() ? "no summary" : summary.status; }
+std::string status_of(const RunData& run, const AnySummary& summary) {
+  if (run.unfinished) return "unfinished";
+  return summary.status.empty() ? "no summary" : summary.status;
+}
 
 std::string directory_name(const RunData& run) {
   return std::filesystem::weakly_canonical(run.directory).filename().string();
@@ -27,7 +30,7 @@ std::string title_text(const RunData& run, const AnySummary& summary) {
 }
 
 std::string title_lines(const RunData& run, const AnySummary& summary) {
-  const std::string status = status_of(summary);
+  const std::string status = status_of(run, summary);
   std::string small = "softgrain " + summary.command + ", directory " + directory_name(run);
   if (!summary.version.empty()) small += ", version " + summary.version;
   if (!summary.commit.empty()) small += ", commit " + summary.commit;
@@ -37,7 +40,13 @@ std::string title_lines(const RunData& run, const AnySummary& summary) {
 }
 
 /// Said before anything else when the result must not be used.
-std::string verdict(const AnySummary& summary) {
+std::string verdict(const RunData& run, const AnySummary& summary) {
+  if (run.unfinished)
+    return "<p class=\"verdict\"><strong>Results of an unfinished run:</strong> it was stopped, or is still at work. "
+           "What "
+           "is below was there by then; measurements, fits and scenes may be missing. The same command with --resume "
+           "goes "
+           "on with it.</p>\n";
   if (summary.status.empty() || is_good(summary.status)) return "";
   const bool told = summary.remarks && !summary.remarks->empty() && !summary.remarks->front().empty();
   return "<p class=\"verdict\"><strong>Do not use this result as it is:</strong> " +
@@ -103,7 +112,7 @@ std::string heading_section(const RunData& run) {
   }
   std::vector<HeadLine> lines = result_lines(run);
   if (!what.empty()) lines.insert(lines.begin(), {"Run", what});
-  return title_lines(run, summary) + verdict(summary) + list_of(lines);
+  return title_lines(run, summary) + verdict(run, summary) + list_of(lines);
 }
 
 }  // namespace softgrain::report

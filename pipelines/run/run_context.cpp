@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -34,7 +35,14 @@ std::shared_ptr<spdlog::logger> make_logger(const std::string& file, const Commo
   }
   auto logger = std::make_shared<spdlog::logger>("softgrain", sinks.begin(), sinks.end());
   logger->flush_on(spdlog::level::info);
+  // A full disk is told once, by what finds no room for its results.
+  logger->set_error_handler([](const std::string&) {});
   return logger;
+}
+
+void log_to(spdlog::sinks::sink& sink, const std::string& line) {
+  sink.log({"softgrain", spdlog::level::info, line});
+  sink.flush();
 }
 
 constexpr const char* kRunFile = ".run";  ///< of RunContext::begin()
@@ -60,6 +68,30 @@ nlohmann::json earlier_run(const std::string& run_file, const std::string& summa
   return summary.value("provenance", nlohmann::json::object());
 }
 
+/// What the log has of the scene, as it is used: the whole text, but of thousands of bodies their number of lines.
+std::string settings_text(const Scene& scene, std::uint64_t seed) {
+  constexpr std::ptrdiff_t kMostLines = 200;
+  const std::string text = scene.text();
+  const std::ptrdiff_t lines = std::count(text.begin(), text.end(), '\n');
+  const std::string head = fmt::format("scene {}, seed {}", scene.path(), seed);
+  if (lines > kMostLines) return fmt::format("{}: {} lines, in the file .run", head, lines);
+  return head + ":\n" + text;
+}
+
+/// The text for people, which says at its end that the result is not usable, and why.
+std::string with_status(std::string people, const nlohmann::json& summary) {
+  if (!people.empty() && people.back() != '\n') people += '\n';
+  const std::string status = summary.value("status", "");
+  if (from_word<RunStatus>(status) != RunStatus::not_usable) return people;
+  std::string reason;
+  if (const auto remarks = summary.find("remarks");
+      remarks != summary.end() && remarks->is_array() && !remarks->empty() && remarks->front().is_string())
+    reason = remarks->front().get<std::string>();
+  if (people.starts_with(status)) return people;
+  return people + fmt::format("status: {} (exit status {}){}\n", status, static_cast<int>(ExitStatus::not_usable),
+                              reason.empty() ? "" : ": " + reason);
+}
+
 }  // namespace
 
 std::string default_directory(const std::string& name) {
@@ -81,17 +113,23 @@ RunContext::RunContext(const CommonOptions& options, const std::string& command,
     inputs.insert(inputs.end(), read.begin(), read.end());
     remove_earlier_run(directory_, command, inputs);
   }
-  try {
-    logger_ = make_logger(path("log.txt"), options_);
-  } catch (const spdlog::spdlog_ex& e) {
-    throw FileTrouble(path("log.txt") + ": " + e.what());
-  }
   omp_set_num_threads(threads_);
   const Provenance build = build_provenance();
   shows_ = !options_.member;
-  logger_->sinks().front()->log(
-      {"softgrain", spdlog::level::info,
-       fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit, threads_, options_.command_line)});
+  try {
+    logger_ = make_logger(path("log.txt"), options_);
+    // The first line: was_run_directory() knows the directory of a run by it.
+    log_to(*logger_->sinks().front(), fmt::format("softgrain {} ({}), {} threads: {}", build.version, build.commit,
+                                                  threads_, options_.command_line));
+  } catch (const spdlog::spdlog_ex& e) {
+    throw FileTrouble(path("log.txt") + ": " + e.what());
+  }
+  log_ = std::make_shared<LogScope>([file = logger_->sinks().front()](const std::string& line) {
+    try {
+      log_to(*file, line);
+    } catch (const spdlog::spdlog_ex&) {  // results find a full disk too, and say so; a log must not end a run
+    }
+  });
 }
 
 RunContext RunContext::part(const std::string& name) const {
@@ -116,6 +154,7 @@ void RunContext::begin(const Scene& scene, std::uint64_t seed, const std::string
     if (options_.member && has_ended(read_object(path("summary.json")))) throw HasEnded();
   }
   write_text_atomic(path(kRunFile), now.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  log_text(settings_text(scene, seed));
 }
 
 Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) const {
@@ -140,10 +179,9 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
   add("commit", build.commit);
   const std::string text = summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   write_text_atomic(path("summary.json"), text);
-  if (!shows_) return;
-  std::string shown = options_.json ? text : people;
-  if (!shown.empty() && shown.back() != '\n') shown += '\n';
-  write_standard_output(shown);
+  const std::string end = with_status(people, summary);
+  log_text(end);
+  if (shows_) write_standard_output(options_.json ? text : end);
 }
 
 void RunContext::finish(nlohmann::json summary, const Provenance& provenance, const std::string& people) const {

@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/io/directory_lock.h"
 #include "common/io/provenance.h"
+#include "common/io/run_log.h"
 #include "common/io/scene.h"
 #include "common/state/checkpoint.h"
 
@@ -102,7 +103,8 @@ class RunContext {
   }
   [[nodiscard]] Provenance provenance(const Scene& scene, std::uint64_t used_seed) const;
 
-  /// A line for people: to log.txt always, to standard error unless --quiet.
+  /// A line for people: to log.txt always, to standard error unless --quiet. (log.txt also has the settings, beginning
+  /// and end of every stage, what is printed at the end, and why a run ended early.)
   void say(const std::string& line) const;
 
   /// Writes DIR/summary.json (atomic; "status", "command", "version", "commit" added when absent), prints it on
@@ -125,6 +127,7 @@ class RunContext {
   bool part_ = false;  ///< of another run
   bool shows_ = true;  ///< the summary on standard output; not of a part, nor of one of several runs
   std::shared_ptr<spdlog::logger> logger_;
+  std::shared_ptr<LogScope> log_;  ///< DIR/log.txt, for all that is said while this run is at work
 };
 
 /// One function per command; returns the exit status, throws Error.

@@ -9,7 +9,10 @@
 
 #include "common/core/error.h"
 #include "macrosim/lammps_run/points_file.h"
+#include "pipelines/export/export_files.h"
+#include "pipelines/report/figures.h"
 #include "pipelines/results/result_files.h"
+#include "pipelines/snapshots/snapshots.h"
 
 namespace softgrain {
 
@@ -76,6 +79,20 @@ void refuse_to_lose_points(const std::vector<fs::path>& found) {
                         old.string(), points));
 }
 
+/// What stands beside a file of results under its name: the descriptions of its states for ParaView.
+void add_descriptions(std::vector<fs::path>& found, const std::vector<std::string>& inputs) {
+  for (std::size_t k = 0, results = found.size(); k < results; ++k) {
+    if (found[k].extension() != ".h5") continue;
+    for (const char* ending : {".xdmf", "_contacts.xdmf"}) {
+      const fs::path beside = found[k].parent_path() / (found[k].stem().string() + ending);
+      std::error_code error;
+      if (fs::exists(beside, error) && !is_input(beside, inputs)) found.push_back(beside);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+}
+
 std::string listed(const std::vector<fs::path>& files) {
   std::string text;
   for (const fs::path& file : files) text += (text.empty() ? "" : ", ") + file.filename().string();
@@ -110,6 +127,11 @@ void remove_earlier_run(const std::string& directory, const std::string& command
     throw BadInput(directory + ": holds results of an earlier run that do not belong to this one (" + listed(lost) +
                    ")" + elsewhere);
   refuse_to_lose_points(found);
+  add_descriptions(found, inputs);
+  // Figures go with the page that shows them, exported states with those that they were made from.
+  const auto goes = [&](const auto& is) { return std::any_of(found.begin(), found.end(), is); };
+  if (goes([](const fs::path& file) { return file.filename() == "report.html"; })) report::remove_figures(directory);
+  if (goes([](const fs::path& file) { return holds_states(file.filename().string()); })) remove_exports_of(directory);
   for (const fs::path& file : found) {
     fs::remove_all(file, error);
     if (error) throw FileTrouble(file.string() + ": of an earlier run, cannot be removed: " + error.message());

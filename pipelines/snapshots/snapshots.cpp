@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "common/core/error.h"
 #include "common/data/snapshot_io.h"
+#include "common/io/text_file.h"
 #include "pipelines/results/result_files.h"
 
 namespace softgrain {
@@ -64,23 +68,43 @@ std::vector<std::string> files_of(const fs::path& directory) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(directory)) {
     const std::string name = entry.path().filename().string();
-    if (is_states_file(name) || kind_file(name) != nullptr) files.push_back(entry.path().string());
+    if (holds_states(name)) files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   return files;
 }
 
-/// Variants lie in directories of their own.
+/// Directories that the summary of a run names as those of its variants or of its runs; empty without a summary.
+std::optional<std::set<std::string>> named_parts(const fs::path& directory) {
+  const std::string path = (directory / "summary.json").string();
+  if (!fs::exists(path)) return std::nullopt;
+  const nlohmann::json summary = nlohmann::json::parse(read_text(path), nullptr, false);
+  std::set<std::string> names;
+  if (!summary.is_object()) return names;
+  for (const auto& [list, key] : {std::pair{"variants", "name"}, {"runs", "directory"}})
+    if (const auto parts = summary.find(list); parts != summary.end() && parts->is_array())
+      for (const nlohmann::json& part : *parts)
+        if (part.is_object() && part.contains(key) && part[key].is_string()) names.insert(part[key].get<std::string>());
+  return names;
+}
+
+/// Variants lie in directories of their own. Directories that an earlier run left there are none of this run: it names
+/// its own in the summary, and a run that has no variants says with a file of its own (.run) of what it is.
 std::vector<std::string> variants_of(const fs::path& directory) {
   std::vector<std::string> files;
+  const auto named = named_parts(directory);
+  if (!named && fs::exists(directory / ".run")) return files;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (entry.is_directory() && fs::exists(entry.path() / "summary.json"))
+    if (entry.is_directory() && fs::exists(entry.path() / "summary.json") &&
+        (!named || named->contains(entry.path().filename().string())))
       for (const std::string& file : files_of(entry.path())) files.push_back(file);
   std::sort(files.begin(), files.end());
   return files;
 }
 
 }  // namespace
+
+bool holds_states(const std::string& file_name) { return is_states_file(file_name) || kind_file(file_name) != nullptr; }
 
 std::vector<std::string> snapshot_files(const std::string& run) {
   if (!fs::exists(run)) throw FileTrouble(run + ": no such run directory or file");

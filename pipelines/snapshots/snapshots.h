@@ -20,6 +20,9 @@ std::vector<Snapshot> read_snapshots(const std::string& run, SnapshotChoice choi
 void for_each_snapshot(const std::string& run, SnapshotChoice choice,
                        const std::function<void(const Snapshot&)>& visit);
 
+/// Whether files of this name hold states.
+bool holds_states(const std::string& file_name);
+
 /// The files that for_each_snapshot reads of a run, in its order.
 std::vector<std::string> snapshot_files(const std::string& run);
 

@@ -65,7 +65,7 @@ class ReportInABrowser(unittest.TestCase):
     def script(self, text, *arguments):
         return self.browser.execute_script(text, *arguments)
 
-    def wait_for(self, condition, what, seconds=15.0):
+    def wait_for(self, condition, what, seconds=300.0):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             value = condition()

@@ -136,7 +136,7 @@ class CardTest(unittest.TestCase):
         delta = np.linspace(0, 0.3, 200_000)
         here = self.law.force(delta)
         with multiprocessing.get_context("fork").Pool(2) as pool:
-            for there in pool.map_async(at_child, [delta, delta]).get(timeout=60):
+            for there in pool.map_async(at_child, [delta, delta]).get(timeout=900):
                 np.testing.assert_array_equal(there, here)
 
     def test_goes_to_another_process(self):

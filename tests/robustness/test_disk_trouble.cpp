@@ -4,6 +4,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/support/every_kind.h"
@@ -38,7 +39,13 @@ void expect_nothing_broken(const std::string& directory) {
 
 void expect_trouble(int wait_status, const std::string& errors, const std::string& word) {
   EXPECT_TRUE(ended_with(wait_status, 4)) << wait_status << "\n" << read_text(errors);
-  EXPECT_NE(read_text(errors).find(word), std::string::npos) << read_text(errors);
+  const std::string said = read_text(errors);
+  EXPECT_NE(said.find(word), std::string::npos) << said;
+  // Once, and nothing of how a library says it.
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_TRUE(said.starts_with("softgrain: ")) << said;
+  for (const char* inner : {"errno", "descriptor", "HDF5-DIAG", "LOG ERROR"})
+    EXPECT_EQ(said.find(inner), std::string::npos) << said;
 }
 
 /// No file may grow beyond so many bytes.

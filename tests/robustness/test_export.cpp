@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
+#include <set>
 
 #include "common/io/hdf5_file.h"
 #include "pipelines/snapshots/snapshots.h"
@@ -52,6 +53,44 @@ TEST(Export, WritesEveryFormAndLeavesTheRunAlone) {
   EXPECT_EQ(files_with(run + "/export-lammps-dump", ".dump"), 31U);
   EXPECT_EQ(files_with(run + "/export-csv", ".csv"), 21U + 5U + 21U + 1U);
   EXPECT_EQ(read_text(run + "/summary.json"), before);
+}
+
+TEST(Export, LeavesNothingOfAnEarlierExportAndEverythingElse) {
+  const KindRuns runs(kParticles);
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("long", {"--set", "output.snapshots=5"}))), 0));
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("short", {"--set", "output.every=0.05"}))), 0));
+  const KindRuns soft({"soft-particle", "microsim", kTinySoftParticle, 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(soft.arguments("other"))), 0));
+  const auto names = [](const std::string& directory) {
+    std::set<std::string> out;
+    for (const auto& entry : fs::directory_iterator(directory)) out.insert(entry.path().filename().string());
+    return out;
+  };
+  for (const std::string form : {"vtp", "csv", "lammps-dump"}) {
+    const auto exported = [&](const std::string& run, const std::string& to) {
+      const ProgramOutcome done = run_the_program("export " + quoted(run) + " --to " + form + " --out " + quoted(to));
+      EXPECT_EQ(done.status, 0) << done.output;
+      return names(to);
+    };
+    const std::string to = runs.out("to-" + form);
+    const std::set<std::string> alone = exported(runs.out("short"), runs.out("alone-" + form));
+    const std::size_t many = exported(runs.out("long"), to).size();
+    EXPECT_GT(many, alone.size());
+    const std::string extension = form == "lammps-dump" ? "dump" : form;
+    const std::set<std::string> mine{"notes.txt", "mine_particles_000001." + extension, "mine.csv"};
+    for (const std::string& name : mine) write_text_atomic(to + "/" + name, "mine");
+    std::set<std::string> expected = alone;
+    expected.insert(mine.begin(), mine.end());
+    EXPECT_EQ(exported(runs.out("short"), to), expected) << form;
+    // Of another run with other series too.
+    exported(soft.out("other"), to);
+    EXPECT_EQ(exported(runs.out("short"), to), expected) << form;
+    // Earlier versions kept no list: states of the same series go by their names.
+    exported(runs.out("long"), to);
+    fs::remove(to + "/.export-" + form);
+    EXPECT_EQ(exported(runs.out("short"), to), expected) << form;
+    for (const std::string& name : mine) EXPECT_EQ(read_text(to + "/" + name), "mine");
+  }
 }
 
 TEST(Export, KnowsRunsOfManySeries) {

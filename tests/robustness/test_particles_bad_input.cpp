@@ -157,6 +157,16 @@ TEST_F(ParticlesBadInput, Walls) {
          {"scene.toml:38: name", "scene.toml:28"});
 }
 
+TEST_F(ParticlesBadInput, PlacesThatNothingHolds) {
+  expect("position = [0.0, 0.0, 0.05]", "position = [0.0, 0.0, -0.05]",
+         {"scene.toml:22: position", "particle 0 is 0.05 m behind the wall 'wall-1'", "turn the normal"});
+  expect("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, -1.0]",
+         {"scene.toml:22: position", "behind the wall 'wall-1'", "(and 1 more)"});
+  expect("[time]", "[guards.escape]\nlow = [-1.0, -1.0, 0.07]\n[time]",
+         {"scene.toml:22: position", "outside the room of guards.escape", "z = 0.05 m"});
+  expect_file("1 1 1 1\n0.0 0.0 -0.03 0.01\n", {"many.xyzr:2: position", "behind the wall 'wall-1'"});
+}
+
 TEST_F(ParticlesBadInput, CellTimeAndOutput) {
   expect("[time]", "[cell]\nsize = [1.0, 1.0, 1.0]\nperiodic = [true, true]\n[time]",
          {"scene.toml:34: periodic", "three"});

@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "common/io/hdf5_file.h"
 #include "common/io/text_file.h"
 #include "tests/support/every_kind.h"
+#include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 
@@ -47,13 +47,10 @@ int end_when(pid_t child, const std::function<bool()>& ready, int signal) {
   return status;
 }
 
-int end_after(pid_t child, double seconds, int signal) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  return end_when(
-      child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
-}
+/// Seconds of processor time.
+int end_after(pid_t child, double seconds, int signal) { return signal_after(child, seconds, signal); }
 
-constexpr double kPatience = 100.0;  // seconds
+constexpr double kPatience = 100.0;  // seconds of processor time
 
 bool ended_well(int status) { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }
 

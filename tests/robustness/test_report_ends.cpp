@@ -1,6 +1,10 @@
 // What the report of every kind has at its head and at its end, and the grading curve in between.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
+
+#include "pipelines/run/run_files.h"
 #include "tests/support/every_kind.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
@@ -34,6 +38,15 @@ TEST_P(ReportEnds, EveryKindNamesItsMaterialAndSaysWhatToDoNext) {
   if (bodies.contains(runs.kind().name)) {
     EXPECT_TRUE(has("Grading curve"));
   }
+  // Whatever the kind leaves, a run that begins in the same directory finds nothing of it (but directories of variants,
+  // which are runs of their own).
+  (void)run_the_program("export '" + runs.out("a") + "' --to csv");
+  remove_earlier_run(runs.out("a"), "run", {});
+  std::set<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(runs.out("a")))
+    if (!std::filesystem::exists(entry.path() / "log.txt")) left.insert(entry.path().filename().string());
+  left.erase(".lock");
+  EXPECT_EQ(left, std::set<std::string>{"log.txt"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ReportEnds, ::testing::ValuesIn(quick_kinds()), name_of_kind);

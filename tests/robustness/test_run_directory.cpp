@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 
 #include "common/contact/crowd_table_file.h"
 #include "common/data/macro_result.h"
@@ -85,6 +86,33 @@ TEST_F(RunDirectory, TheSameKindStartsAnewAndResumeKeeps) {
   save(synthetic::measurements(4), out("measurements.h5"));
   expect(macro("--resume --set output.snapshots=0"), 0);
   EXPECT_TRUE(fs::exists(out("measurements.h5")));
+}
+
+TEST_F(RunDirectory, ExportsAndFiguresOfAnEarlierRunGoAndWhatAUserPutThereStays) {
+  expect(macro(), 0);
+  expect(run_the_program("export '" + file("out") + "' --to vtp"), 0);
+  expect(run_the_program("export '" + file("out") + "' --to csv"), 0);
+  write_text_atomic(out("export-csv/mine.txt"), "mine");
+  write_text_atomic(out("figures/mine.svg"), "<svg aria-label=\"of another program\"></svg>");
+  const auto names = [&](const std::string& directory) {
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(out(directory))) found.insert(entry.path().filename().string());
+    return found;
+  };
+  const std::set<std::string> of_macro = names("figures");
+  EXPECT_GT(of_macro.size(), 1U);
+  expect(particles(), 0);
+  EXPECT_FALSE(fs::exists(out("export-vtp")));
+  EXPECT_EQ(names("export-csv"), std::set<std::string>{"mine.txt"});
+  for (const char* name : {"states_macro.xdmf", "states_macro_contacts.xdmf"})
+    EXPECT_FALSE(fs::exists(out(name))) << name;
+  const std::string other = file("other");
+  expect(run_the_program("microsim '" + file("particles.toml") + "' --quiet --out '" + other + "'"), 0);
+  std::set<std::string> expected{"mine.svg"};
+  for (const auto& entry : fs::directory_iterator(other + "/figures"))
+    expected.insert(entry.path().filename().string());
+  EXPECT_EQ(names("figures"), expected);
+  EXPECT_EQ(read_text(out("export-csv/mine.txt")), "mine");
 }
 
 TEST_F(RunDirectory, FilesOfNoRunAreNeitherRemovedNorTakenForResults) {

@@ -63,7 +63,9 @@ TEST(RunDirectoryLock, ASecondRunLeavesTheFirstAlone) {
   ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("whole"))), 0));
   const pid_t first = start_program(runs.arguments("out"));
   while (!fs::exists(runs.out("out") + "/checkpoint.h5")) ::usleep(1000);
+  ::kill(first, SIGSTOP);  // it is at work for as long as the second one looks
   EXPECT_EQ(run_the_program(line_of(runs.arguments("out"))).status, 4);
+  ::kill(first, SIGCONT);
   ASSERT_TRUE(ended_with(wait_for(first), 0));
   expect_same_runs(runs.out("whole"), runs.out("out"));
   const pid_t killed = start_program(runs.arguments("out"));

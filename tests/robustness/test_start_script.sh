@@ -192,6 +192,44 @@ tests_command() {
   check "the program does not configure again after that" called 0 '^cmake --preset'
 }
 
+beside_another_build() {
+  fresh
+  start run x
+  # Somebody else holds the lock, as long as this test goes on.
+  exec 8>>"$repo/build/.lock"
+  flock 8
+  (sleep 20; flock -u 8) &
+  local holder=$!
+  start run y
+  check "a current program runs at once beside another build" [ "$(cat "$work/out")" = "<$PWD><run><y>" ]
+  check "it is not built again" called 0 '^cmake'
+  check "it says nothing of its own" silent err
+  kill "$holder"
+  wait "$holder" || true
+  # A source that is newer is built first, once the other build has ended.
+  touch -d '+1 hour' "$repo/common/new.cpp"
+  (sleep 1; flock -u 8) &
+  start run z
+  wait
+  exec 8>&-
+  check "an outdated program waits for the other build" printed err 'waiting for another start'
+  check "and is built" called 1 '^cmake --build .* --target softgrain$'
+  # A build that had nothing to link counts as well.
+  fresh
+  start run x
+  touch -d '-1 hour' "$repo/build/release/softgrain" "$repo/build/release/.begun"
+  touch -d '-30 minutes' "$repo/common/old.cpp"
+  stub cmake 'echo "nothing to do"'
+  start run x
+  check "built when a source is newer" called 1 '^cmake --build'
+  start run x
+  check "not again when the build found nothing to do" called 0 '^cmake'
+  mkdir -p "$repo/.git/logs"
+  touch -d '+1 hour' "$repo/.git/logs/HEAD"
+  start run x
+  check "built when another commit was checked out" called 1 '^cmake --build'
+}
+
 moved_copy() {
   fresh
   start run x
@@ -206,7 +244,7 @@ moved_copy() {
 for script_file in softgrain .ci/run; do
   "$real_bash" -n "$root/$script_file" || failures=$((failures + 1))
 done
-for group in nothing_missing missing_as_root missing_with_sudo with_python with_lammps missing_without_rights other_system failing_steps unwritable tests_command moved_copy; do
+for group in nothing_missing missing_as_root missing_with_sudo with_python with_lammps missing_without_rights other_system failing_steps unwritable tests_command beside_another_build moved_copy; do
   printf -- '-- %s\n' "$group"
   "$group"
 done

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -16,7 +15,7 @@ namespace softgrain::test {
 struct Disturbance {
   int signal = SIGKILL;
   int times = 1;         ///< at most: a run may come to its end before
-  double longest = 0.1;  ///< seconds: each part of the run is left alone for a random share of it
+  double longest = 0.1;  ///< processor time [s]: each part of the run is left alone for a random share of it
   std::uint64_t stream = 0;
 };
 
@@ -42,11 +41,16 @@ inline int run_disturbed(const Disturbance& d, const std::string& directory, int
   }
 }
 
-/// Wall time of `work` [s].
+/// Processor time of the programs that `work` runs to their end [s]: it does not depend on what else the machine does.
 inline double seconds_of(const std::function<void()>& work) {
-  const auto begun = std::chrono::steady_clock::now();
+  const auto used = [] {
+    rusage children{};
+    ::getrusage(RUSAGE_CHILDREN, &children);
+    return processor_seconds(children);
+  };
+  const double before = used();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return used() - before;
 }
 
 }  // namespace softgrain::test

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -41,10 +43,52 @@ inline int signal_when(pid_t child, const std::function<bool()>& ready, int sign
   return status;
 }
 
+/// Wall time after which a program hangs, on any machine and beside any other work.
+inline constexpr std::chrono::seconds kLongestWait{900};
+
+/// Processor time that a running program has used so far, all threads together [s]; 0 when there is none.
+inline double processor_seconds(pid_t child) {
+  clockid_t clock{};
+  timespec used{};
+  if (::clock_getcpuclockid(child, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return 0.0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+inline double processor_seconds(const rusage& used) {
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+/// Sends `signal` when the program has used so many seconds of processor time: then it is as far on a busy machine as
+/// on an idle one. One that uses none, as it waits for something, is signalled all the same in the end.
 inline int signal_after(pid_t child, double seconds, int signal) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  const auto end = std::chrono::steady_clock::now() + kLongestWait;
   return signal_when(
-      child, [end] { return std::chrono::steady_clock::now() >= end; }, signal);
+      child, [=] { return processor_seconds(child) >= seconds || std::chrono::steady_clock::now() >= end; }, signal);
+}
+
+/// A program that was ended by a signal.
+struct Signalled {
+  int status = 0;
+  double after = 0.0;  ///< processor time that it used after the signal [s]
+};
+
+/// As signal_after.
+inline Signalled signalled_after(pid_t child, double seconds, int signal) {
+  const auto end = std::chrono::steady_clock::now() + kLongestWait;
+  Signalled out;
+  rusage used{};
+  while (processor_seconds(child) < seconds && std::chrono::steady_clock::now() < end) {
+    if (::waitpid(child, &out.status, WNOHANG) == child) return out;
+    ::usleep(1000);
+  }
+  const double before = processor_seconds(child);
+  ::kill(child, signal);
+  ::wait4(child, &out.status, 0, &used);
+  out.after = processor_seconds(used) - before;
+  return out;
 }
 
 inline int wait_for(pid_t child) {

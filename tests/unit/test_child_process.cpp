@@ -47,9 +47,9 @@ TEST_F(Child, ThatCannotBeStartedIsAnError) {
 
 TEST_F(Child, EndsWhenWeAreAskedToStop) {
   const auto start = std::chrono::steady_clock::now();
-  const ChildEnd end = run({program("sh"), "-c", "sleep 60 & wait"}, [] { request_interrupt(); });
+  const ChildEnd end = run({program("sh"), "-c", "sleep 1000 & wait"}, [] { request_interrupt(); });
   EXPECT_TRUE(end.interrupted);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(600)) << "it was waited for";
 }
 
 TEST_F(Child, ThatDoesNotListenIsEndedAllTheSame) {

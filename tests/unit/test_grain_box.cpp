@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "common/core/error.h"
 #include "microsim/grain_box/analysis.h"
@@ -241,6 +242,25 @@ TEST(GrainBoxArrangement, IsLooseInsideAndOfTheGivenMaterial) {
   EXPECT_NEAR(std::sqrt(square - sum * sum), 7e9, 0.8e9);
   EXPECT_EQ(make_loose_pack(spec, 3).position, pack.position);
   EXPECT_NE(make_loose_pack(spec, 4).position, pack.position);
+}
+
+TEST(GrainBoxArrangement, NoneOfOneSeedIsOneOfAnotherSeed) {
+  GrainBoxSpec spec;
+  spec.grains = 40;
+  std::set<std::vector<double>> radii;
+  std::set<std::vector<double>> moduli;
+  std::set<double> first_places;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U})
+    for (spec.arrangement = 0; spec.arrangement < 4; ++spec.arrangement) {
+      const GrainPack pack = make_loose_pack(spec, seed);
+      radii.insert(drawn_radii(spec, seed));
+      moduli.insert(pack.youngs_modulus);
+      first_places.insert(pack.position.front()[0]);
+      EXPECT_EQ(pack.radius, drawn_radii(spec, seed));
+    }
+  EXPECT_EQ(radii.size(), 16U);
+  EXPECT_EQ(moduli.size(), 16U);
+  EXPECT_EQ(first_places.size(), 16U);
 }
 
 TEST(GrainBoxArrangement, RefusesWhatDoesNotFit) {

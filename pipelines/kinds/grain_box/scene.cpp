@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/core/error.h"
+#include "common/io/poisson_range.h"
 #include "common/packing/grading_scene.h"
 #include "microsim/grain_box/analysis.h"
 #include "microsim/grain_box/arrangement.h"
@@ -17,7 +18,6 @@ namespace softgrain {
 
 namespace {
 
-const Range kPoisson = Range::closed(-0.9, 0.499);
 const Range kScatter{0.0, 0.3, false, false};
 const Range kIncrement = Range::closed(1e-9, 0.1);
 
@@ -47,14 +47,14 @@ void read_material(const SceneTable& t, GrainBoxMaterial& m) {
                                                         : "must be at most 20 times radius_min");
   m.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), m.youngs_modulus);
   m.youngs_modulus_scatter = t.number("E_sd", Unit::none, kScatter, m.youngs_modulus_scatter);
-  m.poisson_ratio = t.number("nu", Unit::none, kPoisson, m.poisson_ratio);
+  m.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, m.poisson_ratio);
   m.poisson_ratio_scatter = t.number("nu_sd", Unit::none, kScatter, m.poisson_ratio_scatter);
   m.density = t.number("density", Unit::density, Range::positive(), m.density);
 }
 
 void read_walls(const SceneTable& t, GrainBoxSpec& spec) {
   spec.walls.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), 100.0 * spec.material.youngs_modulus);
-  spec.walls.poisson_ratio = t.number("nu", Unit::none, kPoisson, spec.walls.poisson_ratio);
+  spec.walls.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, spec.walls.poisson_ratio);
   spec.walls.friction = read_friction(t, "mu", spec.friction);
 }
 
@@ -287,9 +287,8 @@ std::vector<DrawnSizes> drawn_sizes(const GrainBoxSetup& setup, std::uint64_t se
   std::vector<DrawnSizes> out;
   for (const GrainBoxSpec& spec : setup.packs)
     if (spec.material.sizes)
-      out.push_back({.of = "grains of " + spec.name,
-                     .asked = *spec.material.sizes,
-                     .samples = {drawn_radii(spec, seed + spec.arrangement)}});
+      out.push_back(
+          {.of = "grains of " + spec.name, .asked = *spec.material.sizes, .samples = {drawn_radii(spec, seed)}});
   return out;
 }
 

@@ -8,15 +8,19 @@
 
 #include "common/contact/crowd_from_table.h"
 #include "common/core/stopwatch.h"
+#include "pipelines/run/key_text.h"
 
 namespace softgrain {
 
+SOFTGRAIN_EVERY_MEMBER(VoidFillingOptions, r_max, r_min, volume, count, tolerance)
+
 namespace {
 
+/// All that the content of a level depends on beside the packings that it is filled into.
 std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
-  return fmt::format("{} {} {}voids {:a} {:a} {} {}", to_string(setup.form), setup.unloading,
-                     setup.rolling ? "" : "rolls freely ", setup.voids.r_max, setup.voids.r_min, setup.voids.count,
-                     numbers_of(below, setup.form));
+  return KeyText(setup.form, setup.unloading, setup.rolling, setup.voids, below.solid_fraction,
+                 numbers_of(below, setup.form))
+      .text();
 }
 
 /// Facts about the inner soft particles, over the packings of the pool.

@@ -12,6 +12,7 @@
 #include "common/core/error.h"
 #include "common/data/force_curves.h"
 #include "common/io/csv_file.h"
+#include "common/io/poisson_range.h"
 
 namespace softgrain {
 
@@ -30,7 +31,7 @@ const std::array<KnownParameter, 7>& known_parameters() {
       {{"beta", Range::above(1.0), true, &SoftParticleSpec::beta},
        {"trials", Range::closed(1.0, 1e9), true, nullptr},
        {"mu", Range::not_negative(), false, &SoftParticleSpec::friction},
-       {"nu", Range::closed(-0.99, 0.5), false, &SoftParticleSpec::poisson_ratio},
+       {"nu", kPoissonRange, false, &SoftParticleSpec::poisson_ratio},
        {"rmax_over_shell", Range{0.0, 1.0, true, true}, false, &SoftParticleSpec::rmax_over_shell},
        {"exponent", Range::above(1.0), false, &SoftParticleSpec::exponent},
        {"polydispersity", Range::above(1.0), true, &SoftParticleSpec::polydispersity}}};

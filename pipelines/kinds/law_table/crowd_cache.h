@@ -11,6 +11,10 @@
 
 namespace softgrain {
 
+/// Raised whenever the same key would give another result: contact laws, relaxation, packing, what is recorded. The
+/// test of cached results holds a run of this number.
+inline constexpr int kCrowdSchema = 3;
+
 /// Everything that determines a run, as text. `contents` says what the bodies hold (seed and packing of the centre and
 /// of its soft neighbours, and the tag of a level that adds inner soft particles). Neither names nor threads matter.
 std::string crowd_run_key(const SoftParticleSpec& spec, const CrowdConfiguration& configuration, const CrowdPlan& plan,

@@ -8,6 +8,7 @@
 #include "common/core/error.h"
 #include "common/io/csv_file.h"
 #include "common/neighbours/hierarchical_grid.h"
+#include "pipelines/kinds/macro/spec_members.h"
 
 namespace softgrain {
 
@@ -17,9 +18,6 @@ template <>
 inline constexpr auto words<BodyKind> = word_list<BodyKind>({{BodyKind::solid, "solid"}, {BodyKind::soft, "soft"}});
 
 namespace {
-
-/// Raised whenever the same key would give another packing.
-constexpr int kPackingSchema = 2;
 
 std::size_t column_of(const CsvFile& csv, const char* name, Unit unit, const char* example) {
   for (std::size_t k = 0; k < csv.columns().size(); ++k) {
@@ -147,6 +145,28 @@ void make_periodic(const CsvFile& csv, MacroPacking& packing) {
   }
 }
 
+/// The test begins when a packing is prepared: its members, and those of laws and twins, are as without a scene. Every
+/// other member is part of the key. (A test of the keys prepares packings with each of these changed.)
+MacroSpec as_prepared(MacroSpec spec) {
+  const MacroSpec none;
+  spec.friction = none.friction;  // of the test; that of the preparation is in its protocol
+  spec.wall_friction = none.wall_friction;
+  spec.test = none.test;
+  spec.splits = none.splits;
+  spec.stages = none.stages;
+  spec.strain_end = none.strain_end;
+  spec.preload = none.preload;
+  spec.preload_steps = none.preload_steps;
+  spec.steps = none.steps;
+  spec.increments_per_step = none.increments_per_step;
+  spec.tolerance = none.tolerance;
+  spec.force_floor = none.force_floor;
+  spec.max_passes = none.max_passes;
+  spec.twin = none.twin;
+  spec.kt_secant = none.kt_secant;
+  return spec;
+}
+
 }  // namespace
 
 MacroPacking read_packing_file(const std::string& path, Boundary boundary) {
@@ -166,24 +186,8 @@ MacroPacking read_packing_file(const std::string& path, Boundary boundary) {
   return packing;
 }
 
-std::string packing_key(const MacroSpec& s, std::uint64_t seed, std::uint64_t sample) {
-  std::string text = fmt::format("macro packing, schema {}\n{} {} {}\n", kPackingSchema, to_string(s.construction),
-                                 to_string(s.preparation), s.bodies);
-  if (s.boundary != Boundary::walls) text += to_string(s.boundary) + "\n";
-  const PreparationProtocol& p = s.protocol;
-  for (const double x :
-       {s.soft_share, s.exponent, s.solid_radius_max, s.solid_polydispersity, s.soft_radius_max, s.soft_polydispersity,
-        s.solid_fill, s.youngs_modulus, s.poisson_ratio, s.density, s.start_pressure, p.start_fraction,
-        p.inertial_number, p.friction, p.restitution, p.coarse_share, p.first_pressure, p.tolerance})
-    text += fmt::format(" {:.17g}", x);
-  if (s.cells) {
-    const CellCard& c = s.cells->card;
-    text += fmt::format("\ncells {}", to_string(c.form));
-    for (const double x : {s.cells->share, s.cells->solid_fraction, c.modulus.value, c.exponent.value,
-                           c.void_ratio.value, c.excess_alone.value, c.excess_many.value, c.excess_decay.value})
-      text += fmt::format(" {:.17g}", x);
-  }
-  return text + fmt::format(" {}\n{}\nseed {} sample {}\n", p.max_passes, sizes_text(s), seed, sample);
+std::string packing_key(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample) {
+  return KeyText("macro packing", kPackingSchema, as_prepared(spec), seed, sample).text();
 }
 
 }  // namespace softgrain

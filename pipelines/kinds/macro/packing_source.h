@@ -8,6 +8,10 @@
 
 namespace softgrain {
 
+/// Raised whenever the same key would give another packing: when random numbers, preparations or what a packing holds
+/// change. The test of cached results holds the packings of this number.
+inline constexpr int kPackingSchema = 3;
+
 /// Everything that determines a prepared packing, as text.
 std::string packing_key(const MacroSpec& spec, std::uint64_t seed, std::uint64_t sample);
 

@@ -1,18 +1,13 @@
 #include "pipelines/kinds/macro/twin_cache.h"
 
-#include <fmt/format.h>
-
 #include "common/data/snapshot_io.h"
 #include "common/io/text_file.h"
-#include "macrosim/test_protocol.h"
+#include "pipelines/kinds/macro/spec_members.h"
 #include "pipelines/run/result_cache.h"
 
 namespace softgrain {
 
 namespace {
-
-/// Raised whenever the same key would give another curve.
-constexpr int kTwinSchema = 2;
 
 class Bytes {
  public:
@@ -53,54 +48,43 @@ std::string hash_of(const MacroSystem& macro, const MacroPacking& packing) {
   return bytes.hash();
 }
 
-std::string stage_text(const MacroStage& s) {
-  std::string text =
-      fmt::format("{} {} {} {} {} {} {} {:.17g}", s.record.name, to_string(s.record.kind), to_string(s.record.way),
-                  s.logarithmic, s.alike, s.steps, s.increments_per_step, s.tolerance);
-  if (s.record.modulus_stress[1] > 0.0)
-    text += fmt::format(" modulus {:.17g} {:.17g}", s.record.modulus_stress[0], s.record.modulus_stress[1]);
-  for (const AxisDrive& a : s.axis) text += fmt::format(" {} {:.17g} {}", a.by_stress, a.value, a.as_at);
-  return text + "\n";
+/// Laws do not matter to a twin, and the file that places came from is in the hash of the places.
+MacroSpec without_laws(MacroSpec spec) {
+  const MacroSpec none;
+  spec.kt_secant = none.kt_secant;
+  spec.packing_text = none.packing_text;
+  return spec;
 }
 
-/// Material and test.
-std::string spec_text(const MacroSpec& spec, const std::vector<double>& more) {
-  std::string text;
-  for (const double x : {spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.wall_friction, spec.density,
-                         spec.start_pressure, spec.tolerance, spec.force_floor, spec.preload})
-    text += fmt::format(" {:.17g}", x);
-  for (const double x : more) text += fmt::format(" {:.17g}", x);
-  for (const double x : spec.splits) text += fmt::format(" split {:.17g}", x);
-  text += fmt::format(" {}\n", spec.max_passes);
-  for (const MacroStage& s : stages_of(spec)) text += stage_text(s);
-  return text;
+/// What a setup says of one sample beside its spec and its packing. Bands and law_increments are of runs with laws.
+KeyText& add_setup(KeyText& key, const MacroSetup& setup, std::int64_t sample) {
+  // Every member: one more does not compile until it is named here, and part of the key or known to change nothing.
+  const auto& [spec, samples, twins, given, kept_states, bands, estimator, law_increments, noise_samples, assumed] =
+      setup;
+  return key.add(sample < noise_samples).add(sample == 0 ? kept_states : 0);
 }
 
 }  // namespace
 
-std::string test_key(const MacroSpec& spec, const MacroPacking& packing) {
+std::string test_key(const MacroSetup& setup, const MacroPacking& packing, std::int64_t sample) {
   Bytes bytes;
   bytes.add(packing.low);
   bytes.add(packing.high);
   for (const MacroBody& b : packing.bodies) {
     bytes.add(b.x);
     bytes.add(b.r);
+    bytes.add(b.soft);
   }
   add_springs(bytes, packing);
-  return fmt::format("test, schema {}\n{} {} {}\n", kTwinSchema, bytes.hash(), to_string(spec.boundary),
-                     to_string(spec.test)) +
-         spec_text(spec, {});
+  KeyText key("test", kTwinSchema, bytes.hash(), without_laws(setup.spec), setup.law_increments);
+  return add_setup(key, setup, sample).text();
 }
 
 std::string twin_key(const MacroSpec& spec, const MacroSetup& setup, const MacroPacking& packing,
                      const MacroSystem& macro, const std::string& engine, std::int64_t sample,
                      const std::string& runs) {
-  std::string text =
-      fmt::format("twin, schema {}\n{} {} {} of {}\n{} {} {}\n", kTwinSchema, engine, sample, hash_of(macro, packing),
-                  runs, to_string(spec.boundary), to_string(spec.test), to_string(spec.twin.relaxation));
-  const TwinMotion& m = spec.twin;
-  text += spec_text(spec, {m.speed, m.step_factor, m.settle_time, m.restitution});
-  return text + fmt::format("again {} states {}\n", sample < setup.noise_samples, sample == 0 ? setup.kept_states : 0);
+  KeyText key("twin", kTwinSchema, engine, sample, hash_of(macro, packing), runs, without_laws(spec));
+  return add_setup(key, setup, sample).text();
 }
 
 RunOutcome kept_twin(const std::string& key, const Run& run, const std::function<RunOutcome()>& go) {

@@ -72,7 +72,8 @@ std::vector<MacroCurve> kept_tests(const MacroRuns& runs, const Run& run,
   const ResultCache cache(directory, "material test", "material", "tested again",
                           [&](const std::string& remark) { run.context.say(remark); });
   std::string key;
-  for (const MacroPacking& packing : runs.packings) key += test_key(runs.setup.spec, packing);
+  for (std::size_t k = 0; k < runs.packings.size(); ++k)
+    key += test_key(runs.setup, runs.packings[k], static_cast<std::int64_t>(k));
   std::vector<MacroCurve> curves;
   const bool found = cache.find(key, [&](const h5::Group& g) {
     for (std::size_t k = 0; k < runs.packings.size(); ++k)

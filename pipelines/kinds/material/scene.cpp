@@ -8,6 +8,7 @@
 
 #include "common/core/error.h"
 #include "common/core/stopwatch.h"
+#include "common/io/poisson_range.h"
 #include "common/packing/grading_scene.h"
 #include "macrosim/preparation.h"
 #include "microsim/particles/scene_memory.h"
@@ -45,7 +46,7 @@ namespace {
 
 void read_matter(const SceneTable& t, MacroSpec& spec) {
   spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
-  spec.poisson_ratio = t.number("nu", Unit::none, Range{-1.0, 0.5, true, false}, spec.poisson_ratio);
+  spec.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, spec.poisson_ratio);
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.density = t.number("density", Unit::density, Range::positive(), spec.density);
 }

@@ -130,10 +130,10 @@ void check_particles(const ParticlesSceneOf<D>& scene, Findings& out) {
   force_pass(s, 0.0);
   const System<D> first = s;
   const double seconds = step_seconds(s, scene.time) * static_cast<double>(scene.time.steps);
-  const ContactTotals<D> totals = contact_totals(s);
+  const ContactTotals<D> totals = contact_totals(first);
   out.add("contacts", totals.contacts,
           fmt::format("contacts at the start: {}, {:.2f} per grain; {} pairs listed", totals.contacts,
-                      totals.coordination_number, s.contacts.size()));
+                      totals.coordination_number, first.contacts.size()));
   const double memory = estimated_memory(s.particles.grains, static_cast<double>(s.contacts.size()), D);
   out.add("bytes", memory, fmt::format("memory: about {:.1f} MB beside the program's own", memory / 1e6));
   const double recorded = recorded_bytes(scene, s);

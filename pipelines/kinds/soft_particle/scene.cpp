@@ -9,6 +9,7 @@
 
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "common/io/poisson_range.h"
 #include "common/packing/grading_scene.h"
 #include "pipelines/kinds/soft_particle/kept_states.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 void read_material(const SceneTable& t, SoftParticleSpec& spec) {
   spec.youngs_modulus = t.number("E", Unit::pressure, Range::positive(), spec.youngs_modulus);
-  spec.poisson_ratio = t.number("nu", Unit::none, Range::closed(-0.99, 0.5), spec.poisson_ratio);
+  spec.poisson_ratio = t.number("nu", Unit::none, kPoissonRange, spec.poisson_ratio);
   spec.friction = t.number("mu", Unit::none, Range::not_negative(), spec.friction);
   spec.density = t.number("density", Unit::density, Range::positive(), spec.density);
   spec.restitution = t.number("restitution", Unit::none, Range::closed(0.0, 1.0), spec.restitution);

@@ -1,0 +1,40 @@
+// Which files of a directory an export left there, so that a new export or run takes them away and nothing else.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipelines/export/export.h"
+
+namespace softgrain {
+
+/// The list of what one form of export wrote into a directory: a hidden file there, a name a line.
+class ExportList {
+ public:
+  ExportList(const std::string& directory, ExportFormat format);
+
+  /// Files that an earlier export of this form listed, and the list. Throws FileTrouble.
+  void remove_listed() const;
+  /// Files of one series by the names that this form gives them, whether listed or not: earlier versions kept no list.
+  void remove_series(const std::string& series) const;
+  /// Every file with a name that this form gives.
+  void remove_named() const;
+  /// Before the file is written, so that an export that breaks off has listed it. Throws FileTrouble.
+  void add(const std::string& name) const;
+  /// Whether an export of this form kept a list here.
+  [[nodiscard]] bool exists() const;
+
+ private:
+  void remove(const std::string& name) const;
+
+  std::string directory_;
+  ExportFormat format_;
+};
+
+/// Default directory of an export, beside the states: export-vtp, export-lammps-dump, export-csv.
+std::string export_folder(ExportFormat format);
+
+/// What exports left in the default directories of a run; a directory goes when nothing else is in it.
+void remove_exports_of(const std::string& run_directory);
+
+}  // namespace softgrain

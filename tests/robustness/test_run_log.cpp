@@ -1,0 +1,108 @@
+// What a run says of itself: log.txt has what the terminal had, a run that broke off says status and reason, and the
+// report of a run that was stopped does not look like one of results.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "common/io/run_log.h"
+#include "tests/support/every_kind.h"
+#include "tests/support/process.h"
+#include "tests/support/program.h"
+
+namespace {
+
+using namespace softgrain;
+using namespace softgrain::test;
+namespace fs = std::filesystem;
+
+bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+TEST(RunLog, HasWhatTheTerminalSaid) {
+  const KindRuns runs({"macro", "macrosim", kTinyMacro, 0});
+  const std::string command = "macrosim '" + runs.out("scene.toml") + "' --out '" + runs.out("out") + "' ";
+  const ProgramOutcome done = run_the_program(command + "--threads 4000 --set macro.steps=2");
+  ASSERT_EQ(done.status, 0) << done.output;
+  const std::string log = read_text(runs.out("out") + "/log.txt");
+  EXPECT_TRUE(has(log.substr(0, log.find('\n')), " softgrain ")) << log;
+  for (const char* words : {"--set macro.steps=2", "seed 1", "scene.toml", "bodies = 6", "steps = 2",
+                            "preparing macro samples: begins", "preparing macro samples: done",
+                            "macro with laws: begins", "macro: resolved twins: done", "mind: --threads 4000"})
+    EXPECT_TRUE(has(log, words)) << words << " not in\n" << log;
+  std::istringstream said(done.output);
+  for (std::string line; std::getline(said, line);) EXPECT_TRUE(has(log, line)) << line << " not in\n" << log;
+  // A quiet run says the same to its log.
+  ASSERT_EQ(run_the_program(command + "--quiet --set macro.steps=2").status, 0);
+  EXPECT_TRUE(has(read_text(runs.out("out") + "/log.txt"), "macro with laws: done"));
+}
+
+TEST(RunLog, SaysHowARunEnded) {
+  const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
+  const std::string command = "microsim '" + runs.out("scene.toml") + "' --out '" + runs.out("out") + "' ";
+  ASSERT_EQ(run_the_program(command).status, 0);
+  ASSERT_EQ(run_the_program(command + "--resume --set time.end=0.3").status, 2);
+  std::string log = read_text(runs.out("out") + "/log.txt");
+  EXPECT_TRUE(has(log, "belongs to another scene")) << log;
+  EXPECT_TRUE(has(log, "ended with status 2 (bad input)")) << log;
+  const int status = signal_when(
+      start_program(runs.arguments("stopped", {"--set", "time.end=100"})),
+      [&] { return fs::exists(runs.out("stopped") + "/checkpoint.h5"); }, SIGTERM);
+  ASSERT_TRUE(ended_with(status, 130));
+  log = read_text(runs.out("stopped") + "/log.txt");
+  EXPECT_TRUE(has(log, "ended with status 130 (interrupted)")) << log;
+}
+
+TEST(RunLog, ARunThatBrokeOffSaysStatusAndReason) {
+  const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});
+  const std::string command = "microsim '" + runs.out("scene.toml") + "' --out '" + runs.out("out") + "' ";
+  const ProgramOutcome done =
+      run_the_program(command + "--set guards.overlap.limit=1e-9 --set guards.overlap.action=stop");
+  EXPECT_EQ(done.status, 3) << done.output;
+  EXPECT_TRUE(has(done.output, "status: not usable (exit status 3): ")) << done.output;
+  EXPECT_TRUE(has(done.output, "overlap by")) << done.output;
+  EXPECT_TRUE(has(read_text(runs.out("out") + "/log.txt"), "status: not usable (exit status 3): "));
+  EXPECT_FALSE(has(run_the_program(command).output, "status: "));
+}
+
+TEST(RunLog, LogsLieWithinEachOther) {
+  std::string outer;
+  std::string inner;
+  const auto into = [](std::string& text) { return [&text](const std::string& line) { text += line + ";"; }; };
+  {
+    const LogScope all(into(outer));
+    log_text("a\nb");
+    {
+      const LogScope part(into(inner));
+      log_text("c");
+    }
+    log_text("d");
+  }
+  log_text("e");
+  EXPECT_EQ(outer, "a;b;d;e;");
+  EXPECT_EQ(inner, "c;");
+  const LogScope none([](const std::string&) {});  // no text of this test is written to any more
+}
+
+TEST(UnfinishedRun, TheReportSaysSo) {
+  const KindRuns runs({"macro", "macrosim", kTinyMacro, 0});
+  ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments("out"))), 0));
+  const std::string report = "report '" + runs.out("out") + "'";
+  ASSERT_EQ(run_the_program(report).status, 0);
+  EXPECT_FALSE(has(read_text(runs.out("out") + "/report.html"), "unfinished"));
+  fs::remove(runs.out("out") + "/summary.json");  // as a run leaves it that is stopped after its curves
+  const ProgramOutcome done = run_the_program(report);
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_TRUE(has(done.output, "has not come to its end")) << done.output;
+  const std::string html = read_text(runs.out("out") + "/report.html");
+  EXPECT_TRUE(has(html, "Results of an unfinished run:"));
+  EXPECT_TRUE(has(html, "status-bad\">unfinished<"));
+  EXPECT_TRUE(has(html, "(unfinished run)</title>"));
+  EXPECT_TRUE(has(run_the_program(report + " --json").output, "\"unfinished_run\": true"));
+  fs::remove(runs.out("out") + "/macro.h5");
+  for (const char* file : {"macro_initial.h5", "states_macro.h5"}) fs::remove(runs.out("out") + "/" + file);
+  const ProgramOutcome nothing = run_the_program(report);
+  EXPECT_EQ(nothing.status, 4);
+  EXPECT_TRUE(has(nothing.output, "has not come to its end and has no results yet")) << nothing.output;
+}
+
+}  // namespace
