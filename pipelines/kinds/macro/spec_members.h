@@ -8,7 +8,7 @@ namespace softgrain {
 
 SOFTGRAIN_EVERY_MEMBER(Estimate, value, standard_error, low, high)
 SOFTGRAIN_EVERY_MEMBER(CellCard, form, modulus, exponent, void_ratio, excess_alone, excess_many, excess_decay, friction,
-                       stiffness, lateral_ratio, pressure_low, pressure_high, mixture_high, poisson_ratio,
+                       stiffness, lateral_ratio, pressure_low, pressure_high, mixture_high, youngs_modulus, density, poisson_ratio,
                        grain_friction, preparation, start_pressure, split, fines_ratio, fines_sizes, samples)
 SOFTGRAIN_EVERY_MEMBER(CellMatter, card, share, solid_fraction, at_density)
 SOFTGRAIN_EVERY_MEMBER(PreparationProtocol, start_fraction, inertial_number, friction, restitution, coarse_share,

@@ -59,8 +59,8 @@ MacroSpec without_laws(MacroSpec spec) {
 /// What a setup says of one sample beside its spec and its packing. Bands and law_increments are of runs with laws.
 KeyText& add_setup(KeyText& key, const MacroSetup& setup, std::int64_t sample) {
   // Every member: one more does not compile until it is named here, and part of the key or known to change nothing.
-  const auto& [spec, samples, twins, given, kept_states, bands, estimator, law_increments, noise_samples, assumed] =
-      setup;
+  const auto& [spec, samples, twins, given, kept_states, bands, estimator, law_increments, noise_samples, assumed,
+               said] = setup;
   return key.add(sample < noise_samples).add(sample == 0 ? kept_states : 0);
 }
 
