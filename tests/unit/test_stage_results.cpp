@@ -211,9 +211,9 @@ MacroCurve stepped(const std::string& engine, int steps, double stiff, double ba
   c.engine = engine;
   c.test = MacroTest::stages;
   using K = StageKind;
-  c.stages = {{"press", K::consolidation, K::consolidation, std::array{true, true, true}},
-              {"shear", K::triaxial, K::triaxial, std::array{true, true, false}},
-              {"back", K::unload, K::triaxial, std::array{true, true, false}}};
+  c.stages = {{"press", K::consolidation, K::consolidation, {}, std::array{true, true, true}},
+              {"shear", K::triaxial, K::triaxial, {}, std::array{true, true, false}},
+              {"back", K::unload, K::triaxial, {}, std::array{true, true, false}}};
   const auto add = [&](double stage, double side, double axial, const Vec3& strains) {
     c.stage.push_back(stage);
     c.stress_x.push_back(side);
