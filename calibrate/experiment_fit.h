@@ -32,8 +32,9 @@ struct ExperimentFit {
 };
 
 /// Fits every pair kind. A constant force that is read without contact is taken off first, and said (force_offset.h); a
-/// curve that asks for one which its readings do not determine makes the law underdetermined. `mirror`: a kind that was not measured follows from the other one, by symmetry: two equal
-/// soft particles that press on each other are each pressed on a plane at half the overlap,
+/// curve that asks for one which its readings do not determine makes the law underdetermined. `mirror`: a kind that was
+/// not measured follows from the other one, by symmetry: two equal soft particles that press on each other are each
+/// pressed on a plane at half the overlap,
 ///   F_soft-soft(D) = F_soft-solid(D/2), kt_soft-soft(D) = kt_soft-solid(D/2)/2.
 /// Grains of two particles that interlock are not in this; its law is marked "underdetermined" and says so.
 ExperimentFit fit_experiment(const std::vector<ForceCurves>& curves, const FitOptions& options, bool mirror);

@@ -33,9 +33,8 @@ struct WeightedCurve {
   explicit WeightedCurve(const std::vector<ForcePoint>& all) {
     const std::size_t n = std::min(all.size(), kMostLookedAt);
     for (std::size_t k = 0; k < n; ++k) points.push_back(all[n < 2 ? k : k * (all.size() - 1) / (n - 1)]);
-    const auto [low, high] = std::minmax_element(points.begin(), points.end(), [](const ForcePoint& a, const ForcePoint& b) {
-      return a.force < b.force;
-    });
+    const auto [low, high] = std::minmax_element(
+        points.begin(), points.end(), [](const ForcePoint& a, const ForcePoint& b) { return a.force < b.force; });
     const double range = high->force - low->force;
     for (const ForcePoint& p : points)
       weight.push_back(1.0 / (0.005 * range + 0.05 * std::abs(p.force - points.front().force)));
@@ -186,16 +185,19 @@ std::vector<ForceOffset> subtract_offsets(ForceCurves& curves) {
       curves.remarks.push_back(fmt::format(
           "{}: forces do not vanish with the overlap; a constant offset of about {:.3g} N would explain it, but {} "
           "reading{} without contact, and {} are needed to tell: record some before touch, or subtract the zero",
-          name, o.force, o.readings == 0 ? "there is no" : o.readings == 1 ? "there is one" : "there are two",
+          name, o.force,
+          o.readings == 0   ? "there is no"
+          : o.readings == 1 ? "there is one"
+                            : "there are two",
           o.readings == 2 ? "s" : "", kLeastReadings));
       continue;
     }
     for (ForcePoint& p : sample.normal) p.force -= o.force;
     for (double& force : sample.before_touch) force -= o.force;
-    curves.remarks.push_back(
-        fmt::format("{}: {} readings without contact force (before touch, or below Delta = {:.3g}) lie at {:.4g} "
-                    "+- {:.2g} N: this offset was subtracted from all forces of the sample (--set offset=keep leaves it)",
-                    name, o.readings, o.below, o.force, o.error));
+    curves.remarks.push_back(fmt::format(
+        "{}: {} readings without contact force (before touch, or below Delta = {:.3g}) lie at {:.4g} "
+        "+- {:.2g} N: this offset was subtracted from all forces of the sample (--set offset=keep leaves it)",
+        name, o.readings, o.below, o.force, o.error));
   }
   return found;
 }

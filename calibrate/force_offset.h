@@ -19,8 +19,8 @@ struct ForceOffset {
 };
 
 /// The offsets of samples that have one: the mean over at least three readings without force differs from zero by more
-/// than Student's t of 99.9 %. Also those that the shape of the curve shows (forces that do not vanish with the overlap)
-/// and too few readings determine.
+/// than Student's t of 99.9 %. Also those that the shape of the curve shows (forces that do not vanish with the
+/// overlap) and too few readings determine.
 std::vector<ForceOffset> force_offsets(const ForceCurves& curves);
 
 /// Subtracts the determined ones from all forces of their samples, with a remark for each, and says of the others that

@@ -29,8 +29,8 @@ void CurveRows::read() {
       add_normal(row, delta, sample);
   }
   if (before_touch_ > 0)
-    out_.remarks.push_back(
-        fmt::format("{}: {} points before touch (negative overlap) are left out of the fit", file_.path(), before_touch_));
+    out_.remarks.push_back(fmt::format("{}: {} points before touch (negative overlap) are left out of the fit",
+                                       file_.path(), before_touch_));
   if (dropped_ > 0)
     out_.remarks.push_back(fmt::format("{}: {} points of unloading are left out", file_.path(), dropped_));
   note_falls();
@@ -71,7 +71,8 @@ TangentialPoint CurveRows::tangential(const CsvRow& row, double delta) const {
 
 std::size_t CurveRows::sample_of(const CsvRow& row) {
   const bool all = at_.sample == CurveLayout::none;
-  const std::string file = at_.sample_name.empty() ? std::filesystem::path(file_.path()).stem().string() : at_.sample_name;
+  const std::string file =
+      at_.sample_name.empty() ? std::filesystem::path(file_.path()).stem().string() : at_.sample_name;
   const std::string name = all ? file : row.cells[at_.sample];
   if (name.empty())
     throw BadInput(fmt::format("{}: column \"{}\": the value is missing", file_.where(row.line),

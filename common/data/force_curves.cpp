@@ -57,7 +57,8 @@ std::string known_columns(const std::string& found) {
 
 /// Of spheres a strain may be the overlap over the radius or over the diameter, and the fit differs by a power of two.
 void refuse_ambiguous(const CsvFile& file) {
-  const CsvNames ambiguous{"strain", "compressive strain", "compression", "deformation", "epsilon", "eps", "h/d", "h/2r"};
+  const CsvNames ambiguous{"strain", "compressive strain", "compression", "deformation", "epsilon", "eps", "h/d",
+                           "h/2r"};
   for (const CsvColumn& c : file.columns())
     if (std::find(ambiguous.begin(), ambiguous.end(), c.name) != ambiguous.end())
       throw BadInput(

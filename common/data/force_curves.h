@@ -59,10 +59,9 @@ struct ForceCurveOptions {
 /// Reads one CSV file. Columns (any order, name [unit]): hn or overlap (with a unit of length) or Delta; Fn or force;
 /// optional sample, a standard error of Fn (se, error), and for the tangential law ht with Ft (Ft at ht = 0 is the
 /// prestrain), or kt. Other columns are named in a remark. Comments may say "# kind = soft-solid", "# Rs = 16 mm",
-/// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; other comments that name
-/// a value are refused.
-/// Throws BadInput with file and line: unknown unit, missing value, number that is not finite, overlap that falls, too
-/// few points (5), kind, Rs or E not given or said twice in different ways.
+/// "# E [MPa] = 0.5", "# nu = ...", "# mu = ...", "# density [kg/m^3] = ...", "# sample = ..."; other comments that
+/// name a value are refused. Throws BadInput with file and line: unknown unit, missing value, number that is not
+/// finite, overlap that falls, too few points (5), kind, Rs or E not given or said twice in different ways.
 ForceCurves read_force_curves(const std::string& path, const ForceCurveOptions& options);
 
 /// Whether the comments of a table say what ForceCurveOptions may say beside it.

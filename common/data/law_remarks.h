@@ -19,8 +19,8 @@ std::string assumed_kt_text(const LawCard& card);
 /// "unloading is 1.16 times as steep as loading", or that it was not measured.
 std::string unloading_text(const LawTableEntry& entry);
 
-/// What a pair law misses: force of a soft particle with several neighbours over that of its pair law, from two opposite
-/// planes to twelve small spheres, and among soft particles, as measured for results/law_table.
+/// What a pair law misses: force of a soft particle with several neighbours over that of its pair law, from two
+/// opposite planes to twelve small spheres, and among soft particles, as measured for results/law_table.
 inline constexpr double kPairLawMissesLeast = 2.2;
 inline constexpr double kPairLawMissesMost = 12.0;
 inline constexpr double kPairLawMissesAmongSoft = 43.0;

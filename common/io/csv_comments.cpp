@@ -61,7 +61,8 @@ std::size_t number_length(const std::string& word) {
 }
 
 bool is_unit_word(const std::string& word) {
-  return !word.empty() && word.size() <= 12 && (is_letter(word.front()) || word.front() == '%' || word.starts_with("1/"));
+  return !word.empty() && word.size() <= 12 &&
+         (is_letter(word.front()) || word.front() == '%' || word.starts_with("1/"));
 }
 
 /// Numbers, and perhaps a unit behind the last.
@@ -94,8 +95,21 @@ bool same_text(const std::string& a, const std::string& b) { return csv::lower(a
 
 bool same_values(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr double kRounding = 1e-9;
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](double x, double y) { return std::abs(x - y) <= kRounding * std::max(std::abs(x), std::abs(y)); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::abs(x - y) <= kRounding * std::max(std::abs(x), std::abs(y));
+  });
+}
+
+/// Where numbers begin that follow a name without a sign between: "Rs [mm] 16"; npos: no such text.
+std::size_t bare_value(const std::string& text) {
+  for (std::size_t at = text.find_first_of(" \t])"); at != std::string::npos;
+       at = text.find_first_of(" \t])", at + 1)) {
+    const std::size_t next = text.find_first_not_of(" \t", at + 1);
+    if (next == std::string::npos || number_length(text.substr(next)) == 0) continue;
+    const bool value = is_quantity(text.substr(next));
+    return value ? next : std::string::npos;
+  }
+  return std::string::npos;
 }
 
 }  // namespace
@@ -121,12 +135,14 @@ void CsvFile::read_setting(const std::string& text, int number) {
   std::size_t mark = text.find('=');
   const bool equals = mark != std::string::npos;
   if (!equals) mark = text.find(':');
-  if (mark == std::string::npos) return;
   CsvSetting s;
   s.equals = equals;
   s.line = number;
+  s.bare = mark == std::string::npos;
+  if (s.bare) mark = bare_value(text);
+  if (mark == std::string::npos) return;
   s.title = trimmed(text.substr(0, mark));
-  s.value = csv::unquoted(trimmed(text.substr(mark + 1)));
+  s.value = csv::unquoted(trimmed(text.substr(s.bare ? mark : mark + 1)));
   const CsvColumn named = csv::column_of(s.title);
   s.unit = named.unit;
   const std::string name = named.unit.empty() ? s.title : trimmed(s.title.substr(0, s.title.find_first_of("[(")));
@@ -152,8 +168,8 @@ std::optional<CsvSetting> CsvFile::word(const CsvNames& names) const {
   if (found.empty()) return std::nullopt;
   for (const CsvSetting& s : found)
     if (!same_text(s.value, found.front().value))
-      throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": line " +
-                     std::to_string(found.front().line) + " says " + found.front().value +
+      throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": line " + std::to_string(found.front().line) +
+                     " says " + found.front().value +
                      "; what a comment says holds for the whole file, so leave one of them out");
   return found.front();
 }
@@ -216,7 +232,8 @@ std::optional<double> CsvFile::quantity(const CsvNames& names, Unit unit, const 
       !(range.high_open && value == range.high))
     return value;
   const CsvSetting s = *setting(names);
-  std::string allowed = std::string("must be ") + (range.low_open ? "above " : "at least ") + csv::short_number(range.low);
+  std::string allowed =
+      std::string("must be ") + (range.low_open ? "above " : "at least ") + csv::short_number(range.low);
   if (std::isfinite(range.high))
     allowed += std::string(" and ") + (range.high_open ? "below " : "at most ") + csv::short_number(range.high);
   throw BadInput(where(s.line) + ": " + s.title + " = " + s.value + ": " + allowed);
@@ -233,12 +250,16 @@ void CsvFile::require_known_comments(const std::vector<CsvNames>& known, const s
     if (std::find(names.begin(), names.end(), s.key) != names.end()) continue;
     const std::string near = near_name(s.key, names);
     const bool number = is_quantity(s.value);
+    if (s.bare && s.unit.empty()) continue;
     const bool says_value = number && (s.equals || !s.unit.empty());
     const bool slip = near.size() <= s.key.size() + 1 && s.key.size() <= near.size() + 1;  // of a word: "knid"
     if (!says_value && (near.empty() || !(number || (s.equals && slip)))) continue;
-    throw BadInput(where(s.line) + ": comment \"" + s.title + (s.equals ? " = " : ": ") + s.value +
-                   "\" is not understood" + (near.empty() ? "" : "; nearest is \"" + near + "\"") + ": comments of " +
-                   what + (names.empty() ? " say no values" : " may say " + first_names) +
+    throw BadInput(where(s.line) + ": comment \"" + s.title +
+                   (s.bare     ? " "
+                    : s.equals ? " = "
+                               : ": ") +
+                   s.value + "\" is not understood" + (near.empty() ? "" : "; nearest is \"" + near + "\"") +
+                   ": comments of " + what + (names.empty() ? " say no values" : " may say " + first_names) +
                    "; write anything else as text without \"=\"");
   }
 }

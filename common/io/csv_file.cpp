@@ -48,9 +48,16 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 std::string plain_name(const std::string& name) {
   std::string text = lower(name);
-  for (const auto& [from, to] :
-       {std::pair{"\u2019", ""}, {"'", ""}, {"_", " "}, {"-", " "}, {"\t", " "}, {"µ", "mu"}, {"μ", "mu"}, {"ν", "nu"},
-        {"ρ", "rho"}, {".", " "}})
+  for (const auto& [from, to] : {std::pair{"\u2019", ""},
+                                 {"'", ""},
+                                 {"_", " "},
+                                 {"-", " "},
+                                 {"\t", " "},
+                                 {"µ", "mu"},
+                                 {"μ", "mu"},
+                                 {"ν", "nu"},
+                                 {"ρ", "rho"},
+                                 {".", " "}})
     replace_all(text, from, to);
   replace_all(text, "  ", " ");
   return trimmed(text);
@@ -168,8 +175,8 @@ void CsvFile::read_row(const std::string& line, int number) {
 }
 
 void CsvFile::require_known_columns(const CsvNames& known, const std::string& what) const {
-  const CsvNames labels{"id", "no", "nr", "index", "name", "label", "comment", "comments", "remark", "remarks", "note",
-                        "notes"};
+  const CsvNames labels{"id",      "no",       "nr",     "index",   "name", "label",
+                        "comment", "comments", "remark", "remarks", "note", "notes"};
   for (const CsvColumn& c : columns_) {
     const auto is_in = [&](const CsvNames& names) {
       return std::find(names.begin(), names.end(), c.name) != names.end();
@@ -192,8 +199,9 @@ std::optional<double> CsvFile::number(const CsvRow& row, std::size_t column, Uni
   const bool percent_sign = unit == Unit::none && cell.back() == '%';
   if (percent_sign) cell = trimmed(cell.substr(0, cell.size() - 1));
   const double part = percent_sign || (unit == Unit::none && is_percent(c.unit)) ? 100.0 : 1.0;
-  const bool own_unit = cell.find(' ') != std::string::npos || (!cell.empty() && cell.back() != '.' &&
-                                                                std::isdigit(static_cast<unsigned char>(cell.back())) == 0);
+  const bool own_unit =
+      cell.find(' ') != std::string::npos ||
+      (!cell.empty() && cell.back() != '.' && std::isdigit(static_cast<unsigned char>(cell.back())) == 0);
   const bool pure = unit == Unit::none || c.unit.empty();
   try {
     return parse_quantity(own_unit || pure ? cell : cell + " " + c.unit, unit) / part;

@@ -17,13 +17,14 @@ struct CsvColumn {
   std::string unit;
 };
 
-/// A comment that names a value: "# E = 0.5 MPa", "# E: 0.5 MPa", "# E [MPa] = 0.5", "# E(MPa): 0.5".
+/// A comment that names a value: "# E = 0.5 MPa", "# E: 0.5 MPa", "# E [MPa] = 0.5", "# E(MPa): 0.5", "# E 0.5 MPa".
 struct CsvSetting {
   std::string title;  ///< the name as written, with its unit
   std::string key;    ///< the name in lower case, without unit and apostrophes, its words apart by one blank
   std::string unit;   ///< behind the name, as written; empty: none
   std::string value;
   bool equals = true;  ///< an equals sign stands between them, not a colon
+  bool bare = false;   ///< neither does: "# Rs 16 mm"
   int line = 0;
 };
 
@@ -37,10 +38,10 @@ using CsvNames = std::vector<std::string>;
 
 class CsvFile {
  public:
-  /// In any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;" says, else the
-  /// first of ";", tab, "," that the header has. With another one than the comma, a comma in a number is its decimal
-  /// mark. Cells may stand in double quotes; empty ones at the end of a line and empty lines count for nothing. Throws
-  /// BadInput (no header, a row of another length), FileTrouble.
+  /// In any encoding that utf8_of() knows, with any line ends. The separator is what a first line "sep=;" says, else
+  /// the first of ";", tab, "," that the header has. With another one than the comma, a comma in a number is its
+  /// decimal mark. Cells may stand in double quotes; empty ones at the end of a line and empty lines count for nothing.
+  /// Throws BadInput (no header, a row of another length), FileTrouble.
   static CsvFile read(const std::string& path);
   /// The same from a text.
   static CsvFile parse(const std::string& bytes, const std::string& path);
@@ -62,8 +63,8 @@ class CsvFile {
   /// As many numbers, apart by blanks or commas, with one unit for all. Likewise.
   [[nodiscard]] std::optional<std::vector<double>> quantities(const CsvNames& names, Unit unit,
                                                               std::size_t count) const;
-  /// Throws BadInput for a comment "name [unit] = value" (or "name = value unit") with another name than the known ones:
-  /// whoever wrote it expects it to count. Other comments are free text. `what` the file is, as messages say it.
+  /// Throws BadInput for a comment "name [unit] = value" (or "name = value unit") with another name than the known
+  /// ones: whoever wrote it expects it to count. Other comments are free text. `what` the file is, as messages say it.
   void require_known_comments(const std::vector<CsvNames>& known, const std::string& what) const;
   /// Throws BadInput for a column that is not among `known` names and no label of rows (id, name, comment, ...).
   void require_known_columns(const CsvNames& known, const std::string& what) const;

@@ -23,7 +23,8 @@ extern "C" herr_t softgrain_note_error(unsigned depth, const H5E_error2_t* entry
 }
 
 constexpr const char* kHeldElsewhere =
-    ": another program holds this file open (a viewer, a notebook, a run that is still going): close it there, or wait, "
+    ": another program holds this file open (a viewer, a notebook, a run that is still going): close it there, or "
+    "wait, "
     "and try again";
 
 bool is_locked(const std::string& reason) { return reason.find("unable to lock file") != std::string::npos; }
@@ -102,8 +103,8 @@ Group open_file(const std::string& path) {
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (file.id() < 0) {
     const std::string reason = library_message();
-    throw FileTrouble(path + (is_locked(reason) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") +
-                      reason);
+    throw FileTrouble(
+        path + (is_locked(reason) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") + reason);
   }
   return root_of(std::make_shared<File>(File{std::move(file), path}));
 }

@@ -29,11 +29,11 @@ constexpr KnownUnit kMass[] = {{"kg"}, {"t", 3}, {"g", -3}, {"mg", -6}, {"ug", -
 constexpr KnownUnit kTime[] = {{"s"},      {"ms", -3},       {"us", -6},      {"µs", -6},
                                {"ns", -9}, {"min", 0, 60.0}, {"h", 0, 3600.0}};
 constexpr KnownUnit kFrequency[] = {{"Hz"}, {"1/s"}, {"kHz", 3}, {"MHz", 6}, {"1/min", 0, 1.0 / 60.0}};
-constexpr KnownUnit kPressure[] = {{"Pa"},         {"kPa", 3},    {"MPa", 6},     {"GPa", 9},     {"N/m^2"},
-                                   {"kN/m^2", 3},  {"MN/m^2", 6}, {"N/mm^2", 6},  {"kN/mm^2", 9}, {"N/cm^2", 4},
+constexpr KnownUnit kPressure[] = {{"Pa"},         {"kPa", 3},    {"MPa", 6},    {"GPa", 9},     {"N/m^2"},
+                                   {"kN/m^2", 3},  {"MN/m^2", 6}, {"N/mm^2", 6}, {"kN/mm^2", 9}, {"N/cm^2", 4},
                                    {"kN/cm^2", 7}, {"bar", 5},    {"mbar", 2}};
-constexpr KnownUnit kDensity[] = {{"kg/m^3"}, {"g/cm^3", 3}, {"t/m^3", 3}, {"Mg/m^3", 3}, {"g/cc", 3}, {"g/ml", 3},
-                                  {"kg/l", 3}, {"kg/dm^3", 3}};
+constexpr KnownUnit kDensity[] = {{"kg/m^3"},  {"g/cm^3", 3}, {"t/m^3", 3}, {"Mg/m^3", 3},
+                                  {"g/cc", 3}, {"g/ml", 3},   {"kg/l", 3},  {"kg/dm^3", 3}};
 constexpr KnownUnit kVelocity[] = {{"m/s"},      {"cm/s", -2}, {"mm/s", -3},
                                    {"um/s", -6}, {"µm/s", -6}, {"km/h", 0, 1.0 / 3.6}};
 constexpr KnownUnit kAngularVelocity[] = {
@@ -158,9 +158,9 @@ double parse_quantity(const std::string& text, Unit unit) {
 }
 
 std::optional<double> quantity_of_any_unit(const std::string& text) {
-  for (const Unit unit : {Unit::none, Unit::length, Unit::mass, Unit::time, Unit::frequency, Unit::pressure,
-                          Unit::density, Unit::velocity, Unit::angular_velocity, Unit::force, Unit::acceleration,
-                          Unit::stiffness, Unit::angle_degree}) {
+  for (const Unit unit :
+       {Unit::none, Unit::length, Unit::mass, Unit::time, Unit::frequency, Unit::pressure, Unit::density,
+        Unit::velocity, Unit::angular_velocity, Unit::force, Unit::acceleration, Unit::stiffness, Unit::angle_degree}) {
     try {
       return parse_quantity(text, unit);
     } catch (const BadInput&) {  // another one may know it

@@ -95,9 +95,10 @@ struct SieveRow {
   std::string where{};   ///< "file:line"
 };
 
-const CsvNames kPassing{"passing",          "finer",           "cumulative passing", "percent passing", "passing percent",
-                        "percent finer",    "% passing",       "passing %",          "% finer",         "finer %",
-                        "cumulative finer", "passing by mass", "mass passing"};
+const CsvNames kPassing{"passing",         "finer",         "cumulative passing", "percent passing",
+                        "passing percent", "percent finer", "% passing",          "passing %",
+                        "% finer",         "finer %",       "cumulative finer",   "passing by mass",
+                        "mass passing"};
 const CsvNames kOpening{"opening", "sieve", "size", "diameter", "sieve opening", "sieve size"};
 
 bool is_retained(const CsvColumn& c) { return c.name.find("retained") != std::string::npos; }
@@ -245,9 +246,9 @@ Grading read_radii(const std::string& path, int dimension) {
   const std::size_t column = diameters ? length_column(csv, {"diameter", "d"}, "diameter [mm]")
                                        : length_column(csv, {"radius", "r"}, "radius [mm]");
   const int count = column_of(csv, {"count", "number", "frequency", "n"});
-  csv.require_known_columns({csv.columns()[column].name,
-                             count < 0 ? "count" : csv.columns()[static_cast<std::size_t>(count)].name},
-                            "a list of sizes");
+  csv.require_known_columns(
+      {csv.columns()[column].name, count < 0 ? "count" : csv.columns()[static_cast<std::size_t>(count)].name},
+      "a list of sizes");
   if (count >= 0) csv.require_unit(static_cast<std::size_t>(count), Unit::none, "count");
   std::vector<double> radii;
   std::vector<double> counts;

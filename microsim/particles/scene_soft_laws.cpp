@@ -11,6 +11,7 @@
 #include "common/data/card_text.h"
 #include "common/data/crowd_law.h"
 #include "common/data/law_card.h"
+#include "common/data/law_remarks.h"
 #include "common/io/text_file.h"
 #include "microsim/particles/scene_contacts.h"
 
@@ -97,6 +98,10 @@ void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, 
     if (t.has(key)) t.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   const auto kind = t.choice<PairKind>("kind");
   const LawCard card = load_card(path);
+  if (const std::string assumed = assumed_kt_text(card); !assumed.empty())
+    if (const std::string remark = path + ": " + assumed;
+        std::find(out_.remarks.begin(), out_.remarks.end(), remark) == out_.remarks.end())
+      out_.remarks.push_back(remark);
   if (kind == PairKind::soft_soft) {
     out_.laws.set(pair.first, pair.second, card_law(t, card, PairKind::soft_soft));
     return;

@@ -126,9 +126,10 @@ std::function<std::string(const System3&)> measured_note(const LawCard& card, co
   std::string text = assumed_kt_text(card);
   if (!card.from_experiment() && (measured.poisson_ratio != spec.poisson_ratio || measured.friction != spec.friction))
     text += (text.empty() ? "" : "; ") +
-            fmt::format("the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, "
-                        "mu = {:g}",
-                        measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction);
+            fmt::format(
+                "the law card was measured with nu = {:g}, mu = {:g}, the grains of this scene have nu = {:g}, "
+                "mu = {:g}",
+                measured.poisson_ratio, measured.friction, spec.poisson_ratio, spec.friction);
   if (text.empty()) return nullptr;
   return [text](const System3&) { return text; };
 }

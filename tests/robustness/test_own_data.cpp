@@ -161,7 +161,8 @@ TEST_F(OwnData, OptionsThatContradictTheFileAreRefused) {
   EXPECT_FALSE(fs::exists(file("x") + "/law.toml"));
   expect(calibrate(plane, "law", "--kind soft-solid --radius 1.6cm --modulus 500kPa"), 0, {"soft-solid: good"});
   write("scene.toml", kInverse);
-  write("target.csv", "# kind = soft-solid\n# Rs = 20 mm\nDelta, Fn [N]\n0.1, 0\n0.2, 0.1\n0.3, 0.4\n0.4, 0.9\n0.5, 2\n");
+  write("target.csv",
+        "# kind = soft-solid\n# Rs = 20 mm\nDelta, Fn [N]\n0.1, 0\n0.2, 0.1\n0.3, 0.4\n0.4, 0.9\n0.5, 2\n");
   expect(run_the_program("check '" + file("scene.toml") + "'"), 2, {"Rs = 20 mm", "shell_radius of [packing]"});
 }
 
@@ -380,7 +381,8 @@ TEST_F(OwnData, ObservablesAreWrittenAsCalibrationToolsReadThem) {
   EXPECT_EQ(delta, 0.5);
   const std::string units = file("iter1/a");
   (void)run_the_program("microsim '" + file("scene.toml") + "' --quiet --set 'material.E=50 GPa' --set " +
-                        "'packing.shell_radius=\"20 mm\"' --set measure.relaxation=damped --observables '" + units + "'");
+                        "'packing.shell_radius=\"20 mm\"' --set measure.relaxation=damped --observables '" + units +
+                        "'");
   EXPECT_EQ(read_text(units + "_param.txt"), "# E shell_radius\n5e+10 0.02\n");
   write("grains.toml", "kind = \"particles\"\n");
   expect(run_the_program("microsim '" + file("grains.toml") + "' --observables '" + file("p") + "'"), 2, {"particles"});

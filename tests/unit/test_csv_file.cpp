@@ -65,14 +65,16 @@ TEST(CsvFile, PercentsAreHundredths) {
 
 TEST(CsvFile, CommentsAreReadInEverySpelling) {
   for (const char* comment :
-       {"# Rs = 16 mm", "# Rs: 16 mm", "#Rs=16mm", "# Rs [mm] = 16", "# Rs(mm): 16", "# Rs[cm] = 1.6", "# RS [m] = 0.016",
-        "# shell_radius = \"16 mm\"", "# Shell radius (µm) = 16000", "## Rs [mm] = 16 mm", "# geometry: Rs = 16 mm",
-        "# E = 1 MPa, Rs = 16 mm", "# Rs: 16 mm; E [MPa] = 1", "# Rs = 0.016"}) {
+       {"# Rs = 16 mm", "# Rs: 16 mm", "#Rs=16mm", "# Rs [mm] = 16", "# Rs(mm): 16", "# Rs[cm] = 1.6",
+        "# RS [m] = 0.016", "# shell_radius = \"16 mm\"", "# Shell radius (µm) = 16000", "## Rs [mm] = 16 mm",
+        "# geometry: Rs = 16 mm", "# E = 1 MPa, Rs = 16 mm", "# Rs: 16 mm; E [MPa] = 1", "# Rs = 0.016", "# Rs 16 mm",
+        "# Rs [mm] 16", "# Rs(mm) 16.0"}) {
     const CsvFile csv = CsvFile::parse(std::string(comment) + "\na [m]\n1\n", "t");
     EXPECT_EQ(csv.quantity({"rs", "shell radius"}, Unit::length, Range::positive()), 0.016) << comment;
   }
-  for (const char* comment : {"# box [mm] = 0 0 0 80 20 40", "# box [cm] = 0,0,0,8,2,4", "# box[m]: 0 0 0 0.08 0.02 0.04",
-                              "# Box (mm) = (0, 0, 0) (80, 20, 40)", "# box = 0 0 0 80 20 40 mm"}) {
+  for (const char* comment : {"# box [mm] = 0 0 0 80 20 40", "# box [cm] = 0,0,0,8,2,4",
+                              "# box[m]: 0 0 0 0.08 0.02 0.04", "# Box (mm) = (0, 0, 0) (80, 20, 40)",
+                              "# box [mm] 0 0 0 80 20 40", "# box 0 0 0 0.08 0.02 0.04", "# box = 0 0 0 80 20 40 mm"}) {
     const auto box = CsvFile::parse(std::string(comment) + "\na [m]\n1\n", "t").quantities({"box"}, Unit::length, 6);
     ASSERT_TRUE(box) << comment;
     EXPECT_EQ(*box, (std::vector<double>{0, 0, 0, 0.08, 0.02, 0.04})) << comment;
@@ -108,6 +110,7 @@ TEST(CsvFile, CommentsThatCountForNothingAreRefused) {
            {"# speed = 1 mm/min", "is not understood"},
            {"# bulk density: 2500 kg/m^3", "nearest is \"density\""},
            {"# knid = soft-solid", "nearest is \"kind\""},
+           {"# radiu [mm] 16", "comment \"radiu [mm] 16\" is not understood; nearest is \"radius\""},
            {"# Rs = 16 mm\n# radius [mm] = 17", "t.csv:2: radius [mm] = 17: contradicts line 1, Rs = 16 mm"},
            {"# kind = a\n# kind = b", "t.csv:2: kind = b: line 1 says a"},
            {"# Rs [m] = 16 mm", "the name says the unit m, the value mm"},
@@ -120,10 +123,11 @@ TEST(CsvFile, CommentsThatCountForNothingAreRefused) {
 
 TEST(CsvFile, OtherCommentsAreFreeText) {
   const std::string rows = "\na [m]\n1\n";
-  for (const char* comment :
-       {"# Date: 2024-03-05", "# date = 5.3.2024", "# Time: 10:32", "# operator = Jane Doe", "# Temperature: 23 C",
-        "# Three particles were pressed: an example, not a measurement", "# note (see page 3): slow", "# a = b = c",
-        "# The force that was read at the end of the test was 3 N", "# Rs = 16 mm\n# radius [cm] = 1.6", "#", "# =", "# :"})
+  for (const char* comment : {"# Date: 2024-03-05", "# date = 5.3.2024", "# Time: 10:32", "# operator = Jane Doe",
+                              "# Temperature: 23 C", "# Three particles were pressed: an example, not a measurement",
+                              "# note (see page 3): slow", "# a = b = c", "# test 3", "# Rs 16 mm was measured twice",
+                              "# pressed at 5 mm/min", "# The force that was read at the end of the test was 3 N",
+                              "# Rs = 16 mm\n# radius [cm] = 1.6", "#", "# =", "# :"})
     EXPECT_EQ(refusal(comment + rows), "") << comment;
 }
 

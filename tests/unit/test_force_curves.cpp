@@ -92,7 +92,8 @@ TEST_F(ForceCurveFile, OptionsThatContradictCommentsAreRefused) {
 }
 
 TEST_F(ForceCurveFile, CommentsInOtherSpellingsCount) {
-  std::string text = replaced(kGood, "# Rs: 16 mm", "# Rs [mm] = 16\n# density [kg/m^3] = 2600\n# Poisson ratio = 0.22");
+  std::string text =
+      replaced(kGood, "# Rs: 16 mm", "# Rs [mm] = 16\n# density [kg/m^3] = 2600\n# Poisson ratio = 0.22");
   text = replaced(text, "# E = \"0.5 MPa\"", "# Young's modulus (MPa): 0.5\n# specimen: ring 7");
   const ForceCurves c = read(text);
   EXPECT_DOUBLE_EQ(c.spec.shell_radius, 0.016);

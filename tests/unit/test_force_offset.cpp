@@ -30,7 +30,9 @@ ForceCurves pressed(const Pressed& p) {
   RandomStream random(p.seed, RandomPurpose::test, 0);
   ForceCurves out;
   ForceCurve curve{"A", {}, {}, {}};
-  const auto read = [&](double delta) { return kUnit * KnownLaw{}.value(delta) + p.offset + p.noise * normal_number(random); };
+  const auto read = [&](double delta) {
+    return kUnit * KnownLaw{}.value(delta) + p.offset + p.noise * normal_number(random);
+  };
   for (int k = 0; k < p.before; ++k) curve.before_touch.push_back(read(0.0));
   for (int k = 0; k < p.points; ++k) {
     const double d = p.first + (0.3 - p.first) * k / (p.points - 1);

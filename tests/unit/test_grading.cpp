@@ -233,14 +233,15 @@ TEST_F(GradingFile, EndsOfACurveMayBeRounded) {
       EXPECT_NEAR(g.passing(0.5), 1.0, 1e-12) << start << " to " << end;
       EXPECT_NEAR(g.passing(0.001), 0.4, 1e-12) << start << " to " << end;
     }
-  EXPECT_NE(complaint("opening [mm],passing [%]\n1,0\n4,99.9999\n").find("it must go from 0 to 100 %"), std::string::npos);
+  EXPECT_NE(complaint("opening [mm],passing [%]\n1,0\n4,99.9999\n").find("it must go from 0 to 100 %"),
+            std::string::npos);
   EXPECT_NE(complaint("opening [mm],passing [%]\n1,0\n4,100.0001\n").find("allowed: 0 to 100 %"), std::string::npos);
   EXPECT_NEAR(sieves("opening [mm],passing [%]\n1,0\n2,100.00000000000001\n4,100\n").passing(1.0), 1.0, 1e-12);
 }
 
 TEST_F(GradingFile, ColumnsMaySayPercentByTheirName) {
-  for (const char* name : {"percent passing", "percent passing [%]", "% passing", "passing %", "Percent finer", "% finer",
-                           "cumulative passing [%]"}) {
+  for (const char* name : {"percent passing", "percent passing [%]", "% passing", "passing %", "Percent finer",
+                           "% finer", "cumulative passing [%]"}) {
     const Grading g = sieves(std::string("sieve size [mm];") + name + ";% retained\n1;0;40\n2;40;60\n4;100%;0\n");
     EXPECT_NEAR(g.passing(0.001), 0.4, 1e-12) << name;
   }
@@ -265,8 +266,9 @@ TEST_F(GradingFile, AListMayHaveCounts) {
   }
   EXPECT_EQ(list("radius [mm],count\n1,1\n2,1\n"), list("radius [mm]\n1\n2\n"));
   EXPECT_EQ(list("radius [mm],count\n1,3\n2,0\n").pieces().size(), 1U);
-  for (const char* text : {"radius [mm],count\n1,-1\n", "radius [mm],count\n1,\n", "radius [mm],count\n1,0\n",
-                           "radius [mm],count [kg]\n1,2\n", "radius [mm],mass\n1,2\n", "# mean = 3 mm\nradius [mm]\n1\n"})
+  for (const char* text :
+       {"radius [mm],count\n1,-1\n", "radius [mm],count\n1,\n", "radius [mm],count\n1,0\n",
+        "radius [mm],count [kg]\n1,2\n", "radius [mm],mass\n1,2\n", "# mean = 3 mm\nradius [mm]\n1\n"})
     EXPECT_THROW((void)list(text), BadInput) << text;
 }
 

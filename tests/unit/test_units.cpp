@@ -66,7 +66,8 @@ TEST(Units, AnyUnitGoesToSi) {
   EXPECT_EQ(quantity_of_any_unit("0.25"), 0.25);
   EXPECT_EQ(quantity_of_any_unit("16 mm"), 0.016);
   EXPECT_EQ(quantity_of_any_unit("2 g/cc"), 2000.0);
-  for (const char* text : {"damped", "", "[0.1, 0.2]", "3 apples", "true"}) EXPECT_FALSE(quantity_of_any_unit(text)) << text;
+  for (const char* text : {"damped", "", "[0.1, 0.2]", "3 apples", "true"})
+    EXPECT_FALSE(quantity_of_any_unit(text)) << text;
 }
 
 TEST(Units, FactorsThatAreNoPowersOfTen) {
