@@ -269,7 +269,7 @@ void question(PairLaw& law) {
   if (law.status != LawStatus::good && law.status != LawStatus::underdetermined) return;
   law.status = LawStatus::underdetermined;
   law.reason += std::string(law.reason.empty() ? "" : " ") +
-                "The forces do not vanish with the overlap: an offset that too few readings without contact determine.";
+                "The forces do not vanish with the overlap: an offset that the readings do not determine.";
 }
 
 }  // namespace

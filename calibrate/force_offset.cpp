@@ -74,20 +74,52 @@ OffsetLaw best_at(const WeightedCurve& curve, double delta, double exponent, boo
   return law;
 }
 
-/// The best of many thresholds and exponents: rough, but no start can miss it.
-OffsetLaw best_law(const WeightedCurve& curve, bool with_offset) {
+/// The best exponent at a threshold, to a thousandth.
+OffsetLaw best_at(const WeightedCurve& curve, double delta, bool with_offset) {
+  constexpr double kCoarse = 0.25;
+  OffsetLaw best;
+  const auto look = [&](double exponent) {
+    if (const OffsetLaw law = best_at(curve, delta, exponent, with_offset); law.misfit < best.misfit) best = law;
+  };
+  for (double exponent = 0.5; exponent < 6.1; exponent += kCoarse) look(exponent);
+  for (double step = 0.5 * kCoarse; step > 1e-3 && std::isfinite(best.misfit); step *= 0.5)
+    for (const double exponent : {best.exponent - step, best.exponent + step}) look(exponent);
+  return best;
+}
+
+/// The best law at each of many thresholds: rough, but no start can miss one.
+std::vector<OffsetLaw> profile(const WeightedCurve& curve, bool with_offset) {
   constexpr int kParts = 4;
-  std::vector<double> thresholds{0.0};
+  std::vector<OffsetLaw> out{best_at(curve, 0.0, with_offset)};
   double before = 0.0;
   for (const ForcePoint& p : curve.points) {
-    for (int k = 1; k <= kParts; ++k) thresholds.push_back(before + (p.delta - before) * k / kParts);
+    for (int k = 1; k <= kParts; ++k)
+      out.push_back(best_at(curve, before + (p.delta - before) * k / kParts, with_offset));
     before = p.delta;
   }
-  OffsetLaw best;
-  for (const double delta : thresholds)
-    for (double exponent = 0.5; exponent < 6.1; exponent += 0.25)
-      if (const OffsetLaw law = best_at(curve, delta, exponent, with_offset); law.misfit < best.misfit) best = law;
-  return best;
+  return out;
+}
+
+OffsetLaw best_of(const std::vector<OffsetLaw>& laws) {
+  return *std::min_element(laws.begin(), laws.end(),
+                           [](const OffsetLaw& a, const OffsetLaw& b) { return a.misfit < b.misfit; });
+}
+
+/// Half of the range of offsets of all thresholds that fit about as well as the best: where the curve begins above the
+/// threshold, offset and threshold stand for each other.
+double open_range(const std::vector<OffsetLaw>& laws, std::size_t points) {
+  constexpr double kSmall = 0.02;  // residuals of so many weights are none
+  const OffsetLaw best = best_of(laws);
+  const auto n = static_cast<double>(points);
+  const double near = best.misfit * (1.0 + 4.0 / std::max(n - 4.0, 1.0)) + n * kSmall * kSmall;
+  double low = best.offset;
+  double high = best.offset;
+  for (const OffsetLaw& law : laws) {
+    if (!(law.misfit <= near)) continue;
+    low = std::min(low, law.offset);
+    high = std::max(high, law.offset);
+  }
+  return 0.5 * (high - low);
 }
 
 /// Whether later readings are larger or smaller than earlier ones: the onset of the force, or a drift.
@@ -142,7 +174,8 @@ std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
   const WeightedCurve curve(sample.normal);
   if (!std::all_of(curve.weight.begin(), curve.weight.end(), [](double w) { return std::isfinite(w); }))
     return std::nullopt;  // all forces are the same
-  const OffsetLaw law = best_law(curve, true);
+  const std::vector<OffsetLaw> laws = profile(curve, true);
+  const OffsetLaw law = best_of(laws);
   const std::vector<double> idle = idle_readings(sample, law.delta);
   ForceOffset out;
   out.below = law.delta;
@@ -156,11 +189,13 @@ std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
     return std::nullopt;
   }
   constexpr double kClearShare = 0.02;  // of the largest force
+  constexpr double kSureShare = 0.01;
   constexpr double kFarBetter = 0.1;
   out.force = law.offset;
-  out.determined = false;
+  out.error = open_range(laws, curve.points.size());
+  out.determined = out.error < kSureShare * largest_force(sample);
   const bool matters = std::abs(law.offset) > kClearShare * largest_force(sample);
-  if (matters && law.misfit < kFarBetter * best_law(curve, false).misfit) return out;
+  if (matters && law.misfit < kFarBetter * best_of(profile(curve, false)).misfit) return out;
   return std::nullopt;
 }
 
@@ -181,23 +216,23 @@ std::vector<ForceOffset> subtract_offsets(ForceCurves& curves) {
   for (const ForceOffset& o : found) {
     ForceCurve& sample = curves.samples[o.sample];
     const std::string name = fmt::format("{}: sample \"{}\"", to_string(curves.kind), sample.name);
+    const std::string readings = o.readings == 0   ? "no reading"
+                                 : o.readings == 1 ? "one reading"
+                                                   : fmt::format("{} readings", o.readings);
     if (!o.determined) {
-      curves.remarks.push_back(fmt::format(
-          "{}: forces do not vanish with the overlap; a constant offset of about {:.3g} N would explain it, but {} "
-          "reading{} without contact, and {} are needed to tell: record some before touch, or subtract the zero",
-          name, o.force,
-          o.readings == 0   ? "there is no"
-          : o.readings == 1 ? "there is one"
-                            : "there are two",
-          o.readings == 2 ? "s" : "", kLeastReadings));
+      curves.remarks.push_back(
+          fmt::format("{}: forces do not vanish with the overlap; a constant offset of about {:.3g} +- {:.2g} N would "
+                      "explain it, but {} without contact do not tell how large it is: record some before touch, or "
+                      "subtract the zero",
+                      name, o.force, o.error, readings));
       continue;
     }
     for (ForcePoint& p : sample.normal) p.force -= o.force;
     for (double& force : sample.before_touch) force -= o.force;
     curves.remarks.push_back(fmt::format(
-        "{}: {} readings without contact force (before touch, or below Delta = {:.3g}) lie at {:.4g} "
-        "+- {:.2g} N: this offset was subtracted from all forces of the sample (--set offset=keep leaves it)",
-        name, o.readings, o.below, o.force, o.error));
+        "{}: a constant force offset of {:.4g} +- {:.2g} N, by {} without contact (before touch, or below "
+        "Delta = {:.3g}){}, was subtracted from all forces of the sample (--set offset=keep leaves it)",
+        name, o.force, o.error, readings, o.below, o.readings < kLeastReadings ? " and the shape of the curve" : ""));
   }
   return found;
 }

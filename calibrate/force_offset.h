@@ -15,12 +15,12 @@ struct ForceOffset {
   double error = 0.0;        ///< its standard error [N]
   double below = 0.0;        ///< Delta that they lie below
   std::size_t readings = 0;  ///< how many there are
-  bool determined = true;    ///< false: too few of them; `force` is what a fit of all readings would take
+  bool determined = true;    ///< false: neither they nor the shape of the curve tell
 };
 
 /// The offsets of samples that have one: the mean over at least three readings without force differs from zero by more
-/// than Student's t of 99.9 %. Also those that the shape of the curve shows (forces that do not vanish with the
-/// overlap) and too few readings determine.
+/// than Student's t of 99.9 %; or, with fewer such readings, a law with an offset fits far better than one without.
+/// Then it is determined where all thresholds that fit give the same offset to 1 % of the largest force.
 std::vector<ForceOffset> force_offsets(const ForceCurves& curves);
 
 /// Subtracts the determined ones from all forces of their samples, with a remark for each, and says of the others that

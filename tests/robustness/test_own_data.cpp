@@ -176,13 +176,13 @@ TEST_F(OwnData, AForceOffsetIsTakenOff) {
   }
   write("plane.csv", text);
   const std::string plane = "'" + file("plane.csv") + "'";
-  expect(calibrate(plane, "law"), 0, {"soft-solid: good", "this offset was subtracted"});
+  expect(calibrate(plane, "law"), 0, {"soft-solid: good", "was subtracted from all forces"});
   EXPECT_NEAR(128.0 * load_card(file("law") + "/law.toml").pairs.at(0).normal.value(0.2), 128.0 * KnownLaw{}.value(0.2),
               0.01);
   EXPECT_NEAR(summary("law")["experiment"][0]["force"][0].get<double>(), 0.0, 0.02);
-  expect(run_the_program("check " + plane), 0, {"this offset was subtracted"});
+  expect(run_the_program("check " + plane), 0, {"was subtracted from all forces"});
   const ProgramOutcome kept = calibrate(plane, "kept", "--set offset=keep");
-  EXPECT_EQ(kept.output.find("offset was subtracted"), std::string::npos);
+  EXPECT_EQ(kept.output.find("was subtracted from all forces"), std::string::npos);
 }
 
 /// Names of files may be any bytes.

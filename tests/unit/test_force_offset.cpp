@@ -60,7 +60,7 @@ TEST(ForceOffset, IsTakenOffAndSaid) {
     const ExperimentFit fit = fitted({.offset = offset});
     const PairLaw& law = fit.card.pairs.at(0);
     EXPECT_EQ(law.status, LawStatus::good) << law.reason;
-    EXPECT_TRUE(says(fit, "offset was subtracted")) << offset;
+    EXPECT_TRUE(says(fit, "was subtracted from all forces")) << offset;
     for (const double d : {0.1, 0.2, 0.3})
       EXPECT_NEAR(kUnit * law.normal.value(d), kUnit * KnownLaw{}.value(d), 0.01) << offset << " at " << d;
     for (const ForcePoint& p : fit.curves[0].samples[0].normal)
@@ -97,8 +97,16 @@ TEST(ForceOffset, ReadingsBeforeTouchAreEnough) {
   EXPECT_EQ(fitted(late).card.pairs.at(0).status, LawStatus::good);
 }
 
+/// Offset and threshold stand for each other where a curve begins far above its threshold.
 TEST(ForceOffset, WhatTooFewReadingsTellIsOpen) {
-  const Pressed late{.offset = 0.5, .first = 0.06};
+  for (const double first : {0.04, 0.06, 0.07}) {
+    const auto few = force_offsets(pressed({.offset = 0.5, .points = 12, .first = first}));
+    ASSERT_EQ(few.size(), 1U) << first;
+    EXPECT_TRUE(few[0].determined) << first;
+    EXPECT_NEAR(few[0].force, 0.5, 2.0 * few[0].error + 0.01) << first;
+    EXPECT_LT(few[0].error, 0.03) << first;
+  }
+  const Pressed late{.offset = 1.5, .first = 0.12};
   const auto found = force_offsets(pressed(late));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_FALSE(found[0].determined);
