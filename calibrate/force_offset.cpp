@@ -192,7 +192,11 @@ std::optional<ForceOffset> offset_of(const ForceCurve& sample) {
   constexpr double kSureShare = 0.01;
   constexpr double kFarBetter = 0.1;
   out.force = law.offset;
-  out.error = open_range(laws, curve.points.size());
+  // Not below what the residuals are at the lowest force, nor below what thresholds so far apart can tell.
+  constexpr double kGrid = 0.2;
+  const double freedom = std::max(static_cast<double>(curve.points.size()) - 4.0, 1.0);
+  out.error = std::max(open_range(laws, curve.points.size()),
+                       std::max(std::sqrt(law.misfit / freedom), kGrid) / curve.weight.front());
   out.determined = out.error < kSureShare * largest_force(sample);
   const bool matters = std::abs(law.offset) > kClearShare * largest_force(sample);
   if (matters && law.misfit < kFarBetter * best_of(profile(curve, false)).misfit) return out;
