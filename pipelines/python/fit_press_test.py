@@ -21,7 +21,7 @@ except ImportError:  # not installed: from the tree
 
 def read_press_test(path):
     """Overlaps [m] and forces [N] of a file like pipelines/press_test.csv."""
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8-sig") as file:
         rows = csv.reader((line for line in file if not line.startswith("#")), delimiter=";")
         next(rows)
         data = np.array([[float(h), float(f)] for _, h, f in rows])
