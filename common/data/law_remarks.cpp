@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace softgrain {
@@ -29,18 +30,20 @@ std::string slides_text(const LawTableEntry& entry) {
 }
 
 std::string assumed_kt_text(const LawCard& card) {
-  std::string text;
+  std::map<double, std::string> kinds;  // by the ratio that they share
   for (const PairLaw& law : card.pairs) {
     if (has_tangential(law) || !has_numbers(law.status)) continue;
-    const double ratio = assumed_kt_ratio(card, law);
+    std::string& names = kinds[assumed_kt_ratio(card, law)];
+    names += (names.empty() ? "" : " and ") + to_string(law.kind);
+  }
+  std::string text;
+  for (const auto& [ratio, names] : kinds)
     text += (text.empty() ? "" : "; ") +
             (ratio > 0.0
-                 ? fmt::format("tangential stiffness of {} contacts was not measured: kt = {:.3g} dFn/dh is assumed "
-                               "(Mindlin's ratio unless the card says another), up to mu Fn",
-                               to_string(law.kind), ratio)
-                 : fmt::format("{} contacts have no tangential force, whatever mu: the card says kt_ratio = 0",
-                               to_string(law.kind)));
-  }
+                 ? fmt::format("tangential stiffness of {} contacts was not measured: kt = {:.3g} dFn/dh is "
+                               "assumed (kt_ratio of the card, Mindlin's unless it was changed), up to mu Fn",
+                               names, ratio)
+                 : fmt::format("{} contacts have no tangential force, whatever mu: kt_ratio of the card is 0", names));
   return text;
 }
 

@@ -1,7 +1,12 @@
 // Files: opening, and the atomic file.
 #include "common/io/hdf5_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -24,10 +29,16 @@ extern "C" herr_t softgrain_note_error(unsigned depth, const H5E_error2_t* entry
 
 constexpr const char* kHeldElsewhere =
     ": another program holds this file open (a viewer, a notebook, a run that is still going): close it there, or "
-    "wait, "
-    "and try again";
+    "wait, and try again";
 
-bool is_locked(const std::string& reason) { return reason.find("unable to lock file") != std::string::npos; }
+/// Whether another program has locked a file against reading, as the library does while it writes.
+bool is_held_elsewhere(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return held;
+}
 
 /// Locks are taken where the file system knows them. The format of HDF5 1.10: small, checksummed headers, and no index
 /// of 2 kB for every data set of one chunk.
@@ -47,7 +58,7 @@ Handle create_file(const std::string& path) {
   Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   if (file.id() < 0) {
     const std::string reason = library_message();
-    throw FileTrouble(path + (is_locked(reason) ? kHeldElsewhere : ": cannot be created") + reason);
+    throw FileTrouble(path + (is_held_elsewhere(path) ? kHeldElsewhere : ": cannot be created") + reason);
   }
   return file;
 }
@@ -104,7 +115,8 @@ Group open_file(const std::string& path) {
   if (file.id() < 0) {
     const std::string reason = library_message();
     throw FileTrouble(
-        path + (is_locked(reason) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") + reason);
+        path + (is_held_elsewhere(path) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") +
+        reason);
   }
   return root_of(std::make_shared<File>(File{std::move(file), path}));
 }

@@ -114,7 +114,10 @@ std::shared_ptr<SceneDocument> read_document(const std::string& text, const std:
 }
 
 Scene Scene::load(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse(read_text(path), path, overrides);
+  const std::string text = read_text(path);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw BadInput(path + ":1: the text is UTF-16; save it as UTF-8");
+  return parse(text, path, overrides);
 }
 
 Scene Scene::parse(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {

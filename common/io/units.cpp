@@ -20,20 +20,39 @@ struct KnownUnit {
   std::string_view name;
   int power = 0;
   double factor = 1.0;
+  bool listed = true;  ///< in messages; other spellings and rare ones are not
 };
+
+constexpr bool kUnlisted = false;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr KnownUnit kLength[] = {{"m"}, {"km", 3}, {"cm", -2}, {"mm", -3}, {"um", -6}, {"µm", -6}, {"nm", -9}};
-constexpr KnownUnit kMass[] = {{"kg"}, {"t", 3}, {"g", -3}, {"mg", -6}, {"ug", -9}, {"µg", -9}};
+constexpr KnownUnit kMass[] = {{"kg"}, {"t", 3}, {"g", -3}, {"mg", -6}, {"ug", -9}, {"µg", -9, 1.0, kUnlisted}};
 constexpr KnownUnit kTime[] = {{"s"},      {"ms", -3},       {"us", -6},      {"µs", -6},
                                {"ns", -9}, {"min", 0, 60.0}, {"h", 0, 3600.0}};
 constexpr KnownUnit kFrequency[] = {{"Hz"}, {"1/s"}, {"kHz", 3}, {"MHz", 6}, {"1/min", 0, 1.0 / 60.0}};
-constexpr KnownUnit kPressure[] = {{"Pa"},         {"kPa", 3},    {"MPa", 6},    {"GPa", 9},     {"N/m^2"},
-                                   {"kN/m^2", 3},  {"MN/m^2", 6}, {"N/mm^2", 6}, {"kN/mm^2", 9}, {"N/cm^2", 4},
-                                   {"kN/cm^2", 7}, {"bar", 5},    {"mbar", 2}};
-constexpr KnownUnit kDensity[] = {{"kg/m^3"},  {"g/cm^3", 3}, {"t/m^3", 3}, {"Mg/m^3", 3},
-                                  {"g/cc", 3}, {"g/ml", 3},   {"kg/l", 3},  {"kg/dm^3", 3}};
+constexpr KnownUnit kPressure[] = {{"Pa"},
+                                   {"kPa", 3},
+                                   {"MPa", 6},
+                                   {"GPa", 9},
+                                   {"N/m^2"},
+                                   {"kN/m^2", 3, 1.0, kUnlisted},
+                                   {"MN/m^2", 6, 1.0, kUnlisted},
+                                   {"N/mm^2", 6},
+                                   {"kN/mm^2", 9, 1.0, kUnlisted},
+                                   {"N/cm^2", 4, 1.0, kUnlisted},
+                                   {"kN/cm^2", 7, 1.0, kUnlisted},
+                                   {"bar", 5},
+                                   {"mbar", 2, 1.0, kUnlisted}};
+constexpr KnownUnit kDensity[] = {{"kg/m^3"},
+                                  {"g/cm^3", 3},
+                                  {"t/m^3", 3},
+                                  {"Mg/m^3", 3, 1.0, kUnlisted},
+                                  {"g/cc", 3, 1.0, kUnlisted},
+                                  {"g/ml", 3, 1.0, kUnlisted},
+                                  {"kg/l", 3, 1.0, kUnlisted},
+                                  {"kg/dm^3", 3, 1.0, kUnlisted}};
 constexpr KnownUnit kVelocity[] = {{"m/s"},      {"cm/s", -2}, {"mm/s", -3},
                                    {"um/s", -6}, {"µm/s", -6}, {"km/h", 0, 1.0 / 3.6}};
 constexpr KnownUnit kAngularVelocity[] = {
@@ -41,7 +60,8 @@ constexpr KnownUnit kAngularVelocity[] = {
 constexpr KnownUnit kForce[] = {{"N"}, {"kN", 3}, {"MN", 6}, {"mN", -3}, {"uN", -6}, {"µN", -6}, {"nN", -9}};
 constexpr KnownUnit kAcceleration[] = {{"m/s^2"}, {"cm/s^2", -2}, {"mm/s^2", -3}};
 constexpr KnownUnit kStiffness[] = {{"N/m"}, {"kN/m", 3}, {"MN/m", 6}, {"GN/m", 9}, {"N/mm", 3}, {"kN/mm", 6}};
-constexpr KnownUnit kAngle[] = {{"deg"}, {"degree"}, {"degrees"}, {"\u00b0"}, {"rad", 0, 1.0 / kDegree}};
+constexpr KnownUnit kAngle[] = {
+    {"deg"}, {"degree"}, {"degrees"}, {"\u00b0", 0, 1.0, kUnlisted}, {"rad", 0, 1.0 / kDegree}};
 
 std::span<const KnownUnit> known_units(Unit unit) {
   switch (unit) {
@@ -130,7 +150,8 @@ std::string unknown_unit(std::string_view name, Unit unit) {
   const std::span<const KnownUnit> units = known_units(unit);
   if (units.empty()) return "unit '" + std::string(name) + "' is not allowed, this number has no unit";
   std::string text = "unknown unit '" + std::string(name) + "', known are";
-  for (const KnownUnit& u : units) text.append(&u == units.data() ? " " : ", ").append(u.name);
+  for (const KnownUnit& u : units)
+    if (u.listed) text.append(&u == units.data() ? " " : ", ").append(u.name);
   return text;
 }
 

@@ -134,7 +134,7 @@ TEST_F(OwnData, FrictionCountsWithALawOfAPressTest) {
   write("plane.csv", made_up_curve(1.0));
   write("macro.toml", kMacro);
   expect(calibrate("'" + file("plane.csv") + "'", "law", "--kind soft-solid --set mirror=true"), 0,
-         {"tangential stiffness of soft-solid contacts was not measured", "is assumed"});
+         {"tangential stiffness of soft-solid and soft-soft contacts was not measured", "is assumed"});
   const std::string law = "'" + file("law") + "/law.toml'";
   EXPECT_NE(read_text(file("law") + "/law.toml").find("[pair.tangential_assumed]"), std::string::npos);
   expect(run_the_program("law show " + law), 0, {"is assumed"});
