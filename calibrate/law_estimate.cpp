@@ -44,10 +44,11 @@ void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, st
 
 double constant_of(double a, double b, double delta) { return delta > 0.0 ? -a * std::pow(delta, b) : 0.0; }
 
-/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2.
+/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2; infinite where no threshold
+/// shows, since c is bounded there and not linear.
 double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b,
                       double delta) {
-  if (delta <= 0.0) return 0.0;
+  if (delta <= 0.0) return kInfinity;
   const double p = std::pow(delta, b);
   const std::array<std::size_t, 3> rows{i, j, 2};
   const std::array<double, 3> slope{-p, -a * p * std::log(delta), -a * b * p / delta};

@@ -190,7 +190,7 @@ TEST(ExperimentFit, TheMirrorImageTakesHalfOfTheOverlap) {
 /// With stiffnesses too: the same errors, in the units of the mirror image.
 TEST(ExperimentFit, TheMirrorImageHasTheErrorsOfWhatItMirrors) {
   for (const int samples : {1, 8}) {
-    ForceCurves curves = make({.samples = samples, .noise = 0.05, .scatter = 0.1});
+    const ForceCurves curves = make({.samples = samples, .noise = 0.01, .scatter = 0.1});
     const auto fit = fit_experiment({curves}, replicates(60), true);
     ASSERT_EQ(fit.card.pairs.size(), 2U);
     const ThresholdPowerLaw& plane = fit.card.pairs[0].normal;
