@@ -230,9 +230,9 @@ class StateBootstrap {
       const auto from = static_cast<std::size_t>(random.below(data_.samples.size()));
       std::vector<double> phi;
       for (std::size_t i = 0; i < s.phi.size(); ++i)
-        phi.push_back(phi_slopes(options_.form, own[s.group], fit_[1], fit_[shared_.onset_at(s.group)], s.pressure[i])
-                          .value +
-                      residual_at(data_.samples[from], residual_[from], s.log_pressure[i]));
+        phi.push_back(
+            phi_slopes(options_.form, own[s.group], fit_[1], fit_[shared_.onset_at(s.group)], s.pressure[i]).value +
+            residual_at(data_.samples[from], residual_[from], s.log_pressure[i]));
       out.push_back(std::move(phi));
     }
     return out;
@@ -308,7 +308,8 @@ std::string message_of(const StateFit& fit) {
   const double factor = std::max(fit.modulus.high / fit.modulus.value, fit.modulus.value / fit.modulus.low);
   if (!(factor < kWideFactor))
     text += fmt::format(
-        "; K is known to a factor of {:.2g} alone: pressures within the range of the fit are, and K and n only together",
+        "; K is known to a factor of {:.2g} alone: pressures within the range of the fit are, and K and n only "
+        "together",
         factor);
   return text;
 }

@@ -136,9 +136,10 @@ std::string without_errors(const Work& w, bool from_residuals) {
   const std::ptrdiff_t freedom = normal_freedom(w);
   if (freedom >= (from_residuals ? 1 : 0)) return "";
   const auto needed = static_cast<std::ptrdiff_t>(kClearNeeded[0]);
-  return fmt::format("{} overlap{} above the threshold for the {} numbers a, b and delta: errors are not determined, "
-                     "{} are needed",
-                     freedom + needed, freedom + needed == 1 ? "" : "s", needed, needed + (from_residuals ? 1 : 0));
+  return fmt::format(
+      "{} overlap{} above the threshold for the {} numbers a, b and delta: errors are not determined, "
+      "{} are needed",
+      freedom + needed, freedom + needed == 1 ? "" : "s", needed, needed + (from_residuals ? 1 : 0));
 }
 
 void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
@@ -153,7 +154,7 @@ void run_bootstrap(const FitOptions& options, Work& w, FitReport& report) {
   if (!unknown.empty()) w.reasons.push_back(unknown);
   if (!enough || options.replicates < 1 || w.joint.fit.rank_deficient || !unknown.empty()) return;
   report.drawn_packings = report.from_residuals ? 0 : static_cast<std::size_t>(report.law.packings);
-  BootstrapInput input{w.samples, w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor,
+  BootstrapInput input{w.samples,           w.curves, w.delta_limit, w.joint.parameters, {}, options.scatter_floor,
                        options.zeroed_below};
   const std::uint64_t stream = static_cast<std::uint64_t>(report.law.kind) + 1;
   BootstrapResult result =

@@ -178,8 +178,9 @@ TEST_F(CellsMacro, RefuseAStressWhereNobodySaysTheModulus) {
   expect(run("strain"), 0, {});
   const nlohmann::json summary = nlohmann::json::parse(read_text(file("strain") + "/summary.json"));
   EXPECT_NE(summary["remarks"].dump().find("E = 500000 Pa"), std::string::npos) << summary["remarks"];
-  write_text_atomic(file("scene.toml"), text + "[[stage]]\nkind = \"triaxial\"\nstrain = 0.02\nsteps = 2\n"
-                                               "lateral_stress = \"50 Pa\"\n");
+  write_text_atomic(file("scene.toml"), text +
+                                            "[[stage]]\nkind = \"triaxial\"\nstrain = 0.02\nsteps = 2\n"
+                                            "lateral_stress = \"50 Pa\"\n");
   expect(run("sides"), 2, {"lateral_stress = \"50 Pa\"", "needs E of the grains"});
 }
 

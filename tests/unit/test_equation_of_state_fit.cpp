@@ -188,8 +188,8 @@ std::vector<StateCurve> curves_with_own_moduli(const Truth& t, double deviation,
 }
 
 struct OwnModuli {
-  int mean = 0;       ///< intervals that hold the K about which packings scatter
-  int another = 0;     ///< and the K of another packing
+  int mean = 0;     ///< intervals that hold the K about which packings scatter
+  int another = 0;  ///< and the K of another packing
   int refused = 0;
   int exponent = 0;
   double onset = 0.0;  ///< share of all packings

@@ -263,9 +263,8 @@ TEST(ExperimentFit, IntervalsStayWithinWhatANumberCanBe) {
   low.b = 1.6;
   for (std::uint64_t seed = 1; seed <= 12; ++seed)
     for (const int samples : {1, 6}) {
-      const auto fit =
-          fit_experiment({make({.samples = samples, .noise = 0.6, .scatter = 0.1, .seed = seed, .law = low})},
-                         replicates(60), true);
+      const auto fit = fit_experiment(
+          {make({.samples = samples, .noise = 0.6, .scatter = 0.1, .seed = seed, .law = low})}, replicates(60), true);
       for (const FitReport& report : fit.reports) {
         const ThresholdPowerLaw& n = report.law.normal;
         for (const Estimate* e : {&n.a, &n.b, &n.delta}) EXPECT_TRUE(e->low >= 0.0 || std::isinf(e->low)) << e->low;

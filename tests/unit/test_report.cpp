@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/core/few_samples.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/crowd_table_file.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/io/text_file.h"
 #include "pipelines/report/error_cost.h"
 #include "pipelines/report/reference_curves.h"
