@@ -30,8 +30,8 @@ SlideLaw borrowed(const SlideLaw& from) { return {guessed(from.kt_ratio.value), 
 /// Mean over configurations; each draw takes as many of its own with replacement. `of` finds the values by
 /// configuration. Widened for the few packings that there are.
 template <class Of>
-Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& drawn, int packings,
-                     std::uint64_t seed, const Of& of) {
+Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& drawn, int packings, std::uint64_t seed,
+                     const Of& of) {
   Estimate out = guessed(mean_error(of(measured)).mean);
   std::vector<double> means;
   for (std::size_t r = 0; r < drawn.size(); ++r) {
@@ -233,7 +233,8 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
     if ((measured.*kind).kt_ratio.empty()) return fallback;
     const auto part = [&](std::vector<double> SideValues::Slides::*quantity) {
       return estimate_of(
-          measured, drawn, entry.packings, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
+          measured, drawn, entry.packings,
+          seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
     };
     return {part(&SideValues::Slides::kt_ratio), part(&SideValues::Slides::friction)};
   };
@@ -242,7 +243,8 @@ void fit_sides(const SideValues& measured, const std::vector<SideValues>& drawn,
     if (!law.rolls) return;
     const auto part = [&](std::vector<double> SideValues::Slides::*quantity) {
       return estimate_of(
-          measured, drawn, entry.packings, seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
+          measured, drawn, entry.packings,
+          seed, [&](const SideValues& v) -> const auto& { return (v.*kind).*quantity; });
     };
     law.rolling = part(&SideValues::Slides::rolling);
     law.rolling_friction = part(&SideValues::Slides::rolling_friction);

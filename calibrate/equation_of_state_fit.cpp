@@ -230,9 +230,9 @@ class StateBootstrap {
       const auto from = static_cast<std::size_t>(random.below(data_.samples.size()));
       std::vector<double> phi;
       for (std::size_t i = 0; i < s.phi.size(); ++i)
-        phi.push_back(phi_slopes(options_.form, own[s.group], fit_[1], fit_[shared_.onset_at(s.group)], s.pressure[i])
-                          .value +
-                      residual_at(data_.samples[from], residual_[from], s.log_pressure[i]));
+        phi.push_back(
+            phi_slopes(options_.form, own[s.group], fit_[1], fit_[shared_.onset_at(s.group)], s.pressure[i]).value +
+            residual_at(data_.samples[from], residual_[from], s.log_pressure[i]));
       out.push_back(std::move(phi));
     }
     return out;
@@ -272,7 +272,9 @@ void describe_scatter(const StateSamples& data, const StateProblem& problem, Sta
 }
 
 /// K may be off by this factor to either side; beyond, curves do not determine it.
-constexpr double kWidestFactor = 10.0;
+constexpr double kWidestFactor = 100.0;
+/// And beyond this one it is said that they hardly do.
+constexpr double kWideFactor = 3.0;
 /// Points that must be left when every number has taken one.
 constexpr int kLeastFreedom = 3;
 
@@ -285,6 +287,9 @@ std::string not_determined(const StateSamples& data, const StateFit& fit) {
         "too few points: {} of {} sample{} for {} numbers (K, n, phi_J of each packing), at least {} are needed: "
         "record more points along the test, or more samples",
         points, data.samples.size(), data.samples.size() == 1 ? "" : "s", numbers, numbers + kLeastFreedom);
+  if (fit.fit.at_bound.size() > 1 && fit.fit.at_bound[1])
+    return fmt::format("n is not determined: it runs to {:.3g}, the end of what is tried, and K with it",
+                       fit.exponent.value);
   const StateEstimate& k = fit.modulus;
   if (std::isfinite(k.error) && !(k.high < kWidestFactor * k.value && k.low * kWidestFactor > k.value))
     return fmt::format("K is not determined: its 95 % interval is {:.2g} to {:.2g}{}", k.low, k.high,
@@ -294,11 +299,19 @@ std::string not_determined(const StateSamples& data, const StateFit& fit) {
 
 std::string message_of(const StateFit& fit) {
   if (fit.degrees < 1) return "fitted; one sample in every group: errors are not known";
-  if (fit.one_modulus) return "fitted";
-  return fmt::format(
-      "fitted; one K for all packings is refused (as much scatter has a probability of {:.2g}): intervals hold that of "
-      "K between packings",
-      fit.collapse_probability);
+  std::string text = "fitted";
+  if (!fit.one_modulus)
+    text += fmt::format(
+        "; one K for all packings is refused (as much scatter has a probability of {:.2g}): intervals hold that of K "
+        "between packings",
+        fit.collapse_probability);
+  const double factor = std::max(fit.modulus.high / fit.modulus.value, fit.modulus.value / fit.modulus.low);
+  if (!(factor < kWideFactor))
+    text += fmt::format(
+        "; K is known to a factor of {:.2g} alone: pressures within the range of the fit are, and K and n only "
+        "together",
+        factor);
+  return text;
 }
 
 }  // namespace

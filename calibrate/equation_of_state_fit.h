@@ -46,10 +46,10 @@ struct StateFit {
   double sample_deviation = 0.0;  ///< of the onsets of samples within their groups
   /// Of the intervals: samples less groups; where one K for all is refused, groups less one if that is fewer.
   int degrees = 0;
-  double modulus_scatter = 0.0;   ///< standard deviation over mean of own_modulus
+  double modulus_scatter = 0.0;  ///< standard deviation over mean of own_modulus
   double collapse_probability =
       0.0;  ///< of a scatter between groups as large as this if K is the same for all; below 0.05 it hardly is
-  bool one_modulus = true;  ///< whether one K for all groups is not refused by that
+  bool one_modulus = true;                      ///< whether one K for all groups is not refused by that
   std::vector<std::vector<double>> replicates;  ///< ln K, n, phi_J of the groups
   int left_out = 0;                             ///< points without pressure
 
@@ -73,8 +73,9 @@ struct StateFit {
 /// deviation of ln K between groups, intervals have G - 1 degrees (or N - G), and that of K is of the K of another
 /// packing of this kind: it holds the deviation between packings beside the error of their mean.
 /// Throws BadInput for curves that read_state_curves refuses and options out of range. Not usable with the reason: no
-/// convergence, fewer than three points more than numbers, an interval of K that is wider than a factor of ten to
-/// either side. With one sample in every group errors are infinite, and the message says so.
+/// convergence, fewer than three points more than numbers, an interval of K that is wider than a factor of a
+/// hundred to either side, n at the end of what is tried. With one sample in every group errors are infinite, and the
+/// message says so.
 StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const StateFitOptions& options = {});
 
 }  // namespace softgrain

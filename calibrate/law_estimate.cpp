@@ -44,10 +44,11 @@ void fill_stiffness(const CurveMeans& means, const std::vector<double>& rows, st
 
 double constant_of(double a, double b, double delta) { return delta > 0.0 ? -a * std::pow(delta, b) : 0.0; }
 
-/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2.
+/// Standard error of c = -a delta^b from the covariance of (a, b, delta) at rows i, j, 2; infinite where no threshold
+/// shows, since c is bounded there and not linear.
 double constant_error(const std::vector<double>& covariance, std::size_t i, std::size_t j, double a, double b,
                       double delta) {
-  if (delta <= 0.0) return 0.0;
+  if (delta <= 0.0) return kInfinity;
   const double p = std::pow(delta, b);
   const std::array<std::size_t, 3> rows{i, j, 2};
   const std::array<double, 3> slope{-p, -a * p * std::log(delta), -a * b * p / delta};
@@ -58,8 +59,8 @@ double constant_error(const std::vector<double>& covariance, std::size_t i, std:
 }
 
 /// 95 % interval of the replicates of a value that cannot be negative. Those of residuals may lean to one side, because
-/// the best threshold follows the noise of the points around it: the longer side then counts for both. Those of packings
-/// are too close to the value where packings are few.
+/// the best threshold follows the noise of the points around it: the longer side then counts for both. Those of
+/// packings are too close to the value where packings are few.
 std::pair<double, double> interval_of(const FitReport& report, double value, std::vector<double> replicates) {
   const auto [low, high] = interval95(std::move(replicates));
   if (!std::isfinite(low) || !std::isfinite(high)) return {low, high};
@@ -144,9 +145,9 @@ ThresholdPowerLaw estimated_law(const FitReport& report, const std::array<double
   law.a = estimate(p[i], error(i), report, [i](const auto& r) { return r[i]; });
   law.b = estimate(p[j], error(j), report, [j](const auto& r) { return r[j]; });
   law.delta = estimate(p[2], error(2), report, [](const auto& r) { return r[2]; });
-  law.c =
-      estimate(constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity,
-               report, [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); }, -1.0);
+  law.c = estimate(
+      constant_of(p[i], p[j], p[2]), errors_known ? constant_error(cov, i, j, p[i], p[j], p[2]) : kInfinity, report,
+      [i, j](const auto& r) { return constant_of(r[i], r[j], r[2]); }, -1.0);
   return law;
 }
 

@@ -15,9 +15,9 @@ double student95(double degrees);
 /// 1.35 for seven samples, 1.06 for 32; infinite for fewer than two.
 double few_samples_factor(std::size_t samples);
 
-/// An interval widened about its value by a factor, on either side by itself. `positive`: of a quantity above 0, widened
-/// in its logarithm, so that it stays above; in itself and cut off at 0 where one end is 0 already. Ends that are not
-/// finite stay.
+/// An interval widened about its value by a factor, on either side by itself. `positive`: of a quantity above 0,
+/// widened in its logarithm, so that it stays above; in itself and cut off at 0 where one end is 0 already. Ends that
+/// are not finite stay.
 std::pair<double, double> widened(double value, double low, double high, double factor, bool positive);
 
 /// Whether a mean over samples is told apart from 0: its 95 % interval (Student's) does not hold 0. One sample has no

@@ -74,7 +74,8 @@ void write_range(Out out, const CellCard& card) {
 void write_measured(Out out, const CellCard& card) {
   fmt::format_to(out, "\n# Grains and preparation; others have other numbers.\n[measured]\n");
   if (is_known(card.youngs_modulus))
-    fmt::format_to(out, "E = {}  # [Pa]; a scene may have another one: stresses go with it\n", real(card.youngs_modulus));
+    fmt::format_to(out, "E = {}  # [Pa]; a scene may have another one: stresses go with it\n",
+                   real(card.youngs_modulus));
   if (is_known(card.density)) fmt::format_to(out, "density = {}  # [kg/m^3]\n", real(card.density));
   fmt::format_to(out, "nu = {}\nmu = {}\n", real(card.poisson_ratio), real(card.grain_friction));
   fmt::format_to(out, "preparation = {}\n", quoted(card.preparation));

@@ -48,7 +48,8 @@ std::vector<LawPoint> card_values(const LawCard& card, PairKind kind, const std:
     if (has_part(law, LawPart::tangential_initial))
       p.tangential_initial = quantity(r.tangential_stiffness, value_interval, LawPart::tangential_initial);
     if (has_part(law, LawPart::tangential_secant))
-      p.tangential_secant = quantity(ask(secant, delta).tangential_stiffness, value_interval, LawPart::tangential_secant);
+      p.tangential_secant =
+          quantity(ask(secant, delta).tangential_stiffness, value_interval, LawPart::tangential_secant);
     out.push_back(std::move(p));
   }
   return out;

@@ -59,8 +59,8 @@ std::string cells_text_for_people(const LawFile& file, bool utf8) {
                   "E = {}, density {}, nu = {}, mu = {}, prepared '{}' to p/E = {}",
                   card.samples, card.fines_sizes, number(card.fines_ratio), number(card.split),
                   is_known(card.youngs_modulus) ? number(card.youngs_modulus) + " Pa" : "not said",
-                  is_known(card.density) ? number(card.density) + " kg/m^3" : "not said", number(card.poisson_ratio), number(card.grain_friction), card.preparation,
-                  number(card.start_pressure)),
+                  is_known(card.density) ? number(card.density) + " kg/m^3" : "not said", number(card.poisson_ratio),
+                  number(card.grain_friction), card.preparation, number(card.start_pressure)),
       2);
   text += fmt::format("\n{} form, {}\n", to_string(card.form), state_text(card));
   std::vector<std::vector<std::string>> rows{{"", "", "value", "error", "95 % interval"}};

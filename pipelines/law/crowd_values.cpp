@@ -111,8 +111,7 @@ std::vector<CrowdLaws> replicate_laws(const LawTable& table, const CrowdQuestion
   return out;
 }
 
-LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, int packings,
-                  const Estimate& kt_ratio) {
+LawPoint point_of(const Raw& raw, double delta, const std::vector<Raw>& drawn, int packings, const Estimate& kt_ratio) {
   LawPoint p;
   p.delta = delta;
   p.forces = raw.force;
@@ -154,8 +153,8 @@ CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const st
   for (const double delta : deltas) {
     std::vector<Raw> raws;
     for (const CrowdLaws& draw : drawn) raws.push_back(ask(draw, around, delta));
-    LawPoint p = point_of(ask(laws, around, delta), delta, raws, out.entry.packings,
-                          slide_for(out.entry, q.partner).kt_ratio);
+    LawPoint p =
+        point_of(ask(laws, around, delta), delta, raws, out.entry.packings, slide_for(out.entry, q.partner).kt_ratio);
     p.where = place(out, p);
     p.refused = p.where == Where::beyond && beyond == Beyond::error;
     if (p.where == Where::beyond) forget_intervals(p);

@@ -11,8 +11,7 @@ namespace softgrain {
 namespace {
 
 std::string threshold_text(const ThresholdPowerLaw& n, double newton) {
-  if (n.delta.value > 0.0)
-    return fmt::format("c = {:.3g} N, delta = {}", newton * n.c.value, bracket_text(n.delta));
+  if (n.delta.value > 0.0) return fmt::format("c = {:.3g} N, delta = {}", newton * n.c.value, bracket_text(n.delta));
   const bool known = interval_known(n.delta.low, n.delta.high);
   return "no threshold shows: c and delta are not determined" +
          (known ? fmt::format(" (delta below {:.3g})", n.delta.high) : std::string());

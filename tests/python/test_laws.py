@@ -57,6 +57,8 @@ class CardTest(unittest.TestCase):
                         low, high = interval(delta, kind, beyond=beyond, **units)
                         told = np.array([r[f"{name}_interval"] or (np.nan, np.nan) for r in rows], dtype=float)
                         np.testing.assert_allclose(np.stack([low, high], 1), told, rtol=1e-12, atol=1e-300)
+                        # 0.35 is beyond what was measured on a plane: nothing says how far off the law is there.
+                        self.assertEqual(bool(np.isnan(low[-1]) and np.isnan(high[-1])), kind == "soft-solid")
 
     def test_secant_is_another_stiffness(self):
         _, rows = self.program("soft-solid")
@@ -188,7 +190,7 @@ class TableTest(unittest.TestCase):
                                              ("kt_secant", self.law.tangential_stiffness)):
                             np.testing.assert_allclose(method(delta, partner, **choice), [r[name] for r in rows], rtol=1e-11, atol=1e-10)
                         for name, method in (("force", self.law.force_interval), ("stiffness", self.law.stiffness_interval)):
-                            told = np.array([r[f"{name}_interval"] for r in rows])
+                            told = np.array([r[f"{name}_interval"] or (np.nan, np.nan) for r in rows], dtype=float)
                             np.testing.assert_allclose(np.stack(method(delta, partner, **choice), 1), told, rtol=1e-9, atol=1e-9)
                         volume = self.law.volume(delta, partner, **{k: v for k, v in choice.items() if k not in ("radius", "modulus")})
                         np.testing.assert_allclose(volume, [r["equivalent_volume"] for r in rows], rtol=1e-11)

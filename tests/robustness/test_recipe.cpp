@@ -64,8 +64,8 @@ TEST(RecipeRun, HoldsForAllItsGrainsAndRunsAgainOutOfTheCaches) {
   EXPECT_EQ(card.youngs_modulus, 5e5);
   EXPECT_NE(read_text(first + "/material_card.toml").find("\nE = 500000.0"), std::string::npos);
   // Summary, report and compare show the numbers that were written, and those of the pair that was measured apart.
-  const std::map<std::string, Estimate> written{{"e_J", card.void_ratio}, {"w_inf", card.excess_many},
-                                                {"K", card.modulus},      {"xi", card.excess_decay},
+  const std::map<std::string, Estimate> written{{"e_J", card.void_ratio},   {"w_inf", card.excess_many},
+                                                {"K", card.modulus},        {"xi", card.excess_decay},
                                                 {"e_c", card.excess_alone}, {"mu_f", card.friction}};
   std::size_t shown = 0;
   for (const nlohmann::json& n : summary["cell_law"]["numbers"])

@@ -171,45 +171,45 @@ TEST(EquationOfStateFit, NoticesGroupsThatHaveModuliOfTheirOwn) {
   EXPECT_GE(same, 7);
 }
 
-/// Packings with a K of their own, normal in ln K about that of Truth.
+/// Packings with a K of their own, normal in ln K about that of Truth; `another`: K of one more that is not measured.
 std::vector<StateCurve> curves_with_own_moduli(const Truth& t, double deviation, int groups, std::uint64_t seed,
-                                               std::vector<double>& moduli) {
+                                               double& another) {
   RandomStream random(seed, RandomPurpose::test, 9);
   std::vector<StateCurve> out;
-  moduli.clear();
+  another = t.modulus * std::exp(deviation * random.normal());
   for (int g = 0; g < groups; ++g) {
     Truth one = t;
     one.spans = {2.0 + 0.25 * g};
     one.samples = {2};
     one.modulus = t.modulus * std::exp(deviation * random.normal());
-    moduli.push_back(one.modulus);
     for (StateCurve& c : curves_of(one, 7919 * seed + static_cast<std::uint64_t>(g))) out.push_back(std::move(c));
   }
   return out;
 }
 
 struct OwnModuli {
-  int mean = 0;       ///< intervals that hold the K about which packings scatter
-  double share = 0.0;  ///< of packings whose K they hold
+  int mean = 0;     ///< intervals that hold the K about which packings scatter
+  int another = 0;  ///< and the K of another packing
   int refused = 0;
   int exponent = 0;
-  int onset = 0;
+  double onset = 0.0;  ///< share of all packings
 };
 
 OwnModuli own_moduli(double deviation, int groups, int seeds) {
   OwnModuli out;
   const Truth t;
   for (int seed = 0; seed < seeds; ++seed) {
-    std::vector<double> moduli;
-    const auto curves = curves_with_own_moduli(t, deviation, groups, 100 + static_cast<std::uint64_t>(seed), moduli);
+    double another = 0.0;
+    const auto curves = curves_with_own_moduli(t, deviation, groups, 100 + static_cast<std::uint64_t>(seed), another);
     const StateFit fit = fit_equation_of_state(curves, {StateForm::porosity, 60, 1});
     EXPECT_TRUE(fit.usable) << fit.message;
     const auto holds = [](const StateEstimate& e, double x) { return e.low <= x && x <= e.high; };
     out.mean += holds(fit.modulus, t.modulus) ? 1 : 0;
-    for (const double k : moduli) out.share += (holds(fit.modulus, k) ? 1.0 : 0.0) / (groups * seeds);
+    out.another += holds(fit.modulus, another) ? 1 : 0;
     out.refused += fit.one_modulus ? 0 : 1;
     out.exponent += holds(fit.exponent, t.exponent) ? 1 : 0;
-    out.onset += holds(fit.groups[0].onset, onset_of(t, fit.groups[0].span)) ? 1 : 0;
+    for (const StateGroup& g : fit.groups)
+      out.onset += (holds(g.onset, onset_of(t, g.span)) ? 1.0 : 0.0) / (groups * seeds);
     EXPECT_EQ(fit.message.find("one K for all packings is refused") != std::string::npos, !fit.one_modulus);
     if (!fit.one_modulus) {
       EXPECT_EQ(fit.degrees, std::min(groups - 1, groups));
@@ -218,26 +218,26 @@ OwnModuli own_moduli(double deviation, int groups, int seeds) {
   return out;
 }
 
-/// Intervals from the scatter within packings alone held the K of 1 packing in 22 where K differs between them.
+/// Intervals from the scatter within packings alone held the K of one packing in 22 where K differs between them.
 TEST(EquationOfStateFit, IntervalsHoldTheScatterBetweenPackingsWhereOneModulusIsRefused) {
   constexpr int kSeeds = 12;
   const OwnModuli found = own_moduli(0.10, 12, kSeeds);
   EXPECT_EQ(found.refused, kSeeds);
   EXPECT_EQ(found.mean, kSeeds);
-  EXPECT_GT(found.share, 0.88);
+  EXPECT_GE(found.another, 9);
   EXPECT_GE(found.exponent, 10);
-  EXPECT_GE(found.onset, 10);
+  EXPECT_GE(found.onset, 0.85);
 }
 
 TEST(SlowEquationOfStateFit, IntervalsHoldThePackingsAsOftenAsTheySayWhereTheseDiffer) {
-  constexpr int kSeeds = 200;
-  for (const int groups : {5, 22}) {
+  constexpr int kSeeds = 150;
+  for (const int groups : {5, 12}) {
     const OwnModuli found = own_moduli(0.10, groups, kSeeds);
     EXPECT_GE(found.refused, 0.9 * kSeeds) << groups;
-    EXPECT_GE(found.share, 0.92) << groups;
-    EXPECT_LE(found.share, 0.99) << groups;
+    EXPECT_GE(found.another, 0.90 * kSeeds) << groups;
+    EXPECT_LE(found.another, 0.99 * kSeeds) << groups;
     EXPECT_GE(found.exponent, 0.90 * kSeeds) << groups;
-    EXPECT_GE(found.onset, 0.90 * kSeeds) << groups;
+    EXPECT_GE(found.onset, 0.90) << groups;
   }
 }
 

@@ -190,7 +190,7 @@ TEST(ExperimentFit, TheMirrorImageTakesHalfOfTheOverlap) {
 /// With stiffnesses too: the same errors, in the units of the mirror image.
 TEST(ExperimentFit, TheMirrorImageHasTheErrorsOfWhatItMirrors) {
   for (const int samples : {1, 8}) {
-    ForceCurves curves = make({.samples = samples, .noise = 0.05, .scatter = 0.1});
+    const ForceCurves curves = make({.samples = samples, .noise = 0.01, .scatter = 0.1});
     const auto fit = fit_experiment({curves}, replicates(60), true);
     ASSERT_EQ(fit.card.pairs.size(), 2U);
     const ThresholdPowerLaw& plane = fit.card.pairs[0].normal;
@@ -263,9 +263,8 @@ TEST(ExperimentFit, IntervalsStayWithinWhatANumberCanBe) {
   low.b = 1.6;
   for (std::uint64_t seed = 1; seed <= 12; ++seed)
     for (const int samples : {1, 6}) {
-      const auto fit =
-          fit_experiment({make({.samples = samples, .noise = 0.6, .scatter = 0.1, .seed = seed, .law = low})},
-                         replicates(60), true);
+      const auto fit = fit_experiment(
+          {make({.samples = samples, .noise = 0.6, .scatter = 0.1, .seed = seed, .law = low})}, replicates(60), true);
       for (const FitReport& report : fit.reports) {
         const ThresholdPowerLaw& n = report.law.normal;
         for (const Estimate* e : {&n.a, &n.b, &n.delta}) EXPECT_TRUE(e->low >= 0.0 || std::isinf(e->low)) << e->low;

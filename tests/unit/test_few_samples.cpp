@@ -24,7 +24,7 @@ TEST(FewSamples, WidenByStudentsT) {
 TEST(FewSamples, WidenEachSideAndStayAboveZero) {
   const auto linear = widened(1.0, 0.5, 3.0, 2.0, false);
   EXPECT_EQ(linear, std::make_pair(0.0, 5.0));
-  EXPECT_EQ(widened(0.1, -0.2, 0.3, 2.0, false).first, -0.5);
+  EXPECT_NEAR(widened(0.1, -0.2, 0.3, 2.0, false).first, -0.5, 1e-12);
   const auto positive = widened(1.0, 0.5, 4.0, 2.0, true);
   EXPECT_NEAR(positive.first, 0.25, 1e-12);
   EXPECT_NEAR(positive.second, 16.0, 1e-12);

@@ -260,11 +260,12 @@ std::string banded_text(const BandedEnd& e) {
   const auto share = [&](double half) { return e.stress > 0.0 ? 100.0 * half / e.stress : kNaN; };
   const std::string interval = e.determined ? fmt::format("95 % {:.4g} to {:.4g}", e.low, e.high)
                                             : std::string("not determined: its error is as large as itself");
-  const std::string beyond =
-      e.beyond > 0.0 ? fmt::format("; at least: {:.2g} % of the contacts are beyond what the law was measured for, "
-                                   "where no error is known",
-                                   100.0 * e.beyond)
-                     : "";
+  const std::string beyond = e.beyond > 0.0
+                                 ? fmt::format(
+                                       "; at least: {:.2g} % of the contacts are beyond what the law was measured for, "
+                                       "where no error is known",
+                                       100.0 * e.beyond)
+                                 : "";
   return fmt::format("{}: {} stress at strain {:.4g}: {:.4g} Pa, {} (law {:.2g} %, discrepancy {:.2g} %, {}{})",
                      e.engine, to_string(e.of), e.strain, e.stress, interval, share(e.law), share(e.discrepancy),
                      std::isfinite(e.samples) ? fmt::format("{} samples {:.2g} %", e.count, share(e.samples))

@@ -224,8 +224,9 @@ void write_material_card(const RecipeScene& scene, const WholeLaw& law, const st
   fmt::format_to(out,
                  "\n[measured]\nE = {}  # [Pa]\ndensity = {}  # [kg/m^3], mean over the solid volume\n"
                  "nu = {}\nmu = {}\npreparation = {}\nstart_pressure = {}\nsamples = {}\n",
-                 real(spec.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction), quoted(to_string(spec.preparation)),
-                 real(spec.start_pressure), scene.material.variants.front().setup.samples);
+                 real(spec.youngs_modulus), real(grain_density(scene)), real(spec.poisson_ratio), real(spec.friction),
+                 quoted(to_string(spec.preparation)), real(spec.start_pressure),
+                 scene.material.variants.front().setup.samples);
   for (const RecipeLevel& level : scene.levels)
     fmt::format_to(out, "\n[[level]]\nradius_min = {}  # m\nradius_max = {}\nvolume_share = {}\n", real(level.low),
                    real(level.high), real(level.share));

@@ -57,8 +57,9 @@ class RecipeRun {
     }
     if (!scene_.checked) scene_.checked_levels = 0;
     if (!complete)
-      head().remarks.push_back("no law: packings are missing; those that were measured are in material.csv and "
-                               "material_NAME.h5");
+      head().remarks.push_back(
+          "no law: packings are missing; those that were measured are in material.csv and "
+          "material_NAME.h5");
     return complete;
   }
 
@@ -210,12 +211,14 @@ class RecipeRun {
 
   void add_moduli() {
     const MacroSpec& spec = scene_.material.variants.front().setup.spec;
-    set_moduli(out().curves, {spec.modulus_stress[0] / spec.youngs_modulus, spec.modulus_stress[1] / spec.youngs_modulus});
+    set_moduli(out().curves,
+               {spec.modulus_stress[0] / spec.youngs_modulus, spec.modulus_stress[1] / spec.youngs_modulus});
     for (const RecipeCurve& c : out().curves)
       if (!c.modulus && !c.axial.empty())
-        head().remarks.push_back(fmt::format("{}: constrained modulus not determined: its axial stress does not go through "
-                                             "the interval of modulus_stress",
-                                             c.name));
+        head().remarks.push_back(
+            fmt::format("{}: constrained modulus not determined: its axial stress does not go through "
+                        "the interval of modulus_stress",
+                        c.name));
   }
 
   ShellLevels measure_shells() {
@@ -297,14 +300,14 @@ std::string recipe_text(const RecipeSummary& s) {
   for (const RecipeCurve& c : r.curves) {
     if (c.axial.empty()) continue;
     text += fmt::format("  {}: axial stress {:.3g} E{} at a strain of {:.3g}", c.name, c.axial.back(),
-                        c.low.empty()                    ? ""
+                        c.low.empty()                 ? ""
                         : std::isfinite(c.low.back()) ? fmt::format(" ({:.3g} to {:.3g})", c.low.back(), c.high.back())
                                                       : " (extrapolated: no interval)",
                         c.strain.back());
     if (c.modulus)
-      text += fmt::format("; constrained modulus {} E from {:.3g} to {:.3g} E",
-                          interval_text(c.modulus->value, c.modulus->low, c.modulus->high), c.modulus->from,
-                          c.modulus->to);
+      text +=
+          fmt::format("; constrained modulus {} E from {:.3g} to {:.3g} E",
+                      interval_text(c.modulus->value, c.modulus->low, c.modulus->high), c.modulus->from, c.modulus->to);
     text += "\n";
   }
   for (const ShellLevelSummary& level : r.shells)
