@@ -54,9 +54,9 @@ void note_unrest(MacroCurve& c, const IncrementRest& worst, const MacroStage& st
   c.residual_largest.push_back(residual);
   if (worst.rest.end == RelaxationEnd::converged || (!c.usable && residual < largest)) return;
   const bool one = stage.increments_per_step == 1 || c.residual_largest.size() == 1;
-  note_relaxation(c, worst.rest, c.strain.back(), stage.tolerance,
-                  one ? ""
-                      : fmt::format(", increment {} of the {} before it", worst.number, stage.increments_per_step));
+  note_relaxation(
+      c, worst.rest, c.strain.back(), stage.tolerance,
+      one ? "" : fmt::format(", increment {} of the {} before it", worst.number, stage.increments_per_step));
 }
 
 void note_free_sides(MacroCurve& c, const std::vector<MacroStage>& stages) {

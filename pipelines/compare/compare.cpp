@@ -89,19 +89,19 @@ void compare_strained(const MacroCurve& c, const MacroCurve& r, SampleComparison
   const auto at_end = [at = high](const MacroCurve& of, const std::vector<double>& y) {
     return y.size() == of.strain.size() && !y.empty() ? interpolate_linear(of.strain, y, at) : kNaN;
   };
-  add_ends({at_end(c, c.stress_axial), at_end(r, r.stress_axial), at_end(c, c.stress_lateral),
-            at_end(r, r.stress_lateral)},
-           s);
+  add_ends(
+      {at_end(c, c.stress_axial), at_end(r, r.stress_axial), at_end(c, c.stress_lateral), at_end(r, r.stress_lateral)},
+      s);
 }
 
 /// Stage by stage, and of each what it does not impose.
 void compare_staged(const MacroCurve& c, const MacroCurve& r, SampleComparison& s) {
   const std::vector<MatchedStage> stages = match_stages(c, r);
   s.axial_difference = staged_difference(stages, c.stress_axial, r.stress_axial, Compared::axial);
-  s.lateral_difference = value_or_nan(
-      [&] { return staged_difference(stages, c.stress_lateral, r.stress_lateral, Compared::lateral); });
-  s.deviator_difference = value_or_nan(
-      [&] { return staged_difference(stages, c.stress_deviator, r.stress_deviator, Compared::deviator); });
+  s.lateral_difference =
+      value_or_nan([&] { return staged_difference(stages, c.stress_lateral, r.stress_lateral, Compared::lateral); });
+  s.deviator_difference =
+      value_or_nan([&] { return staged_difference(stages, c.stress_deviator, r.stress_deviator, Compared::deviator); });
   s.strain_difference = value_or_nan([&] { return strain_difference(stages, c, r); });
   s.unloading_ratio = unloading_ratio(c, r);
   for (const MatchedStage& stage : stages) s.axial_imposed = s.axial_imposed || imposed(stage.record, Compared::axial);
@@ -213,7 +213,8 @@ void add_means(Comparison& result) {
 
 }  // namespace
 
-std::vector<double> values_at_points(const MacroCurve& of, const std::vector<double>& column, const MacroCurve& points) {
+std::vector<double> values_at_points(const MacroCurve& of, const std::vector<double>& column,
+                                     const MacroCurve& points) {
   std::vector<double> out(points.strain.size(), kNaN);
   const auto take = [](const StageSide& there, const StageSide& here, const std::vector<double>& y, bool first,
                        std::vector<double>& values) {

@@ -351,9 +351,10 @@ ScoreTable score_table(const std::vector<EngineScore>& scores) {
   for (const char* partner : kPlacesPartners)
     table.header.push_back(fmt::format("force on {} at the twin's places: law/twin", partner));
   for (const auto& [ignored, twin] : words<Twin>)
-    for (const char* what : {"stress error", "stress error of the mean", "end stress ratio", "deviator error",
-                             "strain error", "unloading modulus ratio", "lateral/axial difference", "coordination difference", "fabric difference",
-                             "mean force ratio", "force KS distance", "fewer evaluations", "faster"})
+    for (const char* what :
+         {"stress error", "stress error of the mean", "end stress ratio", "deviator error", "strain error",
+          "unloading modulus ratio", "lateral/axial difference", "coordination difference", "fabric difference",
+          "mean force ratio", "force KS distance", "fewer evaluations", "faster"})
       table.header.push_back(fmt::format("{}: {}", twin, what));
   for (const EngineScore& s : scores) {
     std::vector<std::string> row{s.engine, std::to_string(s.samples)};

@@ -13,8 +13,8 @@ namespace softgrain {
 
 /// Differences of one engine from one twin, over the samples that both ran usably.
 struct TwinErrors {
-  std::size_t pairs = 0;  ///< samples that both ran usably
-  bool staged = false;    ///< the test is one in stages: what these impose does not count in the differences
+  std::size_t pairs = 0;         ///< samples that both ran usably
+  bool staged = false;           ///< the test is one in stages: what these impose does not count in the differences
   MeanError axial;               ///< relative L2 difference of the axial stress, as relative_difference, per sample
   MeanError axial_of_mean;       ///< the same of the mean curves over the samples; error by jackknife over them
   MeanError axial_end;           ///< axial stress over that of the twin, at the end

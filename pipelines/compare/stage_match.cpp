@@ -71,7 +71,8 @@ Driver driver_of(const StageRecord& record, const MacroCurve& c, const std::vect
   if (out.strain_of_axis) return out;
   double largest = 0.0;
   for (std::size_t k = 0; k < 3; ++k)
-    for (const std::size_t p : {points.front(), points.back()}) largest = std::max(largest, std::abs(stress_of(c, k)[p]));
+    for (const std::size_t p : {points.front(), points.back()})
+      largest = std::max(largest, std::abs(stress_of(c, k)[p]));
   farthest = kHeld * largest;
   for (const std::size_t k : {2U, 0U, 1U}) {
     const double way = std::abs(stress_of(c, k)[points.back()] - stress_of(c, k)[points.front()]);
@@ -278,7 +279,8 @@ double unloading_ratio(const MacroCurve& candidate, const MacroCurve& reference)
   double stages = 0.0;
   for (std::size_t k = 0; k < std::min(mine.size(), theirs.size()); ++k) {
     if (mine[k].record.kind != StageKind::unload || theirs[k].record.kind != StageKind::unload) continue;
-    const double ratio = mine[k].modulus_begin / theirs[k].modulus_begin;
+    // The secant: a tangent at the first point depends on how far the second one is.
+    const double ratio = mine[k].modulus / theirs[k].modulus;
     if (!std::isfinite(ratio)) continue;
     sum += ratio;
     stages += 1.0;

@@ -74,7 +74,8 @@ double staged_difference(const std::vector<MatchedStage>& stages, const std::vec
 double strain_difference(const std::vector<MatchedStage>& stages, const MacroCurve& candidate,
                          const MacroCurve& reference);
 
-/// Unloading modulus of the candidate over that of the reference, mean over the stages that unload; NaN without one.
+/// Unloading modulus (secant, StageResult::modulus) of the candidate over that of the reference, mean over the stages
+/// that unload; NaN without one.
 double unloading_ratio(const MacroCurve& candidate, const MacroCurve& reference);
 
 }  // namespace softgrain

@@ -22,9 +22,10 @@ void add_scene(const std::string& name, const std::vector<MacroCurve>& curves, s
     if (s.twin() == Twin::shelled || !(s.shelled.speedup_evaluations > 0.0)) continue;
     const ComparedQuantity off = headline_of(s.shelled);
     if (off.value.n == 0) continue;
-    out.push_back({engine_name(s.engine),
-                   fmt::format("{}, {}, {} samples", name, off.what == "stress" ? "axial stress" : off.what, off.value.n),
-                   s.engine, 1.0 / s.shelled.speedup_evaluations, off.value.mean, off.value.error});
+    out.push_back(
+        {engine_name(s.engine),
+         fmt::format("{}, {}, {} samples", name, off.what == "stress" ? "axial stress" : off.what, off.value.n),
+         s.engine, 1.0 / s.shelled.speedup_evaluations, off.value.mean, off.value.error});
   }
 }
 
@@ -132,7 +133,8 @@ std::string error_cost_figure(const RunData& run) {
   return figure(
       plot.svg(),
       "Lower left is better. Reference of the laws: the shelled twin (axial stress, of tests in stages the deviator; "
-      "mean over samples, a point per scene); of a relaxation: the published one (normal force, root mean square over overlaps). Error "
+      "mean over samples, a point per scene); of a relaxation: the published one (normal force, root mean square over "
+      "overlaps). Error "
       "bars: standard errors.");
 }
 

@@ -81,7 +81,9 @@ std::string speedups(const std::optional<ComparisonSummary>& comparison) {
     out += "speed-up in seconds " + format_number(s, 3) + "; ";
   if (const double s = comparison->speedup_contact_evaluations; !std::isnan(s))
     out += "in contact evaluations " + format_number(s, 3) + "; ";
-  if (const double s = comparison->stress_error; !std::isnan(s))
+  if (comparison->deviator_error)  // of tests in stages, whose stresses are imposed in part
+    out += "at a difference of the deviator of " + format_number(100.0 * *comparison->deviator_error, 3) + " %; ";
+  else if (const double s = comparison->stress_error; !std::isnan(s))
     out += "at a stress difference of " + format_number(100.0 * s, 3) + " %; ";
   return out.empty() ? "" : paragraph("Law against resolved twin: " + out.substr(0, out.size() - 2) + ".");
 }

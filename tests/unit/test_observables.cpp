@@ -28,8 +28,8 @@ TEST(Observables, SamplesThatBrokeOffDoNotCountBeyondWhereTheyEnded) {
       column->clear();
     c.more.clear();
     if (sample > 0) {
-      for (auto* column : {&c.strain, &c.stress_axial, &c.stress_lateral, &c.coordination, &c.residual,
-                           &c.stress_axial_contacts})
+      for (auto* column :
+           {&c.strain, &c.stress_axial, &c.stress_lateral, &c.coordination, &c.residual, &c.stress_axial_contacts})
         column->resize(1);
       c.usable = false;
       c.note = "broke off";

@@ -204,8 +204,8 @@ TEST(StageResults, MeansLeaveOutWhatIsNotUsable) {
   EXPECT_TRUE(stage_results(silent).empty());
 }
 
-/// Of a test that consolidates to 300 Pa, compresses by `strain` with held sides and unloads a tenth of it; `stiff` times
-/// as stiff as another one, the unloading `back` times.
+/// Of a test that consolidates to 300 Pa, compresses by `strain` with held sides and unloads a tenth of it; `stiff`
+/// times as stiff as another one, the unloading `back` times.
 MacroCurve stepped(const std::string& engine, int steps, double stiff, double back, double strain = 0.04) {
   MacroCurve c;
   c.engine = engine;

@@ -21,7 +21,7 @@ double go(ThreadChoice& choice, int blocks, double on_all, double on_one, double
 
 TEST(ThreadChoice, StaysWithAllThreadsThatGetTheirCores) {
   ThreadChoice choice(2);
-  EXPECT_DOUBLE_EQ(go(choice, 1000, 0.02, 0.035, 0.95), 1000 * 0.02);
+  EXPECT_NEAR(go(choice, 1000, 0.02, 0.035, 0.95), 1000 * 0.02, 1e-9);
   EXPECT_EQ(choice.threads(), 2);
 }
 
@@ -34,7 +34,7 @@ TEST(ThreadChoice, OneThreadWhereOthersTakeTheCores) {
   // Quiet again: all come back.
   go(choice, 600, 0.02, 0.035, 0.95);
   EXPECT_EQ(choice.threads(), 2);
-  EXPECT_DOUBLE_EQ(go(choice, 100, 0.02, 0.035, 0.95), 100 * 0.02);
+  EXPECT_NEAR(go(choice, 100, 0.02, 0.035, 0.95), 100 * 0.02, 1e-9);
 }
 
 /// Threads that wait for each other although nobody takes their cores are still faster than one: trials become rare.

@@ -58,8 +58,9 @@ std::string difference_line(const Comparison& c) {
   std::string text = "Law and resolved twin differ";
   const char* before = ": ";
   for (const ComparedQuantity& q : all) {
-    text += before + q.what + (q.is_ratio ? " " + format_with_error(q.value.mean, q.value.error)
-                                          : fmt::format(" {} %", format_with_error(100 * q.value.mean, 100 * q.value.error)));
+    text += before + q.what +
+            (q.is_ratio ? " " + format_with_error(q.value.mean, q.value.error)
+                        : fmt::format(" {} %", format_with_error(100 * q.value.mean, 100 * q.value.error)));
     before = ", ";
   }
   return all.empty() ? "Law and resolved twin: the test imposes all that could differ" : text;

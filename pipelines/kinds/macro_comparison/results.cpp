@@ -26,7 +26,8 @@ std::string scene_line(const ComparedCurves& scene) {
   const MeanError& unloading = best->shelled.unloading;
   return fmt::format(
       "{}: the {} comes closest, {} off by {} % from the shelled twin{}; {} times fewer contact evaluations.",
-      scene.name, engine_name(best->engine), off.what, format_with_error(100.0 * off.value.mean, 100.0 * off.value.error),
+      scene.name, engine_name(best->engine), off.what,
+      format_with_error(100.0 * off.value.mean, 100.0 * off.value.error),
       unloading.n > 0 ? ", unloading modulus " + format_with_error(unloading.mean, unloading.error) + " times its own"
                       : "",
       format_number(best->shelled.speedup_evaluations, 3));
