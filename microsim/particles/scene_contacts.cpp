@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "common/core/error.h"
 #include "common/io/poisson_range.h"
@@ -163,6 +164,24 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   out.serves.resize(laws, law == "cohesive" && t.number("adhesion", Unit::force) > 0.0 ? Serves::grains : Serves::any);
 }
 
+/// Elastic constants, or that there are none, of materials whose laws do not ask for them.
+void refuse_idle_elasticity(const SceneTable& root) {
+  std::set<std::string> elastic;
+  for (const SceneTable& t : root.tables("contact"))
+    if (t.text("law") == "hertz-tsuji")
+      for (const std::string& name : t.texts("pair")) elastic.insert(name);
+  const SceneTable tables = root.table_or_empty("material");
+  for (const std::string& name : tables.keys()) {
+    const SceneTable t = tables.named(name);
+    if (elastic.contains(name)) continue;
+    for (const char* key : {"E", "nu", "rigid"})
+      if (t.has(key))
+        t.mistake(key,
+                  "no contact of this material goes by it: law = \"hertz-tsuji\" does, others have stiffnesses (a law "
+                  "card or table its E) of their own; leave it out");
+  }
+}
+
 }  // namespace
 
 SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materials, int dimension) {
@@ -172,6 +191,7 @@ SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materia
   const SceneTable root = scene.root();
   for (const SceneTable& t : root.tables("contact")) t.part([&] { read_contact(t, materials, dimension, soft, out); });
   if (root.sound()) soft.require_whole();
+  if (root.sound()) refuse_idle_elasticity(root);
   return out;
 }
 

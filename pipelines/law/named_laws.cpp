@@ -283,7 +283,7 @@ LawSources read_law_sources(const Scene& scene, const SceneTable& law) {
   if (law.has("forms")) out.forms = read_forms(law, out.table.has_value());
   if (!out.table) out.forms = {Crowd::pair};
   read_table_choices(law, out);
-  if (!out.table) (void)law.has("form");  // a card has but one
+  if (!out.table && law.has("form")) law.mistake("form", "goes with a law table; a card holds the pair law alone");
   for (const char* key : kTableKeys)
     if (!out.table && law.has(key)) law.mistake(key, "goes with a law table (key table)");
   require_fraction(law, out);

@@ -61,6 +61,11 @@ inline std::vector<std::string> other_lists(const AskedKey& k) {
       out.push_back(list_of(v));
   };
   for (const double by : {0.98, 1.02, 0.5, -1.0}) scaled(by);
+  if (!k.numbers.empty()) {
+    std::vector<double> aside = k.numbers;
+    aside.front() += 1e-3;
+    out.push_back(list_of(aside));
+  }
   if (k.numbers.size() > 1) out.push_back(list_of({k.numbers.begin(), k.numbers.end() - 1}));
   if (k.form == KeyForm::vector) {
     for (const double x : {0.01, 0.5, 2.0}) out.push_back(list_of({x, 1.5 * x, 2.0 * x}));
@@ -88,12 +93,15 @@ inline std::vector<std::string> other_words(const AskedKey& k, const std::set<st
       out.push_back(quoted_list({k.texts.begin(), k.texts.end() - 1}));
       out.push_back(quoted_list({k.texts.rbegin(), k.texts.rend()}));
     }
-    for (const std::string& w : texts) out.push_back(quoted_list({w}));
+    for (const std::string& w : texts)
+      if (k.texts != std::vector{w}) out.push_back(quoted_list({w}));
     return out;
   }
   const std::string now = k.texts.empty() ? "" : k.texts.front();
   out.push_back("\"" + now + "x\"");
-  for (const std::string& w : texts)
+  std::set<std::string> others = texts;
+  others.insert({"none", "other-law.toml", "other-bodies.csv"});
+  for (const std::string& w : others)
     if (w != now) out.push_back("\"" + w + "\"");
   return out;
 }
@@ -199,7 +207,7 @@ inline Keys asked_keys(const KeyedText& text, const std::function<void(const Sce
       const auto found = again.find(path);
       if (found == again.end() || found->second.form == KeyForm::any) continue;
       for (const auto& [below, one] : again)  // of a table that was not there, what is in it too
-        if (below.starts_with(path)) {
+        if (below == path || below.starts_with(path + ".")) {
           AskedKey& k = keys[below] = one;
           if (below != path) continue;  // what stands there is a guess, the default is not known
           k.given = false;
@@ -209,6 +217,25 @@ inline Keys asked_keys(const KeyedText& text, const std::function<void(const Sce
     }
   }
   return keys;
+}
+
+/// Whether a part of the scene ([[variant]], [[scene]], [[loading]]) gives the key again, so that the common value may
+/// serve nobody.
+inline bool given_in_a_part(const std::string& path, const Keys& keys) {
+  const auto last = [](const std::string& p) { return p.substr(p.rfind('.') + 1); };
+  const auto in_part = [](const std::string& p) {
+    return p.starts_with("variant.") || p.starts_with("scene.") || p.starts_with("loading.");
+  };
+  return !in_part(path) && std::any_of(keys.begin(), keys.end(), [&](const auto& k) {
+    return k.second.given && in_part(k.first) && last(k.first) == last(path);
+  });
+}
+
+/// Values that mean what another one means, or what the scene means without, by the end of the path: and why.
+inline bool means_the_same(const std::string& path, const std::string& value) {
+  const std::string key = path.substr(path.rfind('.') + 1);
+  return (key == "preparation" && value == "\"softgrain\"") ||  // another name of "frictionless"
+         (key == "form" && (value == "\"cell\"" || value == "\"pair\""));  // says what the law file is
 }
 
 /// All texts in quotes that the reader got.

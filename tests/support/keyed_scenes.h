@@ -18,6 +18,10 @@ inline void write_keyed_files(const TemporaryDirectory& directory) {
     packing += std::to_string(20 + 31 * (k % 3)) + "," + std::to_string(20 + 31 * (k / 3 % 3)) + "," +
                std::to_string(20 + 31 * (k / 9)) + "," + (k % 4 == 0 ? "16,soft\n" : "15.5,solid\n");
   write_text_atomic(directory.file("bodies.csv"), packing);
+  write_text_atomic(directory.file("other-bodies.csv"), packing.substr(0, packing.rfind('\n', packing.size() - 2) + 1));
+  LawCard other = synthetic::card();
+  for (PairLaw& law : other.pairs) law.delta_max *= 0.9;
+  save_card(other, directory.file("other-law.toml"));
 }
 
 inline constexpr const char* kMaterialHead = R"(kind = "material"

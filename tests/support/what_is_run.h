@@ -131,6 +131,7 @@ inline void tell(Fingerprint& f, const LawSources& law) {
 inline std::string what_is_run(const Scene& scene) {
   Fingerprint f;
   const std::string kind = kind_of(scene).name;
+  if (const auto refuse = kind_of(scene).refuse; refuse != nullptr) refuse(scene, {});
   if (kind == "pipeline") f(read_pipeline_setup(scene));
   else if (kind == "macro-comparison") f(read_macro_comparison(scene));
   else if (kind == "law-table") f(read_law_table(scene));

@@ -68,6 +68,8 @@ MaterialModel read_model(const Scene& scene, const SceneTable& t, MaterialModels
   if (m.kind == ModelKind::cells && m.soft_share == 0.0 && t.has("radii"))
     t.mistake("radii", "are those of soft bodies: goes with soft_share above 0");
   m.mapped = t.flag("mapped", false);
+  if (m.kind == ModelKind::stand_in && !m.mapped && t.has("card"))
+    t.mistake("card", "says the equation of state that stresses are mapped by: goes with mapped = true");
   m.scale = t.number("scale", Unit::none, Range{0.0, 2.0, true, false}, m.scale);
   const std::vector<double> radii = t.numbers("radii", Unit::none, Range{0.0, 2.0, true, false}, {0.2, 0.6});
   if (radii.size() != 2 || !(radii[0] < radii[1]))

@@ -28,7 +28,8 @@ void read_material(const SceneTable& t, SoftParticleSpec& spec) {
 void read_largest(const SceneTable& t, SoftParticleSpec& spec) {
   if (t.has("rmax")) {
     const double rmax = t.number("rmax", Unit::length, Range::positive());
-    if (t.has("rmax_over_shell"))
+    const std::vector<std::string> keys = t.keys();
+    if (std::find(keys.begin(), keys.end(), "rmax_over_shell") != keys.end())
       t.mistake("rmax_over_shell",
                 "contradicts rmax: give the radius of the largest grain, or that over shell_radius, not both");
     if (rmax >= spec.shell_radius)

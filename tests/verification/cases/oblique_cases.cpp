@@ -62,7 +62,8 @@ std::string oblique_scene(double incidence, TangentialOption option) {
   ball.radius = kPublished.radius;
   ball.position[2] = kPublished.radius + kGap;
   ball.velocity = velocity_at(incidence);
-  return heading("Oblique impact of an aluminium oxide sphere") + text_of(kOxide) + contact_of(option) + text_of(ball) +
+  const SceneMaterial oxide = option == TangentialOption::linear ? inelastic(kOxide) : kOxide;
+  return heading("Oblique impact of an aluminium oxide sphere") + text_of(oxide) + contact_of(option) + text_of(ball) +
          plane({}, {{0.0, 0.0, 1.0}}, "grain") +
          timing(duration / 400.0, static_cast<std::int64_t>(400.0 * (1.5 + flight / duration)));
 }

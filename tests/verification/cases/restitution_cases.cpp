@@ -47,7 +47,8 @@ std::string restitution_scene(const RestitutionCase& c) {
   target.position[0] = target.radius;
   const std::string other = c.ratio > 0.0 ? text_of(target) : plane({}, {{-1.0, 0.0, 0.0}}, "grain");
   // Strong damping holds the bodies together for up to five times the elastic duration.
-  return heading("Normal impact with restitution") + text_of(kGlass) + contact_of(c) + text_of(ball) + other +
+  const SceneMaterial glass = c.law == NormalLaw::linear ? inelastic(kGlass) : kGlass;
+  return heading("Normal impact with restitution") + text_of(glass) + contact_of(c) + text_of(ball) + other +
          timing(step, static_cast<std::int64_t>(6.0 * c.steps_per_impact));
 }
 

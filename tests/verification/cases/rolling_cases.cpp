@@ -76,8 +76,8 @@ EndOfSliding run_pushed_ball(double mu, RollingLaw law) {
 std::string spun_ball_scene(double mu) {
   Ball ball = resting_ball(kMass * kGravity);
   ball.spin[1] = kSpunSpeed / kBallRadius;
-  return heading("Spinning ball set down on a rough surface", {{0.0, 0.0, -kGravity}}) + text_of(kBall) +
-         text_of(rough_contact(mu)) + text_of(ball) + plane({}, {{0.0, 0.0, 1.0}}) +
+  return heading("Spinning ball set down on a rough surface", {{0.0, 0.0, -kGravity}}) +
+         text_of(inelastic(kBall)) + text_of(rough_contact(mu)) + text_of(ball) + plane({}, {{0.0, 0.0, 1.0}}) +
          "\n[time]\nstep = \"auto\"\nend = 18e-3\n[output]\nevery = 1e-5\n";
 }
 
@@ -87,7 +87,7 @@ InclineOutcome run_incline(double angle) {
   const double down = kGravity * std::sin(angle * kRadian);
   const double press = kGravity * std::cos(angle * kRadian);
   const OutsideRun run =
-      run_text(heading("Ball on an incline", {{down, 0.0, -press}}) + text_of(kBall) +
+      run_text(heading("Ball on an incline", {{down, 0.0, -press}}) + text_of(inelastic(kBall)) +
                text_of(rough_contact(kInclineFriction)) + text_of(resting_ball(kMass * press)) +
                plane({}, {{0.0, 0.0, 1.0}}) + "\n[time]\nstep = \"auto\"\nend = 0.02\n[output]\nevery = 1e-2\n");
   const std::size_t last = run.frames() - 1;

@@ -13,8 +13,13 @@ std::string heading(const std::string& title, const Vec3& gravity) {
 }
 
 std::string text_of(const SceneMaterial& m) {
-  return fmt::format("\n[material.{}]\ndensity = {}\nE = {}\nnu = {}\n", m.name, m.density, m.youngs_modulus,
-                     m.poisson_ratio);
+  const std::string text = fmt::format("\n[material.{}]\ndensity = {}\n", m.name, m.density);
+  return m.youngs_modulus > 0.0 ? text + fmt::format("E = {}\nnu = {}\n", m.youngs_modulus, m.poisson_ratio) : text;
+}
+
+SceneMaterial inelastic(SceneMaterial material) {
+  material.youngs_modulus = 0.0;
+  return material;
 }
 
 std::string text_of(const HertzContact& c) {

@@ -48,6 +48,8 @@ std::string digits(const Vec3& value);  ///< "[x, y, z]"
 /// Each returns lines that can be put one after the other; `heading` comes first.
 std::string heading(const std::string& title, const Vec3& gravity = {});
 std::string text_of(const SceneMaterial& material);
+/// The same for contacts with stiffnesses of their own: no elastic constants.
+SceneMaterial inelastic(SceneMaterial material);
 std::string text_of(const HertzContact& contact);
 std::string text_of(const LinearContact& contact);
 std::string text_of(const Ball& ball);
