@@ -23,7 +23,8 @@ extern "C" herr_t softgrain_note_error(unsigned depth, const H5E_error2_t* entry
 }
 
 constexpr const char* kHeldElsewhere =
-    ": another program holds this file open (a viewer, a notebook, a run that is still going): close it there, or wait, "
+    ": another program holds this file open (a viewer, a notebook, a run that is still going): close it there, or "
+    "wait, "
     "and try again";
 
 bool is_locked(const std::string& reason) { return reason.find("unable to lock file") != std::string::npos; }
@@ -62,11 +63,13 @@ std::string library_message() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, softgrain_note_error, &text);
   H5Eclear2(H5E_DEFAULT);
-  // Of the system's errors HDF5 tells time, addresses and sizes over several lines; what matters is the system's word.
+  // Of the system's errors HDF5 tells time, addresses and sizes over several lines; what matters is the system's word:
+  // "file write failed: time = ..., errno = 28, error message = 'No space left on device', buf = ...".
   const std::string key = "error message = '";
-  if (const std::size_t begin = text.find(key); begin != std::string::npos) {
-    const std::size_t end = text.find('\'', begin + key.size());
-    text = text.substr(begin + key.size(), end == std::string::npos ? end : end - begin - key.size());
+  if (const std::size_t word = text.find(key); word != std::string::npos) {
+    const std::string head = text.substr(0, std::min(text.find(": time = "), text.find(", errno = ")));
+    const std::string tail = text.substr(word + key.size());
+    text = head + ": " + tail.substr(0, tail.find('\''));
   }
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text.empty() ? text : " (" + text + ")";
@@ -102,8 +105,8 @@ Group open_file(const std::string& path) {
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (file.id() < 0) {
     const std::string reason = library_message();
-    throw FileTrouble(path + (is_locked(reason) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") +
-                      reason);
+    throw FileTrouble(
+        path + (is_locked(reason) ? kHeldElsewhere : ": cannot be read as HDF5, is it damaged or cut short?") + reason);
   }
   return root_of(std::make_shared<File>(File{std::move(file), path}));
 }
