@@ -113,8 +113,10 @@ void expect_in_key(const T& record, const std::function<std::string(const T&)>& 
       continue;
     }
     ++within_key;
-    keys.insert(key(other));
-    EXPECT_EQ(keys.size(), within_key + 1) << "leaf " << leaf << " is no part of the key";
+    EXPECT_TRUE(keys.insert(key(other)).second)
+        << "leaf " << leaf << ", at byte "
+        << static_cast<const char*>(change.changed()) - reinterpret_cast<const char*>(&other)
+        << " of the record, is no part of the key";
   }
   EXPECT_GT(within_key, 0U);
 }
@@ -130,6 +132,7 @@ MacroSpec full_spec() {
   spec.test = MacroTest::stages;
   MacroStage stage;
   stage.record.name = "press";
+  stage.record.by_stress = std::array{false, false, true};
   stage.axis[2] = {false, 0.1, -1};
   spec.stages = {stage};
   return spec;
@@ -138,10 +141,10 @@ MacroSpec full_spec() {
 /// Members of no effect on a packing: those of the test that follows it.
 bool of_the_test(const MacroSpec& s, const void* place) {
   return within(s.friction, place) || within(s.wall_friction, place) || within(s.test, place) ||
-         within(s.strain_end, place) || within(s.preload, place) || within(s.preload_steps, place) ||
-         within(s.steps, place) || within(s.increments_per_step, place) || within(s.tolerance, place) ||
-         within(s.force_floor, place) || within(s.max_passes, place) || within(s.twin, place) ||
-         within(s.kt_secant, place) || within(s.splits, place) || within(s.stages, place) ||
+         within(s.modulus_stress, place) || within(s.strain_end, place) || within(s.preload, place) ||
+         within(s.preload_steps, place) || within(s.steps, place) || within(s.increments_per_step, place) ||
+         within(s.tolerance, place) || within(s.force_floor, place) || within(s.max_passes, place) ||
+         within(s.twin, place) || within(s.kt_secant, place) || within(s.splits, place) || within(s.stages, place) ||
          (!s.splits.empty() && within(s.splits.front(), place)) ||
          (!s.stages.empty() && (within(s.stages.front(), place)));
 }
@@ -348,6 +351,70 @@ TEST(CacheKeys, ListsAndTextsCannotBeMistakenForEachOther) {
   EXPECT_NE(key(0.1), key(std::nextafter(0.1, 1.0)));
   EXPECT_NE(key(std::optional<double>{}), key(std::optional<double>{0.0}));
   EXPECT_LT(key(std::string(100000, 'a')).size(), 100U) << "keys have to fit into an attribute";
+}
+
+/// Box and places of a packing in two numbers.
+std::array<double, 2> fingerprint(const MacroPacking& packing) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < packing.bodies.size(); ++k)
+    for (int a = 0; a < 3; ++a) sum += (1.0 + 0.1 * static_cast<double>(k)) * packing.bodies[k].x[a];
+  const Vec3 size = packing.size();
+  return {size[0] * size[1] * size[2], sum};
+}
+
+struct PreparedPacking {
+  Preparation preparation;
+  Boundary boundary;
+  std::array<double, 2> fingerprint;
+};
+
+/// When this fails, preparations have changed: packings of earlier versions that lie in caches are others. Raise
+/// kPackingSchema, and put what is found here in place of these numbers.
+TEST(CacheSchemas, PackingsAreThoseOfTheirSchema) {
+  EXPECT_EQ(kPackingSchema, 3);
+  const std::vector<PreparedPacking> prepared{
+      {Preparation::frictionless, Boundary::walls, {1.0, 1.0}},
+      {Preparation::fast, Boundary::walls, {1.0, 1.0}},
+      {Preparation::slow, Boundary::walls, {1.0, 1.0}},
+      {Preparation::dense, Boundary::walls, {1.0, 1.0}},
+      {Preparation::lammps, Boundary::walls, {1.0, 1.0}},
+      {Preparation::frictionless, Boundary::periodic, {1.0, 1.0}},
+  };
+  for (const PreparedPacking& p : prepared) {
+    const auto found = fingerprint(make_packing(small_spec(p.preparation, p.boundary), 1, 0));
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_NEAR(found[k], p.fingerprint[k], 1e-5 * std::abs(p.fingerprint[k]))
+          << to_string(p.preparation) << fmt::format(": {:.9g}, {:.9g}", found[0], found[1]);
+  }
+}
+
+/// The same of kTwinSchema: a grain that a soft particle touches, pressed together as a twin.
+TEST(CacheSchemas, TwinsAreThoseOfTheirSchema) {
+  EXPECT_EQ(kTwinSchema, 2);
+  const std::vector<std::pair<TwinRelaxation, std::array<double, 2>>> known{
+      {TwinRelaxation::damped, {1.0, 1.0}}, {TwinRelaxation::slow_dynamics, {1.0, 1.0}}};
+  for (const auto& [relaxation, stresses] : known) {
+    MacroSpec spec;
+    spec.twin.relaxation = relaxation;
+    spec.twin.settle_time = 10.0;
+    spec.twin.speed = 1e-3;
+    spec.steps = 2;
+    spec.strain_end = 0.1;
+    SoftParticleSpec inside;
+    inside.trials = 200;
+    inside.polydispersity = 3.0;
+    inside.beta = 8.0;
+    const MacroPacking packing = make_packing(small_spec(Preparation::frictionless), 1, 0);
+    CompressionState state;
+    state.macro = make_shelled_system(spec, packing, {generate_shell_packing(inside, 1, 0)}, 1, 0);
+    state.curve = begin_curve(spec, packing, state.macro, "shelled", 0);
+    compress(state, spec);
+    ASSERT_FALSE(state.curve.stress_axial.empty());
+    const std::array<double, 2> found{state.curve.stress_axial.back(), state.curve.stress_lateral.back()};
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_NEAR(found[k], stresses[k], 1e-3 * std::abs(stresses[k]))
+          << to_string(relaxation) << fmt::format(": {:.9g}, {:.9g}", found[0], found[1]);
+  }
 }
 
 }  // namespace

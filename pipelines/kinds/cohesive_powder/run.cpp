@@ -9,6 +9,7 @@
 #include "common/core/stopwatch.h"
 #include "common/io/interrupt.h"
 #include "common/io/progress.h"
+#include "common/io/text_file.h"
 #include "microsim/powder/powder_state_io.h"
 #include "pipelines/kinds/cohesive_powder/consolidation.h"
 #include "pipelines/kinds/cohesive_powder/output.h"
@@ -209,8 +210,10 @@ namespace {
 ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   if (has_powder_variants(scene)) return run_powder_variants(scene, options);
   const PowderSetup setup = read_powder(scene);
-  return run_powder_ensemble(
-      setup, Run(scene, options, "microsim", setup.seed, {.files = {setup.states}, .text = sizes_text(setup.spec)}));
+  // A run goes on only with the states that it began with.
+  const std::string states = setup.states.empty() ? "" : short_hash(read_text(setup.states));
+  return run_powder_ensemble(setup, Run(scene, options, "microsim", setup.seed,
+                                        {.files = {setup.states}, .text = sizes_text(setup.spec) + states}));
 }
 
 void read_any_powder(const Scene& scene) {

@@ -154,6 +154,7 @@ MacroSpec as_prepared(MacroSpec spec) {
   spec.test = none.test;
   spec.splits = none.splits;
   spec.stages = none.stages;
+  spec.modulus_stress = none.modulus_stress;
   spec.strain_end = none.strain_end;
   spec.preload = none.preload;
   spec.preload_steps = none.preload_steps;
