@@ -121,7 +121,9 @@ MacroCurve stiffening(std::array<double, 2> loading = {}, std::array<double, 2> 
     c.stage.push_back(stage);
     c.strain_z.push_back(-std::expm1(-strain));
     c.strain = c.strain_z;
-    for (auto* none : {&c.strain_x, &c.strain_y, &c.stress_x, &c.stress_y}) none->push_back(0.0);
+    for (auto* none : {&c.strain_x, &c.strain_y, &c.stress_x, &c.stress_y, &c.stress_lateral,
+                       &c.stress_axial_contacts, &c.coordination, &c.residual})
+      none->push_back(0.0);
     c.stress_axial.push_back(stress);
   };
   for (int k = 0; k <= 100; ++k) add(0.0, 1e-4 * k, 1e9 * std::pow(1e-4 * k, 2));

@@ -15,6 +15,7 @@
 #include "microsim/shell_packing.h"
 #include "pipelines/kinds/law_table/crowd_law_fit.h"
 #include "pipelines/kinds/macro/memory.h"
+#include "pipelines/kinds/macro/room.h"
 #include "pipelines/kinds/macro/stage.h"
 #include "pipelines/kinds/macro/stages.h"
 #include "pipelines/kinds/soft_particle/check.h"
@@ -421,6 +422,8 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
 void check_macro_scene(const Scene& scene, const std::string& law, Findings& out) {
   const MacroScene macro = read_macro_scene(scene, law);
   if (const std::string assumed = assumed_text(macro.setup); !assumed.empty()) out.warn(assumed);
+  if (const std::string doubt = room_doubt(macro.setup, macro.seed, "bodies"); !doubt.empty())
+    out.warn(doubt + " (key macro.bodies)");
   add_sizes(out, drawn_sizes(macro.setup, macro.seed));
   if (macro.law_file.empty()) {
     out.warn("no law named: macrosim will need --law; give it here too to see what the scene asks of it");

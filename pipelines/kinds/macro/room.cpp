@@ -46,16 +46,20 @@ double fraction_under(double jammed, double pressure) {
   return std::min(1.0, jammed + (1.0 - jammed) * std::pow(pressure / 0.045, 1.0 / 1.75));
 }
 
-/// Least volume of bodies, over the cube of the largest radius: so that they can be placed, under the first pressure of
-/// the preparation, which is up to 128 times that of its end, and where the test shortens the cell most.
-double needed_volume(const MacroSpec& spec) {
+/// Least volume of bodies, over the cube of the largest radius, so that they can be placed at all.
+double placed_volume() {
   constexpr double kPlaced = 0.75;  // that place_loosely() asks for
-  const double period = std::pow(kPeriod, 3);
+  return kPlaced * std::pow(kPeriod, 3);
+}
+
+/// And so that they have room under the first pressure of the preparation, which is up to 128 times that of its end, and
+/// where the test shortens the cell most.
+double needed_volume(const MacroSpec& spec) {
   const double jammed = jammed_fraction(spec);
   const double first = fraction_under(jammed, spec.start_pressure * std::max(1.0, spec.protocol.first_pressure));
   const double shortened = std::clamp(1.0 - rough_strains(spec).largest_axial, 0.1, 1.0);
   const double strained = fraction_under(jammed, spec.start_pressure) / std::pow(shortened, 3);
-  return period * std::max({kPlaced, first, strained});
+  return std::max(placed_volume(), std::pow(kPeriod, 3) * std::max(first, strained));
 }
 
 bool needs_room(const MacroSetup& setup) {
@@ -85,15 +89,19 @@ std::int64_t least_bodies(const MacroSpec& spec) {
   return rounded_up(kMargin * needed_volume(spec) * std::pow(largest, 3) * number / kSphereVolume);
 }
 
-std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
+namespace {
+
+/// The first of the drawn samples whose bodies hold less than this, over the cube of their largest radius.
+std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::string& what, std::int64_t draws,
+                     double volume_needed, const char* when) {
   constexpr double kSurely = 4.0;  // times as many have room, whatever is drawn
   const MacroSpec& spec = setup.spec;
   if (!needs_room(setup)) return "";
   const std::int64_t least = least_bodies(spec);
   if (static_cast<double>(spec.bodies) >= kSurely * static_cast<double>(least)) return "";
-  const double wanted = needed_volume(spec) / kSphereVolume;
+  const double wanted = volume_needed / kSphereVolume;
   double drawn = 0.0;
-  for (std::int64_t k = 0; k < std::max(setup.samples, kDraws) && drawn < kMostDrawn; ++k) {
+  for (std::int64_t k = 0; k < draws && drawn < kMostDrawn; ++k) {
     double volume = 0.0;
     double largest = 0.0;
     for (const MacroBody& b : drawn_bodies(spec, seed, static_cast<std::uint64_t>(k))) {
@@ -101,16 +109,27 @@ std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std:
       largest = std::max(largest, b.r);
       drawn += 1.0;
     }
-    if (volume >= wanted * cube(largest)) continue;
-    const double side = kPeriod * largest * std::cbrt(volume / (wanted * cube(largest)));
-    const auto more = static_cast<std::int64_t>(static_cast<double>(spec.bodies) * kMargin * wanted * cube(largest) / volume);
+    const double there = volume / (wanted * cube(largest));
+    if (there >= 1.0) continue;
+    const double more = static_cast<double>(spec.bodies) * kMargin / there;
     return fmt::format(
-        "{} {} are too few for a periodic cell: packed and strained, its shortest side may be as short as {:.3g} m, "
-        "and images of the largest (radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
-        spec.bodies, what, side, largest, kPeriod * largest,
-        std::max(least, rounded_up(static_cast<double>(more))));
+        "{} {} are too few for a periodic cell: {}, its shortest side is about {:.3g} m, and images of the largest "
+        "(radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
+        spec.bodies, what, when, kPeriod * largest * std::cbrt(there), largest, kPeriod * largest,
+        std::max(least, rounded_up(more)));
   }
   return "";
+}
+
+}  // namespace
+
+std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
+  return short_of(setup, seed, what, setup.samples, placed_volume(), "packed");
+}
+
+std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
+  return short_of(setup, seed, what, std::max(setup.samples, kDraws), needed_volume(setup.spec),
+                  "packed and strained, for some seeds");
 }
 
 void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed) {

@@ -15,9 +15,13 @@ namespace softgrain {
 /// needs none.
 std::int64_t least_bodies(const MacroSpec& spec);
 
-/// What is wrong with the samples that would be drawn: "40 bodies are too few for a periodic cell: ...; 130 do". Empty:
-/// nothing. `what`: what bodies are called, in the plural.
+/// What is wrong with the samples that the run would draw, which cannot even be placed: "40 bodies are too few for a
+/// periodic cell: ...: 130 or more have room". Empty: nothing. `what`: what bodies are called, in the plural.
 std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what);
+
+/// The same where samples of this or another seed may have no room left when they are pressed and strained: no reason
+/// to refuse them, as this is estimated.
+std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::string& what);
 
 /// A mistake at `key` of this table where the samples of a macro scene have no room; walls are offered instead.
 void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed);

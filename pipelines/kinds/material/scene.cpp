@@ -306,6 +306,8 @@ void check_variants(const MaterialScene& material, Findings& out, bool timed) {
     const bool trial = timed && watch.seconds() < kMoment;
     (trial ? bodies : untried) += static_cast<double>(v.setup.spec.bodies * v.setup.samples);
     check_macro(v.setup, {.prepared = v.same_packings, .untimed = !trial}, nullptr, material.seed, out);
+    if (const std::string doubt = room_doubt(v.setup, material.seed, "grains"); !doubt.empty())
+      out.warn((v.name == kMaterialEngine ? "" : v.name + ": ") + doubt + " ([grains] count)");
     constexpr double kCoarse = 100.0;  // above a third of the largest radius
     double coarse = 0.0;
     for (const MacroBody& b : drawn_bodies(v.setup.spec, material.seed, 0))

@@ -26,6 +26,7 @@ class RecipeRun {
   RecipeRun(RecipeScene scene, const Run& run) : scene_(std::move(scene)), run_(run) {}
 
   RecipeSummary finish() {
+    for (const std::string& doubt : scene_.doubts) run_.context.say(doubt);
     VariantRuns measured_variants = run_variants(scene_.material, run_);
     results_ = std::move(measured_variants.results);
     MaterialOutcome measured = summarise(scene_.material, results_, run_);

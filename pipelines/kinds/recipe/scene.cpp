@@ -201,8 +201,8 @@ void make_variants(const MacroSetup& base, double shear_strain, RecipeScene& out
       variant_of(fmt::format("check-{}-levels", out.checked_levels), still, joined(levels, 0, out.checked_levels)));
 }
 
-/// Every packing gets room for the images of its largest grains: numbers that nobody asked for are raised, those of the
-/// scene refused.
+/// Every packing gets room for the images of its largest grains: numbers that nobody asked for are raised. Those of the
+/// scene are refused where grains cannot even be placed, and doubted where they may have no room when they are pressed.
 class RoomForImages {
  public:
   RoomForImages(const SceneTable& root, RecipeScene& scene) : root_(root), scene_(scene) {}
@@ -239,14 +239,22 @@ class RoomForImages {
     constexpr int kTries = 20;
     constexpr std::int64_t kDearest = 5;  // times the default: what is dearer should be asked for
     const std::int64_t asked = setup.spec.bodies;
-    std::string problem = room_problem(setup, scene_.material.seed, "grains");
-    if (problem.empty()) return asked;
     const SceneTable t = root_.table_or_empty(table);
-    setup.spec.bodies = std::max(asked, least_bodies(setup.spec));
-    if (t.has(key) || setup.spec.bodies > kDearest * asked)
+    const auto seed = scene_.material.seed;
+    if (const std::string problem = room_problem(setup, seed, "grains"); t.has(key) && !problem.empty())
       t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what, problem,
                                 table, key));
-    for (int k = 0; k < kTries && !room_problem(setup, scene_.material.seed, "grains").empty(); ++k)
+    const std::string doubt = room_doubt(setup, seed, "grains");
+    if (doubt.empty()) return asked;
+    if (t.has(key)) {
+      scene_.doubts.push_back(fmt::format("{}: {} ([{}] {})", what, doubt, table, key));
+      return asked;
+    }
+    setup.spec.bodies = std::max(asked, least_bodies(setup.spec));
+    if (setup.spec.bodies > kDearest * asked)
+      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what, doubt,
+                                table, key));
+    for (int k = 0; k < kTries && !room_doubt(setup, seed, "grains").empty(); ++k)
       setup.spec.bodies += setup.spec.bodies / 10;
     scene_.raised.push_back(fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room",
                                         what, setup.spec.bodies, asked, table, key));
@@ -322,7 +330,7 @@ bool tells_ways(const RecipeScene& scene) {
 RecipeScene read_recipe_scene(const Scene& scene) {
   return scene.read([](const SceneTable& root) {
     (void)root.choice("kind", {"recipe"});
-    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, 100};
+    RecipeScene out{{}, {}, Grading::power_law(3.5, 1.0, 2.0), {}, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}, 100};
     out.material.title = root.text("title", "");
     out.material.seed = static_cast<std::uint64_t>(root.count("seed", 0, 1000000000000, 1));
     MacroSetup base = recipe_defaults();
@@ -368,6 +376,7 @@ void check_recipe(const Scene& scene, Findings& out) {
   Findings variants;  // a dozen lines for every packing: their number is enough here
   check_variants(recipe.material, variants, false);
   for (const std::string& raised : recipe.raised) out.lines += "  " + raised + "\n";
+  for (const std::string& doubt : recipe.doubts) out.warn(doubt);
   const auto packings = std::count_if(recipe.material.variants.begin(), recipe.material.variants.end(),
                                       [](const MaterialVariant& v) { return !v.same_packings; });
   out.add("packings", packings,

@@ -59,6 +59,7 @@ struct RecipeScene {
   std::optional<std::size_t> checked;  ///< variant of the check
   std::size_t checked_levels = 0;      ///< that it holds
   std::vector<std::string> raised;     ///< packings whose default number of grains was too small, and what they have
+  std::vector<std::string> doubts;     ///< packings that may have no room when they are pressed
   RecipeCheck check;
   RecipeMacro macro;
   RecipeShells shells;
