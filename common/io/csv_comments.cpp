@@ -254,11 +254,12 @@ void CsvFile::require_known_comments(const std::vector<CsvNames>& known, const s
     const bool says_value = number && (s.equals || !s.unit.empty());
     const bool slip = near.size() <= s.key.size() + 1 && s.key.size() <= near.size() + 1;  // of a word: "knid"
     if (!says_value && (near.empty() || !(number || (s.equals && slip)))) continue;
+    const std::string meant = near.empty() ? nearest_word(s.key, names) : near;
     throw BadInput(where(s.line) + ": comment \"" + s.title +
                    (s.bare     ? " "
                     : s.equals ? " = "
                                : ": ") +
-                   s.value + "\" is not understood" + (near.empty() ? "" : "; nearest is \"" + near + "\"") +
+                   s.value + "\" is not understood" + (meant.empty() ? "" : "; nearest is \"" + meant + "\"") +
                    ": comments of " + what + (names.empty() ? " say no values" : " may say " + first_names) +
                    "; write anything else as text without \"=\"");
   }

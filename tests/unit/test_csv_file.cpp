@@ -109,6 +109,7 @@ TEST(CsvFile, CommentsThatCountForNothingAreRefused) {
            {"# temperature [C] = 23", "may say rs, density, kind"},
            {"# speed = 1 mm/min", "is not understood"},
            {"# bulk density: 2500 kg/m^3", "nearest is \"density\""},
+           {"# Rss [mm] = 16", "nearest is \"rs\""},
            {"# knid = soft-solid", "nearest is \"kind\""},
            {"# radiu [mm] 16", "comment \"radiu [mm] 16\" is not understood; nearest is \"radius\""},
            {"# Rs = 16 mm\n# radius [mm] = 17", "t.csv:2: radius [mm] = 17: contradicts line 1, Rs = 16 mm"},
