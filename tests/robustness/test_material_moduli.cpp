@@ -31,8 +31,8 @@ E = "10 MPa"
       run_the_program("run '" + directory.file("scene.toml") + "' --threads 1 --out '" + directory.file("out") + "'");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   std::vector<std::string> stresses;
-  for (std::size_t at = outcome.output.find("axial stress "); at != std::string::npos;
-       at = outcome.output.find("axial stress ", at + 1))
+  for (std::size_t at = outcome.output.find(": axial stress "); at != std::string::npos;
+       at = outcome.output.find(": axial stress ", at + 1))
     stresses.push_back(outcome.output.substr(at, outcome.output.find('E', at) - at));
   ASSERT_EQ(stresses.size(), 2U) << outcome.output;
   EXPECT_EQ(stresses[0], stresses[1]) << outcome.output;

@@ -120,7 +120,8 @@ inline std::vector<std::string> other_values(const AskedKey& k, const std::set<s
       for (const double x : other_numbers(k.numbers.at(0), k.range)) out.push_back(text_of(x));
       return out;
     case KeyForm::count:
-      for (const double x : {k.numbers.at(0) + 1, k.numbers.at(0) - 1, 2 * k.numbers.at(0), k.numbers.at(0) + 10, 60.0})
+      for (const double x :
+           {k.numbers.at(0) + 1, 1.0, k.numbers.at(0) - 1, 2 * k.numbers.at(0), k.numbers.at(0) + 10, 60.0})
         if (allowed(k.range, x) && x != k.numbers.at(0)) out.push_back(fmt::format("{:.0f}", x));
       return out;
     case KeyForm::flag:
