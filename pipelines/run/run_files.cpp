@@ -93,6 +93,17 @@ void add_descriptions(std::vector<fs::path>& found, const std::vector<std::strin
   found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
+/// Whether states stay that exports may be of. Those of a run of several lie in directories below, which have no part
+/// in the next one.
+bool keeps_states(const std::string& directory, const std::vector<fs::path>& found) {
+  std::error_code error;
+  return std::any_of(fs::directory_iterator(directory, error), fs::directory_iterator(),
+                     [&](const fs::directory_entry& entry) {
+                       return holds_states(entry.path().filename().string()) &&
+                              std::find(found.begin(), found.end(), entry.path()) == found.end();
+                     });
+}
+
 std::string listed(const std::vector<fs::path>& files) {
   std::string text;
   for (const fs::path& file : files) text += (text.empty() ? "" : ", ") + file.filename().string();
@@ -131,7 +142,7 @@ void remove_earlier_run(const std::string& directory, const std::string& command
   // Figures go with the page that shows them, exported states with those that they were made from.
   const auto goes = [&](const auto& is) { return std::any_of(found.begin(), found.end(), is); };
   if (goes([](const fs::path& file) { return file.filename() == "report.html"; })) report::remove_figures(directory);
-  if (goes([](const fs::path& file) { return holds_states(file.filename().string()); })) remove_exports_of(directory);
+  if (!found.empty() && !keeps_states(directory, found)) remove_exports_of(directory);
   for (const fs::path& file : found) {
     fs::remove_all(file, error);
     if (error) throw FileTrouble(file.string() + ": of an earlier run, cannot be removed: " + error.message());

@@ -373,17 +373,17 @@ struct PreparedPacking {
 TEST(CacheSchemas, PackingsAreThoseOfTheirSchema) {
   EXPECT_EQ(kPackingSchema, 3);
   const std::vector<PreparedPacking> prepared{
-      {Preparation::frictionless, Boundary::walls, {1.0, 1.0}},
-      {Preparation::fast, Boundary::walls, {1.0, 1.0}},
-      {Preparation::slow, Boundary::walls, {1.0, 1.0}},
-      {Preparation::dense, Boundary::walls, {1.0, 1.0}},
-      {Preparation::lammps, Boundary::walls, {1.0, 1.0}},
-      {Preparation::frictionless, Boundary::periodic, {1.0, 1.0}},
+      {Preparation::frictionless, Boundary::walls, {0.000153444234, 1.36172463}},
+      {Preparation::fast, Boundary::walls, {0.00017131401, 1.35824895}},
+      {Preparation::slow, Boundary::walls, {0.000170177562, 1.35563831}},
+      {Preparation::dense, Boundary::walls, {0.000146563284, 1.27021872}},
+      {Preparation::lammps, Boundary::walls, {0.000206873637, 1.36380355}},
+      {Preparation::frictionless, Boundary::periodic, {0.000456861843, 13.33799}},
   };
   for (const PreparedPacking& p : prepared) {
     const auto found = fingerprint(make_packing(small_spec(p.preparation, p.boundary), 1, 0));
     for (std::size_t k = 0; k < found.size(); ++k)
-      EXPECT_NEAR(found[k], p.fingerprint[k], 1e-5 * std::abs(p.fingerprint[k]))
+      EXPECT_NEAR(found[k], p.fingerprint[k], 1e-4 * std::abs(p.fingerprint[k]))
           << to_string(p.preparation) << fmt::format(": {:.9g}, {:.9g}", found[0], found[1]);
   }
 }
@@ -392,7 +392,7 @@ TEST(CacheSchemas, PackingsAreThoseOfTheirSchema) {
 TEST(CacheSchemas, TwinsAreThoseOfTheirSchema) {
   EXPECT_EQ(kTwinSchema, 2);
   const std::vector<std::pair<TwinRelaxation, std::array<double, 2>>> known{
-      {TwinRelaxation::damped, {1.0, 1.0}}, {TwinRelaxation::slow_dynamics, {1.0, 1.0}}};
+      {TwinRelaxation::damped, {1.27267751, 1.24715904}}, {TwinRelaxation::slow_dynamics, {1.1459172, 1.21517407}}};
   for (const auto& [relaxation, stresses] : known) {
     MacroSpec spec;
     spec.twin.relaxation = relaxation;
@@ -412,7 +412,7 @@ TEST(CacheSchemas, TwinsAreThoseOfTheirSchema) {
     ASSERT_FALSE(state.curve.stress_axial.empty());
     const std::array<double, 2> found{state.curve.stress_axial.back(), state.curve.stress_lateral.back()};
     for (std::size_t k = 0; k < found.size(); ++k)
-      EXPECT_NEAR(found[k], stresses[k], 1e-3 * std::abs(stresses[k]))
+      EXPECT_NEAR(found[k], stresses[k], 1e-2 * std::abs(stresses[k]))
           << to_string(relaxation) << fmt::format(": {:.9g}, {:.9g}", found[0], found[1]);
   }
 }

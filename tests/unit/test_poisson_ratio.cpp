@@ -68,9 +68,10 @@ TEST(PoissonRatio, OfEveryKindOfScene) {
 TEST(PoissonRatio, OfTheSearchForContents) {
   for (const KindScene& kind : every_kind()) {
     if (kind.name != "inverse") continue;
-    EXPECT_EQ(refused(kind, "search.nu", "[-0.999, 0.5]"), "");
-    EXPECT_NE(refused(kind, "search.nu", "[-1.0, 0.5]").find("nu"), std::string::npos);
-    EXPECT_NE(refused(kind, "search.nu", "[-0.5, 0.51]").find("nu"), std::string::npos);
+    // Two numbers to search want more points than this scene has: nothing is wrong with the range.
+    EXPECT_EQ(refused(kind, "search.nu", "[-0.999, 0.5]").find("nu = "), std::string::npos);
+    EXPECT_NE(refused(kind, "search.nu", "[-1.0, 0.5]").find("nu = "), std::string::npos);
+    EXPECT_NE(refused(kind, "search.nu", "[-0.5, 0.51]").find("nu = "), std::string::npos);
   }
 }
 
