@@ -93,7 +93,7 @@ namespace {
 
 /// The first of the drawn samples whose bodies hold less than this, over the cube of their largest radius.
 std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::string& what, std::int64_t draws,
-                     double volume_needed, const char* when) {
+                     double volume_needed, bool sure) {
   constexpr double kSurely = 4.0;  // times as many have room, whatever is drawn
   const MacroSpec& spec = setup.spec;
   if (!needs_room(setup)) return "";
@@ -113,9 +113,9 @@ std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::str
     if (there >= 1.0) continue;
     const double more = static_cast<double>(spec.bodies) * kMargin / there;
     return fmt::format(
-        "{} {} are too few for a periodic cell: {}, its shortest side is about {:.3g} m, and images of the largest "
+        "{} {} {} for a periodic cell: packed{}, its shortest side is about {:.3g} m, and images of the largest "
         "(radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
-        spec.bodies, what, when, kPeriod * largest * std::cbrt(there), largest, kPeriod * largest,
+        spec.bodies, what, sure ? "are too few" : "may be too few", sure ? "" : " and strained", kPeriod * largest * std::cbrt(there), largest, kPeriod * largest,
         std::max(least, rounded_up(more)));
   }
   return "";
@@ -124,12 +124,11 @@ std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::str
 }  // namespace
 
 std::string room_problem(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
-  return short_of(setup, seed, what, setup.samples, placed_volume(), "packed");
+  return short_of(setup, seed, what, setup.samples, placed_volume(), true);
 }
 
 std::string room_doubt(const MacroSetup& setup, std::uint64_t seed, const std::string& what) {
-  return short_of(setup, seed, what, std::max(setup.samples, kDraws), needed_volume(setup.spec),
-                  "packed and strained, for some seeds");
+  return short_of(setup, seed, what, std::max(setup.samples, kDraws), needed_volume(setup.spec), false);
 }
 
 void require_room_for_images(const SceneTable& macro, const char* key, const MacroSetup& setup, std::uint64_t seed) {
