@@ -290,10 +290,6 @@ std::string not_determined(const StateSamples& data, const StateFit& fit) {
   if (fit.fit.at_bound.size() > 1 && fit.fit.at_bound[1])
     return fmt::format("n is not determined: it runs to {:.3g}, the end of what is tried, and K with it",
                        fit.exponent.value);
-  const StateEstimate& k = fit.modulus;
-  if (std::isfinite(k.error) && !(k.high < kWidestFactor * k.value && k.low * kWidestFactor > k.value))
-    return fmt::format("K is not determined: its 95 % interval is {:.2g} to {:.2g}{}", k.low, k.high,
-                       fit.one_modulus ? "" : ", since packings have a K of their own");
   return "";
 }
 
@@ -306,11 +302,14 @@ std::string message_of(const StateFit& fit) {
         "between packings",
         fit.collapse_probability);
   const double factor = std::max(fit.modulus.high / fit.modulus.value, fit.modulus.value / fit.modulus.low);
-  if (!(factor < kWideFactor))
+  if (!(factor < kWidestFactor))
     text += fmt::format(
-        "; K is known to a factor of {:.2g} alone: pressures within the range of the fit are, and K and n only "
-        "together",
-        factor);
+        "; K is not determined (95 %: {:.2g} to {:.2g}): it goes with n, and both say pressures within the range of "
+        "the "
+        "fit alone",
+        fit.modulus.low, fit.modulus.high);
+  else if (!(factor < kWideFactor))
+    text += fmt::format("; K is known to a factor of {:.2g} alone: it goes with n", factor);
   return text;
 }
 

@@ -73,9 +73,9 @@ struct StateFit {
 /// deviation of ln K between groups, intervals have G - 1 degrees (or N - G), and that of K is of the K of another
 /// packing of this kind: it holds the deviation between packings beside the error of their mean.
 /// Throws BadInput for curves that read_state_curves refuses and options out of range. Not usable with the reason: no
-/// convergence, fewer than three points more than numbers, an interval of K that is wider than a factor of a
-/// hundred to either side, n at the end of what is tried. With one sample in every group errors are infinite, and the
-/// message says so.
+/// convergence, fewer than three points more than numbers, n at the end of what is tried. An interval of K that is
+/// wider than a factor of a hundred to either side (K is not determined) or of three, and errors that are infinite with
+/// one sample in every group, are in the message.
 StateFit fit_equation_of_state(const std::vector<StateCurve>& curves, const StateFitOptions& options = {});
 
 }  // namespace softgrain

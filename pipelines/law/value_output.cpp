@@ -21,7 +21,14 @@ std::string exact(double x) { return fmt::format("{}", x); }
 
 std::string interval_text(const std::optional<Quantity>& q, double unit) {
   if (!q || !q->interval) return "-";
-  return fmt::format("{:.3g}..{:.3g}", q->interval->low * unit, q->interval->high * unit);
+  // With as many digits as ends that differ need to do so.
+  constexpr int kMost = 9;
+  const auto end = [unit](double x, int digits) { return fmt::format("{:.{}g}", x * unit, digits); };
+  int digits = 3;
+  while (digits < kMost && q->interval->low < q->interval->high &&
+         end(q->interval->low, digits) == end(q->interval->high, digits))
+    ++digits;
+  return end(q->interval->low, digits) + ".." + end(q->interval->high, digits);
 }
 
 /// The tangential stiffness that runs would use.
