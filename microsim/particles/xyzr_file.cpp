@@ -98,7 +98,6 @@ XyzrFile read_xyzr(const std::string& path, const std::function<void(std::int64_
   LineReader reader(path);
   std::string_view line;
   if (!reader.next(line)) reader.wrong("must be four finite numbers, N Lx Ly Lz");
-  if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // a byte order mark
   const auto head = four_numbers(line, reader, "N Lx Ly Lz");
   XyzrFile file;
   file.box = {{head[1], head[2], head[3]}};

@@ -11,10 +11,10 @@ namespace {
 
 using namespace softgrain;
 
-TEST(XyzrFile, SignsAndMarksAreRead) {
+TEST(XyzrFile, PlusSignsAreRead) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.file("a.xyzr");
-  write_text_atomic(path, "\xef\xbb\xbf+2 +1 1.0 1\r\n+0.01 -0.02 +.3 +1e-3\r\n1 2 3 4\r\n");
+  write_text_atomic(path, "+2 +1 1.0 1\r\n+0.01 -0.02 +.3 +1e-3\r\n1 2 3 4\r\n");
   const XyzrFile file = read_xyzr(path);
   ASSERT_EQ(file.radius.size(), 2U);
   EXPECT_EQ(file.position[0], (Vec3{{0.01, -0.02, 0.3}}));
