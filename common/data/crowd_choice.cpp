@@ -20,7 +20,7 @@ std::string form_label(const LawTableEntry& entry, const CrowdLaw& law) {
   if (law.form != entry.best) return to_string(law.form);
   const bool better = std::any_of(entry.laws.begin(), entry.laws.end(),
                                   [&](const CrowdLaw& other) { return rank_of(other) < rank_of(law); });
-  return to_string(law.form) + (better ? " (chosen by the scene)" : " (best)");
+  return to_string(law.form) + (better ? " (set by the scene)" : " (best)");
 }
 
 }  // namespace softgrain

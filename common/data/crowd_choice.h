@@ -8,7 +8,7 @@
 namespace softgrain {
 
 /// "bag (best)" where the errors of all forms chose it (the least one leaving one loading out, of those that the data
-/// determine), "bag (chosen by the scene)" where a key did against them, "bag" of a form that is not taken.
+/// determine), "bag (set by the scene)" where a key did against them, "bag" of a form that is not taken.
 std::string form_label(const LawTableEntry& entry, const CrowdLaw& law);
 
 }  // namespace softgrain

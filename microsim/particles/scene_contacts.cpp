@@ -1,5 +1,7 @@
 #include "microsim/particles/scene_contacts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -164,21 +166,24 @@ void read_contact(const SceneTable& t, const std::vector<Material>& materials, i
   out.serves.resize(laws, law == "cohesive" && t.number("adhesion", Unit::force) > 0.0 ? Serves::grains : Serves::any);
 }
 
-/// Elastic constants, or that there are none, of materials whose laws do not ask for them.
-void refuse_idle_elasticity(const SceneTable& root) {
+/// Elastic constants of materials whose contacts do not go by them. They describe the material and may stay, but a
+/// user who changes them should know that nothing else changes.
+void remark_on_idle_elasticity(const SceneTable& root, SceneLaws& out) {
   std::set<std::string> elastic;
-  for (const SceneTable& t : root.tables("contact"))
+  const std::vector<SceneTable> contacts = root.tables("contact");
+  for (const SceneTable& t : contacts)
     if (t.text("law") == "hertz-tsuji")
       for (const std::string& name : t.texts("pair")) elastic.insert(name);
+  if (contacts.empty()) return;
   const SceneTable tables = root.table_or_empty("material");
   for (const std::string& name : tables.keys()) {
     const SceneTable t = tables.named(name);
     if (elastic.contains(name)) continue;
     for (const char* key : {"E", "nu", "rigid"})
       if (t.has(key))
-        t.mistake(key,
-                  "no contact of this material goes by it: law = \"hertz-tsuji\" does, others have stiffnesses (a law "
-                  "card or table its E) of their own; leave it out");
+        out.remarks.push_back(fmt::format("{}: {} of [material.{}] has no effect: none of its contacts has law = "
+                                          "\"hertz-tsuji\"",
+                                          t.where(key), key, name));
   }
 }
 
@@ -191,7 +196,7 @@ SceneLaws read_contacts(const Scene& scene, const std::vector<Material>& materia
   const SceneTable root = scene.root();
   for (const SceneTable& t : root.tables("contact")) t.part([&] { read_contact(t, materials, dimension, soft, out); });
   if (root.sound()) soft.require_whole();
-  if (root.sound()) refuse_idle_elasticity(root);
+  if (root.sound()) remark_on_idle_elasticity(root, out);
   return out;
 }
 

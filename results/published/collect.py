@@ -3,7 +3,7 @@
 the third is both relaxations of old on 24 packings, and the comparison is that of results/relaxation/study.sh.
 
   softgrain run pipelines/published.toml --out results/published_run
-  softgrain run pipelines/published.toml --set measure.relaxation=damped --out results/published_damped
+  softgrain run pipelines/published.toml --set measure.relaxation=damped --set measure.least_work={} --out results/published_damped
   softgrain microsim pipelines/relaxation_check.toml --out results/relaxation_check
   results/relaxation/study.sh results/relaxation_study
   python3 results/published/collect.py results/published_run results/published_damped results/relaxation_check \\
@@ -125,7 +125,7 @@ def main():
     made = {name: r["provenance"]["commit"] for name, r in (("damped", old), ("check", check))}
     text = "# The published experiment\n\n"
     text += (f"Made by `collect.py` from `softgrain run pipelines/published.toml` (slow-dynamics; version {run['provenance']['version']}, commit "
-             f"{run['provenance']['commit']}, status {run['status']}), the same with `--set measure.relaxation=damped` (commit {made['damped']}), "
+             f"{run['provenance']['commit']}, status {run['status']}), the same with `--set measure.relaxation=damped --set measure.least_work={{}}` (commit {made['damped']}), "
              f"`softgrain microsim pipelines/relaxation_check.toml` (commit {made['check']}) and the [study of the relaxations](../relaxation/README.md).\n\n")
     text += (HERE / "notes.md").read_text() + "\n"
     text += (f"{p['count']} packings: {p['grains']:.0f} grains, solid fraction {p['solid_fraction']:.4f} ± {p['solid_fraction_deviation']:.4f} "

@@ -349,7 +349,7 @@ void expect_counts_of_the_run(const std::string& text) {
     if (!c.twin()) continue;
     ++twins;
     // Contents that take long to make are not all made for a check.
-    EXPECT_NEAR(expected["grains_inside"].get<double>(), static_cast<double>(c.grains), 0.02 * c.grains) << text;
+    EXPECT_NEAR(expected["grains_inside"].get<double>(), static_cast<double>(c.grains), 0.02 * static_cast<double>(c.grains)) << text;
   }
   EXPECT_GT(twins, 0U);
 }

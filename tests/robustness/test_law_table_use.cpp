@@ -280,7 +280,7 @@ TEST_F(LawTableUse, CheckSaysWhatIsInATable) {
   second.laws[1].error_held_out = std::nan("");
   save_law_table({1, {law_entry(0.70), second}}, file("law_table.toml"));
   expect(run_the_program("check '" + file("law_table.toml") + "'"), 0,
-         {"law table: 2 entries, solid fraction 0.700 to 0.750", "directional (best): good", "12 packings",
+         {"law table: 2 entries, solid fraction 0.700 to 0.750", "directional (set by the scene): good", "12 packings",
           "underdetermined (planes: 3 of 6)", "overlap of 0.280 Rs", "3.3 % on what was held out", "nothing held out",
           "soft neighbours of ratio 1 to 2"});
   const ProgramOutcome outcome = run_the_program("check --json '" + file("law_table.toml") + "'");

@@ -17,6 +17,9 @@ TEST(MacroMemory, SaysWhatWouldFit) {
   MacroSetup setup;
   setup.spec.bodies = 1000;
   setup.spec.soft_share = 0.5;
+  // Of the same sizes half of the volume is half of the bodies.
+  setup.spec.soft_radius_max = setup.spec.solid_radius_max;
+  setup.spec.soft_polydispersity = setup.spec.solid_polydispersity;
   constexpr double kGrains = 401.0;
   const double needed = macro_memory(1000.0 + 500.0 * kGrains);
   EXPECT_EQ(macro_memory_problem(setup, kGrains, needed), "");
@@ -25,6 +28,12 @@ TEST(MacroMemory, SaysWhatWouldFit) {
   EXPECT_NE(problem.find("allowed: up to 500, or more with resolved = false"), std::string::npos) << problem;
   EXPECT_NE(problem.find("a resolved twin of about 2.02e+05 grains needs about 0.157 GB"), std::string::npos)
       << problem;
+  // Of half the radius it is eight ninths.
+  MacroSetup smaller = setup;
+  smaller.spec.soft_radius_max = 0.5 * setup.spec.solid_radius_max;
+  const double more = macro_memory(1000.0 + 8000.0 / 9.0 * kGrains);
+  EXPECT_EQ(macro_memory_problem(smaller, kGrains, more * (1.0 + 1e-12)), "");
+  EXPECT_NE(macro_memory_problem(smaller, kGrains, more * (1.0 - 1e-6)), "");
   setup.twins.clear();
   EXPECT_EQ(macro_memory_problem(setup, kGrains, macro_memory(1000.0)), "");
   EXPECT_NE(macro_memory_problem(setup, kGrains, 0.25 * macro_memory(1000.0)).find("allowed: up to 250"),

@@ -19,6 +19,9 @@ using namespace softgrain::test;
 const std::map<std::string, std::string> kElsewhere{
     {"kind", "another kind is another scene, with keys of its own"},
     {"recipe levels.ratio", "decides how many levels there are: here two at every ratio that is allowed"},
+    {"disks material.powder.E", "describes the material; a remark says that no contact of it has a law that goes by it"},
+    {"disks material.powder.nu", "describes the material; a remark says that no contact of it has a law that goes by it"},
+    {"disks material.powder.rigid", "describes the material; a remark says that no contact of it has a law that goes by it"},
     {"disks contact.1.pair", "its order does not matter, and without one of the two a contact has no law"},
     {"particles-drawn particle.0.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
     {"particles-drawn particle.1.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},

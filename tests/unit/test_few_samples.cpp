@@ -66,7 +66,7 @@ TEST(FormLabel, SaysWhetherErrorsOrASceneChose) {
   EXPECT_EQ(form_label(entry, entry.laws[2]), "directional (best)");
   EXPECT_EQ(form_label(entry, entry.laws[1]), "bag");
   entry.best = Crowd::bag;
-  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (chosen by the scene)");
+  EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (set by the scene)");
   EXPECT_EQ(form_label(entry, entry.laws[2]), "directional");
   entry.laws[2].status = LawStatus::underdetermined;  // what the data do not determine is not preferred
   EXPECT_EQ(form_label(entry, entry.laws[1]), "bag (best)");

@@ -353,7 +353,7 @@ TEST(RecipeScene, RaisesDefaultCountsThatHaveNoRoomAndRefusesGivenOnes) {
   EXPECT_TRUE(given.raised.empty());
   EXPECT_EQ(given.doubts.size(), scene.raised.size());
   const std::string none = refusal(levels, sizes + "\ncount = 1100");
-  for (const char* part : {"count", "packing levels-1-2-80", "1100 grains are too few for a periodic cell",
+  for (const char* part : {"count", "packing levels-1-2", "1100 grains are too few for a periodic cell",
                            "or more have room ([grains] count)"})
     EXPECT_NE(none.find(part), std::string::npos) << part << "\n" << none;
   for (const char* part : {"boundary", "macro:"}) EXPECT_EQ(none.find(part), std::string::npos) << none;

@@ -182,9 +182,9 @@ void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxati
   };
   const auto goes_with = [&](const char* table, bool used, const char* relaxation) {
     if (used || !measure.has(table)) return;
-    const SceneTable t = measure.table_or_empty(table);
-    for (const std::string& key : t.keys())
-      t.mistake(key, fmt::format("nothing is relaxed this way: goes with relaxation = {}", relaxation));
+    if (measure.table_or_empty(table).keys().empty()) return;
+    measure.mistake(table, fmt::format("nothing is relaxed this way: goes with relaxation = {}; leave the table out",
+                                       relaxation));
   };
   goes_with("damped", one_of({Relaxation::damped}), "\"damped\"");
   goes_with("published", one_of({Relaxation::published}), "\"published\"");
