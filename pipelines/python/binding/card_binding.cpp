@@ -76,8 +76,8 @@ std::optional<std::pair<Array, Array>> CardBinding::interval(const std::string& 
   require_allowed(contact.range, in);
   in_stretches(in.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const bool beyond = law.delta_max > 0.0 && in[k] > law.delta_max * (1.0 + 1e-12);
-      const auto one = beyond ? std::nullopt : at(in[k]);
+      const bool unmeasured = law.delta_max > 0.0 && in[k] > law.delta_max * (1.0 + 1e-12);
+      const auto one = unmeasured ? std::nullopt : at(in[k]);
       to_low[k] = one ? scale * one->low : kNaN;
       to_high[k] = one ? scale * one->high : kNaN;
     }
