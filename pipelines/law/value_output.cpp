@@ -118,7 +118,7 @@ std::string values_text(const ValueTable& t, const ValueUnits& u) {
   });
   if (!origin.empty()) text += "  intervals: " + origin + "\n";
   if (origin.empty() && inside) text += "  no intervals: none are stored with this law, or none are determined\n";
-  if (beyond) text += "  no interval beyond the measured range: nothing says how far off the law is there\n";
+  if (beyond) text += "  no interval beyond the measured range: nothing says how far off the law is\n";
   return text;
 }
 

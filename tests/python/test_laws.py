@@ -57,7 +57,7 @@ class CardTest(unittest.TestCase):
                         low, high = interval(delta, kind, beyond=beyond, **units)
                         told = np.array([r[f"{name}_interval"] or (np.nan, np.nan) for r in rows], dtype=float)
                         np.testing.assert_allclose(np.stack([low, high], 1), told, rtol=1e-12, atol=1e-300)
-                        # 0.35 is beyond what was measured on a plane: nothing says how far off the law is there.
+                        # 0.35 is beyond what was measured on a plane: nothing says how far off the law is.
                         self.assertEqual(bool(np.isnan(low[-1]) and np.isnan(high[-1])), kind == "soft-solid")
 
     def test_secant_is_another_stiffness(self):

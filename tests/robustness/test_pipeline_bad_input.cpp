@@ -125,7 +125,7 @@ TEST_F(PipelineBadInput, Measurements) {
   least_work("increment = 0.5", {"scene.toml:17: increment = 0.5", "0.1"});
   least_work("approach_speed = 0", {"scene.toml:17: approach_speed = 0", "above 0"});
   least_work("step_factor = 30", {"scene.toml:17: step_factor = 30", "20"});
-  least_work("setle_time = 3", {"scene.toml:17", "unknown key 'setle_time'", "'settle_time'"});
+  expect("increment = 0.02", "incremnt = 0.02", {"scene.toml:17", "unknown key 'incremnt'", "'increment'"});
   expect("[calibrate]", "[reference]\nrelaxation = \"damped\"\n[reference.soft_solid]\ndeltas = [0.2]\n[calibrate]",
          {"scene.toml:25: relaxation = \"damped\"", "must differ"});
 }
