@@ -52,8 +52,9 @@ struct FitReport {
   int tangential_left_out = 0;  ///< the same for tangential points
   int iterations = 0;           ///< of the optimiser over all intervals of delta
   bool from_residuals = false;  ///< replicates are of residuals, not of packings
-  std::size_t drawn_packings = 0;  ///< that replicates of packings were drawn from; widens intervals where these are few
-  std::string fit_message;      ///< why the optimiser ended
+  std::size_t drawn_packings =
+      0;                    ///< that replicates of packings were drawn from; widens intervals where these are few
+  std::string fit_message;  ///< why the optimiser ended
 };
 
 /// Fits one pair kind. status of the law:

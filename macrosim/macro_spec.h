@@ -134,14 +134,14 @@ struct MacroSpec {
   double start_pressure = 1.0e-5;  ///< of the preparation, over E
   MacroTest test = MacroTest::oedometric;
   std::vector<double> splits;  ///< of grains into coarse and fine, over the largest radius: who bears what is recorded
-  std::vector<MacroStage> stages;        ///< of test "stages"; the numbers below are those of the other tests
+  std::vector<MacroStage> stages;          ///< of test "stages"; the numbers below are those of the other tests
   std::array<double, 2> modulus_stress{};  ///< of the stages that do not name their own, see StageRecord [Pa]
-  double strain_end = 0.15;              ///< nominal; of shear: logarithmic
-  double preload = 0.0;                  ///< shear: isotropic nominal strain before
-  std::int64_t preload_steps = 4;        ///< recorded points of it
-  std::int64_t steps = 30;               ///< recorded points
-  std::int64_t increments_per_step = 2;  ///< relaxed strain increments per recorded point
-  double tolerance = 1e-2;               ///< largest net force over mean contact force at recorded points
+  double strain_end = 0.15;                ///< nominal; of shear: logarithmic
+  double preload = 0.0;                    ///< shear: isotropic nominal strain before
+  std::int64_t preload_steps = 4;          ///< recorded points of it
+  std::int64_t steps = 30;                 ///< recorded points
+  std::int64_t increments_per_step = 2;    ///< relaxed strain increments per recorded point
+  double tolerance = 1e-2;                 ///< largest net force over mean contact force at recorded points
   double force_floor = 1.0e-4;  ///< the mean contact force never counts for less than this, over E R^2 (R the largest
                                 ///< radius): else loose states before the first stress would be relaxed for ever
   std::int64_t max_passes = 20000;  ///< per relaxation

@@ -191,10 +191,10 @@ std::vector<double> noted(const Table& table, const std::string& key, Unit unit,
 }  // namespace
 
 double SceneTable::number(const std::string& key, Unit unit, const Range& range) const {
-  return noted(*impl_, key, unit, range,
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); },
-                   stand_in(range)));
+  return noted(
+      *impl_, key, unit, range,
+      value_of(
+          *impl_, key, [&](const toml::node& n) { return number_of(*impl_, key, n, unit, range); }, stand_in(range)));
 }
 double SceneTable::number(const std::string& key, Unit unit, const Range& range, double fallback) const {
   return noted(*impl_, key, unit, range,
@@ -204,10 +204,9 @@ double SceneTable::number(const std::string& key, Unit unit, const Range& range,
 }
 
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high) const {
-  return noted(
-      *impl_, key, low, high,
-      value_of(
-          *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, low));
+  return noted(*impl_, key, low, high,
+               value_of(
+                   *impl_, key, [&](const toml::node& n) { return count_of(*impl_, key, n, low, high); }, low));
 }
 std::int64_t SceneTable::count(const std::string& key, std::int64_t low, std::int64_t high,
                                std::int64_t fallback) const {
@@ -225,16 +224,16 @@ bool SceneTable::flag(const std::string& key, bool fallback) const {
 }
 
 std::string SceneTable::text(const std::string& key) const {
-  return noted(*impl_, key, std::vector<std::string>(),
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, std::string(), nullptr,
-                   true));
+  return noted(
+      *impl_, key, std::vector<std::string>(),
+      value_of(
+          *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, std::string(), nullptr, true));
 }
 std::string SceneTable::text(const std::string& key, const std::string& fallback) const {
-  return noted(*impl_, key, std::vector<std::string>(),
-               value_of(
-                   *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, fallback, &fallback,
-                   true));
+  return noted(
+      *impl_, key, std::vector<std::string>(),
+      value_of(
+          *impl_, key, [&](const toml::node& n) { return text_of(*impl_, key, n); }, fallback, &fallback, true));
 }
 
 std::string SceneTable::choice(const std::string& key, std::initializer_list<const char*> words) const {

@@ -181,9 +181,10 @@ void remark_on_idle_elasticity(const SceneTable& root, SceneLaws& out) {
     if (elastic.contains(name)) continue;
     for (const char* key : {"E", "nu", "rigid"})
       if (t.has(key))
-        out.remarks.push_back(fmt::format("{}: {} of [material.{}] has no effect: none of its contacts has law = "
-                                          "\"hertz-tsuji\"",
-                                          t.where(key), key, name));
+        out.remarks.push_back(
+            fmt::format("{}: {} of [material.{}] has no effect: none of its contacts has law = "
+                        "\"hertz-tsuji\"",
+                        t.where(key), key, name));
   }
 }
 

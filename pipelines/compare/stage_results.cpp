@@ -51,9 +51,9 @@ std::array<double, 2> usual_interval(Modulus modulus, const StressStrain& s) {
   return {std::max(begin, 0.5 * end), end};
 }
 
-/// Where the stress is first met, straight between points, and behind the place `from` (a point and a part of the way to
-/// the next); NaN where it is not. An end that misses it by a trifle of the stage's change counts as met: stresses are
-/// imposed within a tolerance.
+/// Where the stress is first met, straight between points, and behind the place `from` (a point and a part of the way
+/// to the next); NaN where it is not. An end that misses it by a trifle of the stage's change counts as met: stresses
+/// are imposed within a tolerance.
 double place_of(const StressStrain& s, double stress, double from) {
   constexpr double kTrifle = 0.02;
   const double near = kTrifle * std::abs(s.stress.back() - s.stress.front());
@@ -205,8 +205,7 @@ std::string modulus_interval(const StageRecord& record) {
     if (stress >= 1e6) return fmt::format("{:.6g} MPa", 1e-6 * stress);
     return stress >= 1e3 ? fmt::format("{:.6g} kPa", 1e-3 * stress) : fmt::format("{:.6g} Pa", stress);
   };
-  if (record.modulus_stress[1] > 0.0)
-    return text(record.modulus_stress[0]) + " to " + text(record.modulus_stress[1]);
+  if (record.modulus_stress[1] > 0.0) return text(record.modulus_stress[0]) + " to " + text(record.modulus_stress[1]);
   if (record.kind == StageKind::unload) return "whole stage";
   const Modulus modulus = modulus_of(record.way);
   return modulus == Modulus::young || modulus == Modulus::shear ? "first half of the largest stress"
@@ -226,12 +225,12 @@ std::string modulus_text(const StageMeans& s) {
   const Modulus modulus = s.record.kind == StageKind::hold ? Modulus::none : modulus_of(s.record.way);
   if (modulus == Modulus::none) return "";
   if (!s.modulus)
-    return fmt::format("{} modulus not determined: the stage does not go through {} of {}", to_string(modulus),
-                       modulus_interval(s.record), stress_of(modulus));
+    return fmt::format("{} modulus not determined: the {} does not go through its interval ({})", to_string(modulus),
+                       stress_of(modulus), modulus_interval(s.record));
   std::string text = fmt::format("{} modulus {:.4g}", to_string(modulus), s.modulus->mean);
   if (s.modulus->n > 1) text += fmt::format(" +- {:.2g}", s.modulus->error);
-  text += fmt::format(" Pa from {:.3g} to {:.3g} Pa of {}", s.modulus_from->mean, s.modulus_to->mean,
-                      stress_of(modulus));
+  text +=
+      fmt::format(" Pa from {:.3g} to {:.3g} Pa of {}", s.modulus_from->mean, s.modulus_to->mean, stress_of(modulus));
   if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s.record) + ")";
   if (s.axial_end && s.modulus->n < s.axial_end->n)
     text += fmt::format(", {} of {} samples", s.modulus->n, s.axial_end->n);
@@ -282,8 +281,8 @@ std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const
     const auto mean = [&](double StageResult::*member) { return mean_of(all, member); };
     out.push_back({all.front()->record, mean(&StageResult::strain_end), mean(&StageResult::volumetric_end),
                    mean(&StageResult::axial_end), mean(&StageResult::lateral_end), mean(&StageResult::modulus),
-                   mean(&StageResult::modulus_from), mean(&StageResult::modulus_to),
-                   mean(&StageResult::modulus_begin), mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
+                   mean(&StageResult::modulus_from), mean(&StageResult::modulus_to), mean(&StageResult::modulus_begin),
+                   mean(&StageResult::modulus_end), mean(&StageResult::poisson_begin), mean(&StageResult::ratio_peak),
                    mean(&StageResult::ratio_peak_strain), mean(&StageResult::ratio_end)});
   }
   return out;

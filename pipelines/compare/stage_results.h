@@ -46,20 +46,21 @@ struct StageResult {
   double lateral_end = kNaN;
   /// Secant between two stresses [Pa]: those of the record; without any from half the stress at the end to the end
   /// (constrained, bulk, axial; from the begin where that is more), from the begin to half of the largest change
-  /// (Young, shear: E50), and over the whole stage where the stress falls. NaN where the stage does not go through both.
+  /// (Young, shear: E50), and over the whole stage where the stress falls. NaN where the stage does not go through
+  /// both.
   double modulus = kNaN;
-  double modulus_from = kNaN;   ///< the stress where the interval begins; see stress_of() [Pa]
-  double modulus_to = kNaN;     ///< where it ends
-  double modulus_begin = kNaN;  ///< tangent at the first point: of unload the unloading modulus [Pa]
-  double modulus_end = kNaN;    ///< tangent at the last point, from few points and one side: scatters [Pa]
+  double modulus_from = kNaN;       ///< the stress where the interval begins; see stress_of() [Pa]
+  double modulus_to = kNaN;         ///< where it ends
+  double modulus_begin = kNaN;      ///< tangent at the first point: of unload the unloading modulus [Pa]
+  double modulus_end = kNaN;        ///< tangent at the last point, from few points and one side: scatters [Pa]
   double poisson_begin = kNaN;      ///< Young's way: -d(eps_x + eps_y)/(2 d eps_z) at the first point
   double ratio_peak = kNaN;         ///< largest q/p
   double ratio_peak_strain = kNaN;  ///< of z, where it is
   double ratio_end = kNaN;          ///< q/p
 };
 
-/// Change of stress over that of strain between two stresses (the second lies behind the first), straight between points;
-/// NaN where the points do not go through both.
+/// Change of stress over that of strain between two stresses (the second lies behind the first), straight between
+/// points; NaN where the points do not go through both.
 double secant_modulus(const std::vector<double>& strain, const std::vector<double>& stress, double from, double to);
 
 /// Of every stage that has two points at least; empty for curves that do not say their stages. Tangents are those of a
@@ -89,8 +90,8 @@ struct StageMeans {
 /// 5 MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
 std::string modulus_interval(const StageRecord& record);
 
-/// "constrained modulus 6.5e+08 +- 2e+07 Pa from 2.5e+06 to 5e+06 Pa of axial stress (upper half of the stress)", or why
-/// it is not determined; empty where the stage has none.
+/// "constrained modulus 6.5e+08 +- 2e+07 Pa from 2.5e+06 to 5e+06 Pa of axial stress (upper half of the stress)", or
+/// why it is not determined; empty where the stage has none.
 std::string modulus_text(const StageMeans& stage);
 
 std::vector<StageMeans> stage_means(const std::vector<MacroCurve>& curves, const std::string& engine);

@@ -264,6 +264,7 @@ TEST(MacroPreparation, TwinsBeginWithTheSpringsThatItLeft) {
     for (const Boundary boundary : {Boundary::walls, Boundary::periodic}) {
       MacroSpec spec = prepared_by(p, 60);
       spec.soft_share = 0.0;
+      spec.friction = 0.3;  // or nobody asks for springs
       spec.boundary = boundary;
       spec.steps = 1;
       spec.increments_per_step = 1;

@@ -349,7 +349,9 @@ void expect_counts_of_the_run(const std::string& text) {
     if (!c.twin()) continue;
     ++twins;
     // Contents that take long to make are not all made for a check.
-    EXPECT_NEAR(expected["grains_inside"].get<double>(), static_cast<double>(c.grains), 0.02 * static_cast<double>(c.grains)) << text;
+    EXPECT_NEAR(expected["grains_inside"].get<double>(), static_cast<double>(c.grains),
+                0.02 * static_cast<double>(c.grains))
+        << text;
   }
   EXPECT_GT(twins, 0U);
 }
@@ -365,15 +367,16 @@ TEST_F(Check, CountsAreThoseOfTheRun) {
 
 /// Nothing is soft in a material, and nothing is said of it; its time is told, in cells of a few grains too.
 TEST_F(Check, AMaterialSaysItsTimeAndNothingOfSoftParticles) {
-  const std::string scene = "kind = \"material\"\nsamples = 2\n[grains]\ncount = 700\nratio = 4\n[packing]\npreparation = "
-                            "\"fast\"\n[test]\nstrain = 0.04\nsteps = 4\n";
+  const std::string scene =
+      "kind = \"material\"\nsamples = 2\n[grains]\ncount = 700\nratio = 4\n[packing]\npreparation = "
+      "\"fast\"\n[test]\nstrain = 0.04\nsteps = 4\n";
   const json expected = scene_facts(scene);
   const std::string said = run_the_program("check '" + directory_.file("scene.toml") + "'").output;
   EXPECT_EQ(said.find("of them soft"), std::string::npos) << said;
   EXPECT_NE(said.find("time: about"), std::string::npos) << said;
   const double before = time_of_children();
-  const test::ProgramOutcome outcome = run_the_program("run '" + directory_.file("scene.toml") +
-                                                       "' --threads 1 --out '" + directory_.file("run") + "'");
+  const test::ProgramOutcome outcome =
+      run_the_program("run '" + directory_.file("scene.toml") + "' --threads 1 --out '" + directory_.file("run") + "'");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const double ratio = expected["core_seconds"].get<double>() / (time_of_children() - before);
   EXPECT_GT(ratio, 1.0 / 3.0);

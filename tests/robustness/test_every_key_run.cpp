@@ -30,9 +30,12 @@ const std::map<std::string, std::string> kNotInResults{
     {"checkpoint.every_seconds", "when a state is kept on the way: tests of restarts"},
     {"time.warm_up_steps", "steps that the measured pace leaves out: a time"},
     {"recipe levels.ratio", "decides how many levels there are: here two at every ratio that is allowed"},
-    {"disks material.powder.E", "describes the material; a remark says that no contact of it has a law that goes by it"},
-    {"disks material.powder.nu", "describes the material; a remark says that no contact of it has a law that goes by it"},
-    {"disks material.powder.rigid", "describes the material; a remark says that no contact of it has a law that goes by it"},
+    {"disks material.powder.E",
+     "describes the material; a remark says that no contact of it has a law that goes by it"},
+    {"disks material.powder.nu",
+     "describes the material; a remark says that no contact of it has a law that goes by it"},
+    {"disks material.powder.rigid",
+     "describes the material; a remark says that no contact of it has a law that goes by it"},
     {"disks contact.1.pair", "its order does not matter, and without one of the two a contact has no law"},
     {"particles-drawn contact.0.pair", "its order does not matter, and without one of the two a contact has no law"},
     {"particles-drawn particle.0.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
@@ -40,9 +43,9 @@ const std::map<std::string, std::string> kNotInResults{
 };
 
 /// Bounds that only a run which meets them shows, by the end of the path; EveryKey sees that they are taken.
-const std::set<std::string> kBounds{"max_passes",     "preparation_passes", "max_iterations", "max_increments",
-                                    "max_halvings",   "growth_passes",      "time_max",       "increment_passes",
-                                    "sub_increments", "refresh"};
+const std::set<std::string> kBounds{
+    "max_passes",    "preparation_passes", "max_iterations",   "max_increments", "max_halvings",
+    "growth_passes", "time_max",           "increment_passes", "sub_increments", "refresh"};
 
 bool is_bound(const std::string& path) { return kBounds.contains(path.substr(path.rfind('.') + 1)); }
 
@@ -82,9 +85,8 @@ TEST_P(SlowEveryKey, ChangesResultsOrIsRefused) {
   const std::set<std::string> texts = texts_of(keys);
   std::vector<std::pair<std::string, AskedKey>> all;
   for (const auto& [path, key] : keys)
-    if (!kNotInResults.contains(path) && !kNotInResults.contains(GetParam().name + " " + path) &&
-        !is_bound(path) && stands_for_all(path, keys) && !given_in_a_part(path, keys) &&
-        !other_values(key, texts).empty())
+    if (!kNotInResults.contains(path) && !kNotInResults.contains(GetParam().name + " " + path) && !is_bound(path) &&
+        stands_for_all(path, keys) && !given_in_a_part(path, keys) && !other_values(key, texts).empty())
       all.emplace_back(path, key);
   RunTally tally;
   std::mutex guard;

@@ -180,9 +180,12 @@ TEST_F(PipelineResume, ThreadsDoNotMatter) {
 /// The least-work relaxation keeps nothing between recorded points that is not in the checkpoint.
 TEST_F(PipelineResume, LeastWorkGoesOnWithTheSameBits) {
   const auto begin = [&](const std::string& out, bool resume) {
-    std::vector<std::string> arguments{"run",       scene(), "--out", directory_.file(out),
-                                       "--threads", "1",     "--set", "measure.relaxation=least-work",
-                                       "--set",     "measure.damped={}", "--quiet"};
+    std::vector<std::string> arguments{"run",       scene(),
+                                       "--out",     directory_.file(out),
+                                       "--threads", "1",
+                                       "--set",     "measure.relaxation=least-work",
+                                       "--set",     "measure.damped={}",
+                                       "--quiet"};
     if (resume) arguments.emplace_back("--resume");
     return start_program(arguments);
   };

@@ -173,8 +173,7 @@ inline bool stands_for_all(const std::string& path, const Keys& keys) {
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', from)) {
     const std::string part = path.substr(from, dot - from);
     const bool number = !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
-    if (number && std::stoul(part) > 2 &&
-        std::any_of(keys.begin(), keys.end(), [&](const auto& k) {
+    if (number && std::stoul(part) > 2 && std::any_of(keys.begin(), keys.end(), [&](const auto& k) {
           return k.first.starts_with(before + "." + std::to_string(std::stoul(part) + 1) + ".");
         }))
       return false;
@@ -235,7 +234,7 @@ inline bool given_in_a_part(const std::string& path, const Keys& keys) {
 /// Values that mean what another one means, or what the scene means without, by the end of the path: and why.
 inline bool means_the_same(const std::string& path, const std::string& value) {
   const std::string key = path.substr(path.rfind('.') + 1);
-  return (key == "preparation" && value == "\"softgrain\"") ||  // another name of "frictionless"
+  return (key == "preparation" && value == "\"softgrain\"") ||             // another name of "frictionless"
          (key == "form" && (value == "\"cell\"" || value == "\"pair\""));  // says what the law file is
 }
 

@@ -111,9 +111,9 @@ template <class T, class Visit>
 void for_members(const T& value, Visit& visit) {
   constexpr std::size_t kMembers = members<T>();
   static_assert(kMembers < kMostMembers, "a struct with more members than are told apart: raise kMostMembers");
-#define SOFTGRAIN_MEMBERS_CASE(n)                           \
-  if constexpr (kMembers == (n)) {                          \
-    const auto& [SOFTGRAIN_MEMBERS_##n] = value;            \
+#define SOFTGRAIN_MEMBERS_CASE(n)                                          \
+  if constexpr (kMembers == (n)) {                                         \
+    const auto& [SOFTGRAIN_MEMBERS_##n] = value;                           \
     [&](const auto&... one) { (visit(one), ...); }(SOFTGRAIN_MEMBERS_##n); \
   }
   // clang-format off

@@ -113,8 +113,8 @@ resolved = false
 }
 
 inline std::string macro_cells() {
-  return std::string("kind = \"macro\"\nlaw = \"") + SOFTGRAIN_SOURCE_DIR +
-         "/results/material_law/cell_law.toml\"\n" + R"([macro]
+  return std::string("kind = \"macro\"\nlaw = \"") + SOFTGRAIN_SOURCE_DIR + "/results/material_law/cell_law.toml\"\n" +
+         R"([macro]
 bodies = 40
 boundary = "periodic"
 preparation = "fast"
@@ -155,7 +155,8 @@ kind = "reload"
 
 inline std::string models_scene() {
   return std::string(kTinyMaterialModels) + "[[model]]\nname = \"cells\"\nkind = \"cells\"\nsplit = 0.8\ncard = \"" +
-         SOFTGRAIN_SOURCE_DIR + "/results/material_law/cell_law.toml\"\n[[model]]\nname = \"mean\"\nkind = "
+         SOFTGRAIN_SOURCE_DIR +
+         "/results/material_law/cell_law.toml\"\n[[model]]\nname = \"mean\"\nkind = "
          "\"mean-field\"\ncard = \"" +
          SOFTGRAIN_SOURCE_DIR + "/results/material_law/cell_law.toml\"\n[[variant]]\nname = \"a\"\n";
 }

@@ -132,23 +132,40 @@ inline std::string what_is_run(const Scene& scene) {
   Fingerprint f;
   const std::string kind = kind_of(scene).name;
   if (const auto refuse = kind_of(scene).refuse; refuse != nullptr) refuse(scene, {});
-  if (kind == "pipeline") f(read_pipeline_setup(scene));
-  else if (kind == "macro-comparison") f(read_macro_comparison(scene));
-  else if (kind == "law-table") f(read_law_table(scene));
-  else if (kind == "hierarchy") f(read_hierarchy_setup(scene));
-  else if (kind == "inverse") f(read_inverse(scene));
-  else if (kind == "soft-particle") f(read_soft_particle_scene(scene));
-  else if (kind == "grain-box") f(read_grain_box(scene));
-  else if (kind == "macro") f(read_macro_scene(scene, ""));
-  else if (kind == "material") f(read_material_scene(scene));
-  else if (kind == "material-law") f(read_material_law_scene(scene));
-  else if (kind == "material-models") f(read_material_models_scene(scene));
-  else if (kind == "recipe") f(read_recipe_scene(scene));
-  else if (kind == "particles" && particles_dimension(scene) == 3) f(read_particles_scene<3>(scene));
-  else if (kind == "particles") f(read_particles_scene<2>(scene));
-  else if (kind == "cohesive-powder" && has_powder_variants(scene)) f(read_powder_variants(scene));
-  else if (kind == "cohesive-powder") f(read_powder(scene));
-  else ADD_FAILURE() << "kind " << kind << " has no place here: give it one";
+  if (kind == "pipeline")
+    f(read_pipeline_setup(scene));
+  else if (kind == "macro-comparison")
+    f(read_macro_comparison(scene));
+  else if (kind == "law-table")
+    f(read_law_table(scene));
+  else if (kind == "hierarchy")
+    f(read_hierarchy_setup(scene));
+  else if (kind == "inverse")
+    f(read_inverse(scene));
+  else if (kind == "soft-particle")
+    f(read_soft_particle_scene(scene));
+  else if (kind == "grain-box")
+    f(read_grain_box(scene));
+  else if (kind == "macro")
+    f(read_macro_scene(scene, ""));
+  else if (kind == "material")
+    f(read_material_scene(scene));
+  else if (kind == "material-law")
+    f(read_material_law_scene(scene));
+  else if (kind == "material-models")
+    f(read_material_models_scene(scene));
+  else if (kind == "recipe")
+    f(read_recipe_scene(scene));
+  else if (kind == "particles" && particles_dimension(scene) == 3)
+    f(read_particles_scene<3>(scene));
+  else if (kind == "particles")
+    f(read_particles_scene<2>(scene));
+  else if (kind == "cohesive-powder" && has_powder_variants(scene))
+    f(read_powder_variants(scene));
+  else if (kind == "cohesive-powder")
+    f(read_powder(scene));
+  else
+    ADD_FAILURE() << "kind " << kind << " has no place here: give it one";
   return f.text();
 }
 

@@ -63,8 +63,9 @@ TEST(CellCardFile, RoundTripIsExact) {
         &CellCard::excess_decay, &CellCard::friction, &CellCard::stiffness, &CellCard::lateral_ratio})
     expect_same_estimate(a.*estimate, b.*estimate);
   for (const auto number :
-       {&CellCard::youngs_modulus, &CellCard::density, &CellCard::pressure_low, &CellCard::pressure_high, &CellCard::mixture_high, &CellCard::poisson_ratio,
-        &CellCard::grain_friction, &CellCard::start_pressure, &CellCard::split, &CellCard::fines_ratio})
+       {&CellCard::youngs_modulus, &CellCard::density, &CellCard::pressure_low, &CellCard::pressure_high,
+        &CellCard::mixture_high, &CellCard::poisson_ratio, &CellCard::grain_friction, &CellCard::start_pressure,
+        &CellCard::split, &CellCard::fines_ratio})
     EXPECT_EQ(a.*number, b.*number);
   EXPECT_EQ(a.preparation, b.preparation);
   EXPECT_EQ(a.fines_sizes, b.fines_sizes);

@@ -79,8 +79,7 @@ TEST_F(KeysThatCount, KeysOfATestAreRefusedBesideCommonStages) {
 }
 
 TEST_F(KeysThatCount, WhatTheCommonTableSaysOfAPreparationStays) {
-  const std::string common =
-      "[packing]\npreparation = \"fast\"\ncompaction_mu = 0.05\npreparation_tolerance = 1e-3\n";
+  const std::string common = "[packing]\npreparation = \"fast\"\ncompaction_mu = 0.05\npreparation_tolerance = 1e-3\n";
   for (const char* own : {"mu = 0.5\n", "preparation = \"slow\"\n"}) {
     const MaterialScene m = material(common + "first_pressure = 4\n[[variant]]\nname = \"a\"\n" + own);
     const PreparationProtocol& p = m.variants.at(0).setup.spec.protocol;
@@ -94,10 +93,10 @@ TEST_F(KeysThatCount, WhatTheCommonTableSaysOfAPreparationStays) {
   EXPECT_EQ(follows.variants.at(0).setup.spec.protocol.friction, 0.5) << "nobody said it";
   EXPECT_EQ(follows.variants.at(0).setup.spec.protocol.tolerance, 3e-3);
   EXPECT_EQ(follows.variants.at(1).setup.spec.protocol.inertial_number, 1e-3);
-  const auto c = comparison(
-      std::string(kTinyComparison).replace(std::string(kTinyComparison).find("bodies"), 0,
-                                           "compaction_mu = 0.05\npreparation_tolerance = 1e-3\n"),
-      "[[scene]]\nname = \"c\"\nmu = 0.6\npreparation = \"frictionless\"\n");
+  const auto c = comparison(std::string(kTinyComparison)
+                                .replace(std::string(kTinyComparison).find("bodies"), 0,
+                                         "compaction_mu = 0.05\npreparation_tolerance = 1e-3\n"),
+                            "[[scene]]\nname = \"c\"\nmu = 0.6\npreparation = \"frictionless\"\n");
   EXPECT_EQ(c.scenes.at(2).setup.spec.protocol.friction, 0.05);
   EXPECT_EQ(c.scenes.at(2).setup.spec.protocol.tolerance, 1e-3);
 }
@@ -141,8 +140,9 @@ TEST_F(KeysThatCount, RadiiInMetresByMistakeAreMinded) {
       "[[particle]]\nmaterial = \"a\"\nposition = [0, 0, 0]\nradius = ";
   EXPECT_TRUE(minds(ball + "16\n"));
   EXPECT_FALSE(minds(ball + "0.016\n"));
-  const std::string sizes = "[grains.sizes]\nform = \"log-normal\"\nradius_median = 12\ngeometric_deviation = 1.3\n"
-                            "radius_min = 9\nradius_max = ";
+  const std::string sizes =
+      "[grains.sizes]\nform = \"log-normal\"\nradius_median = 12\ngeometric_deviation = 1.3\n"
+      "radius_min = 9\nradius_max = ";
   EXPECT_TRUE(minds("kind = \"material\"\n[grains]\ncount = 80\n" + sizes + "16\n"));
   EXPECT_FALSE(minds("kind = \"material\"\n[grains]\ncount = 80\nratio = 1.5\n"));
 }
@@ -163,9 +163,10 @@ TEST_F(KeysThatCount, FamiliesOfMaterialsDifferInTheSpanAlone) {
         "preparation_tolerance = 1e-3", "first_pressure = 8.0"})
     EXPECT_EQ(families(two + key + "\n"), 2U) << key;
   const auto normal = [](double deviation, double smallest) {
-    return fmt::format("sizes = {{ form = \"log-normal\", radius_median = 0.012, geometric_deviation = {}, "
-                       "radius_min = {}, radius_max = 0.016 }}\n",
-                       deviation, smallest);
+    return fmt::format(
+        "sizes = {{ form = \"log-normal\", radius_median = 0.012, geometric_deviation = {}, "
+        "radius_min = {}, radius_max = 0.016 }}\n",
+        deviation, smallest);
   };
   const std::string a = "[[variant]]\nname = \"a\"\n" + normal(1.3, 0.009) + "[[variant]]\nname = \"b\"\n";
   EXPECT_EQ(families(a + normal(1.3, 0.008)), 1U);

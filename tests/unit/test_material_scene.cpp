@@ -137,7 +137,8 @@ TEST(MaterialScene, RefusesCellsWithoutRoomForImages) {
     return "";
   };
   const std::string text = refusal("60");
-  for (const char* part : {"s:3: count", "60 grains are too few for a periodic cell", "or more have room", "[grains] count"})
+  for (const char* part :
+       {"s:3: count", "60 grains are too few for a periodic cell", "or more have room", "[grains] count"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   for (const char* part : {"macro", "boundary"}) EXPECT_EQ(text.find(part), std::string::npos) << text;
   const auto at = text.find(" or more have room");

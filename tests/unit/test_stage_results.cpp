@@ -121,8 +121,8 @@ MacroCurve stiffening(std::array<double, 2> loading = {}, std::array<double, 2> 
     c.stage.push_back(stage);
     c.strain_z.push_back(-std::expm1(-strain));
     c.strain = c.strain_z;
-    for (auto* none : {&c.strain_x, &c.strain_y, &c.stress_x, &c.stress_y, &c.stress_lateral,
-                       &c.stress_axial_contacts, &c.coordination, &c.residual})
+    for (auto* none : {&c.strain_x, &c.strain_y, &c.stress_x, &c.stress_y, &c.stress_lateral, &c.stress_axial_contacts,
+                       &c.coordination, &c.residual})
       none->push_back(0.0);
     c.stress_axial.push_back(stress);
   };
@@ -154,8 +154,9 @@ TEST(StageResults, IntervalsAreSaidAndWhereThereIsNoModulus) {
   EXPECT_NE(of(stiffening()).find("from 5e+04 to 1e+05 Pa of axial stress (upper half of the stress)"),
             std::string::npos)
       << of(stiffening());
-  EXPECT_EQ(of(stiffening({1e4, 2e5})),
-            "constrained modulus not determined: the stage does not go through 10 kPa to 200 kPa of axial stress");
+  EXPECT_EQ(
+      of(stiffening({1e4, 2e5})),
+      "constrained modulus not determined: the axial stress does not go through its interval (10 kPa to 200 kPa)");
 }
 
 /// E50 of triaxial stages: up to half of the strength, whatever comes after the peak.

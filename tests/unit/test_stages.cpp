@@ -158,8 +158,10 @@ TEST(Stages, SayBetweenWhichStressesTheirModulusIs) {
   const std::array<double, 2> expected{1000.0, 2000.0};
   EXPECT_EQ(one("kind = \"oedometric\"\nstrain = 0.1\n" + two).record.modulus_stress, expected);
   EXPECT_EQ(one("kind = \"oedometric\"\nstrain = 0.1").record.modulus_stress, (std::array<double, 2>{}));
-  const MacroSpec cycles = read("[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n[[stage]]\nkind = \"cycles\"\ncount "
-                                "= 1\nstrain = 0.01\n" + two);
+  const MacroSpec cycles = read(
+      "[[stage]]\nkind = \"oedometric\"\nstrain = 0.1\n[[stage]]\nkind = \"cycles\"\ncount "
+      "= 1\nstrain = 0.01\n" +
+      two);
   for (const std::size_t k : {1U, 2U}) EXPECT_EQ(cycles.stages.at(k).record.modulus_stress, expected) << k;
   for (const char* wrong : {"modulus_stress = [2e3, 1e3]", "modulus_stress = [1e3]", "modulus_stress = [-1.0, 1e3]"})
     EXPECT_THROW((void)one(std::string("kind = \"oedometric\"\nstrain = 0.1\n") + wrong), BadInput) << wrong;

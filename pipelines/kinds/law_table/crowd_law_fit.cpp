@@ -68,8 +68,8 @@ nlohmann::json entry_json(const LawTableEntry& entry) {
 
 std::string law_line(const LawTableEntry& entry, const CrowdLaw& law) {
   return fmt::format("  {}: {}off by {:.1f} % on what it was fitted to, {}, {}\n", form_label(entry, law),
-                     law.status == LawStatus::good ? "" : to_string(law.status) + ", ",
-                     100.0 * law.error_fitted, held_out_text(law), cross_text(law));
+                     law.status == LawStatus::good ? "" : to_string(law.status) + ", ", 100.0 * law.error_fitted,
+                     held_out_text(law), cross_text(law));
 }
 
 }  // namespace

@@ -72,9 +72,9 @@ std::string partners_text(const CrowdLaw& law, PartnerKind kind) {
 void check_law(const LawTableEntry& entry, const CrowdLaw& law, json& facts, std::string& lines) {
   facts["laws"].push_back(verdict_json(law));
   lines += fmt::format("    {}: {}{}, off by {:.1f} % on what it was fitted to, {}, {}; {}, {}\n",
-                       form_label(entry, law), to_string(law.status),
-                       law.reason.empty() ? "" : " (" + law.reason + ")", 100.0 * law.error_fitted, held_out_text(law),
-                       cross_text(law), partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
+                       form_label(entry, law), to_string(law.status), law.reason.empty() ? "" : " (" + law.reason + ")",
+                       100.0 * law.error_fitted, held_out_text(law), cross_text(law),
+                       partners_text(law, PartnerKind::solid), partners_text(law, PartnerKind::soft));
 }
 
 void check_entry(const LawTableEntry& e, Findings& out) {
@@ -96,8 +96,7 @@ void warn_of_entry(const LawTableEntry& e, Findings& out) {
   constexpr double kFar = 0.15;
   if (best->status != LawStatus::good)
     out.warn(fmt::format("solid fraction {:.3f}: the law {} is {}{}", e.solid_fraction, form_label(e, *best),
-                         to_string(best->status),
-                         best->reason.empty() ? "" : " (" + best->reason + ")"));
+                         to_string(best->status), best->reason.empty() ? "" : " (" + best->reason + ")"));
   const double unseen = std::fmax(best->error_cross, best->error_held_out);  // either may be unknown
   if (unseen > kFar)
     out.warn(fmt::format("solid fraction {:.3f}: the law {} is off by {:.0f} % on loadings that it has not seen",
@@ -126,7 +125,8 @@ void check_cell_card(const std::string& path, Findings& out) {
           fmt::format("card of the cell law, {} form, for matter without shells: K = {}, n = {}, E of its grains {}, "
                       "p/E from {:.3g} to {:.3g}, up to {:.3g} times as much fines as coarse grains",
                       to_string(card.form), interval_text(card.modulus), interval_text(card.exponent),
-                      is_known(card.youngs_modulus) ? fmt::format("{:.4g} Pa", card.youngs_modulus) : "not said", card.pressure_low, card.pressure_high, card.mixture_high));
+                      is_known(card.youngs_modulus) ? fmt::format("{:.4g} Pa", card.youngs_modulus) : "not said",
+                      card.pressure_low, card.pressure_high, card.mixture_high));
   constexpr double kWide = 0.25;
   if (!interval_known(card.modulus.low, card.modulus.high))
     out.warn("the interval of K is not determined: two samples of each packing at least would tell it");
@@ -144,11 +144,10 @@ void check_material_card(const std::string& path, Findings& out) {
   const Estimate modulus = read_estimate_text(material.table("K"), Range::positive());
   const Estimate exponent = read_estimate_text(material.table("n"), Range::positive());
   const auto levels = root.tables("level").size();
-  out.add(
-      "kind", "material",
-      fmt::format("card of a whole material of {} levels, {} form: begins to bear at a solid fraction of {}, p/E = "
-                  "{:.4g} x^{:.4g}",
-                  levels, material.text("form"), interval_text(onset), modulus.value, exponent.value));
+  out.add("kind", "material",
+          fmt::format("card of a whole material of {} levels, {} form: begins to bear at a solid fraction of {}, p/E = "
+                      "{:.4g} x^{:.4g}",
+                      levels, material.text("form"), interval_text(onset), modulus.value, exponent.value));
   constexpr double kWide = 0.05;
   if (onset.high - onset.low > kWide)
     out.warn(

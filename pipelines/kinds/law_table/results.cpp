@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/data/crowd_choice.h"
 #include "pipelines/kinds/law_table/law_check.h"
 #include "pipelines/report/number_format.h"
 #include "pipelines/report/run_data.h"
@@ -34,8 +35,8 @@ std::string table_line(const LawTableEntry& entry) {
   std::string held_out;
   if (std::isfinite(best->error_held_out))
     held_out = fmt::format(" and by {} % on what was held out", format_number(100.0 * best->error_held_out, 2));
-  return fmt::format("Solid fraction {}: the {} law is best, off by {} % where it was fitted{}; h/Rs up to {}.",
-                     format_number(entry.solid_fraction, 3), to_string(entry.best),
+  return fmt::format("Solid fraction {}: form {}, off by {} % where it was fitted{}; h/Rs up to {}.",
+                     format_number(entry.solid_fraction, 3), form_label(entry, *best),
                      format_number(100.0 * best->error_fitted, 2), held_out, format_number(entry.overlap_max, 2));
 }
 

@@ -196,7 +196,8 @@ void spend_on_macro(const MacroSetup& setup, const MacroContent& content, const 
       if (setup.bands > 0) out.spend("bands", samples * band_runs(setup) * run);
     }
   } catch (const Error& e) {  // so few bodies need not jam or hold the share; the scene may
-    out.lines += fmt::format("  the time is not known: a trial with {} bodies came to no end ({})\n", spec.bodies, e.what());
+    out.lines +=
+        fmt::format("  the time is not known: a trial with {} bodies came to no end ({})\n", spec.bodies, e.what());
   }
   spend_on_twins(setup, content, out);
 }

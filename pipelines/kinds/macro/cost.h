@@ -18,10 +18,10 @@ struct MacroContent {
   std::vector<std::int64_t> grains{};  ///< of each content, in their order; fewer than there are where it took too long
   double smallest_grain = 0.0;         ///< over the radius of its shell; 0: not known
   std::int64_t contents = 0;           ///< different ones; soft particle k holds number k modulo this
-  double grain_pass_seconds = 0.0;  ///< of one core, per loop pass and grain; 0: no twin is run
-  double solid_fraction = 0.0;      ///< 0: not known
-  bool prepared = false;            ///< samples are those of another scene
-  bool untimed = false;             ///< somebody else tells the time
+  double grain_pass_seconds = 0.0;     ///< of one core, per loop pass and grain; 0: no twin is run
+  double solid_fraction = 0.0;         ///< 0: not known
+  bool prepared = false;               ///< samples are those of another scene
+  bool untimed = false;                ///< somebody else tells the time
 };
 
 /// Runs the scene, or one of the same kind with fewer bodies, by its laws for a moment (without laws by one like the

@@ -29,10 +29,9 @@ double expected_softs(const MacroSetup& setup) {
   const double share = spec.soft_share;
   if (!(share > 0.0)) return 0.0;
   if (share >= 1.0) return bodies;
-  const double soft =
-      share / mean_cube(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
-  const double solid = (1.0 - share) / mean_cube(spec.solid_sizes, spec.exponent, spec.solid_radius_max,
-                                                 spec.solid_polydispersity);
+  const double soft = share / mean_cube(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const double solid =
+      (1.0 - share) / mean_cube(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
   return spec.construction == Construction::voids ? bodies * soft / solid : bodies * soft / (soft + solid);
 }
 

@@ -34,10 +34,10 @@ double jammed_fraction(const MacroSpec& spec) {
   constexpr std::size_t kRods = 1000;
   double fraction = 0.72;  // of grains and soft particles together
   if (!(spec.soft_share > 0.0))
-    fraction = RodCurve(sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max,
-                                           spec.solid_polydispersity),
-                        kRods)
-                   .at(kFrictionless);
+    fraction =
+        RodCurve(sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity),
+                 kRods)
+            .at(kFrictionless);
   return fraction * (1.0 - kLoosest * std::min(1.0, spec.protocol.friction / 0.3));
 }
 
@@ -52,8 +52,8 @@ double placed_volume() {
   return kPlaced * std::pow(kPeriod, 3);
 }
 
-/// And so that they have room under the first pressure of the preparation, which is up to 128 times that of its end, and
-/// where the test shortens the cell most.
+/// And so that they have room under the first pressure of the preparation, which is up to 128 times that of its end,
+/// and where the test shortens the cell most.
 double needed_volume(const MacroSpec& spec) {
   const double jammed = jammed_fraction(spec);
   const double first = fraction_under(jammed, spec.start_pressure * std::max(1.0, spec.protocol.first_pressure));
@@ -78,11 +78,12 @@ std::int64_t rounded_up(double number) {
 std::int64_t least_bodies(const MacroSpec& spec) {
   const Grading solid =
       sizes_or_power_law(spec.solid_sizes, spec.exponent, spec.solid_radius_max, spec.solid_polydispersity);
-  const Grading soft = sizes_or_power_law(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
+  const Grading soft =
+      sizes_or_power_law(spec.soft_sizes, spec.exponent, spec.soft_radius_max, spec.soft_polydispersity);
   const double share = spec.soft_share;
   // Bodies in a unit of volume: shares are by volume.
-  const double number = (share < 1.0 ? (1.0 - share) / solid.mean_volume() : 0.0) +
-                        (share > 0.0 ? share / soft.mean_volume() : 0.0);
+  const double number =
+      (share < 1.0 ? (1.0 - share) / solid.mean_volume() : 0.0) + (share > 0.0 ? share / soft.mean_volume() : 0.0);
   double largest = 0.0;
   if (share < 1.0) largest = solid.largest();
   if (share > 0.0) largest = std::max(largest, soft.largest());
@@ -115,8 +116,8 @@ std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::str
     return fmt::format(
         "{} {} {} for a periodic cell: packed{}, its shortest side is about {:.3g} m, and images of the largest "
         "(radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
-        spec.bodies, what, sure ? "are too few" : "may be too few", sure ? "" : " and strained", kPeriod * largest * std::cbrt(there), largest, kPeriod * largest,
-        std::max(least, rounded_up(more)));
+        spec.bodies, what, sure ? "are too few" : "may be too few", sure ? "" : " and strained",
+        kPeriod * largest * std::cbrt(there), largest, kPeriod * largest, std::max(least, rounded_up(more)));
   }
   return "";
 }

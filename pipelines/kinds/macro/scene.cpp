@@ -329,7 +329,8 @@ SoftParticleSpec grains_of(const CellCard& card) {
   return spec;
 }
 
-/// [material] of a scene with cells: the numbers of a cell law are over E, so that it serves any; nu and mu it does not.
+/// [material] of a scene with cells: the numbers of a cell law are over E, so that it serves any; nu and mu it does
+/// not.
 void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
   const SceneTable material = root.table_or_empty("material");
   for (const char* key : {"nu", "mu"})

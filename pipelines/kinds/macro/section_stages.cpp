@@ -85,15 +85,14 @@ std::string tables_of_stages(const std::vector<MacroCurve>& curves) {
   const SiPrefix modulus = si_prefix(10.0 * largest);
   const std::string stress_unit = " [" + stress.symbol + "Pa]";
   const std::string modulus_unit = " [" + modulus.symbol + "Pa]";
-  const StageTable moduli{
-      {"modulus", "secant" + modulus_unit, "between stresses" + stress_unit, "tangent at its begin" + modulus_unit,
-       "Poisson's ratio at its begin"},
-      [&](const StageMeans& s) -> std::vector<std::string> {
-        const bool holds = s.record.kind == StageKind::hold;
-        return {holds ? "–" : to_string(modulus_of(s.record.way)), slope_cell(s.modulus, modulus.factor),
-                holds ? "–" : between(s, stress.factor), slope_cell(s.modulus_begin, modulus.factor),
-                slope_cell(s.poisson_begin)};
-      }};
+  const StageTable moduli{{"modulus", "secant" + modulus_unit, "between stresses" + stress_unit,
+                           "tangent at its begin" + modulus_unit, "Poisson's ratio at its begin"},
+                          [&](const StageMeans& s) -> std::vector<std::string> {
+                            const bool holds = s.record.kind == StageKind::hold;
+                            return {holds ? "–" : to_string(modulus_of(s.record.way)),
+                                    slope_cell(s.modulus, modulus.factor), holds ? "–" : between(s, stress.factor),
+                                    slope_cell(s.modulus_begin, modulus.factor), slope_cell(s.poisson_begin)};
+                          }};
   const StageTable ends{{"axial strain [%]", "volume lost [%]", "axial stress" + stress_unit,
                          "lateral stress" + stress_unit, "q/p", "largest q/p"},
                         [&](const StageMeans& s) -> std::vector<std::string> {

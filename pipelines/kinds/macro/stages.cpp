@@ -241,7 +241,8 @@ class StageReader {
       unload(t);
       const MacroStage& down = stages_.back();
       MacroStage up = down;
-      up.record = {fmt::format("{} {} reload", name, k), StageKind::reload, down.record.way, down.record.modulus_stress};
+      up.record = {fmt::format("{} {} reload", name, k), StageKind::reload, down.record.way,
+                   down.record.modulus_stress};
       stages_.push_back(up);
       turn_back(MacroStage(stages_[stages_.size() - 2]), here() - 1, stages_.back());
       if (!t.sound()) return;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "macrosim/constructed_packing.h"
-#include "pipelines/kinds/macro/summary.h"
 #include "macrosim/macro_spec.h"
 #include "pipelines/compare/macro_scores.h"
+#include "pipelines/kinds/macro/summary.h"
 #include "pipelines/results/summary.h"
 
 namespace softgrain {

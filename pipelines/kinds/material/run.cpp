@@ -250,8 +250,7 @@ std::vector<PredictionSummary> predictions(const MaterialScene& scene, const std
   std::vector<PredictionInput> inputs;
   for (const VariantResult& r : results) {
     const MacroSpec& spec = r.variant->setup.spec;
-    inputs.push_back({packings_name(*r.variant), spec.solid_polydispersity,
-                      material_family(*r.variant, scene.variants),
+    inputs.push_back({packings_name(*r.variant), spec.solid_polydispersity, material_family(*r.variant, scene.variants),
                       r.variant->loading, spec.solid_sizes ? 0.0 : spec.exponent, spec.start_pressure, r.curves});
   }
   return predict_spans(inputs, scene.equation, seed);

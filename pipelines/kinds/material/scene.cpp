@@ -132,8 +132,7 @@ class Loadings {
 
   /// Refuses keys of tests in the tables of loadings, of the variant that they load, and of the scene that none takes.
   void refuse_idle(const SceneTable& root, const std::vector<SceneTable>& variants,
-                   const std::vector<std::vector<std::size_t>>& under,
-                   const std::vector<MaterialVariant>& all) const {
+                   const std::vector<std::vector<std::size_t>>& under, const std::vector<MaterialVariant>& all) const {
     std::vector<const MacroSpec*> tests;
     for (const MaterialVariant& v : all) tests.push_back(&v.setup.spec);
     const SceneTable test = root.table_or_empty("test");
@@ -195,8 +194,8 @@ class Loadings {
                          const std::vector<std::vector<std::size_t>>& under) const {
     for (std::size_t v = 0; v < variants.size(); ++v)
       for (const char* key : {"steps", "increments_per_step", "tolerance", "force_floor", "max_passes"})
-        if (variants[v].has(key) && std::all_of(under[v].begin(), under[v].end(),
-                                                [&](std::size_t k) { return says_in_test(tables_[k], key); }))
+        if (variants[v].has(key) &&
+            std::all_of(under[v].begin(), under[v].end(), [&](std::size_t k) { return says_in_test(tables_[k], key); }))
           variants[v].mistake(key, "each [[loading]] of this variant gives its own");
   }
 

@@ -13,7 +13,7 @@ struct MaterialVariantSummary {
   std::string file;  ///< of its curves
   std::int64_t grains = 0;
   double youngs_modulus = 0.0;  ///< of its grains [Pa]; 0: as the summary says
-  double size_ratio = 0.0;  ///< largest over smallest radius
+  double size_ratio = 0.0;      ///< largest over smallest radius
   Preparation preparation = Preparation::frictionless;
   double friction = 0.0;
   std::optional<MeanError> solid_fraction_start;

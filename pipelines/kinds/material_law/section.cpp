@@ -48,9 +48,10 @@ std::string number_table(const CellLawSummary& law) {
   }
   if (!recipe) return table.html();
   return table.html() +
-         paragraph("The card holds for grains of the coarsest level among everything finer: e_J is that of all finer "
-                   "levels together, and w_inf goes with it. The figures show what was measured on the two coarsest "
-                   "levels alone.");
+         paragraph(
+             "The card holds for grains of the coarsest level among everything finer: e_J is that of all finer "
+             "levels together, and w_inf goes with it. The figures show what was measured on the two coarsest "
+             "levels alone.");
 }
 
 double half_of(const Estimate& e) { return std::isfinite(e.high) ? 0.5 * (e.high - e.low) : 0.0; }

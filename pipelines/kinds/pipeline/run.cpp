@@ -225,13 +225,13 @@ std::string people_text(const PipelineSetup& setup, const PipelineResult& r) {
   if (!r.crowd_fit.table.entries.empty()) text += entries_text(r.crowd_fit.table);
   const bool crowd = r.pair_comparison.has_value();
   if (r.comparison)
-    text += fmt::format(
-        "macro{} against its resolved twin: {}, {} times fewer contact evaluations, {} times less time\n",
-        !crowd                 ? ""
-        : setup.measured_table ? ", law of all neighbours at once (measured above),"
-                               : ", law of all neighbours at once (from the table),",
-        difference_text(*r.comparison), rounded(r.comparison->speedup_contact_evaluations),
-        rounded(r.comparison->speedup_seconds));
+    text +=
+        fmt::format("macro{} against its resolved twin: {}, {} times fewer contact evaluations, {} times less time\n",
+                    !crowd                 ? ""
+                    : setup.measured_table ? ", law of all neighbours at once (measured above),"
+                                           : ", law of all neighbours at once (from the table),",
+                    difference_text(*r.comparison), rounded(r.comparison->speedup_contact_evaluations),
+                    rounded(r.comparison->speedup_seconds));
   if (crowd)
     text += fmt::format("macro, pair law (as published, measured above): {}\n", difference_text(*r.pair_comparison));
   for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";

@@ -14,7 +14,8 @@ inline constexpr const char* kMaterialCardFile = "material_card.toml";
 /// both were fitted to, or it is the whole itself.
 bool tells_ways(const RecipeScene& scene);
 inline constexpr const char* kTwoLevelsTellNothing =
-    "a check of two levels lies between mixtures that were measured, to which both ways of joining levels are fitted: it "
+    "a check of two levels lies between mixtures that were measured, to which both ways of joining levels are fitted: "
+    "it "
     "cannot tell which way does better over more levels, and the value is the middle of both; more grains ([check] "
     "grains) check three levels";
 

@@ -242,8 +242,8 @@ class RoomForImages {
     const SceneTable t = root_.table_or_empty(table);
     const auto seed = scene_.material.seed;
     if (const std::string problem = room_problem(setup, seed, "grains"); t.has(key) && !problem.empty())
-      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what, problem,
-                                table, key));
+      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
+                                problem, table, key));
     const std::string doubt = room_doubt(setup, seed, "grains");
     if (doubt.empty()) return asked;
     if (t.has(key)) {
@@ -252,12 +252,13 @@ class RoomForImages {
     }
     setup.spec.bodies = std::max(asked, least_bodies(setup.spec));
     if (setup.spec.bodies > kDearest * asked)
-      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what, doubt,
-                                table, key));
+      t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
+                                doubt, table, key));
     for (int k = 0; k < kTries && !room_doubt(setup, seed, "grains").empty(); ++k)
       setup.spec.bodies += setup.spec.bodies / 10;
-    scene_.raised.push_back(fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room",
-                                        what, setup.spec.bodies, asked, table, key));
+    scene_.raised.push_back(
+        fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room", what,
+                    setup.spec.bodies, asked, table, key));
     return setup.spec.bodies;
   }
 

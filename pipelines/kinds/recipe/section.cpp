@@ -144,9 +144,10 @@ std::string check_text(const RecipeCheckSummary& c) {
       c.outside > 0.0 ? "outside by " + format_number(c.outside, 2) + ", and all intervals here are widened by that"
                       : "inside",
       format_number(c.predicted.levels, 4), format_number(c.predicted.rods, 4),
-      c.weighs ? "by that the value of the whole has a share of " + format_number(c.share_of_rods, 2) + " of the rods"
-               : "between levels that were measured together it does not tell which way does better over more of them: the "
-                 "value of the whole is the middle of both");
+      c.weighs
+          ? "by that the value of the whole has a share of " + format_number(c.share_of_rods, 2) + " of the rods"
+          : "between levels that were measured together it does not tell which way does better over more of them: the "
+            "value of the whole is the middle of both");
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ struct RecipeCheckSummary {
   double span = 1.0;
   Estimate measured;  ///< phi_J
   OnsetByForms predicted;
-  bool weighs = true;  ///< whether it tells which form does better; else the value is in the middle
+  bool weighs = true;          ///< whether it tells which form does better; else the value is in the middle
   double share_of_rods = 0.5;  ///< in the value of the whole, see LevelForms::lean
   double outside = 0.0;        ///< how far the measured one lies outside the interval, which intervals are widened by
 };
@@ -86,8 +86,8 @@ void fields(auto&& visit, Of<RecipeCheckSummary> auto& s) {
   visit("outside", s.outside);
 }
 
-/// Constrained modulus between two axial stresses, over logarithmic strain; all over E. NaN: an end of the band does not
-/// go through both.
+/// Constrained modulus between two axial stresses, over logarithmic strain; all over E. NaN: an end of the band does
+/// not go through both.
 struct SecantModulus {
   double from = 0.0;
   double to = 0.0;

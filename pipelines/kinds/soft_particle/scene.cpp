@@ -176,15 +176,14 @@ MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64
 
 void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxation>& relaxations, bool rotates) {
   const auto one_of = [&](std::initializer_list<Relaxation> some) {
-    return std::any_of(relaxations.begin(), relaxations.end(), [&](Relaxation r) {
-      return std::find(some.begin(), some.end(), r) != some.end();
-    });
+    return std::any_of(relaxations.begin(), relaxations.end(),
+                       [&](Relaxation r) { return std::find(some.begin(), some.end(), r) != some.end(); });
   };
   const auto goes_with = [&](const char* table, bool used, const char* relaxation) {
     if (used || !measure.has(table)) return;
     if (measure.table_or_empty(table).keys().empty()) return;
-    measure.mistake(table, fmt::format("nothing is relaxed this way: goes with relaxation = {}; leave the table out",
-                                       relaxation));
+    measure.mistake(
+        table, fmt::format("nothing is relaxed this way: goes with relaxation = {}; leave the table out", relaxation));
   };
   goes_with("damped", one_of({Relaxation::damped}), "\"damped\"");
   goes_with("published", one_of({Relaxation::published}), "\"published\"");

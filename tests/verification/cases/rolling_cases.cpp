@@ -76,8 +76,8 @@ EndOfSliding run_pushed_ball(double mu, RollingLaw law) {
 std::string spun_ball_scene(double mu) {
   Ball ball = resting_ball(kMass * kGravity);
   ball.spin[1] = kSpunSpeed / kBallRadius;
-  return heading("Spinning ball set down on a rough surface", {{0.0, 0.0, -kGravity}}) +
-         text_of(inelastic(kBall)) + text_of(rough_contact(mu)) + text_of(ball) + plane({}, {{0.0, 0.0, 1.0}}) +
+  return heading("Spinning ball set down on a rough surface", {{0.0, 0.0, -kGravity}}) + text_of(inelastic(kBall)) +
+         text_of(rough_contact(mu)) + text_of(ball) + plane({}, {{0.0, 0.0, 1.0}}) +
          "\n[time]\nstep = \"auto\"\nend = 18e-3\n[output]\nevery = 1e-5\n";
 }
 
