@@ -44,7 +44,7 @@ Estimate estimate_of(const SideValues& measured, const std::vector<SideValues>& 
   }
   if (means.size() < kEnoughReplicates) return out;
   const auto [low, high] = interval95(means);
-  const double factor = packings > 1 ? few_samples_factor(static_cast<std::size_t>(packings)) : 1.0;
+  const double factor = factor_of_several(packings);
   std::tie(out.low, out.high) = widened(out.value, low, high, factor, true);
   out.standard_error = scatter_of(means);
   return out;

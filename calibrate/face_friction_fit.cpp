@@ -1,7 +1,6 @@
 #include "calibrate/face_friction_fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 
 #include "calibrate/least_squares.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 
@@ -134,7 +134,7 @@ Estimate of_samples(double log_value, const std::vector<double>& logs) {
   const double value = std::exp(log_value);
   if (logs.size() < 2) return {value, kInfinity, 0.0, kInfinity};
   const double error = mean_error(logs).error;
-  const double half = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(logs.size()) - 1.0) * error;
+  const double half = student95(static_cast<double>(logs.size()) - 1.0) * error;
   return {value, value * error, std::exp(log_value - half), std::exp(log_value + half)};
 }
 

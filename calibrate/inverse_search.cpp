@@ -1,7 +1,6 @@
 #include "calibrate/inverse_search.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include "calibrate/bootstrap.h"
 #include "calibrate/response_surface.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
@@ -272,12 +272,9 @@ std::vector<double> redrawn(const std::vector<InverseEvaluation>& done, const In
   return nearest_to(surface, p.target, p.error, {best.u}).u;
 }
 
-/// 95 % interval of one coordinate; the bootstrap over few packings is too narrow, by sqrt(n/(n-1)) and by Student's t
-/// over the normal distribution's.
+/// 95 % interval of one coordinate, widened as bootstraps over few packings are too narrow.
 void fill_interval(const std::vector<double>& values, double centre, std::size_t packings, InverseAnswer& out) {
-  const auto n = static_cast<double>(packings);
-  const double widen =
-      n > 1.0 ? std::sqrt(n / (n - 1.0)) * gsl_cdf_tdist_Pinv(0.975, n - 1.0) / gsl_cdf_ugaussian_Pinv(0.975) : 1.0;
+  const double widen = factor_of_several(static_cast<std::int64_t>(packings));
   const auto [low, high] = interval95(values);
   out.low.push_back(std::clamp(centre - widen * std::max(centre - low, 0.0), 0.0, 1.0));
   out.high.push_back(std::clamp(centre + widen * std::max(high - centre, 0.0), 0.0, 1.0));

@@ -65,7 +65,7 @@ std::pair<double, double> interval_of(const FitReport& report, double value, std
   const auto [low, high] = interval95(std::move(replicates));
   if (!std::isfinite(low) || !std::isfinite(high)) return {low, high};
   if (!report.from_residuals) {
-    const double factor = report.drawn_packings > 1 ? few_samples_factor(report.drawn_packings) : 1.0;
+    const double factor = factor_of_several(static_cast<std::int64_t>(report.drawn_packings));
     return widened(value, low, high, factor, true);
   }
   const double half = std::max(value - low, high - value);

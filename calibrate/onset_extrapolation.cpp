@@ -10,6 +10,7 @@
 #include "calibrate/bootstrap.h"
 #include "calibrate/rod_packing.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 
@@ -193,7 +194,7 @@ std::string to_string(OnsetForm form) {
 
 OnsetExtrapolation extrapolate_onset(const StateFit& fit, double span, const OnsetOptions& options) {
   require_input(fit, span, options);
-  const double widen = gsl_cdf_tdist_Pinv(0.975, fit.degrees) / kNormal95;
+  const double widen = student95(fit.degrees) / kNormal95;
   Onsets at;
   std::vector<double> onset;
   std::vector<std::vector<double>> replicates(fit.replicates.size());

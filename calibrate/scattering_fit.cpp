@@ -1,7 +1,6 @@
 #include "calibrate/scattering_fit.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sf_gamma.h>
 #include <gsl/gsl_sf_psi.h>
 
@@ -12,7 +11,9 @@
 
 #include "calibrate/least_squares.h"
 #include "common/core/error.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
+#include "common/core/statistics.h"
 
 namespace softgrain {
 
@@ -264,7 +265,7 @@ void fill(const LeastSquaresFit& found, const Parameters& parameters, Scattering
   const auto degrees = static_cast<double>(found.degrees_of_freedom);
   out.chi2_per_degree = found.residual_sum_of_squares / degrees;
   const double widening = std::max(1.0, out.chi2_per_degree);
-  const double quantile = widening > 1.0 ? gsl_cdf_tdist_Pinv(0.975, degrees) : gsl_cdf_ugaussian_Pinv(0.975);
+  const double quantile = widening > 1.0 ? student95(degrees) : kNormal95;
   out.covariance = covariance_of(found, parameters.slopes(p));
   for (double& c : out.covariance) c *= widening;
   const auto error = [&](std::size_t q) { return std::sqrt(widening) * found.standard_deviations[q]; };

@@ -18,6 +18,10 @@ double few_samples_factor(std::size_t samples) {
   return std::sqrt(n / (n - 1.0)) * student95(n - 1.0) / kNormal95;
 }
 
+double factor_of_several(std::int64_t samples) {
+  return samples > 1 ? few_samples_factor(static_cast<std::size_t>(samples)) : 1.0;
+}
+
 std::pair<double, double> widened(double value, double low, double high, double factor, bool positive) {
   const auto away = [&](double end) {
     if (!std::isfinite(end)) return end;

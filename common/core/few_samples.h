@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace softgrain {
@@ -14,6 +15,9 @@ double student95(double degrees);
 /// n - 1 degrees of freedom (Efron and Tibshirani 1993, ch. 12; Hesterberg 2015, doi:10.1080/00031305.2015.1089789).
 /// 1.35 for seven samples, 1.06 for 32; infinite for fewer than two.
 double few_samples_factor(std::size_t samples);
+
+/// The same where intervals are of several samples; 1 where they are of one, or of nobody knows how many (0).
+double factor_of_several(std::int64_t samples);
 
 /// An interval widened about its value by a factor, on either side by itself. `positive`: of a quantity above 0,
 /// widened in its logarithm, so that it stays above; in itself and cut off at 0 where one end is 0 already. Ends that

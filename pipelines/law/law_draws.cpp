@@ -101,7 +101,7 @@ LawDraws table_draws(const LawSources& sources, const NamedLaws& named, const Ma
   out.law = named;
   out.numbers = with_logarithms(crowd_numbers(best));
   // Refits to few packings scatter too little.
-  const double factor = entry.packings > 1 ? few_samples_factor(static_cast<std::size_t>(entry.packings)) : 1.0;
+  const double factor = factor_of_several(entry.packings);
   LawSources drawn = sources;
   for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
     drawn.table = replicate_of(table, form, r);

@@ -327,6 +327,7 @@ TEST_F(OwnData, SlowTheReverseSearchFindsFrictionAndDensityOfAFullPacking) {
           "relaxation = \"least-work\"");
   replace("mu = [0.05, 0.9]\nbudget = 14", "mu = [0.05, 0.7]\nbeta = [1.5, 5.0]\nbudget = 36");
   write_target(scene, 16);
+  replace("beta = 3.0\n", "");  // what is searched is not given as well
   write("scene.toml", scene);
   expect(run_the_program("run '" + file("scene.toml") + "' --quiet --out '" + file("a") + "'"), 0,
          {"mu = ", "beta = "});

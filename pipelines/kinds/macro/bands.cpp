@@ -1,12 +1,12 @@
 #include "pipelines/kinds/macro/bands.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "calibrate/effect_components.h"
+#include "common/core/few_samples.h"
 #include "common/core/limits.h"
 #include "common/core/statistics.h"
 #include "pipelines/compare/compare.h"
@@ -178,9 +178,7 @@ double noise_of(const std::vector<MacroCurve>& curves, const std::string& engine
   return squares.empty() ? 0.0 : std::sqrt(mean_error(squares).mean);
 }
 
-double students(std::size_t samples) {
-  return samples > 1 ? gsl_cdf_tdist_Pinv(0.975, static_cast<double>(samples - 1)) : kNaN;
-}
+double students(std::size_t samples) { return samples > 1 ? student95(static_cast<double>(samples - 1)) : kNaN; }
 
 }  // namespace
 

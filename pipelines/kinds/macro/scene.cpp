@@ -141,13 +141,7 @@ void read_test(const SceneTable& t, MacroSpec& spec) {
   spec.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, spec.tolerance);
   spec.force_floor = t.number("force_floor", Unit::none, Range{0.0, 1e-2, true, false}, spec.force_floor);
   spec.max_passes = t.count("max_passes", 10, 100000000, spec.max_passes);
-  if (!t.has("modulus_stress")) return;
-  const std::array<double, 2> before = spec.modulus_stress;
   read_modulus_stress(t, spec.modulus_stress);
-  // Stages of a common table that name no stresses of their own.
-  for (MacroStage& stage : spec.stages)
-    if (stage.record.kind != StageKind::hold && stage.record.modulus_stress == before)
-      stage.record.modulus_stress = spec.modulus_stress;
 }
 
 namespace {
