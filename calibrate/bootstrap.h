@@ -46,9 +46,6 @@ std::vector<double> replicate_covariance(const std::vector<std::array<double, 7>
 /// extremes.
 std::pair<double, double> interval95(const std::vector<double>& values);
 
-/// Fewer replicates than this say nothing of an interval.
-inline constexpr std::size_t kEnoughReplicates = 10;
-
 /// Standard deviation of a sample; infinite with fewer than two values.
 double scatter_of(const std::vector<double>& values);
 

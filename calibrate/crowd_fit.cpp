@@ -16,6 +16,7 @@
 #include "common/core/limits.h"
 #include "common/core/parallel_tasks.h"
 #include "common/core/statistics.h"
+#include "common/data/crowd_interval.h"
 #include "common/data/crowd_replicates.h"
 
 namespace softgrain {

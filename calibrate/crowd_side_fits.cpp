@@ -12,6 +12,7 @@
 #include "common/core/few_samples.h"
 #include "common/core/random.h"
 #include "common/core/statistics.h"
+#include "common/data/crowd_interval.h"
 
 namespace softgrain {
 

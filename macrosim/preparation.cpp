@@ -46,17 +46,15 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
 }
 
 void require_room_for_images(const std::vector<MacroBody>& bodies) {
-  constexpr double kPacked = 0.75;  ///< share of the cell, more than most preparations reach
-  constexpr double kPeriod = 4.1;   ///< in the largest radius
   double volume = 0.0;
   double largest = 0.0;
   for (const MacroBody& b : bodies) {
     volume += kSphereVolume * cube(b.r);
     largest = std::max(largest, b.r);
   }
-  const double edge = std::cbrt(volume / kPacked);
-  if (edge >= kPeriod * largest) return;
-  const double enough = static_cast<double>(bodies.size()) * cube(kPeriod * largest / edge);
+  const double edge = std::cbrt(volume / kPackedShare);
+  if (edge >= kShortestPeriod * largest) return;
+  const double enough = static_cast<double>(bodies.size()) * cube(kShortestPeriod * largest / edge);
   throw BadInput(fmt::format(
       "{} bodies are too few for a periodic cell: packed, its edge is about {:.3g} m, and images of the largest "
       "(radius {:.3g} m) must be two diameters apart: about {:.2g} have room",

@@ -24,21 +24,26 @@ double power_law_radius(double exponent, double rmax, double polydispersity, dou
 MacroPacking place_loosely(std::vector<MacroBody> bodies, std::uint64_t seed, std::uint64_t sample,
                            double fraction = 0.30, Boundary boundary = Boundary::walls);
 
+/// Shortest period of a cell, in the radius of the largest body: its images stay two diameters apart, and neighbours
+/// are looked for a little beyond.
+inline constexpr double kShortestPeriod = 4.1;
+/// Share of a cell that bodies are taken to fill when their room is judged before they are packed: more than most
+/// preparations reach.
+inline constexpr double kPackedShare = 0.75;
+
 /// Images of a body must stay two diameters of the largest one apart. Throws BadInput when the bodies of a periodic
 /// cell are so few that they would not once they are packed.
 void require_room_for_images(const std::vector<MacroBody>& bodies);
 
 /// What the named preparations are:
 /// frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,
-/// falls by three tenths whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the gaps in a few
-/// hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies would creep
-/// through ever so many rearrangements.
-/// fast, slow: the box is shrunk at the rate of an inertial number by molecular dynamics, all bodies moving along at
-/// first, until its walls bear the pressure; then all is relaxed under it. Both with the friction of the test, and with
-/// nothing different but the rate.
-/// dense: the largest bodies, up to coarse_share of the volume, jam by themselves; the others grow in the voids between
-/// them, which stand still, until they have their size or jam; then all are freed and relaxed as in frictionless.
-/// `friction`: of the test.
+/// falls by three tenths whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the
+/// gaps in a few hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies
+/// would creep through ever so many rearrangements. fast, slow: the box is shrunk at the rate of an inertial number by
+/// molecular dynamics, all bodies moving along at first, until its walls bear the pressure; then all is relaxed under
+/// it. Both with the friction of the test, and with nothing different but the rate. dense: the largest bodies, up to
+/// coarse_share of the volume, jam by themselves; the others grow in the voids between them, which stand still, until
+/// they have their size or jam; then all are freed and relaxed as in frictionless. `friction`: of the test.
 PreparationProtocol protocol_of(Preparation preparation, double friction);
 
 /// What is said when a compaction ends without jamming.

@@ -22,8 +22,7 @@ double measured_overlap(const LawTableEntry& entry, Crowd form, PartnerKind part
 }
 
 std::optional<LawInterval> refit_interval(double value, const std::vector<double>& refits, int packings) {
-  constexpr std::size_t kEnough = 10;
-  if (refits.size() < kEnough) return std::nullopt;
+  if (refits.size() < kEnoughReplicates) return std::nullopt;
   const double factor = factor_of_several(packings);
   const auto [low, high] = widened(value, quantile(refits, 0.025), quantile(refits, 0.975), factor, true);
   return LawInterval{low, high, kFromPackings};

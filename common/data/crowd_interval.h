@@ -9,6 +9,9 @@
 
 namespace softgrain {
 
+/// Fewer replicates than this say nothing of an interval.
+inline constexpr std::size_t kEnoughReplicates = 10;
+
 /// Largest overlap over Rs that was measured with neighbours of this kind and radius (over Rs; not of planes), from the
 /// row of the nearest ratio.
 double measured_overlap(const LawTableEntry& entry, Crowd form, PartnerKind partner, double ratio);

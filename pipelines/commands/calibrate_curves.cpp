@@ -136,9 +136,6 @@ std::string force_line(const FitReport& report, const SoftParticleSpec& spec) {
   return report.law.normal.b.value <= 0.0 ? line : line + normal_law_text(report, spec);
 }
 
-/// A law by symmetry says itself what it is; all others that are not good are none to use, measured or not.
-bool is_by_symmetry(const PairLaw& law) { return law.points == 0 && law.normal.b.value > 0.0; }
-
 /// Macro scenes ask for both kinds of contact.
 void add_missing_kind(const ExperimentFit& fit, std::vector<std::string>& remarks) {
   if (fit.card.pairs.size() > 1) return;

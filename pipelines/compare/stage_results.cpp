@@ -200,13 +200,15 @@ const char* stress_of(Modulus modulus) {
   return modulus == Modulus::shear ? "shear stress" : "axial stress";
 }
 
-std::string modulus_interval(const StageRecord& record) {
+std::string modulus_interval(const StageMeans& stage) {
+  const StageRecord& record = stage.record;
   const auto text = [](double stress) {
     if (stress >= 1e6) return fmt::format("{:.6g} MPa", 1e-6 * stress);
     return stress >= 1e3 ? fmt::format("{:.6g} kPa", 1e-3 * stress) : fmt::format("{:.6g} Pa", stress);
   };
   if (record.modulus_stress[1] > 0.0) return text(record.modulus_stress[0]) + " to " + text(record.modulus_stress[1]);
-  if (record.kind == StageKind::unload) return "whole stage";
+  const bool falls = stage.modulus_from && stage.modulus_from->mean > stage.modulus_to->mean;
+  if (falls || record.kind == StageKind::unload) return "whole stage";
   const Modulus modulus = modulus_of(record.way);
   return modulus == Modulus::young || modulus == Modulus::shear ? "first half of the largest stress"
                                                                 : "upper half of the stress";
@@ -226,12 +228,12 @@ std::string modulus_text(const StageMeans& s) {
   if (modulus == Modulus::none) return "";
   if (!s.modulus)
     return fmt::format("{} modulus not determined: the {} does not go through its interval ({})", to_string(modulus),
-                       stress_of(modulus), modulus_interval(s.record));
+                       stress_of(modulus), modulus_interval(s));
   std::string text = fmt::format("{} modulus {:.4g}", to_string(modulus), s.modulus->mean);
   if (s.modulus->n > 1) text += fmt::format(" +- {:.2g}", s.modulus->error);
   text +=
       fmt::format(" Pa from {:.3g} to {:.3g} Pa of {}", s.modulus_from->mean, s.modulus_to->mean, stress_of(modulus));
-  if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s.record) + ")";
+  if (!(s.record.modulus_stress[1] > 0.0)) text += " (" + modulus_interval(s) + ")";
   if (s.axial_end && s.modulus->n < s.axial_end->n)
     text += fmt::format(", {} of {} samples", s.modulus->n, s.axial_end->n);
   return text;

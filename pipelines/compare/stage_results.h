@@ -88,7 +88,7 @@ struct StageMeans {
 
 /// Between which stresses the modulus of a stage is taken, in words without numbers where they are its own: "2 MPa to
 /// 5 MPa", "upper half of the stress", "first half of the largest stress", "whole stage".
-std::string modulus_interval(const StageRecord& record);
+std::string modulus_interval(const StageMeans& stage);
 
 /// "constrained modulus 6.5e+08 +- 2e+07 Pa from 2.5e+06 to 5e+06 Pa of axial stress (upper half of the stress)", or
 /// why it is not determined; empty where the stage has none.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/statistics.h"
 #include "common/data/crowd_interval.h"
 #include "common/data/crowd_replicates.h"
 #include "pipelines/law/crowd_middle.h"
@@ -13,8 +14,6 @@
 namespace softgrain::law {
 
 namespace {
-
-constexpr std::size_t kEnough = 10;  ///< replicates for an interval
 
 struct Neighbours {
   std::vector<CrowdNeighbour> around;
@@ -87,7 +86,6 @@ double overlap_max(const CrowdAnswer& answer, const CrowdQuestion& q, std::strin
 std::optional<LawInterval> tangential_interval(double kt, const Quantity& kn, const Estimate& ratio) {
   if (!kn.interval || !(kn.value > 0.0) || !(ratio.value > 0.0) || !std::isfinite(ratio.standard_error))
     return std::nullopt;
-  constexpr double kNormal95 = 1.96;
   const double of_kn = 0.5 * (kn.interval->high - kn.interval->low) / kn.value;
   const double of_ratio = kNormal95 * ratio.standard_error / ratio.value;
   const double half = kt * std::hypot(of_kn, of_ratio);
@@ -148,7 +146,7 @@ CrowdAnswer crowd_values(const LawTable& table, const CrowdQuestion& q, const st
   out.overlap_max = overlap_max(out, q, out.remark);
   const Neighbours around = neighbours_of(q);
   const std::vector<CrowdLaws> drawn = replicate_laws(table, q, out.form);
-  out.replicates = drawn.size() < kEnough ? 0 : drawn.size();
+  out.replicates = drawn.size() < kEnoughReplicates ? 0 : drawn.size();
   const Beyond beyond = q.beyond.value_or(out.entry.beyond);
   for (const double delta : deltas) {
     std::vector<Raw> raws;

@@ -19,9 +19,12 @@ std::string threshold_text(const ThresholdPowerLaw& n, double newton) {
 
 }  // namespace
 
+bool is_by_symmetry(const PairLaw& law) {
+  return law.points == 0 && has_numbers(law.status) && law.normal.b.value > 0.0;
+}
+
 std::string verdict_text(const PairLaw& law) {
-  const bool by_symmetry = law.points == 0 && has_numbers(law.status) && law.normal.b.value > 0.0;
-  std::string text = to_string(law.kind) + ": " + (by_symmetry ? "by symmetry" : to_string(law.status));
+  std::string text = to_string(law.kind) + ": " + (is_by_symmetry(law) ? "by symmetry" : to_string(law.status));
   if (!law.reason.empty()) text += " - " + law.reason;
   return text;
 }

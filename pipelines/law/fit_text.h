@@ -7,6 +7,9 @@
 
 namespace softgrain {
 
+/// Not measured: it follows from the law of the other kind of pair.
+bool is_by_symmetry(const PairLaw& law);
+
 /// "soft-solid: good", with the reason where it is not.
 std::string verdict_text(const PairLaw& law);
 

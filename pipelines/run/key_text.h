@@ -31,7 +31,7 @@ concept HasEveryMember = requires(const T& value) {
   every_member(value);
 };
 
-/// Texts of different values are different; numbers to the last bit.
+/// Texts of different values are different, numbers to the last bit; long texts up to a 64-bit hash.
 class KeyText {
  public:
   template <class... T>

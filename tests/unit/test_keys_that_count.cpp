@@ -118,6 +118,11 @@ TEST_F(KeysThatCount, KeysOfAnotherTestOrLawAreRefused) {
   refused(macro + "twin_speed = 1e-4\n", "goes with a resolved twin");
   refused(comparison_stages() + "band_estimator = \"draws\"\n", "goes with bands");
   refused(macro + "solid_fill = 0.3\n", "goes with construction = \"voids\"");
+  const std::string between = "modulus_stress = [\"1 kPa\", \"2 kPa\"]\n";
+  const std::string stage = "[[stage]]\nkind = \"oedometric\"\nstrain = 0.02\n";
+  refused(macro + between + stage + between, "every [[stage]] gives its own");
+  refused(kHead + "[[variant]]\nname = \"a\"\n" + between + "[[loading]]\nname = \"press\"\n" + between,
+          "each [[loading]] of this variant gives its own");
   const std::string powder = kTinyPowder;
   for (const char* key : {"rolling_stiffness = 1e-4", "rolling_friction = 0.1"})
     refused(std::string(powder).replace(powder.find("kappa"), 0, key + std::string("\n")), "goes with rolling = true");
@@ -162,6 +167,10 @@ TEST_F(KeysThatCount, FamiliesOfMaterialsDifferInTheSpanAlone) {
         "start_fraction = 0.2", "test = \"isotropic\"", "strain = 0.1", "preparation = \"slow\"", "tolerance = 1e-3",
         "preparation_tolerance = 1e-3", "first_pressure = 8.0"})
     EXPECT_EQ(families(two + key + "\n"), 2U) << key;
+  const MaterialScene loaded = material(
+      two + "[[loading]]\nname = \"press\"\n[[loading]]\nname = \"shear\"\ntest = \"shear\"\nforce_floor = 1e-6\n");
+  for (const MaterialVariant& v : loaded.variants)
+    EXPECT_EQ(material_family(v, loaded.variants), material_family(loaded.variants.front(), loaded.variants));
   const auto normal = [](double deviation, double smallest) {
     return fmt::format(
         "sizes = {{ form = \"log-normal\", radius_median = 0.012, geometric_deviation = {}, "

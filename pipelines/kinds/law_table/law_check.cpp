@@ -149,7 +149,10 @@ void check_material_card(const std::string& path, Findings& out) {
                       "{:.4g} x^{:.4g}",
                       levels, material.text("form"), interval_text(onset), modulus.value, exponent.value));
   constexpr double kWide = 0.05;
-  if (onset.high - onset.low > kWide)
+  if (!interval_known(onset.low, onset.high))
+    out.warn(
+        "the interval of the solid fraction is not determined: two samples of each packing at least would tell it");
+  else if (onset.high - onset.low > kWide)
     out.warn(
         fmt::format("the interval of the solid fraction is {:.2g} wide: stresses are known to a factor, not to per "
                     "cent",

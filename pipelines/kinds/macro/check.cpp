@@ -48,7 +48,6 @@ BodyCounts counts_of(const std::vector<MacroBody>& bodies) {
 
 /// Of the samples that the run draws; of scenes by construction, which are packed to be counted, the first alone.
 std::vector<BodyCounts> count_bodies(const MacroSetup& setup, std::uint64_t seed) {
-  constexpr double kMostDrawn = 2e7;
   if (setup.given) return {counts_of(setup.given->bodies)};
   if (setup.spec.construction == Construction::voids && !setup.spec.cells)
     return {counts_of(make_packing(setup.spec, seed, 0).bodies)};
@@ -174,9 +173,15 @@ void check_volume(const LawTable& table, const LawSources& laws, Crowd form, dou
     out.warn("the " + to_string(answer.form) + " law is " + to_string(law.status) + ": " + law.reason);
 }
 
-/// One content stands for all: a solid fraction outside the table is no refusal yet.
+/// Whether the check made all contents of soft particles that the run will make.
+bool all_made(const MacroContent& content) {
+  return content.contents > 0 && static_cast<std::int64_t>(content.grains.size()) >= content.contents;
+}
+
+/// Some contents stand for all: a mean solid fraction outside the table is no refusal yet.
 void check_table_law(const LawTable& table, const LawSources& given, WantedForm form, const MacroSpec& spec,
-                     double contents_fraction, Findings& out) {
+                     const MacroContent& content, Findings& out) {
+  const double contents_fraction = content.solid_fraction;
   LawSources laws = given;
   laws.range = RangePolicy::clamp;
   const NamedLaws named = table_law_of(laws, form, spec, contents_fraction);  // says what is not usable
@@ -190,11 +195,12 @@ void check_table_law(const LawTable& table, const LawSources& given, WantedForm 
                            entry.main ? ", the main entry of the table" : "", cross_text(law)));
   const bool of_content = !laws.solid_fraction && contents_fraction > 0.0;
   if (!remark.empty())
-    out.warn(
-        !of_content
-            ? remark
-            : "one content was made: " + remark +
-                  (given.range == RangePolicy::reject ? " here; the run will refuse a mean outside the table" : ""));
+    out.warn(!of_content
+                 ? remark
+                 : fmt::format("mean of {} of {} contents: {}{}", content.grains.size(), content.contents, remark,
+                               given.range != RangePolicy::reject ? ""
+                               : all_made(content)                ? "; the run will refuse it"
+                                                                  : "; the run will refuse a mean outside the table"));
   check_ratios(spec, law, out);
   check_volume(table, laws, named.form, entry.solid_fraction, spec, out);
 }
@@ -226,14 +232,14 @@ void check_cells(const CellMatter& matter, const MacroSpec& spec, Findings& out)
                          to_string(spec.preparation)));
 }
 
-void check_laws_of(const LawSources& laws, const MacroSpec& spec, double contents_fraction, Findings& out) {
+void check_laws_of(const LawSources& laws, const MacroSpec& spec, const MacroContent& content, Findings& out) {
   if (spec.cells) return check_cells(*spec.cells, spec, out);
   if (spec.soft_share > 0.0) out.add("picture", "shells", kMatterInShells);
   for (const WantedForm form : laws.forms) {
     if (laws.card && (form == Crowd::pair || !laws.table))
       check_card_law(*laws.card, laws, spec, out);
     else
-      check_table_law(*laws.table, laws, form, spec, contents_fraction, out);
+      check_table_law(*laws.table, laws, form, spec, content, out);
   }
 }
 
@@ -387,8 +393,7 @@ void tell_twins(const MacroSetup& setup, const std::vector<BodyCounts>& samples,
     grains.push_back(samples[k].all - samples[k].soft + inner_grains(content, samples[k].soft));
     out.facts["macro_samples"][k]["grains_inside"] = inner_grains(content, samples[k].soft);
   }
-  const bool all_known = static_cast<std::int64_t>(content.grains.size()) >= content.contents && content.contents > 0;
-  const bool exact = all_known && static_cast<std::int64_t>(samples.size()) == setup.samples;
+  const bool exact = all_made(content) && static_cast<std::int64_t>(samples.size()) == setup.samples;
   for (const Twin twin : setup.twins)
     out.lines += fmt::format("  resolved twin ({}): {}{} grains per sample\n", to_string(twin), exact ? "" : "about ",
                              range_text(grains));
@@ -413,7 +418,7 @@ void check_macro(const MacroSetup& setup, MacroContent content, const LawSources
   tell_preparation(setup, out);
   warn_of_scene(setup, count, out);
   check_lammps(setup, count, out);
-  if (laws != nullptr) check_laws_of(*laws, setup.spec, content.solid_fraction, out);
+  if (laws != nullptr) check_laws_of(*laws, setup.spec, content, out);
   spend_on_macro(setup, content, laws, seed, out);
 }
 

@@ -8,20 +8,18 @@
 #include "calibrate/rod_packing.h"
 #include "common/core/solid_sphere.h"
 #include "macrosim/macro_packing.h"
+#include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/stages.h"
 
 namespace softgrain {
 
 namespace {
 
-/// Shortest period of a cell, in the largest radius: two diameters, and what neighbours are looked for beyond.
-constexpr double kPeriod = 4.1;
 /// Drawn bodies are smaller in the mean than their distribution, now and then.
 constexpr double kMargin = 1.1;
-/// Samples that are drawn at least: what has room must not depend on the seed, which the command line may replace.
+/// Samples that are drawn at least where room is doubted: a doubt must not depend on the seed, which the command line
+/// may replace. What is refused is judged by the samples of the run themselves.
 constexpr std::int64_t kDraws = 32;
-/// Bodies that are drawn before the run, of all samples of a scene.
-constexpr double kMostDrawn = 2e7;
 
 Grading sizes_or_power_law(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
   return sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest);
@@ -47,10 +45,7 @@ double fraction_under(double jammed, double pressure) {
 }
 
 /// Least volume of bodies, over the cube of the largest radius, so that they can be placed at all.
-double placed_volume() {
-  constexpr double kPlaced = 0.75;  // that place_loosely() asks for
-  return kPlaced * std::pow(kPeriod, 3);
-}
+double placed_volume() { return kPackedShare * cube(kShortestPeriod); }
 
 /// And so that they have room under the first pressure of the preparation, which is up to 128 times that of its end,
 /// and where the test shortens the cell most.
@@ -59,7 +54,7 @@ double needed_volume(const MacroSpec& spec) {
   const double first = fraction_under(jammed, spec.start_pressure * std::max(1.0, spec.protocol.first_pressure));
   const double shortened = std::clamp(1.0 - rough_strains(spec).largest_axial, 0.1, 1.0);
   const double strained = fraction_under(jammed, spec.start_pressure) / std::pow(shortened, 3);
-  return std::max(placed_volume(), std::pow(kPeriod, 3) * std::max(first, strained));
+  return std::max(placed_volume(), cube(kShortestPeriod) * std::max(first, strained));
 }
 
 bool needs_room(const MacroSetup& setup) {
@@ -117,7 +112,8 @@ std::string short_of(const MacroSetup& setup, std::uint64_t seed, const std::str
         "{} {} {} for a periodic cell: packed{}, its shortest side is about {:.3g} m, and images of the largest "
         "(radius {:.3g} m) must be two diameters apart, {:.3g} m: {} or more have room",
         spec.bodies, what, sure ? "are too few" : "may be too few", sure ? "" : " and strained",
-        kPeriod * largest * std::cbrt(there), largest, kPeriod * largest, std::max(least, rounded_up(more)));
+        kShortestPeriod * largest * std::cbrt(there), largest, kShortestPeriod * largest,
+        std::max(least, rounded_up(more)));
   }
   return "";
 }

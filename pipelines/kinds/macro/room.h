@@ -10,9 +10,11 @@
 
 namespace softgrain {
 
+/// Bodies that are drawn before a run, of all samples of a scene.
+inline constexpr double kMostDrawn = 2e7;
+
 /// So many bodies of these sizes, whatever is drawn, that images of the largest stay two diameters apart in a periodic
-/// cell while it is prepared (under the first pressure of its preparation) and strained by its test. 0: a scene that
-/// needs none.
+/// cell while it is prepared (under the first pressure of its preparation) and strained by its test.
 std::int64_t least_bodies(const MacroSpec& spec);
 
 /// What is wrong with the samples that the run would draw, which cannot even be placed: "40 bodies are too few for a

@@ -336,10 +336,12 @@ void read_cell_material(const SceneTable& root, SoftParticleSpec& spec) {
 
 /// A stress in Pa says nothing where nobody says the E that stresses of the law are over.
 void require_known_modulus(const SceneTable& root, const std::string& law_file) {
-  for (const SceneTable& stage : root.tables("stage"))
-    for (const char* key : {"stress", "lateral_stress", "stress_x", "stress_y", "stress_z"})
-      if (stage.has(key))
-        stage.mistake(key, "a stress in Pa needs E of the grains, which " + law_file +
+  std::vector<SceneTable> tables = root.tables("stage");
+  tables.push_back(root.table("macro"));
+  for (const SceneTable& table : tables)
+    for (const char* key : {"stress", "lateral_stress", "stress_x", "stress_y", "stress_z", "modulus_stress"})
+      if (table.has(key))
+        table.mistake(key, "a stress in Pa needs E of the grains, which " + law_file +
                                " does not say (its pressures are over E): give it, [material] E = \"50 GPa\" say");
 }
 

@@ -44,7 +44,7 @@ std::string cell(const std::optional<MeanError>& m, double unit = 1.0) {
 
 /// The stresses that a secant modulus was taken between, or those that the stage did not go through.
 std::string between(const StageMeans& s, double unit) {
-  const std::string words = modulus_interval(s.record);
+  const std::string words = modulus_interval(s);
   if (!s.modulus) return "not met: " + words;
   return format_number(s.modulus_from->mean / unit, 3) + " and " + format_number(s.modulus_to->mean / unit, 3) +
          (s.record.modulus_stress[1] > 0.0 ? "" : " (" + words + ")");

@@ -273,7 +273,7 @@ void read_modulus_stress(const SceneTable& t, std::array<double, 2>& interval) {
 namespace {
 
 /// Keys that are defaults of stages.
-constexpr std::array kOfStages{"steps", "increments_per_step", "tolerance"};
+constexpr std::array kOfStages{"steps", "increments_per_step", "tolerance", "modulus_stress"};
 
 void take_stages(const std::vector<SceneTable>& tables, MacroSpec& spec) {
   std::vector<MacroStage> stages;

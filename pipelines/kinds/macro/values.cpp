@@ -39,7 +39,7 @@ void add_stage_values(std::vector<RunValue>& out, const NamedCurves& one) {
     const std::string where = stages.size() > 1 ? ", " + s.record.name : "";
     if (s.record.kind != StageKind::hold) {
       const std::string modulus = to_string(modulus_of(s.record.way)) + " modulus";
-      add_known(modulus + ", " + modulus_interval(s.record) + where, "Pa", s.modulus);
+      add_known(modulus + ", " + modulus_interval(s) + where, "Pa", s.modulus);
       if (stages.size() > 1) add_known(modulus + " at the begin" + where, "Pa", s.modulus_begin);
     }
     add_known("largest q/p" + where, "", s.ratio_peak);

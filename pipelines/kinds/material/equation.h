@@ -17,6 +17,7 @@ namespace softgrain {
 
 /// [equation].
 struct EquationSettings {
+  bool asked = false;  ///< the scene has [equation]; without it a fit is made where tests allow one
   StateForm form = StateForm::porosity;
   double largest_span = 0.0;  ///< that extrapolations use; 0: all
   std::vector<double> spans;  ///< to which onsets are extrapolated

@@ -69,7 +69,7 @@ std::vector<Property> properties_of(const MaterialVariant& v) {
           {"first_pressure", number(p.first_pressure)},
           {"preparation_tolerance", number(p.tolerance)},
           {"preparation_passes", std::to_string(p.max_passes)},
-          {"force_floor", number(s.force_floor)},
+          {"force_floor", v.loading.empty() ? number(s.force_floor) : ""},
           {"test", v.loading.empty() ? test_text(s) : ""},
           {"sizes of", whole_sizes(s)}};
 }

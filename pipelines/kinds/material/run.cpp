@@ -42,13 +42,19 @@ LammpsRuns lammps_runs(const MaterialScene& scene, const MaterialVariant& v, con
 
 using Packings = std::shared_ptr<const std::vector<MacroPacking>>;
 
-/// As they are handed to a test: in touch, or with preparation "lammps" only placed; `before`: of the variant before.
-Packings packings_of(const MaterialVariant& v, const Run& run, const Packings& before) {
-  if (v.same_packings) return before;
+/// As they are handed to a test: in touch, or with preparation "lammps" only placed. A failure says what to do.
+Packings packings_of(const MaterialVariant& v, const Run& run) {
   const std::string file = file_of(packings_name(v), "material_initial");
-  auto packings = std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file));
-  if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
-  return packings;
+  try {
+    auto packings = std::make_shared<const std::vector<MacroPacking>>(prepare_packings(v.setup, run, file));
+    if (v.setup.spec.preparation != Preparation::lammps) save_packings(*packings, run, file);
+    return packings;
+  } catch (const NotUsable& e) {
+    throw NotUsable(std::string(e.what()) +
+                    "; more preparation_passes, a larger preparation_tolerance or another seed may do");
+  } catch (const BadInput& e) {  // the cell became too small for its grains
+    throw NotUsable(std::string(e.what()) + "; more grains (count) make a larger cell");
+  }
 }
 
 /// What LAMMPS prepared is that of this test alone: others begin where bodies were placed.
@@ -142,12 +148,14 @@ void require_engine(const MaterialScene& scene, const std::optional<LammpsEngine
 
 namespace {
 
-/// What to do about it, where the message does not say.
-std::string advice_on(const std::string& problem) {
-  if (problem.find("images of") != std::string::npos) return "more grains (count) make a larger cell";
-  if (problem.find("did not reach a pressure") != std::string::npos)
-    return "more preparation_passes, a larger preparation_tolerance or another seed may do";
-  return "another seed or more grains (count) may do";
+/// The tests that a packing was meant for, from its first variant on: "a, b".
+std::string tests_of(const std::vector<MaterialVariant>& variants, const MaterialVariant& first) {
+  std::string names = first.name;
+  for (auto v = static_cast<std::size_t>(&first - variants.data()) + 1; v < variants.size(); ++v) {
+    if (!variants[v].same_packings) break;
+    names += ", " + variants[v].name;
+  }
+  return names;
 }
 
 }  // namespace
@@ -155,28 +163,33 @@ std::string advice_on(const std::string& problem) {
 VariantRuns run_variants(const MaterialScene& scene, const Run& run, const VariantOptions& options) {
   require_engine(scene, options.lammps);
   VariantRuns out;
-  Packings packings;
-  const auto go = [&](const MaterialVariant& v) {
-    if (!v.same_packings) packings = nullptr;
-    packings = packings_of(v, run, packings);
-    if (!packings) throw NotUsable("the packing that it is to test was not made");
-    out.results.push_back(run_variant(scene, v, options.lammps, run, *packings));
-    if (options.packings) out.results.back().packings = packings;
-  };
-  const auto failed = [&](const MaterialVariant& v, const std::string& problem) {
-    const std::string of = v.name == kMaterialEngine ? "" : "packing " + packings_name(v) + ": ";
-    out.failures.push_back({&v, of + problem + "; " + advice_on(problem)});
+  const auto failed = [&](const MaterialVariant& v, const std::string& of, const std::string& problem) {
+    out.failures.push_back({&v, (of == kMaterialEngine ? "" : of + ": ") + problem});
     run.context.say(out.failures.back().problem);
   };
+  const auto prepared = [&](const MaterialVariant& v) -> Packings {
+    try {
+      return packings_of(v, run);
+    } catch (const NotUsable& e) {
+      const std::string tests = tests_of(scene.variants, v);
+      failed(v, packings_name(v) == kMaterialEngine ? kMaterialEngine : "packing " + packings_name(v),
+             e.what() + (tests == packings_name(v) ? "" : "; not tested: " + tests));
+      return nullptr;
+    }
+  };
+  const auto test = [&](const MaterialVariant& v, const Packings& packings) {
+    try {
+      out.results.push_back(run_variant(scene, v, options.lammps, run, *packings));
+      if (options.packings) out.results.back().packings = packings;
+    } catch (const NotUsable& e) {
+      failed(v, v.name, e.what() + std::string("; another seed or more grains (count) may do"));
+    }
+  };
   run.context.guard([&] {
+    Packings packings;
     for (const MaterialVariant& v : scene.variants) {
-      try {
-        go(v);
-      } catch (const NotUsable& e) {
-        failed(v, e.what());
-      } catch (const BadInput& e) {  // a cell that became too small for its grains
-        failed(v, e.what());
-      }
+      if (!v.same_packings) packings = prepared(v);
+      if (packings) test(v, packings);
     }
     if (out.results.empty()) throw NotUsable(out.failures.front().problem);
   });
@@ -322,6 +335,11 @@ MaterialOutcome summarise(const MaterialScene& scene, const std::vector<VariantR
     out.states = std::move(found->fit);
   }
   s.predictions = predictions(scene, results, run.seed);
+  if (!s.equation && scene.equation.asked)
+    s.head.remarks.push_back("no equation of state ([equation]): no sample was compressed over four recorded points");
+  if (!scene.equation.spans.empty() && s.equation && s.predictions.empty())
+    s.head.remarks.push_back(
+        "no span was predicted (equation.spans): variants of two spans that differ in nothing else are needed");
   if (s.equation && !s.equation->usable)
     s.head.remarks.push_back("the equation of state is not usable: " + s.equation->message);
   else if (s.equation && s.equation->message != "fitted")
@@ -350,10 +368,9 @@ std::string sizes_text(const MaterialScene& scene) {
 
 namespace {
 
-void add_directories(const MaterialScene& scene, const Run& run, MaterialSummary& summary) {
-  for (const MaterialVariant& v : scene.variants)
-    for (std::int64_t k = 0; k < v.setup.samples; ++k)
-      summary.head.files[fmt::format("lammps_{}_{}", v.name, k)] = lammps_directory(run.context, k, folder_of(v));
+void add_directories(const MaterialVariant& v, const Run& run, MaterialSummary& summary) {
+  for (std::int64_t k = 0; k < v.setup.samples; ++k)
+    summary.head.files[fmt::format("lammps_{}_{}", v.name, k)] = lammps_directory(run.context, k, folder_of(v));
 }
 
 /// The input of LAMMPS, to be run elsewhere or with --resume; the packings stay in the store for that.
@@ -362,14 +379,14 @@ ExitStatus write_only(const MaterialScene& scene, const Run& run) {
   Packings packings;
   run.context.guard([&] {
     for (const MaterialVariant& v : scene.variants) {
-      packings = packings_of(v, run, packings);
+      if (!v.same_packings) packings = packings_of(v, run);
       write_lammps_files(lammps_runs(scene, v, laws, run), *packings, run.context);
     }
   });
   MaterialSummary summary;
   summary.head = {RunStatus::written, scene.title, {"nothing was run"}, {}};
   summary.youngs_modulus = common_modulus(scene);
-  add_directories(scene, run, summary);
+  for (const MaterialVariant& v : scene.variants) add_directories(v, run, summary);
   std::string directories;
   for (const auto& [name, directory] : summary.head.files) directories += (directories.empty() ? "" : ", ") + directory;
   run.context.finish(json_of(summary), run.provenance, written_text(directories));
@@ -388,8 +405,9 @@ ExitStatus run_material(const Scene& scene, const CommonOptions& options) {
   MaterialSummary summary = summarise(material, results, run).summary;
   reject_failures(failures, summary.head);
   if (lammps) {
-    summary.engine = engine_use(*lammps, lammps_directory(run.context, 0, folder_of(material.variants.front())));
-    add_directories(material, run, summary);
+    const MaterialVariant& first = *results.front().variant;
+    summary.engine = engine_use(*lammps, lammps_directory(run.context, 0, folder_of(first)));
+    for (const VariantResult& r : results) add_directories(*r.variant, run, summary);
   }
   write_text_atomic(run.path("material.csv"), as_csv(points_of(results)));
   return run.finish(json_of(summary), people_text(summary));

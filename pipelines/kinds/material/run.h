@@ -26,7 +26,8 @@ struct VariantResult {
   std::shared_ptr<const std::vector<MacroPacking>> packings;
 };
 
-/// A variant that could not be prepared or tested: what came in its way, and what to do.
+/// A variant that could not be prepared or tested: what came in its way, and what to do. Of several variants that test
+/// one packing, the first stands for all when the packing could not be made.
 struct VariantFailure {
   const MaterialVariant* variant = nullptr;
   std::string problem;

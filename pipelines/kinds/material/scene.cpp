@@ -193,7 +193,8 @@ class Loadings {
   void refuse_said_twice(const std::vector<SceneTable>& variants,
                          const std::vector<std::vector<std::size_t>>& under) const {
     for (std::size_t v = 0; v < variants.size(); ++v)
-      for (const char* key : {"steps", "increments_per_step", "tolerance", "force_floor", "max_passes"})
+      for (const char* key :
+           {"steps", "increments_per_step", "tolerance", "force_floor", "max_passes", "modulus_stress"})
         if (variants[v].has(key) &&
             std::all_of(under[v].begin(), under[v].end(), [&](std::size_t k) { return says_in_test(tables_[k], key); }))
           variants[v].mistake(key, "each [[loading]] of this variant gives its own");
@@ -259,6 +260,7 @@ MaterialScene read_material(const SceneTable& root) {
   base.samples = root.count("samples", 1, 10000, base.samples);
   base.kept_states = read_kept_states(root);
   out.equation = read_equation(root.table_or_empty("equation"));
+  out.equation.asked = root.has("equation");
   const Loadings loadings(root, base.spec);
   std::set<std::string> names;
   const bool sound = root.sound();

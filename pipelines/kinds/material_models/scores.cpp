@@ -100,14 +100,14 @@ std::size_t point_at(const std::vector<double>& strain, double wanted) {
   return strain.size();
 }
 
-/// Mean over the samples; NaN where there is no unloading.
+/// Secant over the first unloading, mean over the samples; NaN where there is none.
 double unloading_of(const std::vector<MacroCurve>& curves) {
   double sum = 0.0;
   double samples = 0.0;
   for (const MacroCurve& c : curves) {
     for (const StageResult& s : stage_results(c))
       if (s.record.kind == StageKind::unload) {
-        sum += s.modulus_begin;
+        sum += s.modulus;
         samples += 1.0;
         break;
       }

@@ -174,8 +174,8 @@ RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps) {
   return out;
 }
 
-void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval) {
-  if (curves.empty() || curves.front().axial.size() < 2) return;
+std::array<double, 2> set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval) {
+  if (curves.empty() || curves.front().axial.size() < 2) return interval;
   if (!(interval[1] > 0.0)) {  // so far as the lower end of its band comes
     const RecipeCurve& first = curves.front();
     const auto known = std::find_if(first.low.rbegin(), first.low.rend(), [](double x) { return std::isfinite(x); });
@@ -199,6 +199,7 @@ void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval
     }
     c.modulus = m;
   }
+  return interval;
 }
 
 void write_material_card(const RecipeScene& scene, const WholeLaw& law, const std::string& path,

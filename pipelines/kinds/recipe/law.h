@@ -54,8 +54,9 @@ Estimate solid_fraction_of(const WholeLaw& law);
 RecipeCurve curve_of(const WholeLaw& law, double strain, std::int64_t steps);
 
 /// Sets the constrained moduli of all curves between the same two axial stresses over E; zeros: from half the stress
-/// where the lower end of the first one's band ends to that. A curve that does not go through both has none.
-void set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval);
+/// where the lower end of the first one's band ends to that. A curve that does not go through both has none. Returns
+/// the two stresses.
+std::array<double, 2> set_moduli(std::vector<RecipeCurve>& curves, std::array<double, 2> interval);
 
 /// Pressures this little above those of the fit are not yet called extrapolated.
 inline constexpr double kHardlyBeyond = 1.05;

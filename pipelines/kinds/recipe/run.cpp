@@ -48,20 +48,26 @@ class RecipeRun {
   /// Whether all that the law needs was measured: it can do without its check, which is the last packing.
   bool take_failures(const std::vector<VariantFailure>& failures) {
     bool complete = true;
+    bool check_failed = false;
     for (const VariantFailure& f : failures) {
       const bool check = scene_.checked && f.variant == &scene_.material.variants[*scene_.checked];
       head().reject(f.problem + (check ? " ([check] grains)" : " ([grains] count)"));
-      if (check)
-        scene_.checked.reset();
-      else
-        complete = false;
+      complete = complete && check;
+      check_failed = check_failed || check;
     }
-    if (!scene_.checked) scene_.checked_levels = 0;
+    if (check_failed) drop_check();
     if (!complete)
       head().remarks.push_back(
           "no law: packings are missing; those that were measured are in material.csv and "
           "material_NAME.h5");
     return complete;
+  }
+
+  /// Its packing is the last variant: pointers to the others stay valid.
+  void drop_check() {
+    scene_.material.variants.pop_back();
+    scene_.checked.reset();
+    scene_.checked_levels = 0;
   }
 
   void describe() {
@@ -212,14 +218,15 @@ class RecipeRun {
 
   void add_moduli() {
     const MacroSpec& spec = scene_.material.variants.front().setup.spec;
-    set_moduli(out().curves,
-               {spec.modulus_stress[0] / spec.youngs_modulus, spec.modulus_stress[1] / spec.youngs_modulus});
+    const double modulus = spec.youngs_modulus;
+    const auto [from, to] =
+        set_moduli(out().curves, {spec.modulus_stress[0] / modulus, spec.modulus_stress[1] / modulus});
     for (const RecipeCurve& c : out().curves)
       if (!c.modulus && !c.axial.empty())
         head().remarks.push_back(
-            fmt::format("{}: constrained modulus not determined: its axial stress does not go through "
-                        "the interval of modulus_stress",
-                        c.name));
+            fmt::format("{}: constrained modulus not determined: its axial stress does not go through {:.4g} and "
+                        "{:.4g} Pa (test.modulus_stress)",
+                        c.name, from * modulus, to * modulus));
   }
 
   ShellLevels measure_shells() {

@@ -236,7 +236,6 @@ class RoomForImages {
 
   /// Of grains in this packing, those asked for or more.
   std::int64_t enough(MacroSetup setup, const char* table, const char* key, const std::string& what) {
-    constexpr int kTries = 20;
     constexpr std::int64_t kDearest = 5;  // times the default: what is dearer should be asked for
     const std::int64_t asked = setup.spec.bodies;
     const SceneTable t = root_.table_or_empty(table);
@@ -251,11 +250,11 @@ class RoomForImages {
       return asked;
     }
     setup.spec.bodies = std::max(asked, least_bodies(setup.spec));
+    while (setup.spec.bodies <= kDearest * asked && !room_doubt(setup, seed, "grains").empty())
+      setup.spec.bodies += std::max<std::int64_t>(1, setup.spec.bodies / 10);
     if (setup.spec.bodies > kDearest * asked)
       t.reject(key, fmt::format("{}: {} ([{}] {}); levels closer to each other ([levels] ratio) take fewer", what,
                                 doubt, table, key));
-    for (int k = 0; k < kTries && !room_doubt(setup, seed, "grains").empty(); ++k)
-      setup.spec.bodies += setup.spec.bodies / 10;
     scene_.raised.push_back(
         fmt::format("{}: {} grains in place of the default {} ([{}] {}), for a periodic cell with room", what,
                     setup.spec.bodies, asked, table, key));
@@ -360,7 +359,8 @@ RecipeScene read_recipe_scene(const Scene& scene) {
     make_variants(base, shear, out);
     require_material_memory(grains, base);
     RoomForImages(root, out).require();
-    if (out.checked) require_material_memory(root.table_or_empty("check"), out.material.variants[*out.checked].setup);
+    for (std::size_t v = 0; v < out.material.variants.size(); ++v)
+      require_material_memory(out.checked == v ? root.table_or_empty("check") : grains, out.material.variants[v].setup);
     return out;
   });
 }

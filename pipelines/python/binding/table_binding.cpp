@@ -14,7 +14,6 @@ namespace softgrain::python {
 
 namespace {
 
-constexpr std::size_t kEnough = 10;   ///< replicates for an interval
 constexpr std::size_t kChunk = 4096;  ///< states whose replicates are kept at a time
 
 LawTableEntry entry_of(const LawTable& table, const TableChoice& choice, std::string& remark) {
@@ -173,7 +172,7 @@ std::optional<std::pair<Array, Array>> TableBinding::interval(const TableChoice&
   std::string remark;
   const LawTableEntry entry = entry_of(table_, choice, remark);
   const Crowd form = form_of(entry, choice);
-  if (replicate_count(table_, form) < kEnough) return std::nullopt;
+  if (replicate_count(table_, form) < kEnoughReplicates) return std::nullopt;
   Array low(overlap.shape(0));
   Array high(overlap.shape(0));
   const std::span<const double> in = view(overlap);
