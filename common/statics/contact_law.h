@@ -27,8 +27,8 @@ struct FrictionConstants {
   double overlap0 = 0.0;         ///< of the reference state, negative when apart [m]
   double contact_radius0 = 0.0;  ///< a0 [m]
   double limit0 = 0.0;           ///< mu P0 [N]
-  Vec3 tangential0{};            ///< Q0, capped at mu P0
-  double torsion0 = 0.0;         ///< M0.n, capped at (3 pi/16) a0 mu P0
+  Vec3 tangential0{};            ///< Q0 [N]; above mu P0 where P fell in the increment that led here
+  double torsion0 = 0.0;         ///< M0.n [N m]; likewise above (3 pi/16) a0 mu P0
 };
 
 /// Where a contact is now. Displacements are those since the reference state.
@@ -107,29 +107,26 @@ struct TangentialForce {
   bool follows = false;    ///< |Q| is mu P of the state as it is
 };
 
-/// Share of the published limit that the reference force may take up. In slip Q lies where the ray from Qp against u_s
-/// leaves the circle |Q| = Qmax. When Qp is on the circle itself, a ray that just misses the inside leaves at once, Q =
-/// Qp, and one that just enters it does not slip at all, Q = Qp - k* u_s: next to a jump when the contact moves
-/// sideways. From inside the circle Q changes by no more than about k*/sqrt(2 (1 - kReferenceShare)) per displacement.
+/// Share of the limit that the reference force may take up. In slip Q lies where the ray from Qp against u_s leaves the
+/// circle |Q| = Qmax. When Qp is on the circle itself, a ray that just misses the inside leaves at once, Q = Qp, and
+/// one that just enters it does not slip at all, Q = Qp - k* u_s: next to a jump when the contact moves sideways. From
+/// inside the circle Q changes by no more than about k*/sqrt(2 (1 - kReferenceShare)) per displacement.
 inline constexpr double kReferenceShare = 1.0 - 1e-3;
-/// A contact about to open lets go of Q from mu P = (mu P0)/kOpening on, so that Q does not jump where it opens.
+/// A contact about to open lets go of Q: |Q| is at most kOpening mu P, so that it does not jump where the contact
+/// opens.
 inline constexpr double kOpening = 100.0;
 
-/// mu P0, less for a contact that has lost nearly all of its normal force.
-inline double limit_by_reference(const FrictionConstants& c, double normal_force) {
-  return std::min(c.limit0, kOpening * c.friction * normal_force);
-}
-
-/// Published rule: limit of the reference state, stiffness lowered to k' in slip; with the two deviations above,
-/// without which there need be no equilibrium.
+/// Published rule: limit of the reference state, stiffness lowered to k' in slip; a contact that carries more than mu
+/// P0 keeps what it carries, k' = 0, so that its limit is |Qp|. With the two deviations above, without which there need
+/// be no equilibrium.
 inline TangentialForce tangential_by_reference(const FrictionConstants& c, double normal_force, const Vec3& turned,
                                                const Vec3& slid) {
   TangentialForce out;
-  out.limit = c.limit0;
+  const double carried = norm(turned);
+  out.limit = std::max(c.limit0, carried);
   out.stiffness = out.stick = c.shear * c.contact_radius0;
-  const double held = kReferenceShare * c.limit0;
-  const double carried2 = norm2(turned);
-  const Vec3 pushed = carried2 > held * held ? turned * (held / std::sqrt(carried2)) : turned;
+  const double held = kReferenceShare * out.limit;
+  const Vec3 pushed = carried > held ? turned * (held / carried) : turned;
   out.force = pushed - slid * out.stiffness;
   const double along = dot(pushed, slid);
   const double size2 = norm2(slid);
@@ -138,8 +135,8 @@ inline TangentialForce tangential_by_reference(const FrictionConstants& c, doubl
     out.force = pushed - slid * out.stiffness;
   }
   out.work = 0.5 * out.stiffness * size2 - along;
-  const double most = limit_by_reference(c, normal_force);
-  if (most < c.limit0 && norm2(out.force) > most * most) {
+  const double most = kOpening * c.friction * normal_force;
+  if (most < out.limit && norm2(out.force) > most * most) {
     const double share = most / norm(out.force);
     out.force *= share;
     out.stiffness *= share;
@@ -227,7 +224,9 @@ TorsionMoment torsion_response(const FrictionConstants& c, const NormalForce& no
   constexpr double kShare = 3.0 * std::numbers::pi / 16.0;
   const double turned = dot(turn_i - turn_j, place.normal);
   if constexpr (Law::rule == CoulombRule::reference) {
-    const double limit = kShare * c.contact_radius0 * limit_by_reference(c, normal.force);
+    const double arm = kShare * c.contact_radius0;
+    const double most = arm * kOpening * c.friction * normal.force;
+    const double limit = std::min(std::max(arm * c.limit0, std::abs(c.torsion0)), most);
     return torsion_moment(c, c.contact_radius0, limit, turned);
   } else {
     if (c.friction == 0.0) return {};

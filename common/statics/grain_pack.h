@@ -32,7 +32,7 @@ struct PackContact {
   double contact_radius = 0.0;  ///< a = sqrt(R* h) [m]
   Vec3 tangential_force{};      ///< Q [N]
   double torsion = 0.0;         ///< M.n [N m]
-  bool sliding = false;         ///< |Q| >= (1 - 1e-6) mu P
+  bool sliding = false;         ///< |Q| >= (1 - 1e-6) mu P, both of this state
 };
 
 struct GrainPack {

@@ -15,14 +15,15 @@ namespace softgrain {
 ///
 /// The published rule [QS 2.1] need not have an equilibrium, for two reasons, so `reference` deviates from it twice,
 /// each time by as much as makes the tangential force continuous enough:
-/// - A contact that unloaded in an earlier increment starts with its force cut to the limit, |Qp| = Qmax. When it then
-///   slips sideways, k' of the publication leaps between 0 and k* over next to no displacement. Here the force is cut
-///   to 0.999 of the limit: at most 1e-3 mu P0 of such a contact; 7e-5 of the stress after a strain of 0.015, measured
-///   against a cut to 0.9999 (800 grains; to 0.99: 1e-3).
-/// - A contact that opens takes with it a tangential force that it still carries. Here |Q| and the torsion fade from
-///   P = P0/100 on.
+/// - A contact that slid or unloaded in an earlier increment starts with a force at or above the limit. It keeps its
+/// force,
+///   Q = Qp, unless it slips back. When it slips sideways, k' of the publication leaps between 0 and k* over next to no
+///   displacement. Here an increment starts from at most 0.999 of max(mu P0, |Qp|); in slip |Q| is that limit itself.
+/// - A contact that opens takes with it a tangential force that it still carries. Here |Q| is at most 100 mu P, and the
+///   torsion likewise.
 enum class CoulombRule {
-  reference,  ///< the published rule: P of the reference state; a contact made in the increment has no friction yet
+  reference,  ///< the published rule: max(mu P0, |Q0|) of the reference state; a contact made in the increment has no
+              ///< friction yet
   current     ///< P of the state as it is (return mapping)
 };
 

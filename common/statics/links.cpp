@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
 #include "common/core/error.h"
 #include "common/core/poisson_ratio.h"
@@ -36,17 +35,16 @@ FrictionConstants friction_constants(const Material& a, const Material& b, doubl
   return f;
 }
 
-/// Reference state of a contact; what friction carries is capped at its limit (a contact that unloaded keeps too much).
+/// Reference state of a contact. Its forces are those of the equilibrium: one whose normal force fell may carry more
+/// than mu P, and what becomes of that is up to the rule of friction.
 void remember(FrictionConstants& f, const PackContact& c) {
   f.fresh = false;
   f.overlap0 = c.overlap;
   f.contact_radius0 = c.contact_radius;
   if (f.friction == 0.0) return;
   f.limit0 = f.friction * c.normal_force;
-  const double size = norm(c.tangential_force);
-  f.tangential0 = size > f.limit0 ? c.tangential_force * (f.limit0 / size) : c.tangential_force;
-  const double most = 3.0 * std::numbers::pi / 16.0 * f.contact_radius0 * f.limit0;
-  f.torsion0 = std::clamp(c.torsion, -most, most);
+  f.tangential0 = c.tangential_force;
+  f.torsion0 = c.torsion;
 }
 
 bool before(const PackContact& c, std::int32_t i, std::int32_t j) { return c.i < i || (c.i == i && c.j < j); }

@@ -311,8 +311,11 @@ void PackProblem::contacts_as(const Unknowns& theta, std::vector<PackContact>& o
     ContactPlace place;
     if (!place_of(view, c, place)) continue;
     const ContactResponse r = response_of<Law>(view, c, place);
-    const double limit = r.tangential.limit;
-    const bool sliding = limit > 0.0 && norm(r.tangential.force) >= (1.0 - 1e-6) * limit;
+    bool sliding = false;
+    if constexpr (Law::friction) {
+      const double limit = links_.friction[c].friction * r.normal.force;
+      sliding = limit > 0.0 && norm(r.tangential.force) >= (1.0 - 1e-6) * limit;
+    }
     out.push_back({links_.i[c], links_.j[c], place.normal, place.overlap, r.normal.force,
                    links_.normal[c].root_radius * std::sqrt(place.overlap), r.tangential.force, r.torsion.moment,
                    sliding});

@@ -58,8 +58,10 @@ double loading_strain(const GrainBoxSpec& spec) {
 ModuliAt moduli_at(const GrainBoxResult& result, double pressure) {
   std::vector<double> bulk;
   std::vector<double> shear;
+  std::vector<double> force;
   for (const BoxPoint* p : result.points_of(BoxPhase::loading)) {
     if (std::abs(p->pressure / pressure - 1.0) > kNear) continue;
+    force.push_back(p->mean_force / p->pressure * pressure);
     if (std::isfinite(p->bulk)) bulk.push_back(p->bulk);
     if (std::isfinite(p->shear_modulus)) shear.push_back(p->shear_modulus);
   }
@@ -68,7 +70,8 @@ ModuliAt moduli_at(const GrainBoxResult& result, double pressure) {
   };
   const MeanError k = known(bulk);
   const MeanError g = known(shear);
-  return {pressure, k.mean, k.error, g.mean, g.error, k.n};
+  const MeanError f = known(force);
+  return {pressure, k.mean, k.error, g.mean, g.error, f.mean, f.error, k.n};
 }
 
 std::vector<double> comparison_stresses(const std::vector<GrainBoxResult>& results) {
@@ -106,6 +109,13 @@ double pressure_of_smallest_shear(const GrainBoxResult& result) {
     pressure = stress / static_cast<double>(window);
   }
   return pressure;
+}
+
+double largest_over_pressure(const GrainBoxResult& result, double BoxPoint::*stress) {
+  double largest = 0.0;
+  for (const BoxPoint* p : result.points_of(BoxPhase::loading))
+    largest = larger_or_nan(largest, p->*stress / p->pressure);
+  return largest;
 }
 
 StepEffort total_effort(const GrainBoxState& state) {
@@ -169,16 +179,15 @@ OverArrangements statistics_of(const Arrangements& all, const std::vector<double
   for (const double stress : stresses) {
     const MeanError bulk = mean_over(all, [&](const GrainBoxResult& r) { return moduli_at(r, stress).bulk; });
     const MeanError shear = mean_over(all, [&](const GrainBoxResult& r) { return moduli_at(r, stress).shear; });
-    out.moduli.push_back({stress, bulk.mean, bulk.error, shear.mean, shear.error, bulk.n});
+    const MeanError force = mean_over(all, [&](const GrainBoxResult& r) { return moduli_at(r, stress).force; });
+    out.moduli.push_back({stress, bulk.mean, bulk.error, shear.mean, shear.error, force.mean, force.error, bulk.n});
   }
-  for (double SlidingShares::*share : {&SlidingShares::start_limit, &SlidingShares::start, &SlidingShares::end}) {
-    const MeanError m = mean_over(all, [&](const GrainBoxResult& r) {
-      const auto points = r.points_of(BoxPhase::loading);
-      return points.empty() ? kNaN : points.back()->sliding.*share;
-    });
-    out.sliding.*share = m.mean;
-    out.sliding_error.*share = m.error;
-  }
+  const MeanError sliding = mean_over(all, [&](const GrainBoxResult& r) {
+    const auto points = r.points_of(BoxPhase::loading);
+    return points.empty() ? kNaN : points.back()->sliding_share;
+  });
+  out.sliding = sliding.mean;
+  out.sliding_error = sliding.error;
   return out;
 }
 

@@ -9,25 +9,28 @@
 namespace softgrain {
 
 /// Interval moduli near one stress of the loading phase: means of K and G over the intervals that end within 10 % of
-/// it, with standard errors from their scatter.
+/// it, with standard errors from their scatter, and the mean normal force there, by which the publication explains the
+/// order of K with the pressure of generation.
 struct ModuliAt {
   double pressure = 0.0;  ///< asked for [Pa]
   double bulk = 0.0;      ///< NaN with fewer than 3 intervals, as the others
   double bulk_error = 0.0;
   double shear = 0.0;
   double shear_error = 0.0;
+  double force = 0.0;  ///< mean normal force over sigma_c, times the stress asked for [N]
+  double force_error = 0.0;
   std::size_t points = 0;
 };
 [[nodiscard]] ModuliAt moduli_at(const GrainBoxResult& result, double pressure);
 
-/// Over the arrangements of one pack: means of K and G at a stress and of the sliding shares at the end of the loading,
-/// with standard errors over arrangements. NaN where fewer than two of them have a value.
+/// Over the arrangements of one pack: means of K, G and the mean normal force at a stress and of the sliding share at
+/// the end of the loading, with standard errors over arrangements. NaN where fewer than two of them have a value.
 struct OverArrangements {
   std::string pack;
   std::size_t arrangements = 0;  ///< that came to their end
   std::vector<ModuliAt> moduli;  ///< at comparison_stresses(); `points`: arrangements
-  SlidingShares sliding{};
-  SlidingShares sliding_error{};
+  double sliding = 0.0;
+  double sliding_error = 0.0;
 };
 /// Of every pack that has two arrangements or more, in the order of the results.
 [[nodiscard]] std::vector<OverArrangements> over_arrangements(const std::vector<GrainBoxResult>& results);
@@ -39,6 +42,9 @@ struct OverArrangements {
 /// contacts begin to slide one after the other; after, the pack stiffens with stress. NaN with fewer than 10 intervals
 /// [Pa].
 [[nodiscard]] double pressure_of_smallest_shear(const GrainBoxResult& result);
+
+/// Largest ratio of a stress to sigma_c in the loading phase.
+[[nodiscard]] double largest_over_pressure(const GrainBoxResult& result, double BoxPoint::*stress);
 
 /// Sums over all points.
 [[nodiscard]] StepEffort total_effort(const GrainBoxState& state);

@@ -32,8 +32,8 @@ constexpr double kDenserThanAny = 0.80;  // solid fraction at which a pack of th
 // A box that has not come to rest after so many passes is close to jamming; what is left is small, and the least-work
 // solver finds the equilibrium of the box that is handed on.
 constexpr std::int64_t kLoosePasses = 6000;
-// Share of the wanted pressure at which the box is handed on, reached in steps of kPressedStep: barely jammed packs are
-// nearly floppy, which costs a solver without inertia much and changes nothing in the end.
+// Share of the first wanted pressure at which the box is handed on, reached in steps of kPressedStep: barely jammed
+// packs are nearly floppy, which costs a solver without inertia much and changes nothing in the end.
 constexpr double kHandOver = 0.2;
 constexpr double kPressedStep = 3e-4;
 
@@ -259,7 +259,7 @@ CompactedPack compact_until_stress(const GrainBoxSpec& spec, GrainPack loose) {
     s = before;
     step *= 0.5;
   }
-  const double enough = std::max(first_stress, kHandOver * spec.generation.pressure);
+  const double enough = std::max(first_stress, kHandOver * spec.generation.pressures().front());
   while (mean_wall_stress(s) < enough) {
     if (interrupt_requested()) throw Interrupted("interrupted while compacting; go on with --resume");
     shrink(s, kPressedStep);

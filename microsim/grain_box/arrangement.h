@@ -27,7 +27,7 @@ struct CompactedPack {
 
 /// Shrinks the box isotropically, relaxing without friction (dynamic relaxation: a loose pack is floppy), in steps that
 /// are halved whenever stress appears, until the wall stress exceeds kFirstStress E at a step of kLastStep; then on to
-/// a fifth of the pressure of the generation. Throws NotUsable when the pack does not jam, Interrupted.
+/// a fifth of the first pressure of the generation. Throws NotUsable when the pack does not jam, Interrupted.
 CompactedPack compact_until_stress(const GrainBoxSpec& spec, GrainPack loose);
 
 inline constexpr double kFirstStress = 1e-6;  ///< mean wall stress over mean E that counts as stress

@@ -1,8 +1,8 @@
 #include "microsim/grain_box/box_measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 #include "common/core/limits.h"
 #include "common/core/solid_sphere.h"
@@ -36,6 +36,26 @@ double BoxStress::deviator() const {
   return std::sqrt(1.5 * sum);
 }
 
+namespace {
+
+/// -(1/V) sum over the wall contacts of f_a (x - centre)_b; f: force on the grain, x: where it meets the wall.
+std::array<Vec3, 3> first_moment(const GrainPack& pack, const Vec3& lengths) {
+  Vec3 centre;
+  for (int k = 0; k < 3; ++k) centre[k] = pack.walls[static_cast<std::size_t>(2 * k)].point[k] + 0.5 * lengths[k];
+  const double volume = lengths[0] * lengths[1] * lengths[2];
+  std::array<Vec3, 3> out{};
+  for (const PackContact& c : pack.contacts) {
+    if (c.j < pack.grains()) continue;
+    const auto i = static_cast<std::size_t>(c.i);
+    const Vec3 arm = pack.position[i] - c.normal * (pack.radius[i] - c.overlap) - centre;
+    const Vec3 force = c.normal * c.normal_force + c.tangential_force;
+    for (int a = 0; a < 3; ++a) out[static_cast<std::size_t>(a)] -= arm * (force[a] / volume);
+  }
+  return out;
+}
+
+}  // namespace
+
 BoxStress box_stress(const GrainPack& pack) {
   const Vec3 lengths = box_lengths(pack);
   const std::vector<Vec3> forces = wall_forces(pack);
@@ -48,9 +68,14 @@ BoxStress box_stress(const GrainPack& pack) {
     out.normal[k] = 0.5 * (pushed_low + pushed_high);
     if (out.normal[k] > 0.0)
       out.imbalance = larger_or_nan(out.imbalance, std::abs(pushed_high - pushed_low) / out.normal[k]);
-    for (const std::size_t wall : {low, low + 1})
-      for (const int across : {(k + 1) % 3, (k + 2) % 3})
-        out.shear = larger_or_nan(out.shear, std::abs(forces[wall][across]) / area);
+  }
+  const std::array<Vec3, 3> stress = first_moment(pack, lengths);
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3;
+    const double ab = stress[static_cast<std::size_t>(a)][b];
+    const double ba = stress[static_cast<std::size_t>(b)][a];
+    out.shear = larger_or_nan(out.shear, 0.5 * std::abs(ab + ba));
+    out.moment = larger_or_nan(out.moment, std::abs(ab - ba));
   }
   return out;
 }
@@ -125,20 +150,6 @@ double friction_of(const GrainPack& pack, const PackContact& c) {
   return c.j < pack.grains() ? pack.friction : pack.walls[static_cast<std::size_t>(c.j - pack.grains())].friction;
 }
 
-/// Share of the contacts that carry force for which `at_limit` holds.
-template <class AtLimit>
-double share_of(const GrainPack& pack, const std::vector<PackContact>& contacts, AtLimit&& at_limit) {
-  if (!(pack.friction > 0.0)) return std::numeric_limits<double>::quiet_NaN();
-  std::int64_t all = 0;
-  std::int64_t slide = 0;
-  for (const PackContact& c : contacts) {
-    if (!(c.normal_force > 0.0)) continue;
-    ++all;
-    slide += at_limit(c) ? 1 : 0;
-  }
-  return all > 0 ? static_cast<double>(slide) / static_cast<double>(all) : std::numeric_limits<double>::quiet_NaN();
-}
-
 bool reaches(const GrainPack& pack, const PackContact& c, double normal_force) {
   const double friction = friction_of(pack, c);
   return friction > 0.0 && normal_force > 0.0 && norm(c.tangential_force) >= (1.0 - 1e-6) * friction * normal_force;
@@ -146,19 +157,22 @@ bool reaches(const GrainPack& pack, const PackContact& c, double normal_force) {
 
 }  // namespace
 
-SlidingShares sliding_shares(const std::vector<PackContact>& before, const GrainPack& after) {
+double share_at_start_limit(const std::vector<PackContact>& before, const GrainPack& after) {
+  if (!(after.friction > 0.0)) return kNaN;
   const auto start_force = [&](const PackContact& c) {
     const auto found =
         std::lower_bound(before.begin(), before.end(), c,
                          [](const PackContact& x, const PackContact& y) { return x.i != y.i ? x.i < y.i : x.j < y.j; });
     return found != before.end() && found->i == c.i && found->j == c.j ? found->normal_force : 0.0;
   };
-  SlidingShares out;
-  out.start_limit =
-      share_of(after, after.contacts, [&](const PackContact& c) { return reaches(after, c, start_force(c)); });
-  out.start = share_of(after, before, [&](const PackContact& c) { return reaches(after, c, c.normal_force); });
-  out.end = share_of(after, after.contacts, [&](const PackContact& c) { return reaches(after, c, c.normal_force); });
-  return out;
+  std::int64_t all = 0;
+  std::int64_t at_limit = 0;
+  for (const PackContact& c : after.contacts) {
+    if (!(c.normal_force > 0.0)) continue;
+    ++all;
+    at_limit += reaches(after, c, start_force(c)) ? 1 : 0;
+  }
+  return all > 0 ? static_cast<double>(at_limit) / static_cast<double>(all) : kNaN;
 }
 
 std::vector<Vec3> wall_moves(const Vec3& strain, const Vec3& reference) {

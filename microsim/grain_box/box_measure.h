@@ -18,7 +18,11 @@ inline constexpr int kBoxWalls = 6;
 struct BoxStress {
   Vec3 normal{};           ///< per axis, mean of both walls
   double imbalance = 0.0;  ///< largest difference of opposite walls over their mean
-  double shear = 0.0;      ///< largest tangential component on any wall
+  /// Shear stress by the first moment of the wall forces, sigma_ab = -(1/V) sum f_a (x - c)_b, of which the largest
+  /// (sigma_ab + sigma_ba)/2 in magnitude; f on the grains, c the centre of the box.
+  double shear = 0.0;
+  /// Largest component of the moment of all wall forces about the centre, over V: 0 but for residuals and torsion.
+  double moment = 0.0;
   [[nodiscard]] double mean() const { return (normal[0] + normal[1] + normal[2]) / 3.0; }
   /// sqrt(3 J2): |axial - lateral| when two stresses are equal.
   [[nodiscard]] double deviator() const;
@@ -27,7 +31,7 @@ struct BoxStress {
 
 struct ContactCounts {
   std::int64_t contacts = 0;          ///< that carry force, grains and walls
-  std::int64_t sliding = 0;           ///< at the Coulomb limit
+  std::int64_t sliding = 0;           ///< |Q| >= mu P in this state [QS 2.3]
   double coordination = 0.0;          ///< contacts per grain (a wall contact counts for one grain)
   double coordination_without = 0.0;  ///< the same, rattlers left out
   std::int64_t rattlers = 0;
@@ -37,15 +41,10 @@ struct ContactCounts {
 /// Rattlers have fewer than 4 contacts without friction, fewer than 2 with it; they are taken out until none is left.
 [[nodiscard]] ContactCounts count_contacts(const GrainPack& pack);
 
-/// Three ways to count what slides in an increment: shares of contacts with |Q| >= (1 - 1e-6) mu P, which the
-/// publication does not tell apart [QS 2.3]. NaN without friction.
-struct SlidingShares {
-  double start_limit = 0.0;  ///< Q at its end against P at its start; new contacts have no such limit and do not slide
-  double start = 0.0;        ///< both at its start, of the contacts that there were
-  double end = 0.0;          ///< both at its end
-};
-/// `before`: contacts at the start of the increment, sorted by (i, j).
-[[nodiscard]] SlidingShares sliding_shares(const std::vector<PackContact>& before, const GrainPack& after);
+/// Share of contacts whose |Q| at the end of an increment reaches (1 - 1e-6) mu P of its start, the limit within the
+/// increment by the published rule. New contacts have no such limit and do not count as being at it. NaN without
+/// friction. `before`: contacts at the start of the increment, sorted by (i, j).
+[[nodiscard]] double share_at_start_limit(const std::vector<PackContact>& before, const GrainPack& after);
 
 /// Contacts of every grain.
 [[nodiscard]] std::vector<std::int32_t> contacts_per_grain(const GrainPack& pack);

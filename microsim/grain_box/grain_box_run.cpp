@@ -42,7 +42,7 @@ class GrainBoxRun {
 
  private:
   void compact();
-  void reach_pressure();
+  void reach_pressure(double target);
   [[nodiscard]] double pressure_slope() const;
   bool grow();
   void add_friction();
@@ -147,6 +147,7 @@ BoxPoint measure(const GrainPack& pack, const Vec3& stress_free) {
   const BoxStress stress = box_stress(pack);
   p.stress = stress.normal;
   p.shear = stress.shear;
+  p.moment = stress.moment;
   p.imbalance = stress.imbalance;
   p.pressure = stress.mean();
   p.deviator = stress.deviator();
@@ -199,7 +200,7 @@ void GrainBoxRun::step(const BoxMove& move) {
   note_failures();
   const auto n = static_cast<std::int64_t>(state_.points.size());
   record(spec_.loading.probe_every > 0 && state_.phase != BoxPhase::compaction && n % spec_.loading.probe_every == 0);
-  state_.points.back().sliding = sliding_shares(before, state_.pack);
+  state_.points.back().at_start_limit = share_at_start_limit(before, state_.pack);
   StepEffort effort = stepper.take_effort();
   effort.factorisations += state_.points.back().effort.factorisations;
   state_.points.back().effort = effort;
@@ -227,8 +228,7 @@ double GrainBoxRun::pressure_slope() const {
 
 /// Secant on sigma^(2/3), which grows linearly with strain for Hertz contacts. Without friction no path matters, so
 /// every step goes on from the last.
-void GrainBoxRun::reach_pressure() {
-  const double target = spec_.generation.pressure;
+void GrainBoxRun::reach_pressure(double target) {
   for (std::int64_t n = 0; n < kPressureSteps; ++n) {
     const double now = state_.points.back().pressure;
     if (std::abs(now / target - 1.0) <= spec_.generation.pressure_tolerance) return;
@@ -257,7 +257,8 @@ bool GrainBoxRun::grow() {
   return true;
 }
 
-/// Phase (a). Growing raises the pressure and meeting the pressure may open contacts: both until both hold.
+/// Phase (a), one pressure after the other. Growing raises the pressure and meeting the pressure may open contacts:
+/// both until both hold.
 void GrainBoxRun::compact() {
   if (state_.phase == BoxPhase::start) {
     CompactedPack compacted = compact_until_stress(spec_, make_loose_pack(spec_, seed_));
@@ -267,10 +268,12 @@ void GrainBoxRun::compact() {
     state_.phase = BoxPhase::compaction;
     step(isotropic(0.0));
   }
-  for (;;) {
-    reach_pressure();
-    if (!grow()) break;
-    if (state_.growth_passes > spec_.generation.growth_passes)
+  const std::vector<double> pressures = spec_.generation.pressures();
+  while (state_.pressures_met < static_cast<std::int64_t>(pressures.size())) {
+    reach_pressure(pressures[static_cast<std::size_t>(state_.pressures_met)]);
+    if (!grow())
+      ++state_.pressures_met;
+    else if (state_.growth_passes > spec_.generation.growth_passes)
       throw NotUsable(fmt::format("{}: after {} passes of growth some grains still have fewer than {} contacts",
                                   spec_.name, spec_.generation.growth_passes, kEnoughContacts));
   }

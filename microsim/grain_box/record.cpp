@@ -44,13 +44,9 @@ constexpr NumberColumn kNumbers[] = {{"shear_stress", "Pa", &BoxPoint::shear},
                                      {"mean_normal_force", "N", &BoxPoint::mean_force},
                                      {"solid_fraction", "1", &BoxPoint::solid_fraction}};
 
-struct SlidingColumn {
-  const char* name;
-  double SlidingShares::*values;
-};
-constexpr SlidingColumn kSliding[] = {{"sliding_limit_at_start", &SlidingShares::start_limit},
-                                      {"sliding_at_start", &SlidingShares::start},
-                                      {"sliding_at_end", &SlidingShares::end}};
+/// That files of older versions do not have.
+constexpr NumberColumn kLaterNumbers[] = {{"wall_moment", "Pa", &BoxPoint::moment},
+                                          {"sliding_limit_at_start", "1", &BoxPoint::at_start_limit}};
 
 struct CountColumn {
   const char* name;
@@ -95,8 +91,8 @@ void write_points(const h5::Group& g, const std::vector<BoxPoint>& points) {
   for (const VectorColumn& c : kVectors) write_vector(g, c, points);
   for (const NumberColumn& c : kNumbers)
     write_column(g, c.name, c.unit, points, [&](const BoxPoint& p) { return p.*c.values; });
-  for (const SlidingColumn& c : kSliding)
-    write_column(g, c.name, "1", points, [&](const BoxPoint& p) { return p.sliding.*c.values; });
+  for (const NumberColumn& c : kLaterNumbers)
+    write_column(g, c.name, c.unit, points, [&](const BoxPoint& p) { return p.*c.values; });
   for (const CountColumn& c : kCounts)
     write_column(g, c.name, "1", points, [&](const BoxPoint& p) { return p.*c.values; });
   for (const EffortColumn& c : kEffort)
@@ -110,8 +106,8 @@ std::vector<BoxPoint> read_points(const h5::Group& g) {
   for (const VectorColumn& c : kVectors) read_vector(g, c, points);
   for (const NumberColumn& c : kNumbers)
     read_doubles(g, c.name, c.unit, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
-  for (const SlidingColumn& c : kSliding)
-    if (g.has(c.name)) read_doubles(g, c.name, "1", points, [&](BoxPoint& p, double v) { p.sliding.*c.values = v; });
+  for (const NumberColumn& c : kLaterNumbers)
+    if (g.has(c.name)) read_doubles(g, c.name, c.unit, points, [&](BoxPoint& p, double v) { p.*c.values = v; });
   for (const CountColumn& c : kCounts)
     read_integers(g, c.name, points, [&](BoxPoint& p, std::int64_t v) { p.*c.values = v; });
   for (const EffortColumn& c : kEffort)
@@ -167,6 +163,8 @@ void write_spec(const h5::Group& g, const GrainBoxSpec& spec) {
   g.attribute("friction", spec.friction);
   g.attribute("wall_friction", spec.walls.friction);
   g.attribute("generation_pressure_Pa", spec.generation.pressure);
+  if (!spec.generation.lower_pressures.empty())
+    g.write("generation_lower_pressures_Pa", std::span<const double>(spec.generation.lower_pressures));
   g.attribute("test", spec.loading.test);
   g.write("increments", std::span<const double>(spec.loading.increments));
 }
@@ -188,6 +186,8 @@ GrainBoxResult read_result(const h5::Group& g) {
   spec.friction = g.number("friction");
   spec.walls.friction = g.number("wall_friction");
   spec.generation.pressure = g.number("generation_pressure_Pa");
+  if (g.has("generation_lower_pressures_Pa"))
+    spec.generation.lower_pressures = g.doubles("generation_lower_pressures_Pa");
   spec.loading.test = g.text("test");
   spec.loading.increments = g.doubles("increments");
   const std::vector<double> ranges = g.open("fits").doubles("ranges");
@@ -239,6 +239,7 @@ GrainBoxFits fit_growth(const GrainBoxResult& result) {
 
 void write_state(const h5::Group& g, const GrainBoxState& state) {
   g.attribute("phase", static_cast<std::int64_t>(state.phase));
+  g.attribute("pressures_met", state.pressures_met);
   g.attribute("growth_passes", state.growth_passes);
   g.attribute("loose_passes", state.loose_passes);
   g.attribute("seconds", state.seconds);
@@ -251,6 +252,7 @@ void write_state(const h5::Group& g, const GrainBoxState& state) {
 GrainBoxState read_state(const h5::Group& g) {
   GrainBoxState state;
   state.phase = phase_of(g.integer("phase"));
+  if (g.has_attribute("pressures_met")) state.pressures_met = g.integer("pressures_met");
   state.growth_passes = g.integer("growth_passes");
   state.loose_passes = g.integer("loose_passes");
   state.seconds = g.number("seconds");

@@ -29,8 +29,9 @@ struct BoxPoint {
   BoxPhase phase = BoxPhase::compaction;
   Vec3 strain{};  ///< from the length at which stress first appeared, compression positive
   Vec3 lengths{};
-  Vec3 stress{};       ///< of the walls [Pa]
-  double shear = 0.0;  ///< largest tangential wall stress [Pa]
+  Vec3 stress{};        ///< of the walls [Pa]
+  double shear = 0.0;   ///< BoxStress::shear [Pa]
+  double moment = 0.0;  ///< BoxStress::moment [Pa]
   double imbalance = 0.0;
   double pressure = 0.0;  ///< sigma_c = tr(sigma)/3 [Pa]
   double deviator = 0.0;  ///< sqrt(3 J2) [Pa]
@@ -40,8 +41,8 @@ struct BoxPoint {
   double shear_probe = 0.0;
   double bulk_medium = 0.0;  ///< effective medium [Pa]
   double shear_medium = 0.0;
-  double sliding_share = 0.0;  ///< at the limit that the rule of friction has
-  SlidingShares sliding{};     ///< the same counted in three ways; NaN at the first state
+  double sliding_share = 0.0;   ///< of contacts with |Q| >= mu P in this state [QS 2.3]; NaN without friction
+  double at_start_limit = 0.0;  ///< share_at_start_limit() of the interval
   double coordination = 0.0;
   double coordination_without = 0.0;  ///< rattlers left out
   double mean_force = 0.0;            ///< normal [N]
@@ -61,6 +62,7 @@ struct GrainBoxState {
   BoxPhase phase = BoxPhase::start;
   GrainPack pack;
   Vec3 stress_free_lengths{};
+  std::int64_t pressures_met = 0;  ///< of GrainBoxGeneration::pressures()
   std::int64_t growth_passes = 0;
   std::int64_t loose_passes = 0;  ///< loop passes of the dynamic relaxation before stress appeared
   std::vector<BoxPoint> points;

@@ -42,7 +42,10 @@ inline constexpr std::int64_t kPatience = 3000;
 
 /// Phases (a) and (b) of the generation [QS 2.3].
 struct GrainBoxGeneration {
-  double pressure = 4e6;             ///< sigma_c(mu = 0) at the end of (a) [Pa]
+  double pressure = 4e6;  ///< sigma_c(mu = 0) at the end of (a) [Pa]
+  /// Ascending, below `pressure` [Pa]: where (a) stops on the way. Packs of one arrangement that differ in `pressure`
+  /// are the same pack pressed on without friction, as in the publication, when the lower ones of them stand here.
+  std::vector<double> lower_pressures;
   double pressure_tolerance = 1e-3;  ///< relative
   double growth = 0.01;              ///< of the radius, per pass, of grains with fewer than 4 contacts
   std::int64_t growth_passes = 200;
@@ -52,6 +55,13 @@ struct GrainBoxGeneration {
   std::int64_t max_increments = 400;  ///< of (b)
   int axis = 2;                       ///< of the uniaxial compression
   bool isotropic = false;             ///< (b): compressed alike from all sides instead; ends when sliding has saturated
+
+  /// All stops of (a), `pressure` the last.
+  [[nodiscard]] std::vector<double> pressures() const {
+    std::vector<double> all = lower_pressures;
+    all.push_back(pressure);
+    return all;
+  }
 };
 
 enum class AxisControl { strain, stress };

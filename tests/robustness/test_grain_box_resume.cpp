@@ -35,6 +35,7 @@ name = "a"
 [[variant]]
 name = "b"
 mu = 0.6
+pressure = "20 MPa"
 )";
 
 template <class T>

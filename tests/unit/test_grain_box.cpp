@@ -1,6 +1,7 @@
 // Grain boxes without a run: formulas, criteria, scenes, files.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -173,17 +174,48 @@ TEST(GrainBoxMeasure, CountsContactsAndRattlers) {
   EXPECT_EQ(count_contacts(slippery).rattlers, 5);  // none has four
 }
 
-TEST(GrainBoxMeasure, SharesAtTheLimitGoByTheForceAsItIs) {
-  GrainPack pack = small_pack();  // |Q| = 0.1 P everywhere, mu = 0.3
-  EXPECT_EQ(sliding_shares({}, pack).end, 0.0);
-  pack.contacts[0].tangential_force = {{0.0, 0.3 * pack.contacts[0].normal_force, 0.0}};
-  EXPECT_DOUBLE_EQ(sliding_shares({}, pack).end, 1.0 / 6.0);
-  pack.friction = 0.0;
-  EXPECT_TRUE(std::isnan(sliding_shares({}, pack).end));
+/// Every wall of the small pack is touched at its middle, with a force along the normal and one across.
+GrainPack between_walls(const std::array<Vec3, 6>& across) {
+  GrainPack pack = small_pack();
+  pack.position = {{{4, 4, 4}}};
+  pack.radius = {4.0 + 1e-3};
+  pack.contacts.clear();
+  for (std::int32_t w = 0; w < 6; ++w) {
+    PackContact c;
+    c.i = 0;
+    c.j = 1 + w;
+    c.normal = pack.walls[static_cast<std::size_t>(w)].normal;
+    c.overlap = 1e-3;
+    c.normal_force = 64.0;
+    c.tangential_force = across[static_cast<std::size_t>(w)];
+    pack.contacts.push_back(c);
+  }
+  return pack;
+}
+
+TEST(GrainBoxMeasure, ShearIsTheFirstMomentOfTheWallForces) {
+  const Vec3 x{{1, 0, 0}};
+  const Vec3 y{{0, 1, 0}};
+  const BoxStress pressed = box_stress(between_walls({}));
+  EXPECT_DOUBLE_EQ(pressed.mean(), 1.0);  // 64 N on 8 m x 8 m
+  EXPECT_EQ(pressed.shear, 0.0);
+  EXPECT_EQ(pressed.moment, 0.0);
+  // Simple shear: -x +x are dragged along y, -y +y along x.
+  const BoxStress sheared = box_stress(between_walls({y * 6.4, y * -6.4, x * 6.4, x * -6.4}));
+  EXPECT_NEAR(sheared.shear, 0.1, 1e-12);
+  EXPECT_NEAR(sheared.moment, 0.0, 1e-12);
+  // Two walls alone turn the pack.
+  const BoxStress turned = box_stress(between_walls({y * 6.4, y * -6.4}));
+  EXPECT_NEAR(turned.shear, 0.05, 1e-12);
+  EXPECT_NEAR(turned.moment, 0.1, 1e-12);
+  // Opposite walls that are dragged to the same side shear nothing: drags of single walls are no stress of the pack.
+  const BoxStress dragged = box_stress(between_walls({y * 6.4, y * 6.4}));
+  EXPECT_NEAR(dragged.shear, 0.0, 1e-12);
+  EXPECT_NEAR(dragged.moment, 0.0, 1e-12);
 }
 
 /// P and Q of the start and of the end of an increment, one contact for every case.
-TEST(GrainBoxMeasure, SlidingIsCountedInThreeWays) {
+TEST(GrainBoxMeasure, TheLimitOfTheStartIsThatOfContactsThatThereWere) {
   GrainPack pack;
   pack.position.resize(5);
   pack.friction = 0.5;
@@ -197,12 +229,9 @@ TEST(GrainBoxMeasure, SlidingIsCountedInThreeWays) {
   const std::vector<PackContact> before{contact(1, 2.0, 0.9), contact(2, 2.0, 1.0), contact(4, 1.0, 0.4)};
   // To the limit of the start while P grows, twice; new, at its limit; to a limit that stays.
   pack.contacts = {contact(1, 4.0, 1.0), contact(2, 4.0, 1.0), contact(3, 2.0, 1.0), contact(4, 1.0, 0.5)};
-  const SlidingShares shares = sliding_shares(before, pack);
-  EXPECT_DOUBLE_EQ(shares.start_limit, 3.0 / 4.0);
-  EXPECT_DOUBLE_EQ(shares.start, 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(shares.end, 2.0 / 4.0);
+  EXPECT_DOUBLE_EQ(share_at_start_limit(before, pack), 3.0 / 4.0);
   pack.friction = 0.0;
-  EXPECT_TRUE(std::isnan(sliding_shares(before, pack).start_limit));
+  EXPECT_TRUE(std::isnan(share_at_start_limit(before, pack)));
 }
 
 TEST(GrainBoxMeasure, WallMovesStrainTheBoxFromBothSides) {
@@ -292,12 +321,17 @@ GrainBoxResult small_result() {
     p.bulk = 3.0 * std::pow(p.pressure, 0.4);
     p.shear_modulus = k == 3 ? std::numeric_limits<double>::quiet_NaN() : 2.0 * std::pow(p.pressure, 0.35);
     p.strain = {{0.0, 0.1, 1e-4 * k}};
+    p.moment = 10.0 * k;
+    p.at_start_limit = 0.01 * k;
+    p.mean_force = 1e-9 * p.pressure;
     p.effort.iterations = k;
     p.effort.residual = 1e-7;
     r.state.points.push_back(p);
   }
   r.state.failures.push_back({2, {{{0.0, 0.0, 1e-4}}, 0.5, "no equilibrium"}});
   r.spec.fit = {{1e6, 1e7}, {1e7, 3e7}};
+  r.spec.generation.lower_pressures = {4e6, 10e6};
+  r.state.pressures_met = 3;
   return r;
 }
 
@@ -316,6 +350,10 @@ TEST(GrainBoxFiles, GiveBackWhatWasWritten) {
   EXPECT_EQ(b.state.points[5].strain, a.state.points[5].strain);
   EXPECT_TRUE(std::isnan(b.state.points[3].shear_modulus));
   EXPECT_EQ(b.state.points[7].effort.iterations, 7);
+  EXPECT_EQ(b.state.points[7].moment, 70.0);
+  EXPECT_EQ(b.state.points[7].at_start_limit, 0.07);
+  EXPECT_EQ(b.state.pressures_met, 3);
+  EXPECT_EQ(b.spec.generation.lower_pressures, (std::vector<double>{4e6, 10e6}));
   EXPECT_EQ(b.state.failures[0].tried.reason, "no equilibrium");
   EXPECT_EQ(b.state.pack.position, a.state.pack.position);
   ASSERT_EQ(b.state.pack.contacts.size(), 6U);
@@ -329,6 +367,7 @@ TEST(GrainBoxFiles, GiveBackWhatWasWritten) {
   const ModuliAt at = moduli_at(b, 2.04e7);
   EXPECT_EQ(at.points, 4U);  // 19 to 22 MPa
   EXPECT_NEAR(at.bulk / (3.0 * std::pow(2.04e7, 0.4)), 1.0, 0.01);
+  EXPECT_NEAR(at.force, 2.04e-2, 1e-12);
   EXPECT_EQ(total_effort(b.state).iterations, 435);
 }
 
@@ -382,6 +421,58 @@ TEST(GrainBoxScene, VariantsChangeTheirKeysOnly) {
   EXPECT_TRUE(b.loading.stage_strains.empty());
   EXPECT_EQ(b.grains, 500);
   EXPECT_EQ(b.material.youngs_modulus, 50e9);
+}
+
+/// "Both grain-grain and grain-boundary contacts" have the friction of the grains [QS 2.3], under the published rule,
+/// and packs of one arrangement are one pack pressed on.
+TEST(GrainBoxScene, TheScenesOfThePublicationAreAsPublished) {
+  for (const char* name : {"glass_beads", "glass_beads_comparison", "glass_beads_sliding"}) {
+    const Scene scene = Scene::load(std::string(SOFTGRAIN_SOURCE_DIR) + "/pipelines/" + name + ".toml");
+    for (const GrainBoxSpec& pack : read_grain_box(scene).packs) {
+      const bool smooth = pack.name.find("smooth") != std::string::npos;
+      EXPECT_EQ(pack.walls.friction, smooth ? 0.0 : pack.friction) << name << ", " << pack.name;
+      const bool current = pack.name.find("current") != std::string::npos;
+      EXPECT_EQ(pack.solver.coulomb == CoulombRule::current, current) << name << ", " << pack.name;
+      if (pack.of == "10MPa") {
+        EXPECT_EQ(pack.generation.lower_pressures, std::vector<double>{4e6}) << name;
+      }
+    }
+  }
+  EXPECT_EQ(GrainBoxSpec{}.walls.friction, GrainBoxSpec{}.friction);
+}
+
+TEST(GrainBoxScene, PacksOfTheSameGrainsArePressedOn) {
+  const GrainBoxSetup setup = read_grain_box(Scene::parse(R"(kind = "grain-box"
+arrangements = 2
+[generation]
+pressure = "10 MPa"
+[loading]
+end_stress = "60 MPa"
+[[variant]]
+name = "a"
+pressure = "41 MPa"
+[[variant]]
+name = "b"
+mu = 0.5
+[[variant]]
+name = "c"
+pressure = "4 MPa"
+[[variant]]
+name = "d"
+[[variant]]
+name = "e"
+pressure = "20 MPa"
+grains = 100
+)",
+                                                          "scene.toml"));
+  const auto lower = [&](std::size_t k) { return setup.packs.at(k).generation.lower_pressures; };
+  for (std::size_t k = 0; k < 2; ++k) {  // arrangements
+    EXPECT_EQ(lower(k), (std::vector<double>{4e6, 10e6}));
+    EXPECT_EQ(lower(2 + k), std::vector<double>{4e6});
+    EXPECT_TRUE(lower(4 + k).empty());
+    EXPECT_EQ(lower(6 + k), std::vector<double>{4e6});
+    EXPECT_TRUE(lower(8 + k).empty());  // of other grains
+  }
 }
 
 TEST(GrainBoxScene, TriaxialHoldsTheLateralStress) {

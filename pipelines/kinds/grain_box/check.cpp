@@ -114,10 +114,13 @@ void check_grain_box(const GrainBoxSetup& setup, Findings& out) {
                               {"core_seconds", seconds}});
     warn_of_pack(spec, f, out);
     lines += fmt::format(
-        "  {}: {} grains, solid fraction {:.2f} when loose, box of about {:.3g} m; {} loading from {:.3g} MPa, about "
+        "  {}: {} grains, solid fraction {:.2f} when loose, box of about {:.3g} m; {} loading from {:.3g} MPa{}, about "
         "{:.0f} increments; overlap about {:.1f} % of the radius at the end; about {:.0f} contacts, {:.0f} MB, {:.0f} "
         "s\n",
         spec.name, spec.grains, spec.solid_fraction, f.box_length, spec.loading.test, spec.generation.pressure * 1e-6,
+        spec.generation.lower_pressures.empty()
+            ? ""
+            : fmt::format(" (pressed on from {:.3g} MPa)", spec.generation.lower_pressures.front() * 1e-6),
         std::ceil(f.increments), 100.0 * f.overlap_ratio, f.contacts, f.bytes * 1e-6, seconds);
   }
 }

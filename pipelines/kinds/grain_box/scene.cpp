@@ -281,6 +281,18 @@ std::vector<GrainBoxSpec> repeated(const std::vector<GrainBoxSpec>& packs, std::
   return out;
 }
 
+/// Packs of the same grains are one pack that is pressed on without friction: each goes through the lower pressures of
+/// the others [QS 2.3]. Friction, walls, solver and loading play no part before friction sets in.
+void press_on(std::vector<GrainBoxSpec>& packs) {
+  for (GrainBoxSpec& pack : packs) {
+    std::set<double> lower;
+    for (const GrainBoxSpec& other : packs)
+      if (other.grains == pack.grains && other.generation.pressure < pack.generation.pressure)
+        lower.insert(other.generation.pressure);
+    pack.generation.lower_pressures.assign(lower.begin(), lower.end());
+  }
+}
+
 }  // namespace
 
 std::vector<DrawnSizes> drawn_sizes(const GrainBoxSetup& setup, std::uint64_t seed) {
@@ -326,6 +338,7 @@ GrainBoxSetup read_grain_box(const Scene& scene) {
     if (generation.has("axis") && std::all_of(setup.packs.begin(), setup.packs.end(),
                                               [](const GrainBoxSpec& pack) { return pack.generation.isotropic; }))
       generation.mistake("axis", "goes with friction_path = \"uniaxial\": all axes are strained alike");
+    press_on(setup.packs);
     setup.packs = repeated(setup.packs, arrangements);
     std::set<std::string> all;
     for (const GrainBoxSpec& pack : setup.packs)

@@ -58,7 +58,9 @@ std::string stress_figures(const Packs& packs) {
             .x = strain,
             .y = {.label = "share of contacts", .low = 0.0}},
            [](const BoxPoint& p) { return p.sliding_share; }, 1.0,
-           "Contacts with |Q| at the Coulomb limit, of all that carry force. From the moment friction is on."),
+           "Contacts with |Q| at the Coulomb limit mu P of the state, of all that carry force. From the moment "
+           "friction "
+           "is on."),
        strain_figure(
            packs,
            {.id = "box-coordination",
@@ -142,6 +144,14 @@ const BoxPoint& last_of(const GrainBoxResult& result, BoxPhase phase) {
   return none;
 }
 
+/// "20, pressed on from 4, 10" [MPa]
+std::string pressure_text(const GrainBoxGeneration& generation, double reached) {
+  std::string text = format_number(reached * kMega, 4);
+  for (std::size_t k = 0; k < generation.lower_pressures.size(); ++k)
+    text += (k == 0 ? ", pressed on from " : ", ") + format_number(generation.lower_pressures[k] * kMega, 4);
+  return text;
+}
+
 std::string generation_table(const Packs& packs) {
   HtmlTable table({"pack", "grains", "mu", "sigma_c (mu = 0) [MPa]", "solid fraction", "contacts per grain",
                    "sigma_c at start of loading [MPa]", "sliding there", "sigma_c of smallest G [MPa]"});
@@ -150,7 +160,7 @@ std::string generation_table(const Packs& packs) {
     const BoxPoint& b = last_of(r, BoxPhase::friction);
     table.row({r.spec.name, format_count(r.spec.grains),
                std::isfinite(r.spec.friction) ? format_number(r.spec.friction, 3) : "infinite",
-               format_number(a.pressure * kMega, 4), format_number(a.solid_fraction, 4),
+               pressure_text(r.spec.generation, a.pressure), format_number(a.solid_fraction, 4),
                format_number(a.coordination, 4), format_number(b.pressure * kMega, 4), share_text(b.sliding_share),
                format_number(pressure_of_smallest_shear(r) * kMega, 3)});
   }
@@ -158,19 +168,23 @@ std::string generation_table(const Packs& packs) {
 }
 
 std::string end_table(const Packs& packs) {
-  HtmlTable table({"at the end", "sigma_c [MPa]", "solid fraction", "contacts per grain", "sliding",
-                   "|Q| at the end = mu P at its start", "both at its start", "both at its end",
-                   "shear/sigma_c, largest [%]", "status"});
+  HtmlTable table({"at the end", "sigma_c [MPa]", "solid fraction", "contacts per grain", "sliding: |Q| = mu P",
+                   "|Q| = mu P at the start of the increment", "shear/sigma_c, largest [%]",
+                   "moment of the wall forces/(V sigma_c), largest [%]", "status"});
   for (const GrainBoxResult& r : packs) {
     const BoxPoint& c = last_of(r, BoxPhase::loading);
-    double shear = 0.0;
-    for (const BoxPoint* p : r.points_of(BoxPhase::loading)) shear = std::max(shear, p->shear / p->pressure);
     table.row({r.spec.name, format_number(c.pressure * kMega, 4), format_number(c.solid_fraction, 4),
-               format_number(c.coordination, 4), share_text(c.sliding_share), share_text(c.sliding.start_limit),
-               share_text(c.sliding.start), share_text(c.sliding.end), format_number(100.0 * shear, 2),
-               r.usable ? "good" : "broke off"});
+               format_number(c.coordination, 4), share_text(c.sliding_share), share_text(c.at_start_limit),
+               format_number(100.0 * largest_over_pressure(r, &BoxPoint::shear), 2),
+               format_number(100.0 * largest_over_pressure(r, &BoxPoint::moment), 2), r.usable ? "good" : "broke off"});
   }
-  return table.html();
+  return table.html() + paragraph(
+                            "Shear: by the first moments of the wall forces, symmetric part. Their moment about the "
+                            "centre of the box is 0 in equilibrium.");
+}
+
+std::string value_text(double value, double error) {
+  return std::isfinite(value) ? format_with_error(value, error) : "–";
 }
 
 std::string fit_text(const PowerFit& fit) {
@@ -192,53 +206,59 @@ std::string exponents_table(const Packs& packs) {
   return table.html();
 }
 
-std::string moduli_table(const Packs& packs, bool bulk) {
+/// What is set side by side at equal sigma_c.
+struct Compared {
+  const char* name;
+  double ModuliAt::*value;
+  double ModuliAt::*error;
+  double unit;
+};
+constexpr Compared kCompared[] = {
+    {"K [GPa]", &ModuliAt::bulk, &ModuliAt::bulk_error, kGiga},
+    {"G [GPa]", &ModuliAt::shear, &ModuliAt::shear_error, kGiga},
+    {"mean normal force [N]", &ModuliAt::force, &ModuliAt::force_error, 1.0},
+};
+
+std::string moduli_table(const Packs& packs, const Compared& what) {
   const std::vector<double> stresses = comparison_stresses(packs);
-  std::vector<std::string> header{fmt::format("{} [GPa] at sigma_c [MPa]", bulk ? "K" : "G")};
+  std::vector<std::string> header{fmt::format("{} at sigma_c [MPa]", what.name)};
   for (const double s : stresses) header.push_back(format_number(s * kMega, 3));
   HtmlTable table(header);
   for (const GrainBoxResult& r : packs) {
     std::vector<std::string> row{r.spec.name};
     for (const double s : stresses) {
       const ModuliAt m = moduli_at(r, s);
-      const double value = bulk ? m.bulk : m.shear;
-      row.push_back(
-          std::isfinite(value) ? format_with_error(value * kGiga, (bulk ? m.bulk_error : m.shear_error) * kGiga) : "–");
+      row.push_back(value_text(m.*what.value * what.unit, m.*what.error * what.unit));
     }
     table.row(std::move(row));
   }
   return table.html();
 }
 
-/// "0.42 ± 0.01", of shares.
-std::string known_share(double value, double error) {
-  return std::isfinite(value) ? format_with_error(value, error) : "–";
+std::string moduli_tables(const Packs& packs) {
+  std::string out;
+  for (const Compared& what : kCompared) out += moduli_table(packs, what);
+  return out;
 }
 
 std::string arrangements_tables(const Packs& packs) {
   const std::vector<OverArrangements> over = over_arrangements(packs);
   if (over.empty()) return "";
-  HtmlTable sliding(
-      {"pack", "arrangements", "sliding: |Q| at the end = mu P at its start", "both at its start", "both at its end"});
+  HtmlTable sliding({"pack", "arrangements", "sliding at the end of the loading"});
   std::vector<std::string> header{"over arrangements, at sigma_c [MPa]"};
   for (const ModuliAt& m : over.front().moduli) header.push_back(format_number(m.pressure * kMega, 3));
   HtmlTable moduli(header);
   for (const OverArrangements& o : over) {
-    sliding.row({o.pack, format_count(static_cast<std::int64_t>(o.arrangements)),
-                 known_share(o.sliding.start_limit, o.sliding_error.start_limit),
-                 known_share(o.sliding.start, o.sliding_error.start), known_share(o.sliding.end, o.sliding_error.end)});
-    std::vector<std::string> bulk{o.pack + ", K [GPa]"};
-    std::vector<std::string> shear{o.pack + ", G [GPa]"};
-    for (const ModuliAt& m : o.moduli) {
-      bulk.push_back(known_share(m.bulk * kGiga, m.bulk_error * kGiga));
-      shear.push_back(known_share(m.shear * kGiga, m.shear_error * kGiga));
+    sliding.row(
+        {o.pack, format_count(static_cast<std::int64_t>(o.arrangements)), value_text(o.sliding, o.sliding_error)});
+    for (const Compared& what : kCompared) {
+      std::vector<std::string> row{o.pack + ", " + what.name};
+      for (const ModuliAt& m : o.moduli)
+        row.push_back(value_text(m.*what.value * what.unit, m.*what.error * what.unit));
+      moduli.row(std::move(row));
     }
-    moduli.row(std::move(bulk));
-    moduli.row(std::move(shear));
   }
-  return moduli.html() + paragraph("Means over arrangements with the standard errors of these means.") +
-         sliding.html() +
-         paragraph("Contacts at the limit of friction in the last increment of the loading, counted in three ways.");
+  return moduli.html() + paragraph("Means over arrangements with the standard errors of these means.") + sliding.html();
 }
 
 std::string effort_table(const Packs& packs) {
@@ -267,7 +287,7 @@ std::string grain_box_section(const RunData& run) {
   return section("grain-boxes", "Packs", generation_table(packs) + end_table(packs) + stress_figures(packs)) +
          section(
              "moduli", "Moduli",
-             modulus_figures(packs) + exponents_table(packs) + moduli_table(packs, true) + moduli_table(packs, false) +
+             modulus_figures(packs) + exponents_table(packs) + moduli_tables(packs) +
                  paragraph(
                      "Mean over the intervals within 10 % of the stress, with the standard error of their scatter.") +
                  arrangements_tables(packs)) +

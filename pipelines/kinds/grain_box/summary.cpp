@@ -25,15 +25,14 @@ json point_json(const std::vector<const BoxPoint*>& points) {
           {"strain", p.strain.v},
           {"deviator", p.deviator},
           {"shear_stress", p.shear},
+          {"wall_moment", p.moment},
           {"solid_fraction", p.solid_fraction},
           {"coordination", p.coordination},
           {"coordination_without_rattlers", p.coordination_without},
           {"rattlers", p.rattlers},
           {"fewest_contacts", p.fewest_contacts},
           {"sliding_share", number(p.sliding_share)},
-          {"sliding_limit_at_start", number(p.sliding.start_limit)},
-          {"sliding_at_start", number(p.sliding.start)},
-          {"sliding_at_end", number(p.sliding.end)},
+          {"sliding_limit_at_start", number(p.at_start_limit)},
           {"mean_normal_force", p.mean_force}};
 }
 
@@ -47,6 +46,8 @@ json moduli_json(const GrainBoxResult& result, const std::vector<double>& stress
                    {"K_error", number(m.bulk_error)},
                    {"G", number(m.shear)},
                    {"G_error", number(m.shear_error)},
+                   {"mean_normal_force", number(m.force)},
+                   {"mean_normal_force_error", number(m.force_error)},
                    {"intervals", m.points}});
   }
   return out;
@@ -71,13 +72,6 @@ json effort_json(const GrainBoxState& state) {
           {"seconds", state.seconds}};
 }
 
-/// Tangential wall stress over sigma_c, the largest of the loading.
-double largest_shear_ratio(const GrainBoxResult& result) {
-  double largest = 0.0;
-  for (const BoxPoint* p : result.points_of(BoxPhase::loading)) largest = std::max(largest, p->shear / p->pressure);
-  return largest;
-}
-
 json result_json(const GrainBoxResult& result, const std::vector<double>& stresses) {
   const GrainBoxFits fits = fit_growth(result);
   json out = {{"name", result.spec.name},
@@ -85,6 +79,7 @@ json result_json(const GrainBoxResult& result, const std::vector<double>& stress
               {"grains", result.spec.grains},
               {"mu", std::isfinite(result.spec.friction) ? json(result.spec.friction) : json("infinite")},
               {"generation_pressure", result.spec.generation.pressure},
+              {"generation_lower_pressures", result.spec.generation.lower_pressures},
               {"test", result.spec.loading.test},
               {"increments", result.spec.loading.increments},
               {"growth_passes", result.state.growth_passes},
@@ -92,7 +87,8 @@ json result_json(const GrainBoxResult& result, const std::vector<double>& stress
               {"after_friction", point_json(result.points_of(BoxPhase::friction))},
               {"at_end", point_json(result.points_of(BoxPhase::loading))},
               {"pressure_of_smallest_G", number(pressure_of_smallest_shear(result))},
-              {"largest_shear_stress_ratio", largest_shear_ratio(result)},
+              {"largest_shear_stress_ratio", largest_over_pressure(result, &BoxPoint::shear)},
+              {"largest_wall_moment_ratio", largest_over_pressure(result, &BoxPoint::moment)},
               {"moduli", moduli_json(result, stresses)},
               {"effort", effort_json(result.state)}};
   out["exponents"] = {{"K_low", fit_json(fits.bulk_low)},
@@ -123,16 +119,14 @@ nlohmann::json arrangements_json(const std::vector<GrainBoxResult>& results) {
                           {"K_error", number(m.bulk_error)},
                           {"G", number(m.shear)},
                           {"G_error", number(m.shear_error)},
+                          {"mean_normal_force", number(m.force)},
+                          {"mean_normal_force_error", number(m.force_error)},
                           {"arrangements", m.points}});
     out.push_back({{"pack", o.pack},
                    {"arrangements", o.arrangements},
                    {"moduli", moduli},
-                   {"sliding_limit_at_start", number(o.sliding.start_limit)},
-                   {"sliding_limit_at_start_error", number(o.sliding_error.start_limit)},
-                   {"sliding_at_start", number(o.sliding.start)},
-                   {"sliding_at_start_error", number(o.sliding_error.start)},
-                   {"sliding_at_end", number(o.sliding.end)},
-                   {"sliding_at_end_error", number(o.sliding_error.end)}});
+                   {"sliding_share", number(o.sliding)},
+                   {"sliding_share_error", number(o.sliding_error)}});
   }
   return out;
 }
@@ -146,10 +140,18 @@ std::vector<std::string> grain_box_remarks(const std::vector<GrainBoxResult>& re
           fmt::format("pack '{}': {} tries of increments did not come to rest and were halved or repeated; "
                       "they are listed in grain_box.h5",
                       r.spec.name, r.state.failures.size()));
-    const double shear = largest_shear_ratio(r);
+    const double shear = largest_over_pressure(r, &BoxPoint::shear);
     if (shear > 0.02)
-      remarks.push_back(fmt::format("pack '{}': tangential wall stresses reach {:.1f} % of the confining stress",
-                                    r.spec.name, 100.0 * shear));
+      remarks.push_back(fmt::format(
+          "pack '{}': shear stresses by the moments of the wall forces reach {:.1f} % of the confining stress; more "
+          "grains have less",
+          r.spec.name, 100.0 * shear));
+    const double moment = largest_over_pressure(r, &BoxPoint::moment);
+    if (moment > 1e-2)
+      remarks.push_back(fmt::format(
+          "pack '{}': the moment of the wall forces reaches {:.1f} % of the confining stress times the volume: a lower "
+          "solver.tolerance",
+          r.spec.name, 100.0 * moment));
   }
   return remarks;
 }
