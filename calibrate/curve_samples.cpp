@@ -15,10 +15,6 @@ constexpr double kAngleTolerance = 1e-6;
 
 bool usable(const TangentialPoint& p) { return p.converged && std::isfinite(p.force_parallel); }
 
-bool same_angle(double a, double b) {
-  return std::abs(a - b) <= kAngleTolerance * std::max(std::abs(a), std::abs(b)) + 1e-12;
-}
-
 std::optional<double> force_at(const std::vector<TangentialPoint>& points, double angle_deg) {
   for (const TangentialPoint& p : points)
     if (usable(p) && same_angle(p.angle_deg, angle_deg)) return p.force_parallel;
@@ -26,6 +22,10 @@ std::optional<double> force_at(const std::vector<TangentialPoint>& points, doubl
 }
 
 }  // namespace
+
+bool same_angle(double a, double b) {
+  return std::abs(a - b) <= kAngleTolerance * std::max(std::abs(a), std::abs(b)) + 1e-12;
+}
 
 double tangential_displacement(double angle_deg, double shell_radius) {
   return std::numbers::pi * shell_radius * angle_deg / 180.0;

@@ -14,6 +14,9 @@ namespace softgrain {
 /// [SP 1.4].
 double tangential_displacement(double angle_deg, double shell_radius);
 
+/// Whether two angles are the same but for rounding [degree].
+bool same_angle(double a, double b);
+
 /// Slope of the parallel force at ht = 0: least-squares line with a free intercept (prestrain) through the converged
 /// points with |angle| <= angle_deg [N/m]. Empty with fewer than two different angles.
 std::optional<double> initial_slope(const std::vector<TangentialPoint>& points, double angle_deg, double shell_radius);

@@ -91,12 +91,9 @@ Estimate estimate(double value, double error, const FitReport& report, Pick pick
 
 }  // namespace
 
-void describe_data(const RunList& runs, const FitOptions& options, const LawSamples& samples, const LawMeans& means,
-                   FitReport& report) {
+void describe_data(const RunList& runs, const LawSamples& samples, const LawMeans& means, FitReport& report) {
   PairLaw& law = report.law;
   const CurveMeans& normal = means[0];
-  law.initial_angle_deg = options.initial_angle_deg;
-  law.secant_angle_deg = options.secant_angle_deg;
   law.packings = count_packings(samples[0]);
   for (const CurveSamples& s : samples) law.points += count_values(s);
   report.normal_left_out = samples[0].left_out;

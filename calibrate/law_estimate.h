@@ -14,8 +14,7 @@ using LawSamples = std::array<CurveSamples, kLawCurves>;
 using LawMeans = std::array<CurveMeans, kLawCurves>;
 
 /// Range, counts, table and largest grain overlap of the data behind a law.
-void describe_data(const RunList& runs, const FitOptions& options, const LawSamples& samples, const LawMeans& means,
-                   FitReport& report);
+void describe_data(const RunList& runs, const LawSamples& samples, const LawMeans& means, FitReport& report);
 
 /// One curve's law from its parameters (order of kLawParameterNames): standard errors from report.law.covariance
 /// (infinite when `errors_known` is false), intervals from report.replicates (infinite when there are none).

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -35,6 +36,10 @@ std::vector<Quantity> conditions(const Measurements& m) {
           {"approach_speed", m.approach_speed}};
 }
 
+bool rotates(const Measurements& m) {
+  return std::any_of(m.runs.begin(), m.runs.end(), [](const PackingRun& r) { return !r.tangential.empty(); });
+}
+
 void require_same(const Measurements& first, const Measurements& other, const std::string& first_name,
                   const std::string& other_name) {
   const auto a = conditions(first);
@@ -43,6 +48,10 @@ void require_same(const Measurements& first, const Measurements& other, const st
     if (a[k].value != b[k].value && !(std::isnan(a[k].value) && std::isnan(b[k].value)))
       throw BadInput(fmt::format("cannot merge {} and {}: {} = {} and {}", first_name, other_name, a[k].name,
                                  a[k].value, b[k].value));
+  if (rotates(first) && rotates(other) && (first.turn != other.turn || first.turn_speed != other.turn_speed))
+    throw BadInput(fmt::format("cannot merge {} and {}: their rotations are a {} at {} m/s and a {} at {} m/s",
+                               first_name, other_name, to_string(first.turn), first.turn_speed, to_string(other.turn),
+                               other.turn_speed));
   if (!same_sizes(first.spec, other.spec))
     throw BadInput(fmt::format("cannot merge {} and {}: the sizes of the grains differ", first_name, other_name));
 }
@@ -71,9 +80,16 @@ Measurements merge_measurements(const std::vector<Measurements>& parts, const st
   all.spec = parts.front().spec;
   all.shell_turns = parts.front().shell_turns;
   all.approach_speed = parts.front().approach_speed;
+  const auto turned = std::find_if(parts.begin(), parts.end(), rotates);
+  if (turned != parts.end()) {
+    all.turn = turned->turn;
+    all.turn_speed = turned->turn_speed;
+  }
   Measured seen;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     require_same(parts.front(), parts[k], names.front(), names[k]);
+    if (turned != parts.end())
+      require_same(*turned, parts[k], names[static_cast<std::size_t>(turned - parts.begin())], names[k]);
     const auto shift = static_cast<std::int64_t>(all.packings.size());
     all.packings.insert(all.packings.end(), parts[k].packings.begin(), parts[k].packings.end());
     for (PackingRun run : parts[k].runs) {

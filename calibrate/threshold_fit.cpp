@@ -23,7 +23,7 @@ constexpr std::array<const char*, kLawCurves> kCurveNames{"normal force", "initi
 constexpr double kTolerableShare = 0.025;
 
 void require_valid(const FitOptions& o) {
-  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg > 0.0))
+  if (!(o.initial_angle_deg > 0.0) || !(o.secant_angle_deg.value_or(1.0) > 0.0))
     throw BadInput("fit: angles must be above 0 degrees");
   if (!(o.delta_high > o.delta_low) || o.delta_low < 0.0)
     throw BadInput(fmt::format("fit: range of Delta [{}, {}] must rise from 0 or above", o.delta_low, o.delta_high));
@@ -74,9 +74,8 @@ struct Work {
   std::vector<std::string> reasons;
 };
 
-Work collect(const RunList& runs, const SoftParticleSpec& spec, const FitOptions& options) {
-  const CurveSelection selection{options.delta_low, options.delta_high, options.initial_angle_deg,
-                                 options.secant_angle_deg};
+Work collect(const RunList& runs, const SoftParticleSpec& spec, const FitOptions& options, double secant_angle) {
+  const CurveSelection selection{options.delta_low, options.delta_high, options.initial_angle_deg, secant_angle};
   Work w;
   w.samples = {normal_samples(runs, spec, selection), initial_slope_samples(runs, spec, selection),
                secant_samples(runs, spec, selection)};
@@ -200,6 +199,17 @@ void conclude(PairLaw& law, LawStatus status, const std::vector<std::string>& re
 
 }  // namespace
 
+double default_secant_angle(PairKind kind, const std::vector<const PackingRun*>& runs) {
+  constexpr double kPublished = 1.0;
+  constexpr double kOfTwo = 0.5;
+  const auto measured = [](const PackingRun* run) {
+    return std::any_of(run->tangential.begin(), run->tangential.end(),
+                       [](const TangentialPoint& p) { return same_angle(std::abs(p.angle_deg), kOfTwo); });
+  };
+  const bool of_two = kind == PairKind::soft_soft && std::any_of(runs.begin(), runs.end(), measured);
+  return of_two ? kOfTwo : kPublished;
+}
+
 std::string chosen_relaxation(const Measurements& data, const FitOptions& options) {
   std::set<std::string> present;
   for (const PackingRun& run : data.runs) present.insert(run.relaxation);
@@ -223,8 +233,10 @@ FitReport fit_pair_law(const Measurements& data, PairKind kind, const FitOptions
     report.law.reason = "No measurements of this pair kind.";
     return report;
   }
-  Work w = collect(runs, data.spec, options);
-  describe_data(runs, options, w.samples, w.means, report);
+  report.law.initial_angle_deg = options.initial_angle_deg;
+  report.law.secant_angle_deg = options.secant_angle_deg.value_or(default_secant_angle(kind, runs));
+  Work w = collect(runs, data.spec, options, report.law.secant_angle_deg);
+  describe_data(runs, w.samples, w.means, report);
   if (w.samples[0].empty()) {
     conclude(report.law, LawStatus::underdetermined, {"no converged normal point in the fitted range"});
     return report;
@@ -269,6 +281,7 @@ LawCard calibrate(const Measurements& data, const FitOptions& options, std::vect
   LawCard card;
   card.spec = data.spec;
   card.relaxation = chosen_relaxation(data, options);
+  card.turn = data.turn;
   for (const PairKind kind : kPairKinds) {
     if (select_runs(data, kind, card.relaxation).empty()) continue;
     FitReport report = fit_pair_law(data, kind, options);

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,12 +26,12 @@ struct FitOptions {
   std::string relaxation;  ///< which relaxation's runs; empty: the only one present
   double delta_low = 0.0;  ///< fitted range of Delta
   double delta_high = std::numeric_limits<double>::infinity();
-  double initial_angle_deg = 0.05;  ///< largest |angle| of the initial slope [degree]
-  double secant_angle_deg = 1.0;    ///< angle of the secant [degree]
-  double noise_floor = 1e-6;        ///< means below this (dimensionless) count as zero force
-  double scatter_floor = 0.02;      ///< smallest weight-giving deviation, as a share of the pooled deviation
-  int min_packings = 5;             ///< for an interval; the published protocol asks for at least seven
-  int replicates = 1000;            ///< of the bootstrap; 0: none (the law is then marked underdetermined)
+  double initial_angle_deg = 0.05;         ///< largest |angle| of the initial slope [degree]
+  std::optional<double> secant_angle_deg;  ///< angle of the secant [degree]; empty: as default_secant_angle() says
+  double noise_floor = 1e-6;               ///< means below this (dimensionless) count as zero force
+  double scatter_floor = 0.02;             ///< smallest weight-giving deviation, as a share of the pooled deviation
+  int min_packings = 5;                    ///< for an interval; the published protocol asks for at least seven
+  int replicates = 1000;                   ///< of the bootstrap; 0: none (the law is then marked underdetermined)
   std::uint64_t seed = 0;
   /// Measured outside, in few samples or one: errors of single values by experiment_errors() instead of the scatter
   /// alone, and with fewer than min_packings samples intervals from residuals.
@@ -41,6 +42,10 @@ struct FitOptions {
   std::vector<double> zeroed_below{};
   bool subtract_offset = true;  ///< of an experiment: constant forces without contact (force_offset.h) are taken off
 };
+
+/// The angle of the secant that a law takes for kt [degree]: at 1 degree soft particles on a plane have the published
+/// stiffness; of two soft particles the secant at 0.5 degree is taken where it was measured, else that at 1 degree.
+double default_secant_angle(PairKind kind, const std::vector<const PackingRun*>& runs);
 
 /// What a fit found beside the law itself.
 struct FitReport {

@@ -146,7 +146,7 @@ struct MacroSpec {
                                 ///< radius): else loose states before the first stress would be relaxed for ever
   std::int64_t max_passes = 20000;  ///< per relaxation
   TwinMotion twin;
-  bool kt_secant = false;  ///< tangential law: secant at 1 degree instead of the initial slope
+  bool kt_secant = true;  ///< tangential law: the secant of the card, as published, instead of the initial slope
 };
 
 }  // namespace softgrain

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
+#include "common/dynamics/verlet.h"
 #include "common/io/interrupt.h"
 
 namespace softgrain {
@@ -40,21 +42,74 @@ TangentialPoint as_tangential(const SettleResult& rest, double delta, double ang
   return {delta, angle, rest.force[1], rest.force[2], rest.residual, rest.converged};
 }
 
-TangentialPoint rotated_point(SoftExperiment& e, double delta, double from, double angle, const MeasurementPlan& plan,
-                              const Protocol& protocol, Cost& cost) {
+/// A turn under way: stretches of dynamics in which all grains of the first body are carried on at one rate. Full
+/// stretches are counted from where it began, so that the state at an angle does not depend on the angles before it.
+class SlowTurn {
+ public:
+  SlowTurn(const MeasurementPlan& plan, const Protocol& protocol) : plan_(plan), protocol_(protocol) {}
+
+  /// From a relaxed state, which stands at `angle` [degree].
+  void begin(const SoftExperiment& relaxed, double angle) {
+    state_ = relaxed;
+    stop_motion(state_.system.particles);
+    origin_ = angle;
+    stretches_ = 0;
+  }
+
+  /// As far towards an angle as full stretches go.
+  void go_towards(double angle) {
+    for (const std::int64_t wanted = full_stretches(angle); stretches_ < wanted; ++stretches_)
+      turn(state_, std::copysign(plan_.rotation_step_deg, angle - origin_));
+  }
+
+  /// The state as far as the turn has come; and at an angle beyond, the turn itself coming no nearer than full
+  /// stretches.
+  [[nodiscard]] const SoftExperiment& state() const { return state_; }
+  [[nodiscard]] SoftExperiment at(double angle) {
+    go_towards(angle);
+    SoftExperiment e = state_;
+    const double rest =
+        std::abs(angle - origin_) - static_cast<double>(full_stretches(angle)) * plan_.rotation_step_deg;
+    if (rest > kSameAngle * plan_.rotation_step_deg) turn(e, std::copysign(rest, angle - origin_));
+    return e;
+  }
+
+ private:
+  static constexpr double kSameAngle = 1e-6;  ///< of a stretch
+
+  [[nodiscard]] std::int64_t full_stretches(double angle) const {
+    return static_cast<std::int64_t>(std::floor(std::abs(angle - origin_) / plan_.rotation_step_deg + kSameAngle));
+  }
+
+  void turn(SoftExperiment& e, double degrees) const {
+    const double rate = std::copysign(turn_speed(plan_, e.spec) / e.spec.shell_radius, degrees);
+    protocol_.run(e, e.turning(rate, plan_.shell_turns), degrees * std::numbers::pi / 180.0 / rate);
+  }
+
+  const MeasurementPlan& plan_;
+  const Protocol& protocol_;
+  SoftExperiment state_;
+  double origin_ = 0.0;
+  std::int64_t stretches_ = 0;
+};
+
+TangentialPoint rotated_point(SlowTurn& turn, double delta, double angle, bool go_on_from_it, const Protocol& protocol,
+                              Cost& cost) {
+  SoftExperiment e = turn.state();
   const CostMeter meter(e.system, cost);
-  e.rotate_first(angle - from, plan.rotation_step_deg, plan.shell_turns);
-  return as_tangential(protocol.settle(e, true), delta, angle);
+  e = turn.at(angle);
+  const TangentialPoint point = as_tangential(protocol.settle(e, true), delta, angle);
+  if (go_on_from_it) turn.begin(e, angle);
+  return point;
 }
 
-/// Angles in the order they are visited: as given, or outwards sign by sign for a cumulative sweep.
+/// Outwards, sign by sign.
 std::vector<double> visiting_order(const MeasurementPlan& plan) {
   std::vector<double> order = plan.angles_deg;
-  if (plan.cumulative)
-    std::stable_sort(order.begin(), order.end(), [](double a, double b) {
-      if ((a < 0.0) != (b < 0.0)) return a < 0.0;
-      return std::abs(a) < std::abs(b);
-    });
+  std::stable_sort(order.begin(), order.end(), [](double a, double b) {
+    if ((a < 0.0) != (b < 0.0)) return a < 0.0;
+    return std::abs(a) < std::abs(b);
+  });
   return order;
 }
 
@@ -65,22 +120,21 @@ std::size_t recorded_rotations(const MeasurementState& state, double delta) {
       std::count_if(points.begin(), points.end(), [delta](const TangentialPoint& p) { return p.delta == delta; }));
 }
 
-/// Goes on after the angles that are recorded. `between` is called where the next angle starts from the relaxed state.
+/// Goes on after the angles that are recorded. `between` is called where the run can be taken up again: before every
+/// angle, or before the first of a sign where each goes on from the one before.
 void rotate_through(MeasurementState& state, double delta, const MeasurementPlan& plan, const Protocol& protocol,
                     const std::function<void()>& between) {
   if (recorded_rotations(state, delta) == 0) state.run.tangential.push_back(as_tangential(*state.rotating, delta, 0.0));
   const std::vector<double> order = visiting_order(plan);
-  SoftExperiment e = state.experiment;
-  double from = 0.0;
-  for (std::size_t k = recorded_rotations(state, delta) - 1; k < order.size(); ++k) {
-    const double angle = order[k];
-    if (!plan.cumulative || angle * from <= 0.0) {
-      between();
-      e = state.experiment;
-      from = 0.0;
-    }
-    state.run.tangential.push_back(rotated_point(e, delta, from, angle, plan, protocol, state.run.tangential_cost));
-    from = angle;
+  const std::size_t first = recorded_rotations(state, delta) - 1;
+  SlowTurn turn(plan, protocol);
+  for (std::size_t k = first; k < order.size(); ++k) {
+    const bool goes_on = k > 0 && order[k] * order[k - 1] > 0.0;
+    if (!goes_on || !plan.cumulative) between();
+    if (!goes_on || k == first) turn.begin(state.experiment, 0.0);
+    if (goes_on && k == first) turn.go_towards(order[k - 1]);  // recorded, and paid for, before the run was left
+    state.run.tangential.push_back(
+        rotated_point(turn, delta, order[k], plan.cumulative, protocol, state.run.tangential_cost));
   }
 }
 
@@ -89,6 +143,12 @@ bool is_among(const std::vector<double>& values, double x) {
 }
 
 }  // namespace
+
+double usual_turn_speed(const SoftParticleSpec& spec) { return published_speed(spec); }
+
+double turn_speed(const MeasurementPlan& plan, const SoftParticleSpec& spec) {
+  return plan.turn_speed > 0.0 ? plan.turn_speed : usual_turn_speed(spec);
+}
 
 void measure(MeasurementState& state, const MeasurementPlan& plan, const Protocol& protocol,
              const RunControl<MeasurementState>& control, const PointPicture& picture) {

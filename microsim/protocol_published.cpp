@@ -31,6 +31,12 @@ class PublishedProtocol : public Protocol {
     e.normal_overlap = overlap;
   }
 
+  void run(SoftExperiment& e, const Drive& drive, double duration) const override {
+    const double dt = step(e);
+    const auto steps = std::max(std::int64_t{1}, static_cast<std::int64_t>(std::ceil(duration / dt)));
+    run(e, drive, steps, duration / static_cast<double>(steps));
+  }
+
   using Protocol::settle;
   SettleResult settle(SoftExperiment& e, bool, const RecordedState& look) const override {
     const double dt = step(e);

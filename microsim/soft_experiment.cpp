@@ -1,14 +1,11 @@
 #include "microsim/soft_experiment.h"
 
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "common/core/solid_sphere.h"
 #include "common/dynamics/displace.h"
-#include "common/dynamics/force_pass.h"
-#include "common/dynamics/slow_dynamics.h"
 #include "common/dynamics/system_snapshot.h"
-#include "common/neighbours/verlet_list.h"
 
 namespace softgrain {
 
@@ -44,49 +41,6 @@ void add_fixed_shell(System3& s, const SoftParticleSpec& spec, const Vec3& centr
   add_shell(s.particles, shell);
 }
 
-/// The instantaneous motion of a rigid rotation of body 1, for the springs between what turns and what does not.
-void set_rotation_rate(SoftExperiment& e, double rate, bool shell_turns) {
-  auto& p = e.system.particles;
-  const Vec3 spin{{0.0, 0.0, rate}};
-  for (Slot i = 0; i < e.first_grains; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    p.spin[u] = spin;
-    p.velocity[u] = cross(spin, p.sphere[u].x);
-  }
-  if (shell_turns) p.spin[static_cast<std::size_t>(p.grains)] = spin;
-}
-
-bool turns_with_first(const SoftExperiment& e, Slot slot, bool shell_turns) {
-  return slot < e.first_grains || (shell_turns && slot == e.system.particles.grains);
-}
-
-/// Springs inside the turning part turn with it; the loop then adds the sliding of all others.
-void rotate_inner_springs(SoftExperiment& e, double angle, bool shell_turns) {
-  auto& list = e.system.contacts;
-  if (!list.has_spring) return;
-  const Vec3 axis{{0.0, 0.0, 1.0}};
-  for (std::size_t c = 0; c < list.i.size(); ++c)
-    if (turns_with_first(e, list.i[c], shell_turns) && turns_with_first(e, list.j[c], shell_turns))
-      list.spring[c] = rotate(list.spring[c], axis, angle);
-}
-
-/// One small step of the rotation. Its duration is long against any collision, so that dashpots do not matter, and
-/// follows the natural time of the experiment, so that the dimensionless law is exactly the same for any E and Rs.
-void rotation_step(SoftExperiment& e, double angle, bool shell_turns) {
-  const double duration = 1024.0 * natural_time(e.spec);
-  auto& p = e.system.particles;
-  const Vec3 axis{{0.0, 0.0, 1.0}};
-  update_neighbours(e.system);
-  rotate_inner_springs(e, angle, shell_turns);
-  for (Slot i = 0; i < e.first_grains; ++i) {
-    auto& sphere = p.sphere[static_cast<std::size_t>(i)];
-    sphere.x = rotate(sphere.x, axis, angle);
-  }
-  set_rotation_rate(e, angle / duration, shell_turns);
-  force_pass(e.system, duration);
-  e.system.contacts.commit();
-}
-
 }  // namespace
 
 double natural_time(const SoftParticleSpec& spec) {
@@ -118,12 +72,17 @@ void SoftExperiment::push(double distance) {
   normal_overlap += distance;
 }
 
-void SoftExperiment::rotate_first(double degrees, double step_degrees, bool shell_turns) {
-  if (degrees == 0.0) return;
-  const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(degrees) / step_degrees)));
-  const double angle = degrees * std::numbers::pi / 180.0 / steps;
-  for (int k = 0; k < steps; ++k) rotation_step(*this, angle, shell_turns);
-  set_rotation_rate(*this, 0.0, true);
+Drive SoftExperiment::turning(double rate, bool shell_turns) const {
+  const auto& p = system.particles;
+  const Vec3 about_z{{0.0, 0.0, rate}};
+  std::vector<Vec3> velocity(static_cast<std::size_t>(p.size()));
+  std::vector<Vec3> spin(static_cast<std::size_t>(p.size()));
+  for (std::size_t u = 0; u < static_cast<std::size_t>(first_grains); ++u) {
+    velocity[u] = cross(about_z, p.sphere[u].x);
+    spin[u] = about_z;
+  }
+  if (shell_turns) spin[static_cast<std::size_t>(p.grains)] = about_z;
+  return driven_at(std::move(velocity), std::move(spin));
 }
 
 SoftExperiment make_soft_solid(const SoftParticleSpec& spec, const ShellPacking& packing, bool damped_contacts) {

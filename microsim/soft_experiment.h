@@ -6,6 +6,7 @@
 #include "common/data/measurements.h"
 #include "common/data/shell_packing.h"
 #include "common/data/snapshot.h"
+#include "common/dynamics/slow_dynamics.h"
 #include "common/system.h"
 
 namespace softgrain {
@@ -33,10 +34,11 @@ struct SoftExperiment {
   /// tangential springs follow. Contacts must be without dashpots.
   void push(double distance);
 
-  /// Turns every grain of body 1 rigidly about the z axis through its centre by `degrees`, in steps no larger than
-  /// `step_degrees`: positions and inner springs turn together, springs to the second body (and to the shell when it
-  /// stays) load up and slide at the Coulomb limit on the way. Positive angles drag the second body towards +y.
-  void rotate_first(double degrees, double step_degrees, bool shell_turns);
+  /// The velocities and spins with which all grains of body 1 turn about the z axis through its centre at `rate`
+  /// [rad/s], in the directions of the state as it is. They are added to the motion that grains have of their own, so
+  /// that the pack rearranges while it turns. A positive rate drags the second body towards +y. A shell that does not
+  /// turn holds its grains back by friction, which no drive overcomes: its grains then turn by less than the angle.
+  [[nodiscard]] Drive turning(double rate, bool shell_turns) const;
 };
 
 /// Rs sqrt(rho/E), the unit in which all times of a measurement scale [s].

@@ -1,5 +1,6 @@
 #include "common/data/law_card.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -30,9 +31,15 @@ double assumed_kt_ratio(const LawCard& card, const PairLaw& law) {
   return mindlin_ratio(is_known(card.spec.poisson_ratio) ? card.spec.poisson_ratio : kUnknown);
 }
 
+bool has_frozen_kt(const LawCard& card) {
+  return !card.from_experiment() && card.turn == TurnProtocol::frozen &&
+         std::any_of(card.pairs.begin(), card.pairs.end(), has_tangential);
+}
+
 std::string measured_text(const LawCard& card) {
   if (card.from_experiment()) return "from an experiment";
-  return "measured with the " + card.relaxation + " relaxation";
+  const bool turned = std::any_of(card.pairs.begin(), card.pairs.end(), has_tangential);
+  return "measured with the " + card.relaxation + " relaxation" + (turned ? ", kt by a " + to_string(card.turn) : "");
 }
 
 std::string table_path(const std::string& toml_path) {

@@ -46,7 +46,7 @@ struct LawTableRows {
   std::vector<double> force_deviation;  ///< sample standard deviation over packings
   std::vector<double> kt_initial_mean;  ///< kt/(E Rs), initial slope
   std::vector<double> kt_initial_deviation;
-  std::vector<double> kt_secant_mean;  ///< kt/(E Rs), secant at 1 degree
+  std::vector<double> kt_secant_mean;  ///< kt/(E Rs), secant at PairLaw::secant_angle_deg
   std::vector<double> kt_secant_deviation;
 };
 
@@ -104,6 +104,7 @@ struct LawCard {
   int schema = 1;
   SoftParticleSpec spec;                  ///< of the measurement behind the law
   std::string relaxation;                 ///< which relaxation measured it, or kExperiment
+  TurnProtocol turn = TurnProtocol::slow;                 ///< how tangential stiffnesses were measured; not of an experiment
   std::string intervals = kFromPackings;  ///< where the 95 % intervals come from, of all pairs together
   std::vector<PairLaw> pairs;
   std::string table_id{};            ///< of the .h5 that belongs to the card; may be empty
@@ -125,7 +126,10 @@ inline bool has_tangential(const PairLaw& law) { return law.has_tangential_initi
 /// (0.3 where that is not known).
 double assumed_kt_ratio(const LawCard& card, const PairLaw& law);
 
-/// "measured with the damped relaxation", "from an experiment".
+/// Whether kt comes from the frozen turn of earlier versions, which lost half to two thirds of the drag at 1 degree.
+bool has_frozen_kt(const LawCard& card);
+
+/// "measured with the damped relaxation, kt by a slow turn", "from an experiment".
 std::string measured_text(const LawCard& card);
 
 /// Writes `law.toml` (card) and, beside it with extension .h5, the table. Atomic. Throws FileTrouble.

@@ -113,6 +113,7 @@ LawCard read_card_text(const std::string& toml_path) {
   card.intervals = root.table_or_empty("definitions").text("interval_95", card.intervals);
   const SceneTable measurement = root.table("measurement");
   card.relaxation = measurement.text("relaxation");
+  if (!card.from_experiment()) card.turn = measurement.choice<TurnProtocol>("turn", TurnProtocol::frozen);
   card.spec = read_spec_text(measurement, card.from_experiment());
   for (const SceneTable& pair : root.tables("pair")) {
     const PairLaw law = read_pair(pair);

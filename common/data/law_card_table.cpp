@@ -144,6 +144,7 @@ void write_table(const LawCard& card, const std::string& path, const Provenance&
   write_format(root, kLawFormat);
   if (!table_id.empty()) root.attribute(kTableId, table_id);
   root.attribute("relaxation", card.relaxation);
+  if (!card.from_experiment()) root.attribute("turn", to_string(card.turn));
   write_spec(root, card.spec);
   for (const PairLaw& pair : card.pairs) write_pair(root, pair);
   write_bands(root, card);

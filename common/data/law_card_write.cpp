@@ -60,6 +60,9 @@ void write_measurement(Out out, const LawCard& card) {
         "# say is not known and not here: friction, and what is inside (exponent, polydispersity,\n"
         "# rmax_over_shell, beta, trials), without which no resolved twin can be made.\n");
   fmt::format_to(out, "[measurement]\nrelaxation = {}\n", quoted(card.relaxation));
+  if (!card.from_experiment())
+    fmt::format_to(out, "turn = {}  # how the soft particle was turned for kt: grains moving on, or frozen\n",
+                   quoted(to_string(card.turn)));
   fmt::format_to(out, "{}", spec_text(card.spec));
 }
 

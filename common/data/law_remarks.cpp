@@ -29,14 +29,18 @@ std::string slides_text(const LawTableEntry& entry) {
   return text + "; largest moment against rolling: " + rolling;
 }
 
-std::string assumed_kt_text(const LawCard& card) {
+std::string kt_remark(const LawCard& card) {
+  std::string text;
+  if (has_frozen_kt(card))
+    text =
+        "kt of this card is from a frozen turn (version 0.2.0 or earlier): at 1 degree it is 0.3 to 0.5 of what a "
+        "slow turn gives; measure again, or calibrate from new measurements";
   std::map<double, std::string> kinds;  // by the ratio that they share
   for (const PairLaw& law : card.pairs) {
     if (has_tangential(law) || !has_numbers(law.status)) continue;
     std::string& names = kinds[assumed_kt_ratio(card, law)];
     names += (names.empty() ? "" : " and ") + to_string(law.kind);
   }
-  std::string text;
   for (const auto& [ratio, names] : kinds)
     text += (text.empty() ? "" : "; ") +
             (ratio > 0.0

@@ -13,8 +13,9 @@ namespace softgrain {
 /// ...".
 std::string slides_text(const LawTableEntry& entry);
 
-/// What runs take for a tangential stiffness that was not measured; empty: it was, of all kinds of contact.
-std::string assumed_kt_text(const LawCard& card);
+/// What to know of the tangential stiffnesses of a card: that they come from a frozen turn, and what runs take where
+/// none was measured; empty: all were, by a slow turn or in an experiment.
+std::string kt_remark(const LawCard& card);
 
 /// "unloading is 1.16 times as steep as loading", or that it was not measured.
 std::string unloading_text(const LawTableEntry& entry);

@@ -50,6 +50,11 @@ void write_runs(const h5::Group& root, const std::vector<PackingRun>& runs) {
   write_records(root.create("tangential"), tangential);
 }
 
+TurnProtocol read_turn(const std::string& word) {
+  if (const auto turn = from_word<TurnProtocol>(word)) return *turn;
+  throw FileTrouble("turn of unknown name '" + word + "'");
+}
+
 std::vector<std::string> read_relaxations(const h5::Group& group) {
   std::vector<std::string> names;
   const std::int64_t count = group.integer("relaxations");
@@ -104,6 +109,9 @@ void save(const Measurements& data, const std::string& path, const Provenance& p
   root.attribute("shell_turns", static_cast<std::int64_t>(data.shell_turns));
   root.attribute("approach_speed", data.approach_speed);
   root.attribute("approach_speed_unit", "m/s");
+  root.attribute("turn", to_string(data.turn));
+  root.attribute("turn_speed", data.turn_speed);
+  root.attribute("turn_speed_unit", "m/s");
   write_spec(root, data.spec);
   write_packings(root, data.packings);
   write_runs(root, data.runs);
@@ -117,7 +125,12 @@ Measurements load_measurements(const std::string& path) {
   Measurements data;
   data.shell_turns = root.integer("shell_turns") != 0;
   data.approach_speed = root.number("approach_speed");
+  data.turn = TurnProtocol::frozen;
   try {
+    if (root.has_attribute("turn")) {
+      data.turn = read_turn(root.text("turn"));
+      data.turn_speed = root.number("turn_speed");
+    }
     data.spec = read_spec(root);
     data.packings = read_packings(root);
     data.runs = read_runs(root, data.packings.size());

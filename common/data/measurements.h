@@ -21,6 +21,15 @@ template <>
 inline constexpr auto words<Placement> = word_list<Placement>({{Placement::trials, "trials"},
                                                                {Placement::voids, "voids"}});
 
+/// How the first soft particle was brought to an angle before its drag was recorded.
+enum class TurnProtocol {
+  frozen,  ///< all grains rigidly to the whole angle, nothing relaxing on the way: up to version 0.2.0
+  slow     ///< slowly, with molecular dynamics going on, as published [SP 1.4]
+};
+
+template <>
+inline constexpr auto words<TurnProtocol> = word_list<TurnProtocol>({{TurnProtocol::frozen, "frozen turn"}, {TurnProtocol::slow, "slow turn"}});
+
 /// The soft particle that was measured [SP 1.1-1.3]. SI units. Of an experiment only Rs and E are always known: numbers
 /// that nobody gave are NaN, trials 0.
 struct SoftParticleSpec {
@@ -103,6 +112,8 @@ struct Measurements {
   SoftParticleSpec spec;
   bool shell_turns = true;      ///< whether the first shell turns with its grains in tangential runs
   double approach_speed = 0.0;  ///< [m/s], of the published relaxation
+  TurnProtocol turn = TurnProtocol::slow;       ///< of tangential points; files that do not say it have frozen turns
+  double turn_speed = 0.0;      ///< [m/s], of the rim of the shell in a slow turn; 0: nothing was turned
   std::vector<PackingInfo> packings;
   std::vector<PackingRun> runs;
 };

@@ -98,8 +98,8 @@ void SoftLawReader::read_card(const SceneTable& t, const PairOfMaterials& pair, 
     if (t.has(key)) t.reject(key, "goes with a law table; " + path + " is a law card, which holds the pair law alone");
   const auto kind = t.choice<PairKind>("kind");
   const LawCard card = load_card(path);
-  if (const std::string assumed = assumed_kt_text(card); !assumed.empty())
-    if (const std::string remark = path + ": " + assumed;
+  if (const std::string of_kt = kt_remark(card); !of_kt.empty())
+    if (const std::string remark = path + ": " + of_kt;
         std::find(out_.remarks.begin(), out_.remarks.end(), remark) == out_.remarks.end())
       out_.remarks.push_back(remark);
   if (kind == PairKind::soft_soft) {

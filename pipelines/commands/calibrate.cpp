@@ -54,7 +54,7 @@ json options_json(const FitOptions& o) {
   return {{"delta_low", o.delta_low},
           {"delta_high", std::isfinite(o.delta_high) ? json(o.delta_high) : json(nullptr)},
           {"initial_angle_deg", o.initial_angle_deg},
-          {"secant_angle_deg", o.secant_angle_deg},
+          {"secant_angle_deg", o.secant_angle_deg ? json(*o.secant_angle_deg) : json(nullptr)},
           {"noise_floor", o.noise_floor},
           {"scatter_floor", o.scatter_floor},
           {"min_packings", o.min_packings},
@@ -90,9 +90,13 @@ ExitStatus command_calibrate(const CommonOptions& options) {
   std::string people;
   for (const FitReport& report : reports) people += people_line(report, card.spec);
   people += "law card: " + run.path("law.toml") + "\n";
-  json summary = {{"status", good ? "good" : "not usable"}, {"inputs", options.inputs},
-                  {"relaxation", card.relaxation},          {"laws", json_of(summary_of(card))},
-                  {"fits", reports_json(reports)},          {"options", options_json(fit)}};
+  json summary = {{"status", good ? "good" : "not usable"},
+                  {"inputs", options.inputs},
+                  {"relaxation", card.relaxation},
+                  {"turn", to_string(card.turn)},
+                  {"laws", json_of(summary_of(card))},
+                  {"fits", reports_json(reports)},
+                  {"options", options_json(fit)}};
   run.finish(std::move(summary), people);
   return good ? ExitStatus::good : ExitStatus::not_usable;
 }

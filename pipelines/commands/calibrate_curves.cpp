@@ -49,7 +49,7 @@ CurveSettings read_settings(const SceneTable& t, const CommonOptions& options) {
   s.mirror = t.flag("mirror", false);
   s.fit.subtract_offset = t.choice("offset", {"subtract", "keep"}, "subtract") == "subtract";
   s.curves.initial_angle_deg = s.fit.initial_angle_deg;
-  s.curves.secant_angle_deg = s.fit.secant_angle_deg;
+  s.curves.secant_angle_deg = s.fit.secant_angle_deg.value_or(s.curves.secant_angle_deg);
   t.finish();
   if (!options.kind.empty()) {
     s.curves.kind = from_word<PairKind>(options.kind);
@@ -178,7 +178,7 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
     for (const std::string& one : implausible_forces(kind))
       remarks.insert(remarks.begin(), to_string(kind.kind) + ": " + one);
   add_missing_kind(fit, remarks);
-  if (const std::string assumed = assumed_kt_text(fit.card); !assumed.empty()) remarks.push_back(assumed);
+  if (const std::string remark = kt_remark(fit.card); !remark.empty()) remarks.push_back(remark);
   std::string people;
   for (const FitReport& r : fit.reports) {
     people += force_line(r, fit.card.spec);

@@ -122,6 +122,8 @@ Differences all_differences(const CompareSide& candidate, const CompareSide& ref
     out.add(differences(candidate.measurements->spec, reference.measurements->spec));
     if (candidate.measurements->shell_turns != reference.measurements->shell_turns)
       out.said.emplace_back("the first shell turned with its grains on one side alone");
+    if (candidate.measurements->turn != reference.measurements->turn)
+      out.said.emplace_back("kt was measured by a frozen turn on one side, by a slow turn on the other");
   }
   if (candidate.card && reference.card) out.add(differences(candidate.card->spec, reference.card->spec));
   return out;

@@ -140,7 +140,7 @@ std::string card_text_for_people(const LawFile& file, bool utf8) {
   const std::string origin = origin_text(file.origin);
   if (!origin.empty()) text += wrapped("  " + origin, 2);
   for (const std::string& note : card.notes) text += wrapped("  note: " + note, 4);
-  if (const std::string assumed = assumed_kt_text(card); !assumed.empty()) text += wrapped("  note: " + assumed, 4);
+  if (const std::string remark = kt_remark(card); !remark.empty()) text += wrapped("  note: " + remark, 4);
   for (const PairLaw& law : card.pairs) text += "\n" + pair_text(law, card.spec, utf8);
   return text + "\n" +
          wrapped(

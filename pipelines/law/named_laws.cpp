@@ -123,7 +123,7 @@ std::string stand_ins(const LawTableEntry& entry, const LawSources& sources) {
 /// not known.
 std::function<std::string(const System3&)> measured_note(const LawCard& card, const MacroSpec& spec) {
   const SoftParticleSpec& measured = card.spec;
-  std::string text = assumed_kt_text(card);
+  std::string text = kt_remark(card);
   if (!card.from_experiment() && (measured.poisson_ratio != spec.poisson_ratio || measured.friction != spec.friction))
     text += (text.empty() ? "" : "; ") +
             fmt::format(

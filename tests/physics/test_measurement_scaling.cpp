@@ -84,8 +84,8 @@ void expect_scale_free(PairKind kind, MakeProtocol make, const MeasurementPlan& 
   expect_same_law(base, run(scaled(256.0, 1.0 / 16.0), kind, make, plan), 1.0);
 }
 
-const MeasurementPlan kSolid{{0.20, 0.35}, {0.35}, {-0.05, 0.05, 0.5}, 0.01, true};
-const MeasurementPlan kSoft{{0.35, 0.60}, {0.60}, {0.05}, 0.01, false};
+const MeasurementPlan kSolid{{0.20, 0.35}, {0.35}, {-0.05, 0.05, 0.5}, 0.05, true};
+const MeasurementPlan kSoft{{0.35, 0.60}, {0.60}, {0.05}, 0.05, false};
 
 TEST(MeasurementScaling, DampedSoftSolid) { expect_scale_free(PairKind::soft_solid, damped, kSolid); }
 TEST(MeasurementScaling, DampedSoftSoft) { expect_scale_free(PairKind::soft_soft, damped, kSoft); }
@@ -101,7 +101,7 @@ TEST(MeasurementScaling, PublishedDefaultsFollowTheNaturalTime) {
     options.stops = 0;
     return make_published_protocol(options);
   };
-  expect_scale_free(PairKind::soft_solid, make, {{0.35}, {}, {}, 0.01, true});
+  expect_scale_free(PairKind::soft_solid, make, {{0.35}, {}, {}, 0.05, true});
 }
 
 /// Density sets the unit of time alone.

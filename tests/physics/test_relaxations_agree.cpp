@@ -109,8 +109,8 @@ TEST(RelaxationsAgree, LeastWorkCostsATenthAndGivesTheSameForceAndStiffness) {
   constexpr int kPackings = 24;
   const std::vector<double> deltas{0.35};
   const SoftParticleSpec spec = small_spec();
-  const MeasurementPlan turned{deltas, deltas, {-kAngle, kAngle}, 0.01, true};
-  const MeasurementPlan pressed{deltas, {}, {}, 0.01, true};
+  const MeasurementPlan turned{deltas, deltas, {-kAngle, kAngle}, 0.05, true};
+  const MeasurementPlan pressed{deltas, {}, {}, 0.05, true};
   const auto slow = run_all(spec, kPackings, turned, *make_published_protocol({}));
   const auto fast = run_all(spec, kPackings, turned, *make_least_work_protocol(scenes_choice()));
   const auto faster = run_all(spec, kPackings, pressed, *make_least_work_protocol({}));
@@ -132,7 +132,7 @@ TEST(SlowRelaxationsAgree, LeastWorkGivesForceAndStiffnessOfThePublishedProtocol
   constexpr int kPackings = 6;
   const SoftParticleSpec spec;
   const std::vector<double> turned{0.20, 0.30};
-  const MeasurementPlan plan{{0.15, 0.20, 0.30}, turned, {-kAngle, kAngle}, 0.01, true};
+  const MeasurementPlan plan{{0.15, 0.20, 0.30}, turned, {-kAngle, kAngle}, 0.05, true};
   const auto slow = run_all(spec, kPackings, plan, *make_published_protocol({}));
   const auto fast = run_all(spec, kPackings, plan, *make_least_work_protocol(scenes_choice()));
   expect_converged(slow);

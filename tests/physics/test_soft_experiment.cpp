@@ -10,6 +10,7 @@
 
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/force_pass.h"
+#include "common/dynamics/verlet.h"
 #include "microsim/measure.h"
 #include "microsim/shell_packing.h"
 
@@ -53,58 +54,73 @@ void press(SoftExperiment& e, double delta) {
 /// D of the Hertz law of two bodies of the spec's material.
 double hertz_d(const SoftParticleSpec& s) { return 1.5 * (1.0 - s.poisson_ratio * s.poisson_ratio) / s.youngs_modulus; }
 
+/// A slow turn, as measurements make it.
+void turn(SoftExperiment& e, double degrees, bool shell_turns = true) {
+  constexpr double kStretch = 0.05;  // degree
+  const auto protocol = make_damped_protocol({});
+  const double rate = std::copysign(usual_turn_speed(e.spec) / e.spec.shell_radius, degrees);
+  const int n = std::max(1, static_cast<int>(std::lround(std::abs(degrees) / kStretch)));
+  stop_motion(e.system.particles);
+  for (int k = 0; k < n; ++k)
+    protocol->run(e, e.turning(rate, shell_turns), degrees * std::numbers::pi / 180.0 / rate / n);
+}
+
 Vec3 about_z(const Vec3& x, double degrees) { return rotate(x, {{0.0, 0.0, 1.0}}, degrees * std::numbers::pi / 180.0); }
 
 Slot shell_of_first(const SoftExperiment& e) { return e.system.particles.grains; }
 
-/// A body under inner stress (grains 2 % too large, springs loaded by a few passes) with the second body out of reach.
+/// A body under inner stress (grains 2 % too large) at rest, with the second body out of reach.
 SoftExperiment stressed_alone() {
   ShellPacking packing = small_packing(0);
   for (double& r : packing.radius) r *= 1.02;
   SoftExperiment e = make_soft_solid(small_spec(), packing, false);
   e.push(-0.2 * e.spec.shell_radius);
-  rest(e, 1e-3, 40);
+  rest(e, 1e-5);
   return e;
 }
 
-TEST(SoftExperiment, RotationOfALonelyBodyTurnsAllItsForces) {
+/// A lonely body turns as a rigid one: its forces are carried along.
+TEST(SoftExperiment, ATurnOfALonelyBodyCarriesItsForcesAlong) {
+  constexpr double kDegrees = 2.0;
   SoftExperiment e = stressed_alone();
   const auto before = contact_records(e.system);
   ASSERT_GT(before.size(), 100U);
-  e.rotate_first(20.0, 0.05, true);
+  turn(e, kDegrees);
   const auto after = contact_records(e.system);
-  ASSERT_EQ(after.size(), before.size());
   double largest = 0.0;
-  double tangential = 0.0;
-  for (const auto& c : before) {
-    largest = std::max(largest, c.normal_force);
-    tangential = std::max(tangential, norm(c.tangential_force));
-  }
-  EXPECT_GT(tangential, 0.01 * largest);
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    ASSERT_EQ(before[k].i, after[k].i);
-    ASSERT_EQ(before[k].j, after[k].j);
-    EXPECT_NEAR(after[k].normal_force, before[k].normal_force, 1e-8 * largest);
-    EXPECT_LT(norm(after[k].tangential_force - about_z(before[k].tangential_force, 20.0)), 1e-8 * largest) << k;
-    EXPECT_LT(norm(after[k].normal - about_z(before[k].normal, 20.0)), 1e-9) << k;
-  }
+  for (const auto& c : before) largest = std::max(largest, c.normal_force);
+  std::size_t found = 0;
+  for (const auto& b : before)
+    for (const auto& a : after) {
+      if (a.i != b.i || a.j != b.j) continue;
+      ++found;
+      EXPECT_NEAR(a.normal_force, b.normal_force, 0.01 * largest) << a.i << " " << a.j;
+      EXPECT_LT(norm(a.tangential_force - about_z(b.tangential_force, kDegrees)), 0.01 * largest) << a.i << " " << a.j;
+      EXPECT_LT(norm(a.normal - about_z(b.normal, kDegrees)), 1e-2) << a.i << " " << a.j;
+    }
+  EXPECT_GT(found, before.size() * 9 / 10);
 }
 
-TEST(SoftExperiment, RotationGoesBackToWhereItCameFrom) {
+TEST(SoftExperiment, ATurnGoesBackToWhereItCameFrom) {
   SoftExperiment e = stressed_alone();
   const SoftExperiment before = e;
-  e.rotate_first(3.0, 0.05, true);
-  e.rotate_first(-3.0, 0.05, true);
+  turn(e, 1.0);
+  const auto& sphere = before.system.particles.sphere;
+  double farthest = 0.0;
   for (std::size_t u = 0; u < static_cast<std::size_t>(e.first_grains); ++u)
-    EXPECT_LT(norm(e.system.particles.sphere[u].x - before.system.particles.sphere[u].x), 1e-10 * e.spec.shell_radius);
+    farthest = std::max(farthest, norm(e.system.particles.sphere[u].x - about_z(sphere[u].x, 1.0)));
+  EXPECT_LT(farthest, 1e-3 * e.spec.shell_radius);
+  turn(e, -1.0);
+  for (std::size_t u = 0; u < static_cast<std::size_t>(e.first_grains); ++u)
+    EXPECT_LT(norm(e.system.particles.sphere[u].x - sphere[u].x), 1e-3 * e.spec.shell_radius);
 }
 
-/// With a standing shell the springs to the shell load up: their torque about z opposes the rotation.
+/// With a standing shell the springs to the shell load up: their torque about z opposes the turn.
 TEST(SoftExperiment, AStandingShellHoldsItsGrainsBack) {
   SoftExperiment turns = stressed_alone();
   SoftExperiment stands = turns;
-  turns.rotate_first(0.5, 0.01, true);
-  stands.rotate_first(0.5, 0.01, false);
+  turn(turns, 0.1, true);
+  turn(stands, 0.1, false);
   const auto on_shell = [](const SoftExperiment& e) {
     double moment = 0.0;
     for (const auto& c : contact_records(e.system))
@@ -119,7 +135,7 @@ TEST(SoftExperiment, AStandingShellHoldsItsGrainsBack) {
 TEST(SoftExperiment, ForceOnSecondIsTheForceOnThePlane) {
   SoftExperiment e = make_soft_solid(small_spec(), small_packing(0), false);
   press(e, 0.15);
-  e.rotate_first(0.3, 0.01, true);
+  turn(e, 0.3);
   rest(e, 1e-4);
   force_pass(e.system, 0.0);
   const Vec3 on_plane = e.system.particles.force[static_cast<std::size_t>(e.system.particles.first_plane())];
@@ -136,8 +152,8 @@ Vec3 net_force(const SoftExperiment& e, Slot begin, Slot end, Slot shell) {
 
 TEST(SoftExperiment, ActionIsReactionBetweenTwoSoftParticles) {
   SoftExperiment e = make_soft_soft(small_spec(), small_packing(0), small_packing(1), false);
-  press(e, 0.30);
-  e.rotate_first(0.3, 0.01, true);
+  press(e, 0.40);
+  turn(e, 0.3);
   force_pass(e.system, 0.0);
   const Slot n = e.system.particles.grains;
   const Vec3 on_second = net_force(e, e.first_grains, n, n + 1);
@@ -181,7 +197,7 @@ TEST(SoftExperiment, PositiveAnglesDragTheSecondBodyTowardsPlusY) {
     const double prestrain = e.force_on_second()[1];
     for (const double angle : {0.05, 0.5, -0.05, -0.5}) {
       SoftExperiment turned = e;
-      turned.rotate_first(angle, 0.01, true);
+      turn(turned, angle);
       rest(turned, 1e-4);
       EXPECT_GT((turned.force_on_second()[1] - prestrain) * angle, 0.0)
           << "packing " << index << ", " << angle << " degrees";
@@ -228,7 +244,7 @@ TEST(SoftExperiment, AConfigurationSymmetricInZHasNoForceAcross) {
   SoftExperiment e = make_soft_solid(small_spec(), symmetric, false);
   press(e, 0.25);
   EXPECT_LT(std::abs(e.force_on_second()[2]), 1e-6 * e.force_on_second()[0]);
-  e.rotate_first(0.5, 0.01, true);
+  turn(e, 0.5);
   rest(e, 1e-6);
   EXPECT_GT(std::abs(e.force_on_second()[1]), 1e-3 * e.force_on_second()[0]);
   EXPECT_LT(std::abs(e.force_on_second()[2]), 1e-6 * e.force_on_second()[0]);
@@ -238,7 +254,7 @@ TEST(SoftExperiment, AConfigurationSymmetricInZHasNoForceAcross) {
 TEST(SoftExperiment, AMeasurementRecordsItsPlan) {
   MeasurementState state;
   state.experiment = make_soft_solid(small_spec(), small_packing(0), false);
-  const MeasurementPlan plan{{0.10, 0.20}, {0.20}, {-0.1, 0.1}, 0.01, true};
+  const MeasurementPlan plan{{0.10, 0.20}, {0.20}, {-0.1, 0.1}, 0.05, true};
   int seen = 0;
   constexpr double kNever = 1e9;  // seconds between saves: at recorded points alone, however slow the machine is
   RunControl<MeasurementState> control{.seconds = kNever};
@@ -261,17 +277,17 @@ TEST(SoftExperiment, AnAngleDoesNotFeelTheOneBefore) {
   const auto at_the_last_angle = [](const std::vector<double>& angles, bool cumulative) {
     MeasurementState state;
     state.experiment = make_soft_solid(small_spec(), small_packing(0), false);
-    MeasurementPlan plan{{0.25}, {0.25}, angles, 0.01, true};
+    MeasurementPlan plan{{0.25}, {0.25}, angles, 0.05, true};
     plan.cumulative = cumulative;
     measure(state, plan, *make_damped_protocol({.increment = 0.02}));
     return state.run.tangential.back();
   };
   const TangentialPoint alone = at_the_last_angle({0.2}, false);
-  const TangentialPoint after = at_the_last_angle({0.1, 0.2}, false);
+  const TangentialPoint after = at_the_last_angle({0.03, 0.1, 0.2}, false);
   EXPECT_EQ(after.angle_deg, 0.2);
   EXPECT_EQ(after.force_parallel, alone.force_parallel);
   EXPECT_EQ(after.force_perpendicular, alone.force_perpendicular);
-  EXPECT_NE(at_the_last_angle({0.1, 0.2}, true).force_parallel, alone.force_parallel);
+  EXPECT_NE(at_the_last_angle({0.03, 0.1, 0.2}, true).force_parallel, alone.force_parallel);
 }
 
 struct Mean {
@@ -308,7 +324,7 @@ TEST(SoftExperiment, TheForceAcrossTheRotationAveragesToZero) {
     Mean drags, pushes;  // both signs of one packing are one sample
     for (const double sign : {-1.0, 1.0}) {
       SoftExperiment turned = e;
-      turned.rotate_first(sign * 0.5, 0.05, true);
+      turn(turned, sign * 0.5);
       rest(turned, 1e-4);
       const Vec3 change = turned.force_on_second() - before;
       pushes.add(sign * change[2]);

@@ -59,7 +59,7 @@ TEST(RestartBetweenPoints, AMeasurementGoesOnFromEveryRotation) {
   const SoftParticleSpec spec = coarse_spec();
   const auto protocol = make_damped_protocol({});
   for (const bool cumulative : {false, true}) {
-    const MeasurementPlan plan{{0.15, 0.25}, {0.25}, {-1.0, -0.05, 0.05, 1.0}, 0.01, true, cumulative};
+    const MeasurementPlan plan{{0.15, 0.25}, {0.25}, {-1.0, -0.07, 0.05, 1.0}, 0.05, true, cumulative};
     std::vector<MeasurementState> saved;
     MeasurementState whole;
     whole.experiment = make_soft_solid(spec, generate_shell_packing(spec, 1, 0), false);

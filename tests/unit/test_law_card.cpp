@@ -110,6 +110,18 @@ TEST(ThresholdPowerLaw, DerivativeIsThatOfTheValue) {
   }
 }
 
+/// Cards of earlier versions do not say how soft particles were turned: all at once. They are read, and say so.
+TEST_F(LawCardFile, SaysHowSoftParticlesWereTurned) {
+  save_card(card_, path());
+  EXPECT_EQ(load_card(path()).turn, TurnProtocol::slow);
+  EXPECT_NE(measured_text(load_card(path())).find("kt by a slow turn"), std::string::npos);
+  EXPECT_FALSE(has_frozen_kt(load_card(path())));
+  EXPECT_EQ(message_after("turn = \"slow turn\"", ""), "");
+  EXPECT_EQ(load_card(path()).turn, TurnProtocol::frozen);
+  EXPECT_TRUE(has_frozen_kt(load_card(path())));
+  EXPECT_NE(message_after("turn = \"slow turn\"", "turn = \"quick turn\""), "");
+}
+
 TEST_F(LawCardFile, RoundTripIsExact) {
   save_card(card_, path());
   const LawCard in = load_card(path());

@@ -10,6 +10,7 @@
 #include "common/data/fields.h"
 #include "common/data/macro_result.h"
 #include "common/data/measurements.h"
+#include "tests/support/hdf5_edit.h"
 
 namespace softgrain {
 namespace {
@@ -40,6 +41,7 @@ Measurements sample() {
   data.spec.trials = 12345;
   data.shell_turns = false;
   data.approach_speed = 0.002;
+  data.turn_speed = 0.001;
   data.packings = {{7, 3, 0.71, 0.8, 3.4, 0.2, {1e-3, 2e-3 / 3.0, 5e-4}},
                    {8, 0, 0.0, 0.0, std::nan(""), 0.0, {}},
                    {std::uint64_t{1} << 63, 1, 0.6, 0.7, 3.6, 0.1, {4e-3}}};
@@ -91,6 +93,8 @@ TEST(MeasurementsIo, RoundTripIsExact) {
   EXPECT_EQ(in.spec.trials, out.spec.trials);
   EXPECT_EQ(in.shell_turns, out.shell_turns);
   EXPECT_EQ(in.approach_speed, out.approach_speed);
+  EXPECT_EQ(in.turn, TurnProtocol::slow);
+  EXPECT_EQ(in.turn_speed, 0.001);
   ASSERT_EQ(in.packings.size(), out.packings.size());
   for (std::size_t k = 0; k < in.packings.size(); ++k) {
     EXPECT_EQ(in.packings[k].seed, out.packings[k].seed);
@@ -102,6 +106,20 @@ TEST(MeasurementsIo, RoundTripIsExact) {
   EXPECT_TRUE(std::isnan(in.packings[1].exponent));
   ASSERT_EQ(in.runs.size(), out.runs.size());
   for (std::size_t k = 0; k < in.runs.size(); ++k) expect_equal(in.runs[k], out.runs[k]);
+}
+
+/// Files of earlier versions do not say how soft particles were turned: all at once.
+TEST(MeasurementsIo, OldFilesHaveFrozenTurns) {
+  const std::string path = temporary("old_turn.h5");
+  save(sample(), path);
+  {
+    test::Hdf5Edit file(path);
+    for (const char* name : {"turn", "turn_speed", "turn_speed_unit"}) file.remove_attribute("/", name);
+  }
+  const Measurements in = load_measurements(path);
+  fs::remove(path);
+  EXPECT_EQ(in.turn, TurnProtocol::frozen);
+  EXPECT_EQ(in.turn_speed, 0.0);
 }
 
 TEST(MeasurementsIo, EmptyDataAreData) {

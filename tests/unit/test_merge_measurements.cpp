@@ -44,6 +44,18 @@ TEST(MergeMeasurements, ProtocolsAreNotMixed) {
   EXPECT_THROW(merge_measurements({part(1), other}, {"a", "b"}), BadInput);
 }
 
+/// Of files that hold rotations; others have nothing to disagree about, and say nothing of what they are merged with.
+TEST(MergeMeasurements, FrozenAndSlowTurnsAreNotMixed) {
+  auto a = part(1);
+  auto b = part(2);
+  for (auto* m : {&a, &b})
+    for (auto& run : m->runs) run.tangential = {{0.2, 0.05, 0.1, 0.0, 0.0, true}};
+  b.turn = TurnProtocol::frozen;
+  EXPECT_THROW(merge_measurements({a, b}, {"a", "b"}), BadInput);
+  for (auto& run : a.runs) run.tangential.clear();
+  EXPECT_EQ(merge_measurements({a, b}, {"a", "b"}).turn, TurnProtocol::frozen);
+}
+
 TEST(MergeMeasurements, TheSamePackingTwiceIsRefused) {
   EXPECT_THROW(merge_measurements({part(1), part(1)}, {"a", "a"}), BadInput);
   auto other = part(1);

@@ -72,9 +72,13 @@ TEST(SoftContactFromCard, AStiffnessThatWasNotMeasuredIsAssumed) {
   const SoftContact said = make_soft_contact(card, PairKind::soft_soft, 4e5, 0.3, 0.1, false);
   const auto r = said.evaluate(pressed(said, 0.3));
   EXPECT_NEAR(r.tangential_stiffness / r.normal_stiffness, 0.5, 1e-12);
-  EXPECT_NE(assumed_kt_text(card).find("kt = 0.5 dFn/dh is assumed"), std::string::npos);
+  EXPECT_NE(kt_remark(card).find("kt = 0.5 dFn/dh is assumed"), std::string::npos);
   card.pairs[0].has_tangential_secant = true;
-  EXPECT_EQ(assumed_kt_text(card), "");
+  EXPECT_EQ(kt_remark(card), "");
+  card.turn = TurnProtocol::frozen;
+  EXPECT_NE(kt_remark(card).find("frozen turn"), std::string::npos);
+  card.relaxation = kExperiment;
+  EXPECT_EQ(kt_remark(card), "");
 }
 
 TEST(SoftContactFromCard, UnusableLawsAreRefused) {

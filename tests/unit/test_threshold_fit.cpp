@@ -68,6 +68,31 @@ TEST(ThresholdFit, TableHoldsMeansAndDeviations) {
   EXPECT_NEAR(table.kt_secant_mean.back() / table.kt_initial_mean.back(), o.secant_share, 1e-12);
 }
 
+/// kt of two soft particles is the secant at half a degree where that was measured, else at one degree; on a plane at
+/// one; or what is said. The law says which.
+TEST(ThresholdFit, TheLawSaysTheAngleOfItsSecant) {
+  SyntheticOptions o;
+  o.kind = PairKind::soft_soft;
+  auto data = synthetic(o);
+  EXPECT_EQ(fit_pair_law(data, PairKind::soft_soft, few_replicates(0)).law.secant_angle_deg, 1.0);
+  for (PackingRun& run : data.runs) {
+    auto points = run.tangential;
+    for (TangentialPoint& p : points) {
+      p.angle_deg *= 0.5;
+      p.force_parallel *= 0.8;
+      if (std::abs(p.angle_deg) == 0.5) run.tangential.push_back(p);
+    }
+  }
+  const PairLaw half = fit_pair_law(data, PairKind::soft_soft, few_replicates(0)).law;
+  EXPECT_EQ(half.secant_angle_deg, 0.5);
+  EXPECT_NEAR(half.tangential_secant.a.value / (1.6 * o.secant_share * o.a_initial), 1.0, 1e-6);
+  FitOptions said = few_replicates(0);
+  said.secant_angle_deg = 1.0;
+  EXPECT_EQ(fit_pair_law(data, PairKind::soft_soft, said).law.secant_angle_deg, 1.0);
+  for (PackingRun& run : data.runs) run.kind = PairKind::soft_solid;
+  EXPECT_EQ(fit_pair_law(data, PairKind::soft_solid, few_replicates(0)).law.secant_angle_deg, 1.0);
+}
+
 /// The kink may sit in any interval, or on a measured Delta: no start can miss it.
 class KinkPosition : public ::testing::TestWithParam<double> {};
 TEST_P(KinkPosition, IsFound) {

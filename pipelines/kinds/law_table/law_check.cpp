@@ -36,7 +36,7 @@ void warn_of_card(const LawCard& card, Findings& out) {
                       "one of small overlaps",
                       name, law.max_overlap));
   }
-  if (const std::string assumed = assumed_kt_text(card); !assumed.empty()) out.warn(assumed);
+  if (const std::string remark = kt_remark(card); !remark.empty()) out.warn(remark);
 }
 
 void check_card(const std::string& path, Findings& out) {

@@ -104,6 +104,18 @@ void read_published(const SceneTable& t, PublishedOptions& o) {
   o.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, false}, o.tolerance);
 }
 
+/// Neither so slow that no run comes to an end, nor as fast as sound in the grains.
+void read_turn(const SceneTable& measure, const SoftParticleSpec& spec, MeasurementPlan& plan) {
+  constexpr double kSlowest = 1e-7;  // over sqrt(E/rho)
+  constexpr double kFastest = 1e-2;
+  plan.rotation_step_deg =
+      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-4, 5.0), plan.rotation_step_deg);
+  if (!measure.has("turn_speed") || !measure.sound()) return;
+  const double sound = std::sqrt(spec.youngs_modulus / spec.density);
+  plan.turn_speed =
+      measure.number("turn_speed", Unit::velocity, Range::closed(kSlowest * sound, kFastest * sound), plan.turn_speed);
+}
+
 void require_ascending(const SceneTable& t, const std::string& key, const std::vector<double>& values) {
   if (values.empty()) t.mistake(key, "at least one value is needed");
   for (std::size_t k = 1; k < values.size(); ++k)
@@ -150,11 +162,6 @@ void require_increments_used(const SceneTable& measure, Relaxation relaxation, b
               "relaxation = \"slow-dynamics\" makes no increment by least work: 0, or relaxation = \"least-work\"");
 }
 
-bool rotates(const MeasureSeries& series) {
-  return std::any_of(series.kinds.begin(), series.kinds.end(),
-                     [&](PairKind kind) { return !series.plan(kind).angles_deg.empty(); });
-}
-
 MeasureSeries read_series(const SceneTable& t, Relaxation relaxation, std::int64_t packings,
                           const MeasurementPlan& common) {
   MeasureSeries series;
@@ -190,7 +197,7 @@ void refuse_idle_protocols(const SceneTable& measure, const std::vector<Relaxati
   goes_with("least_work", one_of({Relaxation::least_work, Relaxation::slow_dynamics}),
             "\"least-work\" or \"slow-dynamics\"");
   if (rotates) return;
-  for (const char* key : {"rotation_step_deg", "shell_turns", "rotation"})
+  for (const char* key : {"turn_speed", "rotation_step_deg", "shell_turns", "rotation"})
     if (measure.has(key)) measure.mistake(key, "goes with angles_deg: nothing is rotated in this scene");
 }
 
@@ -223,6 +230,12 @@ std::int64_t MeasureSetup::packings() const {
   return most;
 }
 
+bool MeasureSetup::rotates() const {
+  return std::any_of(series.begin(), series.end(), [](const MeasureSeries& s) {
+    return std::any_of(s.kinds.begin(), s.kinds.end(), [&](PairKind k) { return !s.plan(k).angles_deg.empty(); });
+  });
+}
+
 SoftParticleSpec read_soft_particle(const SceneTable& root) {
   SoftParticleSpec spec;
   read_material(root.table_or_empty("material"), spec);
@@ -238,8 +251,7 @@ MeasureSetup read_measure_protocols(const SceneTable& root, Relaxation& relaxati
   read_damped(measure.table_or_empty("damped"), setup.damped);
   read_published(measure.table_or_empty("published"), setup.published);
   read_least_work(measure.table_or_empty("least_work"), setup.least_work);
-  plan.rotation_step_deg =
-      measure.number("rotation_step_deg", Unit::angle_degree, Range::closed(1e-7, 5.0), plan.rotation_step_deg);
+  read_turn(measure, setup.spec, plan);
   plan.shell_turns = measure.flag("shell_turns", plan.shell_turns);
   plan.cumulative = measure.choice("rotation", {"fresh", "cumulative"}, "fresh") == "cumulative";
   relaxation = read_relaxation(measure, Relaxation::least_work, setup.least_work);
@@ -263,7 +275,7 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
   if (root.sound()) {
     std::vector<Relaxation> relaxations;
     for (const MeasureSeries& s : setup.series) relaxations.push_back(s.relaxation);
-    refuse_idle_protocols(measure, relaxations, std::any_of(setup.series.begin(), setup.series.end(), rotates));
+    refuse_idle_protocols(measure, relaxations, setup.rotates());
   }
   if (root.sound())
     require_increments_used(measure, setup.series.front().relaxation,

@@ -36,6 +36,7 @@ struct MeasureSetup {
   std::int64_t kept_states = 0;  ///< of the first packing of every kind and relaxation, for pictures
 
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
+  [[nodiscard]] bool rotates() const;           ///< whether any series turns soft particles
   /// Names of the relaxations, that of the fit first.
   [[nodiscard]] std::vector<std::string> relaxations() const {
     std::vector<std::string> names;

@@ -86,8 +86,12 @@ std::string tangential_section(const RunData& run) {
     body += "<h3>" + escape(describe(kind) + ", relaxation \"" + relaxation + "\"") + "</h3>\n" +
             figure_row({force_figure(run, kind, true), force_figure(run, kind, false)});
   }
-  const std::string turns = run.measurements->shell_turns ? "The first shell turned together with its grains."
-                                                          : "The first shell did not turn with its grains.";
+  std::string turns = run.measurements->shell_turns ? "The first shell turned together with its grains"
+                                                    : "The first shell did not turn with its grains";
+  turns += run.measurements->turn == TurnProtocol::slow
+               ? fmt::format(", slowly, its rim at {} m/s, while they moved on.",
+                             format_number(run.measurements->turn_speed, 3))
+               : ", all at once, nothing relaxing on the way (frozen turn): beyond 0.05° the force is too small.";
   return body.empty() ? "" : section("tangential", "Tangential force", body + paragraph(turns));
 }
 
