@@ -7,7 +7,7 @@ namespace softgrain {
 
 PowderAnalysis analyse_powder(const System<2>& system, const PowderSpec& spec, double pressure, bool rigidity) {
   PowderAnalysis out;
-  out.zero = spec.zero_force();
+  out.zero = kPowderZeroForce;
   out.contacts = powder_contacts(system, out.zero, spec.cohesive);
   out.pairs = powder_interactions(system, out.zero);
   out.forces = powder_forces(out.pairs, out.zero);

@@ -78,7 +78,7 @@ double mean_kinetic(const System<2>& s) {
 }
 
 PowderPoint point_of(const PowderState& state, const PowderSpec& spec, const Vec<2>& stress) {
-  const PowderContacts c = powder_contacts(state.system, spec.zero_force(), spec.cohesive);
+  const PowderContacts c = powder_contacts(state.system, kPowderZeroForce, spec.cohesive);
   return {state.phase,    state.system.time,          powder_fraction(state.system),
           c.coordination, mean_kinetic(state.system), stress};
 }
@@ -95,8 +95,8 @@ std::vector<double> drag_of(const System<2>& s, double drag, bool rolling) {
 }
 
 PowderStage stage_of(const PowderState& state, const PowderSpec& spec, const PowderPhase& phase) {
-  const PowderContacts c = powder_contacts(state.system, spec.zero_force(), spec.cohesive);
-  const auto moduli = powder_moduli(state.system, powder_interactions(state.system, spec.zero_force()));
+  const PowderContacts c = powder_contacts(state.system, kPowderZeroForce, spec.cohesive);
+  const auto moduli = powder_moduli(state.system, powder_interactions(state.system, kPowderZeroForce));
   return {.phase = state.phase,
           .pressure = phase.pressure,
           .time = state.system.time,

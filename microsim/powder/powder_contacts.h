@@ -31,8 +31,7 @@ struct PowderContacts {
       0.0;  ///< sum of N |branch|/(2 A): what Rumpf's means leave out is that large disks touch more
 };
 
-/// `zero`: forces below it count as none (published: 1e-4 F0 without rolling resistance, 1e-2 F0 with). `cohesive`:
-/// whether disks are held by tension, so that none is a rattler.
+/// `zero`: forces below it count as none. `cohesive`: whether disks are held by tension, so that none is a rattler.
 PowderContacts powder_contacts(const System<2>& system, double zero, bool cohesive);
 
 /// Whether each disk, by slot, has fewer than two contacts once such disks are taken away one after another.

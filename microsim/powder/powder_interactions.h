@@ -34,8 +34,12 @@ struct PowderInteraction {
   [[nodiscard]] double force() const;  ///< |F| = sqrt(N^2 + T^2)
 };
 
+/// Contacts with a force below it count as unstressed [CP 3.5], in F0 (without cohesion P a), with and without rolling
+/// resistance.
+constexpr double kPowderZeroForce = 1e-4;
+
 /// All pairs of the state as it is, in the order of the contact list. `zero`: a contact with |F| below it counts as
-/// unstressed (published: 1e-4 F0 without rolling resistance, 1e-2 F0 with).
+/// unstressed.
 std::vector<PowderInteraction> powder_interactions(const System<2>& system, double zero);
 
 /// How many periods lie between the centre of i and that image of j that it meets, per axis: x_i - x_j - branch over

@@ -97,8 +97,8 @@ void set_velocities(System<2>& s, const PowderSpec& spec, std::uint64_t seed, st
     v -= momentum * (1.0 / mass);
     square += norm2(v);
   }
-  const double wanted = spec.start_speed * std::sqrt(spec.range);
-  const double scale = wanted / std::sqrt(square / static_cast<double>(p.velocity.size()));
+  const double wanted = spec.start_speed * std::sqrt(spec.range);  // of one component, two of them in `square`
+  const double scale = wanted / std::sqrt(0.5 * square / static_cast<double>(p.velocity.size()));
   for (auto& v : p.velocity) v *= scale;
 }
 

@@ -26,13 +26,12 @@ struct PowderSpec {
   double rolling_stiffness = 1e-4;  ///< K_r/(a^2 K_N)
   double rolling_friction = 1e-2;   ///< mu_r/(mu a)
   double pressure = 0.01;           ///< P* = P a/F0; without cohesion P itself is 1
-  double start_speed = 0.0;         ///< V0, root mean square of |v| at the start, over V* = sqrt(F0 D0/m); 0: at rest
+  double start_speed = 0.0;         ///< V0, root mean square of each velocity component at the start, over
+                                    ///< V* = sqrt(F0 D0/m); 0: at rest
   std::optional<Grading> sizes;     ///< of disks, by area; in any unit, its largest size counts as 1
 
   /// F1 = max(F0, P a) of a pressure imposed, the scale of forces in equilibrium criteria.
   [[nodiscard]] double force_scale(double imposed) const { return cohesive ? std::max(1.0, imposed) : 1.0; }
-  /// 1e-4 of the unit of force, with rolling resistance 1e-2 (published): below it a contact counts as unstressed.
-  [[nodiscard]] double zero_force() const { return rolling ? 1e-2 : 1e-4; }
   /// Imposed stress.
   [[nodiscard]] double stress() const { return cohesive ? pressure : 1.0; }
   friend bool operator==(const PowderSpec&, const PowderSpec&) = default;
@@ -45,7 +44,8 @@ AnyLaw powder_law(const PowderSpec& spec);
 std::vector<double> drawn_diameters(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);
 
 /// Disks at random places of a square periodic cell, largest first, none within reach of another; at rest, or with
-/// Maxwell velocities of root mean square V0 without net momentum and without spin. Throws BadInput when they find no
+/// Maxwell velocities without net momentum and without spin: each component has the root mean square V0 over the disks,
+/// |v| that of sqrt 2 V0 [CP 3.3]. Throws BadInput when they find no
 /// place (Phi_I too high).
 System<2> make_powder(const PowderSpec& spec, std::uint64_t seed, std::uint64_t sample);
 

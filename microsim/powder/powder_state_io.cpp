@@ -1,5 +1,6 @@
 #include "microsim/powder/powder_state_io.h"
 
+#include <numbers>
 #include <string>
 
 #include "common/core/error.h"
@@ -72,19 +73,24 @@ void fields(auto&& item, Of<PowderSpec> auto& s) {
   item("rolling_stiffness", s.rolling_stiffness);
   item("rolling_friction", s.rolling_friction);
   item("pressure", s.pressure);
-  item("start_speed", s.start_speed);
 }
 
 }  // namespace
 
+/// V0 of each component. Files of version 0.2.0 and earlier have "start_speed" instead, of |v|.
+constexpr const char* kComponentSpeed = "start_speed_per_component";
+
 void write_powder_spec(const h5::Group& group, const PowderSpec& spec) {
   fields(AttributeWriter{group}, spec);
+  group.attribute(kComponentSpeed, spec.start_speed);
   if (spec.sizes) group.attribute("sizes", spec.sizes->text());
 }
 
 PowderSpec read_powder_spec(const h5::Group& group) {
   PowderSpec spec;
   fields(AttributeReader{group}, spec);
+  spec.start_speed = group.has_attribute(kComponentSpeed) ? group.number(kComponentSpeed)
+                                                          : group.number("start_speed") / std::numbers::sqrt2;
   if (group.has_attribute("sizes")) spec.sizes = stored_grading(group.text("sizes"), 2);
   return spec;
 }

@@ -19,7 +19,7 @@ PowderSpec small(double kappa) {
 }
 
 double coordination(const PowderState& s, const PowderSpec& spec) {
-  return powder_contacts(s.system, spec.zero_force(), spec.cohesive).coordination;
+  return powder_contacts(s.system, kPowderZeroForce, spec.cohesive).coordination;
 }
 
 PowderProtocol method(int number) {
@@ -123,8 +123,8 @@ TEST(PowderAssembly, DisksAggregateInAFixedCellBeforeItIsFreed) {
     if (p.phase > 1) continue;
     EXPECT_NEAR(p.fraction, 0.36, p.phase == 0 ? 1e-12 : 0.02) << "nothing presses yet";
   }
-  // Mean of m v^2/2 at the start, v^2 = V0^2 = 9.48^2 D0; <d^2> = 7/12 within sampling.
-  EXPECT_NEAR(energy, 0.5 * 7.0 / 12.0 * 9.48 * 9.48 * 1e-3, 0.006);
+  // Mean of m v^2/2 at the start, V0^2/<1/m> = 9.48^2 D0/2 (both components; <d^-2> = 2) within sampling.
+  EXPECT_NEAR(energy, 0.5 * 9.48 * 9.48 * 1e-3, 0.006);
   Vec<2> momentum{};
   for (std::size_t u = 0; u < 60; ++u)
     momentum += s.system.particles.velocity[u] * (1.0 / s.system.particles.inverse_mass[u]);

@@ -56,7 +56,7 @@ Means method1(const PowderSpec& spec, std::uint64_t seed, std::int64_t samples) 
     PowderState s = start_powder(spec, seed, k);
     const PowderResult r = run_powder(s, spec, powder_phases(spec, {}), {});
     EXPECT_TRUE(r.usable) << r.reason;
-    const PowderContacts c = powder_contacts(s.system, spec.zero_force(), spec.cohesive);
+    const PowderContacts c = powder_contacts(s.system, kPowderZeroForce, spec.cohesive);
     fraction[k] = r.fraction;
     z[k] = c.coordination;
     rumpf[k] = c.rumpf_pressure / spec.stress();

@@ -1,11 +1,14 @@
 // Powders in two dimensions: how a sample starts and how its contacts are counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "common/core/error.h"
 #include "common/neighbours/verlet_list.h"
+#include "microsim/powder/powder_analysis.h"
 #include "microsim/powder/powder_contacts.h"
 #include "microsim/powder/powder_start.h"
 
@@ -49,19 +52,48 @@ TEST(PowderStart, NoDiskIsWithinReachOfAnother) {
   EXPECT_THROW((void)make_powder(small(0.80), 1, 0), BadInput);
 }
 
-TEST(PowderStart, VelocitiesHaveTheSpeedAndNoMomentum) {
+/// V0 belongs to each component [CP 3.3], 0.3 a/T0 for 9.48 V*: |v| has a root mean square of sqrt 2 V0.
+TEST(PowderStart, ComponentsOfVelocitiesHaveTheSpeedAndNoMomentum) {
   PowderSpec spec = small(0.36);
   spec.start_speed = 9.48;
   const System<2> s = make_powder(spec, 1, 0);
   Vec<2> momentum{};
-  double square = 0.0;
+  Vec<2> square{};
   for (std::size_t u = 0; u < 200; ++u) {
-    momentum += s.particles.velocity[u] * (1.0 / s.particles.inverse_mass[u]);
-    square += norm2(s.particles.velocity[u]) / 200.0;
+    const Vec<2>& v = s.particles.velocity[u];
+    momentum += v * (1.0 / s.particles.inverse_mass[u]);
+    for (int k = 0; k < 2; ++k) square[k] += v[k] * v[k] / 200.0;
     EXPECT_EQ(s.particles.spin[u][0], 0.0);
   }
+  const double v0 = 9.48 * std::sqrt(1e-3);
+  EXPECT_NEAR(v0, 0.3, 3e-4);
   EXPECT_LT(norm(momentum), 1e-12);
-  EXPECT_NEAR(std::sqrt(square), 9.48 * std::sqrt(1e-3), 1e-12);
+  EXPECT_NEAR(std::sqrt(0.5 * (square[0] + square[1])), v0, 1e-12);
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(std::sqrt(square[k]), v0, 0.15 * v0) << "200 disks";
+}
+
+/// Maxwell: every component of sqrt(m) v is normal with one variance, that of equal mean energies, <m v_x^2> =
+/// V0^2/<1/m>. Kolmogorov-Smirnov distance of the components of 3000 disks, below the 1 % limit of 1.63/sqrt n.
+TEST(PowderStart, VelocitiesAreMaxwellian) {
+  PowderSpec spec = small(0.36);
+  spec.disks = 3000;
+  spec.start_speed = 9.48;
+  const System<2> s = make_powder(spec, 5, 0);
+  double inverse_mass = 0.0;
+  for (const double m : s.particles.inverse_mass) inverse_mass += m / 3000.0;
+  const double sigma = 9.48 * std::sqrt(1e-3) / std::sqrt(inverse_mass);
+  std::vector<double> scaled;
+  for (std::size_t u = 0; u < 3000; ++u)
+    for (int k = 0; k < 2; ++k)
+      scaled.push_back(s.particles.velocity[u][k] / std::sqrt(s.particles.inverse_mass[u]) / sigma);
+  std::sort(scaled.begin(), scaled.end());
+  double distance = 0.0;
+  const auto n = static_cast<double>(scaled.size());
+  for (std::size_t k = 0; k < scaled.size(); ++k) {
+    const double normal = 0.5 * std::erfc(-scaled[k] / std::numbers::sqrt2);
+    distance = std::max(distance, std::abs(normal - (static_cast<double>(k) + 0.5) / n));
+  }
+  EXPECT_LT(distance, 1.63 / std::sqrt(n));
 }
 
 System<2> by_hand(const PowderSpec& spec, const std::vector<Vec<2>>& x) {
@@ -100,6 +132,21 @@ TEST(PowderContacts, CountsAndForces) {
   EXPECT_NEAR(c.mean_normal, 0.0, 1e-9);
   EXPECT_NEAR(c.square_mean_normal, std::sqrt(1.5 / 3.0), 1e-9);
   EXPECT_NEAR(c.coordination_backbone, 1.2 / 0.8, 1e-12);
+}
+
+/// A force of 5e-3 F0 counts, with rolling resistance as without: 1e-2 is but a colour of pictures.
+TEST(PowderContacts, ForcesCountFromTheSameLimitWithRollingResistance) {
+  PowderSpec spec = small(0.36);
+  for (const bool rolling : {false, true}) {
+    spec.rolling = rolling;
+    const System<2> s =
+        by_hand(spec, {{{5.0, 5.0}}, {{6.0 - 1.005e-4, 5.0}}, {{9.0, 9.0}}, {{10.0 - 1.00005e-4, 9.0}}});
+    const PowderAnalysis a = analyse_powder(s, spec, 0.0, false);
+    EXPECT_EQ(a.zero, 1e-4);
+    EXPECT_EQ(a.contacts.repulsive, 1);
+    EXPECT_EQ(a.contacts.unstressed, 1);
+    EXPECT_EQ(a.forces.zero_share, 0.5);
+  }
 }
 
 TEST(PowderContacts, RattlersAreTakenAwayOneAfterAnother) {

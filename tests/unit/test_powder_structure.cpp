@@ -13,6 +13,7 @@
 #include "pipelines/kinds/cohesive_powder/scene.h"
 #include "pipelines/kinds/cohesive_powder/summary.h"
 #include "pipelines/report/report.h"
+#include "tests/support/hdf5_edit.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/temporary_directory.h"
 
@@ -100,6 +101,26 @@ TEST(PowderSpecIo, EveryMemberComesBack) {
     file.commit();
   }
   EXPECT_EQ(read_powder_spec(h5::open_file(directory.file("s.h5")).open("spec")), spec);
+}
+
+/// Files of version 0.2.0 and earlier say V0 of |v|.
+TEST(PowderSpecIo, AnOldSpeedIsThatOfBothComponents) {
+  PowderSpec spec = spec_of(7);
+  spec.start_speed = 9.48;
+  const test::TemporaryDirectory directory;
+  {
+    h5::AtomicFile file(directory.file("s.h5"));
+    write_powder_spec(file.root().create("spec"), spec);
+    file.commit();
+  }
+  {
+    test::Hdf5Edit edit(directory.file("s.h5"));
+    edit.remove_attribute("spec", "start_speed_per_component");
+    edit.set_attribute("spec", "start_speed", 9.48);
+  }
+  const PowderSpec old = read_powder_spec(h5::open_file(directory.file("s.h5")).open("spec"));
+  EXPECT_NEAR(old.start_speed, 9.48 / std::numbers::sqrt2, 1e-12);
+  EXPECT_FALSE(old == spec);
 }
 
 TEST(PowderSnapshots, ComeBackAsTheyWere) {

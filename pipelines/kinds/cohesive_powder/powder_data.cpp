@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::size_t kCourseColumns = 7;
 
+/// The published picture of a pack with rolling resistance colours contacts below it as unstressed [CP 3.5].
+constexpr double kRollingIdleColour = 1e-2;
+
 std::vector<PowderMoment> read_course(const h5::Group& group) {
   const auto rows = group.doubles("course");
   std::vector<PowderMoment> out;
@@ -49,7 +52,7 @@ PowderRun load_powder(const std::string& path) {
   const PowderSpec spec = read_powder_spec(root.open("spec"));
   PowderRun run;
   run.cohesive = spec.cohesive;
-  run.zero_force = spec.zero_force();
+  if (spec.rolling) run.idle_colour = kRollingIdleColour;
   for (std::size_t k = 0; root.has(fmt::format("sample_{}", k)); ++k)
     run.samples.push_back(read_sample(root.open(fmt::format("sample_{}", k)), spec));
   run.scattering = read_scattering(root);

@@ -43,7 +43,7 @@ struct PowderSample {
 struct PowderRun {
   std::vector<PowderSample> samples;
   std::optional<FittedCurve> scattering;  ///< mean over samples and their common fit
-  double zero_force = 1e-4;               ///< below it a contact counts as unstressed [F0]
+  double idle_colour = kPowderZeroForce;  ///< pictures show contacts with |N| below it as unstressed [F0]
   bool cohesive = true;
 };
 

@@ -68,7 +68,7 @@ std::string normal_figure(const PowderRun& run, const PowderForces& forces) {
   plot.add(std::move(s));
   return figure(plot.svg(), fmt::format("{} interactions of all samples with |N| of at least {}.",
                                         format_count(static_cast<std::int64_t>(forces.normal.size())),
-                                        format_number(run.zero_force, 2)));
+                                        format_number(kPowderZeroForce, 2)));
 }
 
 std::string ratio_figure(const PowderForces& forces) {
@@ -143,7 +143,7 @@ PowderForces powder_forces(const PowderRun& run) {
   PowderForces out;
   for (const PowderSample& sample : run.samples)
     for (const auto& c : sample.contacts) {
-      if (std::abs(c.normal_force) < run.zero_force) continue;
+      if (std::abs(c.normal_force) < kPowderZeroForce) continue;
       out.normal.push_back(c.normal_force);
       if (c.overlap <= 0.0) continue;
       const double tangential = c.tangential_force[1] * c.normal[0] - c.tangential_force[0] * c.normal[1];

@@ -213,7 +213,7 @@ ExitStatus run_powder_scene(const Scene& scene, const CommonOptions& options) {
   // A run goes on only with the states that it began with.
   const std::string states = setup.states.empty() ? "" : short_hash(read_text(setup.states));
   return run_powder_ensemble(setup, Run(scene, options, "microsim", setup.seed,
-                                        {.files = {setup.states}, .text = sizes_text(setup.spec) + states}));
+                                        {.files = {setup.states}, .text = powder_text(setup) + states}));
 }
 
 void read_any_powder(const Scene& scene) {

@@ -166,6 +166,10 @@ double PowderSetup::largest_stress() const {
   return most;
 }
 
+std::string powder_text(const PowderSetup& setup) {
+  return sizes_text(setup.spec) + (setup.protocol.method == 2 ? "V0 per component\n" : "");
+}
+
 std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed) {
   if (!setup.spec.sizes || !setup.states.empty()) return {};
   const double largest = setup.spec.sizes->largest();

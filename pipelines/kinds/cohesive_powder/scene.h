@@ -33,6 +33,10 @@ struct PowderSetup {
   [[nodiscard]] double largest_stress() const;
 };
 
+/// What determines a run beside its scene and seed: sizes, and the meaning of V0. A run that began with V0 of |v| does
+/// not go on.
+std::string powder_text(const PowderSetup& setup);
+
 /// Disks whose sizes a distribution says.
 std::vector<DrawnSizes> drawn_sizes(const PowderSetup& setup, std::uint64_t seed);
 

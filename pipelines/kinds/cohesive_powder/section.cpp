@@ -187,8 +187,7 @@ std::string tables(const RunData& run) {
   return table_of(samples, contact_columns()) + table_of(samples, force_columns()) +
          paragraph(
              "Lengths in a (largest diameter), forces in F0 (adhesion; without it P a). Interactions are contacts "
-             "and distant pairs; unstressed ones are below the published threshold. F_perc: largest force whose "
-             "contacts "
+             "and distant pairs; unstressed ones have |N| below 1e-4. F_perc: largest force whose contacts "
              "still reach across the cell. B, G: bulk and shear modulus of the springs of all contacts, in F0/a. Phi "
              "in 3D: the equivalent 0.752 Phi^1.5.") +
          shares_table(samples) + paragraph("x_k: share of disks with k interactions.") +
@@ -229,17 +228,17 @@ std::string snapshots(const PowderRun& run) {
 std::string packings(const PowderRun& run) {
   if (run.samples.empty()) return "";
   const PowderSample& sample = run.samples.front();
-  const std::string forces = packing_view(sample, PowderLines::forces, run.zero_force, "Forces, sample 0");
+  const std::string forces = packing_view(sample, PowderLines::forces, run.idle_colour, "Forces, sample 0");
   const std::string stressed =
-      packing_view(sample, PowderLines::stressed, run.zero_force, "Stressed and unstressed contacts, sample 0");
+      packing_view(sample, PowderLines::stressed, run.idle_colour, "Stressed and unstressed contacts, sample 0");
   if (forces.empty()) return "";
   return figure_row(
       {figure(forces, fmt::format("Lines between the centres of interacting disks, as wide as the normal force: {} a "
                                   "stand for {} F0, which one in twenty exceeds. Sample 0.",
                                   kStrongLine, format_number(strong_force(sample.contacts), 2))),
        figure(stressed,
-              fmt::format("All interactions; unstressed ones have |N| below {}. Disks with none but such are grey.",
-                          format_number(run.zero_force, 2)))});
+              fmt::format("All interactions; those with |N| below {} are blue. Disks with none but such are grey.",
+                          format_number(run.idle_colour, 2)))});
 }
 
 }  // namespace

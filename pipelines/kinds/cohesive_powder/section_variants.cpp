@@ -44,6 +44,19 @@ std::string comparison_table(const std::vector<VariantEntry>& entries) {
   return table.html();
 }
 
+/// Published numbers beside Phi and z, a row each; empty without any.
+std::string other_comparisons(const std::vector<VariantEntry>& entries) {
+  HtmlTable table({"variant", "number", "here", "published", "difference"});
+  bool any = false;
+  for (const VariantEntry& e : entries)
+    for (const auto& [name, number] : e.published) {
+      if (name == "Phi" || name == "z") continue;
+      table.row({e.name, name, ours(e, name), theirs(e, name), difference(e, name)});
+      any = true;
+    }
+  return any ? table.html() : "";
+}
+
 /// A quantity and how its column is called.
 using Quantity = std::pair<const char*, const char*>;
 
@@ -70,6 +83,7 @@ std::string tables(const std::vector<VariantEntry>& entries) {
          paragraph(
              "Mean over samples ± standard error; the difference to the published value also in combined standard "
              "errors where both are known.") +
+         other_comparisons(entries) +
          quantity_table(entries, {{"z_star", "z*"},
                                   {"x_0", "x_0"},
                                   {"x_1", "x_1"},

@@ -36,10 +36,11 @@ double rigidity_fixed(const PackSummary& s) {
   return s.analysis.rigidity ? static_cast<double>(s.analysis.rigidity->fixed.*kMember) : kNaN;
 }
 
-/// A fit that is not usable must not count in a mean.
-template <ScatteringEstimate ScatteringFit::*kEstimate>
-double fitted(const PackSummary& s) {
-  return s.scattering && s.scattering->usable ? ((*s.scattering).*kEstimate).value : kNaN;
+/// Interactions per disk of one sort; of all of them it is z.
+template <std::int64_t PowderContacts::*kSort>
+double coordination_of(const PackSummary& s) {
+  const auto all = static_cast<double>(s.contacts.contacts + s.contacts.distant);
+  return all > 0.0 ? s.contacts.coordination * static_cast<double>(s.contacts.*kSort) / all : kNaN;
 }
 
 constexpr auto kH = &Rigidity::indeterminacy;
@@ -47,9 +48,14 @@ constexpr auto kK = &Rigidity::floppy;
 constexpr auto kFree = &PowderRigidity::free;
 constexpr auto kBackbone = &PowderRigidity::backbone;
 
+constexpr const char* kPasses = "loop_passes";
+
 constexpr std::array kQuantities{
     Quantity{"Phi", [](const PackSummary& s) { return s.fraction; }},
     Quantity{"z", [](const PackSummary& s) { return s.contacts.coordination; }},
+    Quantity{"z_plus", coordination_of<&PowderContacts::repulsive>},
+    Quantity{"z_minus", coordination_of<&PowderContacts::tensile>},
+    Quantity{"z_zero", coordination_of<&PowderContacts::unstressed>},
     Quantity{"z_star", [](const PackSummary& s) { return s.contacts.coordination_backbone; }},
     Quantity{"x_0", share<0>},
     Quantity{"x_1", share<1>},
@@ -79,13 +85,13 @@ constexpr std::array kQuantities{
     Quantity{"k_free", rigidity<kK, kFree>},
     Quantity{"h_backbone", rigidity<kH, kBackbone>},
     Quantity{"k_backbone", rigidity<kK, kBackbone>},
-    Quantity{"dF", fitted<&ScatteringFit::dimension>},
-    Quantity{"xi", fitted<&ScatteringFit::length>},
     Quantity{"R_w", [](const PackSummary& s) { return s.holes ? s.holes->mean_radius : kNaN; }},
-    Quantity{"loop_passes", [](const PackSummary& s) { return static_cast<double>(s.loop_passes); }}};
+    Quantity{kPasses, [](const PackSummary& s) { return static_cast<double>(s.loop_passes); }}};
 
 constexpr const char* kSeconds = "seconds";  // stands beside the samples
-constexpr const char* kLambda = "lambda";    // these over all samples
+constexpr const char* kDimension = "dF";     // these of the common fit of I(k)
+constexpr const char* kLength = "xi";
+constexpr const char* kLambda = "lambda";  // these of the common consolidation
 constexpr const char* kAlpha = "alpha";
 constexpr const char* kDensest = "Phi_max";
 
@@ -113,10 +119,14 @@ void add_values(VariantEntry& entry, const PowderSummary& powder) {
     add_mean(entry, q.name, values);
   }
   add_mean(entry, kSeconds, seconds);
-  if (!powder.consolidation || !powder.consolidation->usable) return;
-  const auto add = [&](const char* name, const ConsolidationNumber& n) {
+  const auto add = [&](const char* name, const auto& n) {
     entry.values[name] = {n.value, kNaN, usable.size(), n.error};
   };
+  if (powder.scattering && powder.scattering->fit.usable) {
+    add(kDimension, powder.scattering->fit.dimension);
+    add(kLength, powder.scattering->fit.length);
+  }
+  if (!powder.consolidation || !powder.consolidation->usable) return;
   add(kLambda, powder.consolidation->slope);
   if (powder.consolidation->exponent) add(kAlpha, *powder.consolidation->exponent);
   if (powder.consolidation->densest) add(kDensest, *powder.consolidation->densest);
@@ -151,10 +161,17 @@ const std::vector<const char*>& powder_quantities() {
   static const std::vector<const char*> names = [] {
     std::vector<const char*> out;
     for (const Quantity& q : kQuantities) out.push_back(q.name);
-    for (const char* name : {kSeconds, kLambda, kAlpha, kDensest}) out.push_back(name);
+    for (const char* name : {kSeconds, kDimension, kLength, kLambda, kAlpha, kDensest}) out.push_back(name);
     return out;
   }();
   return names;
+}
+
+std::vector<const char*> powder_comparable() {
+  std::vector<const char*> out;
+  for (const char* name : powder_quantities())
+    if (std::string(name) != kPasses && std::string(name) != kSeconds) out.push_back(name);
+  return out;
 }
 
 VariantEntry powder_variant_entry(const PowderVariant& variant, const VariantRun* ended) {

@@ -17,6 +17,9 @@ struct VariantRun {
 /// Names of the quantities of an entry, in the order of the table.
 const std::vector<const char*>& powder_quantities();
 
+/// Those that may be published: all but what a run costs.
+std::vector<const char*> powder_comparable();
+
 /// "values" has mean, deviation, standard error and number of samples of every quantity over the samples at rest;
 /// "difference" to the published values, also in combined standard errors where both are known. `ended`: null when the
 /// variant was not run.

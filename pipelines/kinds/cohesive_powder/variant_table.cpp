@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,7 +18,15 @@ constexpr std::array kShown{"z_star",       "x_0",         "x_1",         "x_2",
                             "lambda",       "alpha",       "Phi_max",     "h",          "k",           "dF",
                             "xi",           "R_w",         "loop_passes", "seconds"};
 
-constexpr std::array kCompared{"Phi", "z"};
+/// Phi and z always, others where the publication gives them for a variant.
+std::vector<std::string> compared(const std::vector<VariantEntry>& entries) {
+  std::vector<std::string> out;
+  for (const std::string name : powder_comparable())
+    if (name == "Phi" || name == "z" ||
+        std::any_of(entries.begin(), entries.end(), [&](const VariantEntry& e) { return e.published.contains(name); }))
+      out.push_back(name);
+  return out;
+}
 
 /// In full precision; empty where there is none.
 std::string exact(double x) { return std::isfinite(x) ? nlohmann::json(x).dump() : ""; }
@@ -58,7 +67,8 @@ TextTable powder_data_table(const std::vector<VariantEntry>& entries) {
   TextTable table{{"name", "status", "reason", "disks", "samples", "usable_samples"}, {}};
   for (const std::string name : powder_quantities())
     for (const char* ending : {"", "_deviation", "_error"}) table.header.push_back(name + ending);
-  for (const std::string name : kCompared)
+  const std::vector<std::string> published = compared(entries);
+  for (const std::string& name : published)
     for (const char* ending : {"_published", "_published_error", "_difference", "_difference_in_errors"})
       table.header.push_back(name + ending);
   for (const VariantEntry& e : entries) {
@@ -70,7 +80,7 @@ TextTable powder_data_table(const std::vector<VariantEntry>& entries) {
                                  std::to_string(e.usable_samples)};
     for (const char* name : powder_quantities())
       for (const double x : {e.ours(name).mean, e.ours(name).deviation, e.ours(name).error}) row.push_back(exact(x));
-    for (const char* name : kCompared)
+    for (const std::string& name : published)
       for (const double x : {e.theirs(name).value, e.theirs(name).error, e.off(name).value, e.off(name).in_errors})
         row.push_back(exact(x));
     table.rows.push_back(std::move(row));
@@ -80,14 +90,17 @@ TextTable powder_data_table(const std::vector<VariantEntry>& entries) {
 
 TextTable powder_people_table(const std::vector<VariantEntry>& entries) {
   TextTable table{{"variant", "status", "at rest"}, {}};
-  for (const std::string name : kCompared)
+  const std::vector<std::string> published = compared(entries);
+  for (const std::string& name : published)
     for (const char* ending : {"", " published", " difference (in errors)"}) table.header.push_back(name + ending);
-  table.header.insert(table.header.end(), kShown.begin(), kShown.end());
+  std::vector<std::string> others(kShown.begin(), kShown.end());
+  std::erase_if(others, [&](const std::string& name) { return std::ranges::find(published, name) != published.end(); });
+  table.header.insert(table.header.end(), others.begin(), others.end());
   for (const VariantEntry& e : entries) {
     std::vector<std::string> row{e.name, to_string(e.status), samples_text(e)};
-    for (const std::string name : kCompared)
+    for (const std::string& name : published)
       row.insert(row.end(), {ours(e, name, "{:.4f}"), theirs(e, name), difference(e, name)});
-    for (const std::string name : kShown) row.push_back(ours(e, name, "{:.4g}"));
+    for (const std::string& name : others) row.push_back(ours(e, name, "{:.4g}"));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -96,7 +109,7 @@ TextTable powder_people_table(const std::vector<VariantEntry>& entries) {
 std::string powder_variant_line(const VariantEntry& entry) {
   std::string line = entry.name + ": ";
   if (entry.status == RunStatus::not_run) return line + "not run\n";
-  for (const std::string name : kCompared) {
+  for (const std::string& name : compared({entry})) {
     const std::string published = theirs(entry, name);
     line += fmt::format("{} {}{}, ", name, ours(entry, name, "{:.4f}"),
                         published.empty() ? "" : " (published " + published + ")");

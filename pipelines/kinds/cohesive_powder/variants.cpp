@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/core/error.h"
+#include "pipelines/kinds/cohesive_powder/variant_entry.h"
 #include "pipelines/run/variant_name.h"
 
 namespace softgrain {
@@ -16,20 +17,18 @@ namespace {
 /// What stands beside the variants in the directory of the run.
 constexpr std::array kTakenNames{"figures", "work", "summary.json", "log.txt", "report.html", "table.csv", "table.md"};
 
-constexpr std::array kPublished{"Phi", "z"};
-
 /// Keys of a variant that replace those of the scene.
 constexpr std::array kReplacing{"title", "samples", "disks", "contact", "assembly", "analysis"};
 
 std::vector<PublishedValue> read_published(const SceneTable& t) {
   std::vector<PublishedValue> out;
-  for (const std::string quantity : kPublished) {
+  for (const std::string quantity : powder_comparable()) {
     const std::string error = quantity + "_error";
     if (!t.has(quantity)) {
       if (t.has(error)) t.mistake(error, "without the value " + quantity);
       continue;
     }
-    out.push_back({quantity, t.number(quantity, Unit::none, Range::not_negative()), std::nullopt});
+    out.push_back({quantity, t.number(quantity, Unit::none, Range::any()), std::nullopt});
     if (t.has(error)) out.back().error = t.number(error, Unit::none, Range::positive());
   }
   return out;

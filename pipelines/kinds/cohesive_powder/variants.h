@@ -12,7 +12,7 @@ namespace softgrain {
 
 /// A number of the publication, shown beside ours.
 struct PublishedValue {
-  std::string quantity;  ///< "Phi", "z"
+  std::string quantity;  ///< one of powder_comparable()
   double value = 0.0;
   std::optional<double> error;
 };

@@ -37,8 +37,8 @@ bool belongs(const VariantRun& ended, const PowderVariant& variant, const RunCon
 /// A variant without result is one that has come to an end, not the end of all.
 void run_variant(const PowderVariant& variant, const RunContext& context) {
   try {
-    run_powder_ensemble(variant.setup, Run(context.part(variant.name), variant.scene, variant.setup.seed,
-                                           sizes_text(variant.setup.spec)));
+    run_powder_ensemble(variant.setup,
+                        Run(context.part(variant.name), variant.scene, variant.setup.seed, powder_text(variant.setup)));
   } catch (const NotUsable& e) {
     context.say(fmt::format("{}: {}", variant.name, e.what()));
   }
