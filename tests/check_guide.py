@@ -23,7 +23,7 @@ PAGES = {
          "pipelines/kinds/macro_comparison/scene.cpp", "pipelines/law/named_laws.cpp",
          "pipelines/commands/calibrate.cpp", "pipelines/law/fit_settings.cpp",
          "pipelines/kinds/soft_particle/kept_states.cpp"],
-        {"beyond"}, {"cell", "entry", "pair", "macrosim"}),
+        {"beyond", "modulus_stress"}, {"cell", "entry", "pair", "macrosim"}),
     "scene_material_models.md": (["pipelines/kinds/material_models/scene.cpp"], {"name"}, set()),
     "scene_law_table.md": (
         ["pipelines/kinds/law_table/scene.cpp", "pipelines/kinds/law_table/crowd_scene.cpp", "pipelines/kinds/law_table/crowd_law_fit.cpp",

@@ -15,9 +15,8 @@ namespace softgrain {
 ///
 /// The published rule [QS 2.1] need not have an equilibrium, for two reasons, so `reference` deviates from it twice,
 /// each time by as much as makes the tangential force continuous enough:
-/// - A contact that slid or unloaded in an earlier increment starts with a force at or above the limit. It keeps its
-/// force,
-///   Q = Qp, unless it slips back. When it slips sideways, k' of the publication leaps between 0 and k* over next to no
+/// - A contact that slid or unloaded in an earlier increment starts with a force at or above the limit. It keeps it, Q
+///   = Qp, unless it slips back. When it slips sideways, k' of the publication leaps between 0 and k* over next to no
 ///   displacement. Here an increment starts from at most 0.999 of max(mu P0, |Qp|); in slip |Q| is that limit itself.
 /// - A contact that opens takes with it a tangential force that it still carries. Here |Q| is at most 100 mu P, and the
 ///   torsion likewise.
