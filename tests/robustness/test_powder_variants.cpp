@@ -33,7 +33,7 @@ scattering = false
 holes = false
 [[variant]]
 name = "rough"
-published = { Phi = 0.81, Phi_error = 0.01, z = 2.6 }
+published = { Phi = 0.81, Phi_error = 0.01, z = 2.6, z_plus = 2.5, mean_repulsive = 1.1 }
 [[variant]]
 name = "smooth"
 title = "Without friction"
@@ -87,6 +87,11 @@ TEST_F(PowderVariants, TableOfAll) {
   EXPECT_TRUE(rough["difference"]["z"]["in_errors"].is_null()) << "published without an error";
   for (const char* name : {"z_star", "x_0", "x_6", "mean_normal", "rumpf_ratio", "F_perc", "h_backbone", "seconds"})
     EXPECT_TRUE(rough["values"].contains(name)) << name;
+  const double plus = rough["values"]["z_plus"]["mean"];
+  EXPECT_NEAR(plus + rough["values"]["z_zero"]["mean"].get<double>(), rough["values"]["z"]["mean"].get<double>(),
+              1e-12);
+  EXPECT_NEAR(rough["difference"]["z_plus"]["value"].get<double>(), plus - 2.5, 1e-14);
+  EXPECT_EQ(rough["published"]["mean_repulsive"]["value"], 1.1);
   EXPECT_EQ(s["variants"][1]["usable_samples"], 3);
   EXPECT_EQ(s["variants"][1]["title"], "Without friction");
   EXPECT_TRUE(s["variants"][1]["published"].empty());
@@ -95,6 +100,8 @@ TEST_F(PowderVariants, TableOfAll) {
   for (const char* start : {"name,status", "rough,good", "smooth,good"})
     EXPECT_TRUE(std::getline(csv, line) && line.starts_with(start)) << line;
   EXPECT_NE(read_text(out("table.md")).find("| smooth |"), std::string::npos);
+  for (const char* column : {",z_plus_published,", ",mean_repulsive_difference,"})
+    EXPECT_NE(read_text(out("table.csv")).find(column), std::string::npos) << column;
   EXPECT_FALSE(fs::exists(out("rough/work")));
 }
 
@@ -199,7 +206,7 @@ TEST_F(PowderVariants, CheckAndReport) {
   for (const std::string which : {"", "/rough"})
     EXPECT_EQ(run_the_program("report '" + directory_.file("out") + which + "'").status, 0);
   const std::string html = read_text(out("report.html"));
-  for (const char* words : {"powder-published-Phi", "powder-published-z", "smooth", "0.810 ± 0.010"})
+  for (const char* words : {"powder-published-Phi", "powder-published-z", "smooth", "0.810 ± 0.010", "mean_repulsive"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
   EXPECT_NE(read_text(out("rough/report.html")).find("positive definite"), std::string::npos);
 }
