@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every command block of README.md and pipelines/guide/*.md, in order, in a copy of the tree made of links.
+"""Runs every command block of README.md, tests/README.md and pipelines/guide/*.md, in order, in a copy of the tree made of links.
 
     run_blocks.py ROOT PROGRAM [--slow] [--compiler CXX --header DIR]    default: seconds; --slow: what takes minutes, as it stands
     run_blocks.py ROOT --list                                            how each command is tested
@@ -141,7 +141,7 @@ def rule_of(command):
 
 
 def pages(root):
-    return [root / "README.md", *sorted((root / "pipelines/guide").glob("*.md"))]
+    return [root / "README.md", root / "tests/README.md", *sorted((root / "pipelines/guide").glob("*.md"))]
 
 
 def link_tree(root, work, program):
