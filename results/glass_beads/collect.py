@@ -41,25 +41,26 @@ def header(cells):
 
 def states(packs):
     header(["pack", "grains", "mu", "increment", "sigma_c(mu=0) [MPa]", "solid fraction", "z", "sigma_c at end of (b) [MPa]",
-            "sliding there", "sigma_c at end [MPa]", "sliding at end", "with Q = mu P as it is", "z at end",
-            "sigma_c of smallest G [MPa]", "largest shear/sigma_c"])
+            "sliding there", "sigma_c at end [MPa]", "sliding at end", "Q = mu P of the start of an increment", "z at end",
+            "sigma_c of smallest G [MPa]", "largest shear/sigma_c", "largest moment/(V sigma_c)"])
     for pack, _ in packs:
         a, b, c = pack["after_compaction"], pack["after_friction"] or pack["after_compaction"], pack["at_end"]
         row([pack["name"], str(pack["grains"]), str(pack["mu"]), ", ".join(f"{x:g}" for x in pack["increments"]),
              text(a["pressure"] / 1e6), text(a["solid_fraction"], 4), text(a["coordination"], 4), text(b["pressure"] / 1e6),
              text(b["sliding_share"]), text(c["pressure"] / 1e6, 4) if c else "-", text(c["sliding_share"]) if c else "-",
-             text(c["sliding_at_end"]) if c else "-", text(c["coordination"], 4) if c else "-",
-             text(in_mpa(pack["pressure_of_smallest_G"])), text(pack["largest_shear_stress_ratio"], 2)])
+             text(c["sliding_limit_at_start"]) if c else "-", text(c["coordination"], 4) if c else "-",
+             text(in_mpa(pack["pressure_of_smallest_G"])), text(pack["largest_shear_stress_ratio"], 2),
+             text(pack["largest_wall_moment_ratio"], 2)])
 
 
-def moduli(packs, name):
-    header([f"{name} [GPa] at sigma_c"] + [f"{s / 1e6:g} MPa" for s in STRESSES])
+def side_by_side(packs, name, unit, factor, form):
+    header([f"{name.replace('_', ' ')} [{unit}] at sigma_c"] + [f"{s / 1e6:g} MPa" for s in STRESSES])
     for pack, _ in packs:
         found = {round(m["pressure"]): m for m in pack["moduli"]}
         cells = []
         for stress in STRESSES:
             m = found.get(round(stress))
-            cells.append("-" if m is None or m[name] is None else f"{m[name] / 1e9:.3f} ± {m[name + '_error'] / 1e9:.3f}")
+            cells.append("-" if m is None or m[name] is None else f"{m[name] / factor:{form}} ± {m[name + '_error'] / factor:{form}}")
         row([pack["name"]] + cells)
 
 
@@ -85,9 +86,9 @@ def cost(packs):
 def main(directories):
     packs = list(packs_of(directories))
     states(packs)
-    for name in ("K", "G"):
+    for what in (("K", "GPa", 1e9, ".3f"), ("G", "GPa", 1e9, ".3f"), ("mean_normal_force", "N", 1.0, ".4f")):
         print()
-        moduli(packs, name)
+        side_by_side(packs, *what)
     print()
     exponents(packs)
     print()

@@ -84,6 +84,12 @@ TEST(LeastWorkReferenceRule, AContactThatCarriesMoreTorsionThanItsLimitKeepsIt) 
   EXPECT_NEAR(moment(0.2), 0.3, 1e-12);
 }
 
+const PackContact* find_contact(const std::vector<PackContact>& all, const PackContact& c) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const PackContact& o) { return o.i == c.i && o.j == c.j; });
+  return found == all.end() ? nullptr : &*found;
+}
+
 /// What a state says of its contacts is not cut when the next increment begins, and sliding is |Q| >= mu P of the
 /// state.
 TEST(LeastWorkReferenceRule, SlidingGoesByTheForcesOfTheState) {
@@ -92,23 +98,25 @@ TEST(LeastWorkReferenceRule, SlidingGoesByTheForcesOfTheState) {
   options.coulomb = CoulombRule::reference;
   std::int64_t above = 0;
   std::int64_t sliding = 0;
+  double before = 0.0;
+  double after = 0.0;
   for (int k = 0; k < 20; ++k) {
     ASSERT_TRUE(advance(pack, squeeze(pack, {{0.0, 0.0, 3e-4}}), options).converged);
     const GrainPack start = pack;
     ASSERT_TRUE(advance(pack, std::vector<Vec3>(6), options).converged);  // nothing moves
-    above = sliding = 0;
-    for (std::size_t c = 0; c < pack.contacts.size(); ++c) {
-      const PackContact& now = pack.contacts[c];
-      const double limit = kFriction * now.normal_force;
-      EXPECT_EQ(now.sliding, norm(now.tangential_force) >= (1.0 - 1e-6) * limit);
+    for (const PackContact& now : pack.contacts) {
+      EXPECT_EQ(now.sliding, norm(now.tangential_force) >= (1.0 - 1e-6) * kFriction * now.normal_force);
       sliding += now.sliding ? 1 : 0;
-      if (norm(start.contacts[c].tangential_force) < 1.05 * kFriction * start.contacts[c].normal_force) continue;
+      const PackContact* then = find_contact(start.contacts, now);
+      if (then == nullptr || norm(then->tangential_force) < 1.05 * kFriction * then->normal_force) continue;
       ++above;
-      EXPECT_GT(norm(now.tangential_force), 0.95 * norm(start.contacts[c].tangential_force));
+      before += norm(then->tangential_force);
+      after += norm(now.tangential_force);
     }
   }
-  EXPECT_GT(above, 10);
+  EXPECT_GT(above, 200);
   EXPECT_GT(sliding, above);
+  EXPECT_NEAR(after / before, 1.0, 0.02);
 }
 
 TEST(LeastWorkReferenceRule, TheForceFadesWhereAContactOpensAndOnlyThere) {
@@ -188,7 +196,7 @@ TEST(LeastWorkReferenceRule, PublishedAndFastAgreeWhileContactsSlide) {
         std::count_if(fast.contacts.begin(), fast.contacts.end(), [](const PackContact& c) { return c.sliding; });
     std::cout << "sliding " << sliding << " of " << fast.contacts.size() << ", over the force on a wall: walls "
               << walls / scale << ", contacts " << contacts / scale << ", bound " << bound / scale << "\n";
-    EXPECT_GT(sliding, 150);
+    EXPECT_GT(sliding, 50);
     EXPECT_LT(bound, 1e-6 * scale);
     EXPECT_LT(walls, bound);
     EXPECT_LT(contacts, bound);
