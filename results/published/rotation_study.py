@@ -13,7 +13,8 @@ HERE = pathlib.Path(__file__).parent
 E, RS = 5e5, 0.016
 DEGREE = math.pi * RS / 180.0  # ht of one degree [m]
 ANGLES = ("0.5", "1", "2")
-PICTURES = {"ft-ht-along-the-displacement-soft-solid": "force_over_angle", "ft-ht-along-the-displacement-soft-soft": "force_over_angle_soft_soft"}
+PICTURES = {"ft-ht-along-the-displacement-soft-particle-on-a-solid-plane": "force_over_angle",
+            "ft-ht-along-the-displacement-two-equal-soft-particles": "force_over_angle_soft_soft"}
 
 
 def published_force(delta):
@@ -36,8 +37,7 @@ def pm(value, error, digits=3):
 
 def part(work, name, pair, which):
     """Rows of a comparison by Delta."""
-    file = next((work / name).glob("*.json"))
-    found = next(m for m in json.loads(file.read_text())["measurements"] if m["pair"] == pair)
+    found = next(m for m in json.loads((work / name / "summary.json").read_text())["measurements"] if m["pair"] == pair)
     return {round(r["delta"], 6): r for r in found[which]}
 
 
@@ -93,7 +93,7 @@ def main():
     text += "\n## Force over angle\n\nMean over packings in both directions; the force at no rotation (prestrain) averages to zero within its error.\n\n"
     text += "".join(f"![{name}]({name}.svg)\n\n" for name in PICTURES.values())
     deltas = sorted(part(work, "slower-few", "soft-solid", "stiffness_secant"))
-    text += "## What the turn makes of it\n\nRatio to the usual turn, on a plane, 12 packings.\n\n"
+    text += "## What the turn makes of it\n\nRatio to the usual turn, on a plane, the first 6 packings.\n\n"
     text += table(["variant", "quantity"] + [f"Delta {d:.2f}" for d in deltas], variant_rows(work))
     text += ("\nWith a shell that stays the turn is a drive, not a constraint: friction on the shell holds the grains back, and they turn by less than the "
              "angle. How the publication held its shell is not known.\n")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # kt by a slow turn beside the published stiffness, and what the shell, the path and the speed of the turn make of it: writes
-# rotation_study.md and its pictures here. Usage: results/published/rotation_study.sh [WORK_DIRECTORY]; a quarter of an hour of one core.
+# rotation_study.md and its pictures here. Usage: results/published/rotation_study.sh [WORK_DIRECTORY]; ten minutes of one core.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=${1:-$root/results/rotation_study}
@@ -13,7 +13,7 @@ run() { # name and overrides; status 3: a few points did not converge
 }
 # Variants on the first of the same packings, on a plane alone.
 variant() {
-  run "$@" --set packing.count=12 --set measure.soft_soft.deltas='[0.05]' --set measure.soft_soft.tangential_deltas='[]'
+  run "$@" --set packing.count=6 --set measure.soft_soft.deltas='[0.05]' --set measure.soft_soft.tangential_deltas='[]'
 }
 compare() { # candidate reference
   "$root/softgrain" compare "$work/$1" "$work/$2" --out "$work/$1-$2" --different --quiet >/dev/null
