@@ -95,8 +95,8 @@ def main():
     deltas = sorted(part(work, "slower-few", "soft-solid", "stiffness_secant"))
     text += "## What the turn makes of it\n\nRatio to the usual turn, on a plane, the first 6 packings.\n\n"
     text += table(["variant", "quantity"] + [f"Delta {d:.2f}" for d in deltas], variant_rows(work))
-    text += ("\nWith a shell that stays the turn is a drive, not a constraint: friction on the shell holds the grains back, and they turn by less than the "
-             "angle. How the publication held its shell is not known.\n")
+    text += ("\nWith a shell that stays the turn is a drive, not a constraint: friction on the shell holds the grains back, and they hardly turn. "
+             "How the publication held its shell is not known.\n")
     (HERE / "rotation_study.md").write_text(text)
     for source, name in PICTURES.items():
         found = sorted((work / "turns" / "figures").glob(source + "*.svg"))
