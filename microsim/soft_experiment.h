@@ -37,7 +37,7 @@ struct SoftExperiment {
   /// The velocities and spins with which all grains of body 1 turn about the z axis through its centre at `rate`
   /// [rad/s], in the directions of the state as it is. They are added to the motion that grains have of their own, so
   /// that the pack rearranges while it turns. A positive rate drags the second body towards +y. A shell that does not
-  /// turn holds its grains back by friction, which no drive overcomes: its grains then turn by less than the angle.
+  /// turn holds its grains back by friction, which this drive does not overcome: they hardly turn then.
   [[nodiscard]] Drive turning(double rate, bool shell_turns) const;
 };
 

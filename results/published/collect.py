@@ -43,11 +43,11 @@ def pm(value, error, digits=3):
 def law_rows(laws):
     rows = []
     for kind, law in laws.items():
-        for part, name in (("normal", "Fn"), ("tangential", "kt, initial slope"), ("tangential_secant", "kt, secant at 1°")):
+        for part, name in (("normal", "Fn"), ("tangential", "kt, initial slope"), ("tangential_secant", "kt, secant at {:g}°")):
             p = law.get(part)
             if not p or p.get("a") is None:
                 continue
-            cells = [kind, name]
+            cells = [kind, name.format(p.get("angle_deg", 0.0))]
             for key in ("a", "b", "c", "delta"):
                 low, high = (f"{x:.3g}" if x is not None else "unbounded" for x in p[key + "_interval"])
                 cells.append(f"{p[key]:.4g} [{low}, {high}]")
@@ -155,7 +155,7 @@ def main():
              f"{c['speedup_contact_evaluations']:.0f} times fewer contact evaluations, {c['speedup_seconds']:.0f} times less time. "
              "The pair law is measured with one contact; with neighbours all around a soft particle is stiffer.\n\n![macro](macro_against_twin.svg)\n")
     text += "\n## Remarks of the run\n\n" + "".join(f"- {r}\n" for r in run["remarks"])
-    text += "\nHow the packing moves the law: [packing_study.md](packing_study.md). How shell and path of rotation move kt: [rotation_study.md](rotation_study.md).\n"
+    text += "\nHow the packing moves the law: [packing_study.md](packing_study.md). kt beside the published one, and how shell, path and speed of the turn move it: [rotation_study.md](rotation_study.md).\n"
     (HERE / "README.md").write_text(text)
     for source, name in FIGURES.items():
         shutil.copy(run_dir / "figures" / f"{source}.svg", HERE / f"{name}.svg")
