@@ -101,7 +101,7 @@ void write_entry(Out out, const LawTableEntry& e) {
   for (const SlideName& slide : kSlides) {
     const SlideLaw& law = e.*slide.law;
     fmt::format_to(out,
-                   "\n[entry.{}]  # kt/kn (at a slide of pi Rs/180, 1 degree, in small steps) and mu_soft\nkt_ratio = {}\nfriction = "
+                   "\n[entry.{}]  # kt/kn (slow slide of pi Rs/180) and mu_soft\nkt_ratio = {}\nfriction = "
                    "{}\nmeasured = {}\n",
                    slide.key, estimate_text(law.kt_ratio), estimate_text(law.friction), law.measured);
     if (law.rolls)

@@ -102,10 +102,10 @@ inline constexpr const char* kExperiment = "experiment";  ///< in the place of a
 
 struct LawCard {
   int schema = 1;
-  SoftParticleSpec spec;                  ///< of the measurement behind the law
-  std::string relaxation;                 ///< which relaxation measured it, or kExperiment
-  TurnProtocol turn = TurnProtocol::slow;                 ///< how tangential stiffnesses were measured; not of an experiment
-  std::string intervals = kFromPackings;  ///< where the 95 % intervals come from, of all pairs together
+  SoftParticleSpec spec;                   ///< of the measurement behind the law
+  std::string relaxation;                  ///< which relaxation measured it, or kExperiment
+  TurnProtocol turn = TurnProtocol::slow;  ///< how tangential stiffnesses were measured; not of an experiment
+  std::string intervals = kFromPackings;   ///< where the 95 % intervals come from, of all pairs together
   std::vector<PairLaw> pairs;
   std::string table_id{};            ///< of the .h5 that belongs to the card; may be empty
   std::vector<std::string> notes{};  ///< of reading: what of the .h5 does not go with an edited card

@@ -28,7 +28,8 @@ enum class TurnProtocol {
 };
 
 template <>
-inline constexpr auto words<TurnProtocol> = word_list<TurnProtocol>({{TurnProtocol::frozen, "frozen turn"}, {TurnProtocol::slow, "slow turn"}});
+inline constexpr auto words<TurnProtocol> = word_list<TurnProtocol>({{TurnProtocol::frozen, "frozen turn"},
+                                                                     {TurnProtocol::slow, "slow turn"}});
 
 /// The soft particle that was measured [SP 1.1-1.3]. SI units. Of an experiment only Rs and E are always known: numbers
 /// that nobody gave are NaN, trials 0.
@@ -110,10 +111,10 @@ struct PackingRun {
 
 struct Measurements {
   SoftParticleSpec spec;
-  bool shell_turns = true;      ///< whether the first shell turns with its grains in tangential runs
-  double approach_speed = 0.0;  ///< [m/s], of the published relaxation
-  TurnProtocol turn = TurnProtocol::slow;       ///< of tangential points; files that do not say it have frozen turns
-  double turn_speed = 0.0;      ///< [m/s], of the rim of the shell in a slow turn; 0: nothing was turned
+  bool shell_turns = true;                 ///< whether the first shell turns with its grains in tangential runs
+  double approach_speed = 0.0;             ///< [m/s], of the published relaxation
+  TurnProtocol turn = TurnProtocol::slow;  ///< of tangential points; files that do not say it have frozen turns
+  double turn_speed = 0.0;                 ///< [m/s], of the rim of the shell in a slow turn; 0: nothing was turned
   std::vector<PackingInfo> packings;
   std::vector<PackingRun> runs;
 };

@@ -6,8 +6,8 @@
 
 int main() {
   softgrain::SoftContact soft;
-  soft.delta = 0.09577163073540673;
-  soft.normal = softgrain::threshold_term(0.8049681979519615, 3.0960655297004513, soft.delta);
+  soft.delta = 0.09424152728466292;
+  soft.normal = softgrain::threshold_term(0.8294107615342468, 3.1213208150310874, soft.delta);
   soft.modulus = 0.5e6;
   const double radius = 0.016;
   softgrain::ContactState<3> contact;

@@ -36,7 +36,7 @@ class CardTest(unittest.TestCase):
     law = softgrain.Law.load(CARD)
 
     def program(self, kind, beyond="extrapolate"):
-        deltas = ["0", "0.05", "0.0957", "0.0958", "0.15", "0.2", "0.3", "0.35"]
+        deltas = ["0", "0.05", "0.0942", "0.0943", "0.15", "0.2", "0.3", "0.35"]
         out = evaluated(CARD, "--kind", kind, "--beyond", beyond, "--E", "2e6", "--radius", "0.02", "--delta", *deltas)
         found = out["laws"][0]["values"] if "laws" in out else out["values"]
         return np.array([v["delta"] for v in found]), found

@@ -146,8 +146,8 @@ TEST(DamagedRun, StartsATaskAfreshOfWhichNothingIsLeft) {
   const auto begun = [&] { return fs::exists(work + "macro-shelled-0.h5"); };
   ASSERT_TRUE(
       interrupted_in_the_middle([&] { return start_program(runs.arguments("out", one)); }, begun, runs.out("out")));
-  for (const std::string task : {"damped-soft-solid-0", "damped-soft-solid-0-states", "damped-soft-soft-1",
-                                 "macro-shelled-0", "macro-law-0-states"}) {
+  for (const std::string task : {"damped-soft-solid-0-slow-turn", "damped-soft-solid-0-slow-turn-states",
+                                 "damped-soft-soft-1", "macro-shelled-0", "macro-law-0-states"}) {
     const std::string out = "out-" + task;
     fs::copy(runs.out("out"), runs.out(out), fs::copy_options::recursive);
     const std::string file = runs.out(out) + "/work/" + task + ".h5";

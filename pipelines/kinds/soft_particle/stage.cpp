@@ -28,8 +28,10 @@ struct Task {
   PairKind kind = PairKind::soft_solid;
   std::int64_t packing = 0;
 
+  /// The turn is named, so that a run of an earlier version that is taken up measures its rotations anew.
   [[nodiscard]] std::string name() const {
-    return to_string(series->relaxation) + "-" + to_string(kind) + "-" + std::to_string(packing);
+    const std::string turned = series->plan(kind).angles_deg.empty() ? "" : "-slow-turn";
+    return to_string(series->relaxation) + "-" + to_string(kind) + "-" + std::to_string(packing) + turned;
   }
   /// Relative cost, for progress and for starting long tasks first.
   [[nodiscard]] double weight() const {
