@@ -70,12 +70,21 @@ TEST_F(KeysThatCount, KeysOfATestAreRefusedBesideCommonStages) {
     refused(kHead + kStages + "[[variant]]\nname = \"a\"\n" + key + "\n", "the common [[stage]] say what is tested");
     refused(comparison_stages() + key + "\n", "the common [[stage]] say what is tested");
   }
-  const MaterialScene m = material(kStages + "[[variant]]\nname = \"a\"\ntest = \"isotropic\"\nstrain = 0.1\n");
+  const MaterialScene m =
+      material(kStages + "[[variant]]\nname = \"a\"\ntest = \"isotropic\"\nstrain = 0.1\n[[variant]]\nname = \"b\"\n");
   EXPECT_EQ(stages_of(m.variants.at(0).setup.spec).size(), 1U) << "a test of its own takes their place";
   refused(kHead + "[test]\nsteps = 3\n[[stage]]\nkind = \"isotropic\"\nstrain = 0.02\nsteps = 9\n",
           "every [[stage]] gives its own");
   refused(kHead + "[[variant]]\nname = \"a\"\nsteps = 4\n[[loading]]\nname = \"l\"\nsteps = 3\n",
           "each [[loading]] of this variant gives its own");
+}
+
+TEST_F(KeysThatCount, CommonStagesThatNoPartTakesAreRefused) {
+  const std::string test = "test = \"isotropic\"\n";
+  const std::string own = "[[variant.stage]]\nkind = \"oedometric\"\nstrain = 0.02\n";
+  const std::string variants = "[[variant]]\nname = \"a\"\n" + test + "[[variant]]\nname = \"b\"\n";
+  refused(kHead + kStages + variants + own, "no [[variant]] takes it");
+  EXPECT_EQ(material(kStages + variants).variants.size(), 2U) << "b takes the common ones";
 }
 
 TEST_F(KeysThatCount, WhatTheCommonTableSaysOfAPreparationStays) {

@@ -333,6 +333,12 @@ void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const 
   }
 }
 
+void refuse_idle_stages(const SceneTable& root, const char* part, const std::vector<SceneTable>& parts) {
+  const auto takes_none = [](const SceneTable& t) { return t.has("test") || t.has("stage"); };
+  if (root.has("stage") && !parts.empty() && std::all_of(parts.begin(), parts.end(), takes_none))
+    root.mistake("stage", fmt::format("no [[{}]] takes it: each gives test or [[stage]] of its own", part));
+}
+
 bool says_in_test(const SceneTable& t, const std::string& key) {
   return t.has(key) || each_says(t.tables("stage"), key);
 }

@@ -27,6 +27,10 @@ void read_part_stages(const SceneTable& common, const SceneTable& t, MacroSpec& 
 /// tests in stages.
 void refuse_idle_test_keys(const SceneTable& t, const SceneTable& stages, const std::vector<const MacroSpec*>& tests);
 
+/// Refuses the common tables `stage` of a scene all of whose parts ([[variant]], [[scene]]) give a test or stages of
+/// their own. `part`: what parts are called.
+void refuse_idle_stages(const SceneTable& root, const char* part, const std::vector<SceneTable>& parts);
+
 /// Whether `t` says this key of a test itself, or in each of its tables `stage`.
 bool says_in_test(const SceneTable& t, const std::string& key);
 

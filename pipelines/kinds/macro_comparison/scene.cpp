@@ -63,6 +63,7 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
     base.kept_states = read_kept_states(root);
     for (const SceneTable& t : root.tables("scene"))
       setup.scenes.push_back(read_scene(root, t, base, setup.spec, setup.scenes, setup.seed, root.sound()));
+    refuse_idle_stages(root, "scene", root.tables("scene"));
     std::vector<const MacroSpec*> tests;
     for (const ComparisonScene& s : setup.scenes) tests.push_back(&s.setup.spec);
     if (!tests.empty()) {
@@ -70,6 +71,9 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
       const auto any = [&](auto&& has) { return std::any_of(setup.scenes.begin(), setup.scenes.end(), has); };
       refuse_idle_keys(macro, any([](const ComparisonScene& s) { return !s.setup.twins.empty(); }),
                        any([](const ComparisonScene& s) { return s.setup.bands > 0; }));
+      if (macro.has("solid_fill") &&
+          !any([](const ComparisonScene& s) { return s.setup.spec.construction == Construction::voids; }))
+        macro.mistake("solid_fill", "goes with construction = \"voids\", which no [[scene]] has");
     }
     if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
     const SceneTable law = root.table("law");

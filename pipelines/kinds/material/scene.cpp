@@ -285,6 +285,7 @@ MaterialScene read_material(const SceneTable& root) {
     if (root.sound()) require_room(grains, out, 0);
   }
   if (root.sound()) loadings.refuse_idle(root, variants, under, out.variants);
+  refuse_idle_stages(root, "variant", variants);
   require_names_apart(root, out.variants);
   return out;
 }
