@@ -35,15 +35,17 @@ inline constexpr double kPackedShare = 0.75;
 /// cell are so few that they would not once they are packed.
 void require_room_for_images(const std::vector<MacroBody>& bodies);
 
-/// What the named preparations are:
-/// frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,
-/// falls by three tenths whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the
-/// gaps in a few hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies
-/// would creep through ever so many rearrangements. fast, slow: the box is shrunk at the rate of an inertial number by
-/// molecular dynamics, all bodies moving along at first, until its walls bear the pressure; then all is relaxed under
-/// it. Both with the friction of the test, and with nothing different but the rate. dense: the largest bodies, up to
-/// coarse_share of the volume, jam by themselves; the others grow in the voids between them, which stand still, until
-/// they have their size or jam; then all are freed and relaxed as in frictionless. `friction`: of the test.
+/// What the named preparations are. `friction`: of the test.
+/// - frictionless: all bodies are relaxed together with the walls, without friction, under a pressure that begins high,
+///   falls by three tenths whenever all is roughly at rest, and ends at the one asked for. A high pressure closes the
+///   gaps in a few hundred passes and a well-connected packing comes to rest soon; under the last one alone the bodies
+///   would creep through ever so many rearrangements.
+/// - fast, slow: the box is shrunk at the rate of an inertial number by molecular dynamics, all bodies moving along at
+///   first, until its walls bear the pressure; then all is relaxed under it. Both have the friction of the test and
+///   differ in the rate alone.
+/// - dense: the largest bodies, up to coarse_share of the volume, jam by themselves; the others grow in the voids
+///   between them, which stand still, until they have their size or jam; then all are freed and relaxed as in
+///   frictionless.
 PreparationProtocol protocol_of(Preparation preparation, double friction);
 
 /// What is said when a compaction ends without jamming.

@@ -47,14 +47,16 @@ struct LeastWorkProtocolOptions {
   double tolerance = 1e-2;             ///< at a recorded point
   std::int64_t increment_passes = 80;  ///< without equilibrium after these: left to dynamics; 0: all are
   double approach_speed = 0.0;         ///< of such an increment [m/s]; 0: as for the published protocol
-  double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match);
-                               ///< a slow turn takes 4, which moves no secant by more than 0.5 % against 2
+  double step_factor = 4.0;    ///< time step of dynamics over that of the published protocol (masses raised to match)
   double settle_time = 120.0;  ///< of dynamics before a normal force is recorded; 0: none
   double path_settle_time = 120.0;    ///< the part of it after which rotations and further increments start
   double settle_time_rotated = 24.0;  ///< of dynamics after a rotation
   double step_factor_rotated = 2.0;
   std::int64_t max_passes = 20000;  ///< of the last relaxation of a recorded point
 };
+
+/// Time step of a slow turn over that of the published protocol; against 2 no secant moves by more than 1 %.
+inline constexpr double kTurnStepFactor = 4.0;
 
 /// Residuals count forces from this floor up: 1e-7 E Rs^2 [SP 1.4].
 double force_floor(const SoftParticleSpec& spec);
@@ -85,8 +87,9 @@ class Protocol {
   [[nodiscard]] virtual bool damped_contacts() const = 0;
   /// Moves the second body until the overlap is `overlap` [m], at the protocol's own pace.
   virtual void approach(SoftExperiment& experiment, double overlap) const = 0;
-  /// Molecular dynamics for a time [s], with what the drive gives superposed on the motion of the grains.
-  virtual void run(SoftExperiment& experiment, const Drive& drive, double duration) const = 0;
+  /// Molecular dynamics for a time [s], with what the drive gives superposed on the motion of the grains. Masses are
+  /// raised for steps of kTurnStepFactor, unless a protocol has real ones.
+  virtual void run(SoftExperiment& experiment, const Drive& drive, double duration) const;
   /// Relaxes a state that is to be recorded; `rotated` says that it follows a rotation. What is recorded may be a copy
   /// that rested longer than the state from which the experiment goes on; `look`, when given, is shown what is
   /// recorded.

@@ -2,7 +2,6 @@
 
 #include "common/dynamics/damped_relaxation.h"
 #include "common/dynamics/residual.h"
-#include "common/dynamics/slow_dynamics.h"
 #include "microsim/protocol.h"
 
 namespace softgrain {
@@ -26,11 +25,6 @@ class DampedProtocol : public Protocol {
       relax(e, options_.tolerance_between);
     }
     e.normal_overlap = overlap;
-  }
-
-  /// Relaxing is without inertia, a slow turn is not: its masses are raised as those of the least-work protocol are.
-  void run(SoftExperiment& e, const Drive& drive, double duration) const override {
-    run_slow(e, drive, duration, LeastWorkProtocolOptions{}.step_factor);
   }
 
   using Protocol::settle;

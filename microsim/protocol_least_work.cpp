@@ -46,10 +46,6 @@ class LeastWorkProtocol : public Protocol {
     e.normal_overlap = overlap;
   }
 
-  void run(SoftExperiment& e, const Drive& drive, double duration) const override {
-    run_slow(e, drive, duration, LeastWorkProtocolOptions{}.step_factor);
-  }
-
   /// Increments of least work leave half of all contacts at the Coulomb limit, slow dynamics next to none though close
   /// to it; settling loosens springs, and kt follows the springs. So the path may be given less of it than the record.
   using Protocol::settle;

@@ -74,6 +74,10 @@ class PublishedProtocol : public Protocol {
 
 }  // namespace
 
+void Protocol::run(SoftExperiment& e, const Drive& drive, double duration) const {
+  run_slow(e, drive, duration, kTurnStepFactor);
+}
+
 double force_floor(const SoftParticleSpec& spec) {
   return 1e-7 * spec.youngs_modulus * spec.shell_radius * spec.shell_radius;
 }

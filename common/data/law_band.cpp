@@ -80,8 +80,9 @@ double half_width(const PairLaw& law, double variance) {
 LawInterval around(double value, double half) { return {std::max(0.0, value - half), value + half, kFromCovariance}; }
 
 /// Empty where the width is that of rounding: what never scattered says nothing of how far off it may be.
+constexpr double kRounding = 1e-12;
+
 std::optional<LawInterval> unless_nothing(double value, double half) {
-  constexpr double kRounding = 1e-12;
   if (value > 0.0 && !(half > kRounding * value)) return std::nullopt;
   return around(value, half);
 }
@@ -142,7 +143,7 @@ std::optional<LawBand> linearised_band(const PairLaw& law, LawPart part, const s
     const LawInterval at = around(fitted.value(overlap), half);
     band.low.push_back(at.low);
     band.high.push_back(at.high);
-    any = any || half > 1e-12 * at.high;
+    any = any || half > kRounding * at.high;
   }
   if (!any) return std::nullopt;
   return band;

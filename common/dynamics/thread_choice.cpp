@@ -15,7 +15,6 @@ constexpr double kServed = 0.75;
 constexpr double kFaster = 0.9;
 /// And how much slower than at the last trial everything must be for a new one at once.
 constexpr double kSlower = 2.0;
-constexpr int kFirstWait = 4;
 constexpr int kLongestWait = 256;
 /// Shorter blocks say nothing: other programs come and go in slices of a few milliseconds [s].
 constexpr double kBlockSeconds = 0.02;

@@ -29,13 +29,15 @@ class ThreadChoice {
  private:
   void judge_trial(double pace);
 
+  static constexpr int kFirstWait = 4;  ///< blocks
+
   int all_;
   bool on_all_ = true;
-  bool trial_ = false;    ///< the next block is one
-  double before_ = 0.0;   ///< time per work before the trial [s]
-  double settled_ = 0.0;  ///< of what was kept at the last trial [s]
-  int wait_ = 4;          ///< blocks between two trials
-  int left_ = 0;          ///< of them
+  bool trial_ = false;     ///< the next block is one
+  double before_ = 0.0;    ///< time per work before the trial [s]
+  double settled_ = 0.0;   ///< of what was kept at the last trial [s]
+  int wait_ = kFirstWait;  ///< blocks between two trials
+  int left_ = 0;           ///< of them
 };
 
 /// Takes the threads of the program for passes, by the choice that all relaxations of a thread share, and gives them

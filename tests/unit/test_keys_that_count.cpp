@@ -87,6 +87,13 @@ TEST_F(KeysThatCount, CommonStagesThatNoPartTakesAreRefused) {
   EXPECT_EQ(material(kStages + variants).variants.size(), 2U) << "b takes the common ones";
 }
 
+TEST_F(KeysThatCount, CommonKeysOfAPreparationThatLammpsMakesAreRefused) {
+  const std::string head = "kind = \"material\"\n[grains]\ncount = 80\nratio = 1.5\n[packing]\nfirst_pressure = 4.0\n";
+  const std::string a = "[[variant]]\nname = \"a\"\npreparation = \"lammps\"\n";
+  refused(head + a, "LAMMPS has a protocol of its own");
+  EXPECT_EQ(read_material_scene(scene(head + a + "[[variant]]\nname = \"b\"\n")).variants.size(), 2U);
+}
+
 TEST_F(KeysThatCount, WhatTheCommonTableSaysOfAPreparationStays) {
   const std::string common = "[packing]\npreparation = \"fast\"\ncompaction_mu = 0.05\npreparation_tolerance = 1e-3\n";
   for (const char* own : {"mu = 0.5\n", "preparation = \"slow\"\n"}) {

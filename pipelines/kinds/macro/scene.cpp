@@ -52,6 +52,13 @@ void mistake_beside(const SceneTable& t, std::initializer_list<const char*> keys
 
 }  // namespace
 
+void refuse_protocol_keys(const SceneTable& t) {
+  mistake_beside(t,
+                 {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
+                  "preparation_tolerance", "preparation_passes"},
+                 "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
+}
+
 /// A name stands for all that defines a preparation; keys beside it replace single parts, whichever table gave them.
 void read_preparation(const SceneTable& t, MacroSetup& setup) {
   MacroSpec& spec = setup.spec;
@@ -78,11 +85,7 @@ void read_preparation(const SceneTable& t, MacroSetup& setup) {
   read(t, "preparation_tolerance", &Protocol::tolerance, Range{0.0, 0.1, true, false});
   if (follows("preparation_passes")) p.max_passes = named.max_passes;
   p.max_passes = t.count("preparation_passes", 10, 100000000, p.max_passes);
-  if (spec.preparation == Preparation::lammps)
-    mistake_beside(t,
-                   {"inertial_number", "compaction_mu", "compaction_restitution", "coarse_share", "first_pressure",
-                    "preparation_tolerance", "preparation_passes"},
-                   "LAMMPS has a protocol of its own: goes without preparation = \"lammps\"");
+  if (spec.preparation == Preparation::lammps) refuse_protocol_keys(t);
   if (!(p.inertial_number > 0.0))
     mistake_beside(t, {"compaction_restitution"},
                    "nothing moves at inertial_number = 0: give one, or preparation = \"fast\"");
@@ -426,6 +429,8 @@ MacroScene read_with_law(const SceneTable& root, const std::string& law_file) {
   if (root.sound()) require_room_for_images(macro, "bodies", out.setup, out.seed);
   refuse_idle_keys(macro, !out.setup.twins.empty(), true);  // --bands may give some
   if (out.law.table) mistake_beside(macro, {"kt"}, "goes with a law card; a law table has one tangential stiffness");
+  if (out.law.card && std::none_of(out.law.card->pairs.begin(), out.law.card->pairs.end(), has_tangential))
+    mistake_beside(macro, {"kt"}, "no tangential stiffness was measured for " + law_file + ": one is assumed");
   if (out.setup.twins.empty())
     mistake_beside(root, {"contents"}, "is of the soft particles of a resolved twin: goes with resolved = true");
   out.setup.kept_states = read_kept_states(root, states_to_see(out.setup.spec));

@@ -51,6 +51,8 @@ MacroSetup read_macro_setup(const SceneTable& macro, const MacroSetup& base);
 /// Parts of [macro] that other kinds of scene share. The first needs spec.friction: what no table said follows from it
 /// and from the name of the preparation, what one said stays. Throw BadInput.
 void read_preparation(const SceneTable& t, MacroSetup& setup);
+/// Refuses the keys of a preparation by this program where LAMMPS prepares.
+void refuse_protocol_keys(const SceneTable& t);
 void read_test(const SceneTable& t, MacroSpec& spec);
 
 /// Twins are filled with packings like the one that was measured. Throws BadInput, at key `resolved`, when the scene

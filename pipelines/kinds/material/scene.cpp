@@ -286,6 +286,9 @@ MaterialScene read_material(const SceneTable& root) {
   }
   if (root.sound()) loadings.refuse_idle(root, variants, under, out.variants);
   refuse_idle_stages(root, "variant", variants);
+  const auto by_lammps = [](const MaterialVariant& v) { return v.setup.spec.preparation == Preparation::lammps; };
+  if (!out.variants.empty() && std::all_of(out.variants.begin(), out.variants.end(), by_lammps))
+    refuse_protocol_keys(root.table_or_empty("packing"));
   require_names_apart(root, out.variants);
   return out;
 }

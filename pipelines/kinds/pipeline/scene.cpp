@@ -57,6 +57,8 @@ PipelineSetup read_pipeline_setup(const Scene& scene) {
     read_stages(root, macro, setup.macro->spec);
     refuse_idle_test_keys(macro, root, {&setup.macro->spec});
     refuse_idle_keys(macro, !setup.macro->twins.empty(), setup.macro->bands > 0);
+    if (macro.has("kt") && !setup.measure.rotates())
+      macro.mistake("kt", "goes with angles_deg: no tangential stiffness is measured in this scene");
     setup.macro->kept_states = setup.measure.kept_states;
     require_own_preparation(macro, *setup.macro);
     if (root.sound()) require_macro_memory(macro, *setup.macro, setup.measure.spec);
