@@ -293,6 +293,8 @@ void describe_packings(const CrowdMeasurements& data, LawTableEntry& entry) {
   entry.solid_fraction = m.mean;
   entry.solid_fraction_error = m.error;
   entry.packings = static_cast<int>(data.packings.size());
+  for (const PackingInfo& p : data.packings)
+    entry.grains += static_cast<double>(p.grains) / static_cast<double>(data.packings.size());
 }
 
 void describe_range(const std::vector<CrowdStates>& states, const CrowdModel& model, LawTableEntry& entry) {

@@ -14,7 +14,7 @@ constexpr Vec3 kX{{1.0, 0.0, 0.0}};
 constexpr Vec3 kY{{0.0, 1.0, 0.0}};
 constexpr Vec3 kZ{{0.0, 0.0, 1.0}};
 
-std::vector<Vec3> cube() {
+std::vector<Vec3> cube_directions() {
   return {kX, Vec3{{-1.0, 0.0, 0.0}}, kY, Vec3{{0.0, -1.0, 0.0}}, kZ, Vec3{{0.0, 0.0, -1.0}}};
 }
 
@@ -121,7 +121,7 @@ std::vector<Vec3> directions_of(Arrangement arrangement) {
     case Arrangement::scattered:
       return {};
     default:
-      return cube();
+      return cube_directions();
   }
 }
 

@@ -200,8 +200,9 @@ std::vector<double> draw_radii(const SoftParticleSpec& spec, std::uint64_t seed,
   return radii;
 }
 
-/// Largest first, each grain grows until it touches its nearest neighbour or the shell.
-void grow(ShellPacking& packing) {
+}  // namespace
+
+void grow_to_contact(ShellPacking& packing) {
   for (std::size_t i = 0; i < packing.radius.size(); ++i) {
     double room = 1.0 - norm(packing.position[i]);
     for (std::size_t j = 0; j < packing.radius.size(); ++j)
@@ -209,8 +210,6 @@ void grow(ShellPacking& packing) {
     packing.radius[i] = std::max(packing.radius[i], room);
   }
 }
-
-}  // namespace
 
 ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index) {
   ShellPacking packing;
@@ -227,7 +226,7 @@ ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t 
   }
   if (packing.radius.empty())
     throw BadInput("packing: no grain could be placed in the shell; raise 'trials' or lower 'rmax_over_shell'");
-  grow(packing);
+  grow_to_contact(packing);
   return packing;
 }
 

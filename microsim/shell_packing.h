@@ -77,6 +77,9 @@ class VoidPlacement {
 /// Throws BadInput when no grain could be placed.
 ShellPacking generate_shell_packing(const SoftParticleSpec& spec, std::uint64_t seed, std::uint64_t index);
 
+/// One after the other, in their order, grows until it touches its nearest neighbour or the shell.
+void grow_to_contact(ShellPacking& packing);
+
 /// What is reported of a packing; radii in metres for the spec's Rs.
 PackingInfo describe(const ShellPacking& packing, const SoftParticleSpec& spec);
 

@@ -63,26 +63,29 @@ def law_tables(summary):
 def hierarchy_tables(summary):
     if "levels" not in summary or "fixed_point" not in summary:
         return ""
-    rows = []
-    changes = []
+    contents, laws, changes = [], [], []
     for level in summary["levels"]:
+        k = str(level["level"])
         inner = level.get("inner", {})
-        rows.append([str(level["level"]), number(inner.get("mean", 0)), number(inner.get("volume_percent", 0)),
-                     number(level["law"]["a"]), number(level["law"]["b"]), number(level["law"]["delta"]),
-                     number(level.get("distance_percent")), number(level.get("noise_percent")),
-                     number(level["resolved_grains"]), number(level["contact_evaluations"]), number(level["seconds"])])
-        changes += [[str(level["level"]), c["configuration"], f"{c['ratio']:.3f} ± {c['error']:.3f}"]
-                    for c in level.get("changes", [])]
+        contents.append([k, number(level["grain_percent"]), number(inner.get("mean", 0)), number(inner.get("volume_percent", 0)),
+                         number(inner.get("next_volume")), number(level["solid_percent"]), number(level["resolved_grains"])])
+        laws.append([k, number(level["law"]["a"]), number(level["law"]["b"]), number(level["law"]["delta"]),
+                     number(level.get("error_percent")),
+                     f"{level['sensitivity']:.2f} ± {level['sensitivity_error']:.2f}" if "inner" in level else "-",
+                     number(level.get("distance_percent")), number(level["contact_evaluations"]), number(level["seconds"])])
+        changes += [[k, c["configuration"], f"{c['ratio']:.3f} ± {c['error']:.3f}"] for c in level.get("changes", [])]
     text = summary["fixed_point"]["text"] + "\n\n"
-    text += table(["level", "soft particles inside", "their volume [%]", "a", "b", "delta", "law against the level below [%]",
-                   "noise [%]", "grains if resolved", "contact evaluations", "seconds"], rows)
+    text += table(["level", "own grains [% of the shell]", "soft particles inside", "their volume [%]",
+                   "next level over own grains", "all grains [%]", "grains if resolved"], contents)
+    text += table(["level", "a", "b", "delta", "standard error of forces [%]", "follows the law below by",
+                   "distance to it [%]", "contact evaluations", "seconds"], laws)
     text += table(["level", "configuration", "force over that of the level below"], changes)
     if "check" in summary:
         check = summary["check"]
         text += "## Two decades with all grains\n\n" + check["text"] + "\n\n"
-        text += table(["h/Rs", "law [F/(E Rs²)]", "all grains", "without inner soft particles", "law over all grains"],
+        text += table(["h/Rs", "law [F/(E Rs²)]", "all grains", "law over all grains"],
                       [[number(p["overlap"]), f"{p['law']:.4g} ± {p['law_error']:.2g}",
-                        f"{p['resolved']:.4g} ± {p['resolved_error']:.2g}", number(p["empty"], 4),
+                        f"{p['resolved']:.4g} ± {p['resolved_error']:.2g}",
                         f"{p['ratio']:.3f} ± {p['ratio_error']:.3f}"] for p in check["points"]])
     return text
 
@@ -120,16 +123,17 @@ def main():
     for name in ("table.csv", "recipe.csv"):
         if os.path.exists(os.path.join(run, name)):
             shutil.copy(os.path.join(run, name), out)
-    for name in ("law_table.toml", "cell_law.toml", "material_card.toml"):
-        if not os.path.exists(os.path.join(run, name)):
-            continue
+    levels = sorted(n for n in os.listdir(run) if n.startswith("law_table_level_"))
+    cards = [n for n in ("law_table.toml", "cell_law.toml", "material_card.toml") if os.path.exists(os.path.join(run, n))]
+    for name in cards + [n for n in levels if n.endswith(".toml")]:
         with open(os.path.join(run, name), encoding="utf-8") as file:
             card = file.read()
         raw = summary.get("provenance", {}).get("command", "")
         with open(os.path.join(out, name), "w", encoding="utf-8") as file:
             file.write(card.replace(raw, plain(raw)) if raw else card)
-    if os.path.exists(os.path.join(run, "law_table.h5")):
-        shutil.copy(os.path.join(run, "law_table.h5"), out)
+    for name in ["law_table.h5"] + [n for n in levels if n.endswith(".h5")]:
+        if os.path.exists(os.path.join(run, name)):
+            shutil.copy(os.path.join(run, name), out)
     for name in figures:
         with open(os.path.join(run, "figures", name + ".svg"), encoding="utf-8") as file:
             drawing = file.read()

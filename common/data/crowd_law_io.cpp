@@ -86,6 +86,9 @@ void write_law(Out out, const CrowdLaw& law) {
 void write_entry(Out out, const LawTableEntry& e) {
   fmt::format_to(out, "\n[[entry]]\nsolid_fraction = {}\nsolid_fraction_error = {}\npackings = {}\n",
                  real(e.solid_fraction), real(e.solid_fraction_error), e.packings);
+  if (e.grains > 0.0)
+    fmt::format_to(out, "grains = {}  # that one soft particle represents, those inside inner ones included\n",
+                   real(e.grains));
   if (e.main) fmt::format_to(out, "main = true  # the packing that the table was made for\n");
   fmt::format_to(out, "relaxation = {}\nbest = {}  # taken where no form is named\n", quoted(e.relaxation),
                  quoted(to_string(e.best)));
@@ -181,6 +184,7 @@ LawTableEntry read_entry(const SceneTable& t) {
   e.solid_fraction = t.number("solid_fraction", Unit::none, Range{0.0, 1.0, true, false});
   e.solid_fraction_error = t.number("solid_fraction_error", Unit::none, Range::not_negative());
   e.packings = static_cast<int>(t.count("packings", 1, 1000000000));
+  if (t.has("grains")) e.grains = t.number("grains", Unit::none, Range::above(0.0));
   e.main = t.flag("main", false);
   e.relaxation = t.text("relaxation");
   e.best = t.choice<Crowd>("best");

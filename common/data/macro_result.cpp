@@ -267,6 +267,7 @@ void write_macro_curve(const h5::Group& group, const MacroCurve& curve) {
   group.attribute("boundary", to_string(curve.boundary));
   write_stage_records(group, curve.stages);
   group.attribute("note", curve.note);
+  if (!curve.warning.empty()) group.attribute("warning", curve.warning);
   group.attribute("usable", static_cast<std::int64_t>(curve.usable));
   for (const Count& c : kCounts) group.attribute(c.name, curve.*c.value);
   group.attribute("soft_volume_share", curve.soft_volume_share);
@@ -296,6 +297,7 @@ MacroCurve read_macro_curve(const h5::Group& group) {
   if (group.has_attribute("boundary")) curve.boundary = read_word<Boundary>(group, "boundary");
   curve.stages = read_stage_records(group);
   curve.note = group.text("note");
+  if (group.has_attribute("warning")) curve.warning = group.text("warning");
   curve.usable = group.integer("usable") != 0;
   for (const Count& c : kCounts) curve.*c.value = read_count(group, c.name);
   curve.soft_volume_share = read_attribute(group, "soft_volume_share", Limits::flag());

@@ -174,6 +174,7 @@ struct MacroCurve {
   std::vector<std::vector<double>> places;
   bool usable = true;
   std::string note;
+  std::string warning;  ///< what may make it wrong for its purpose; empty: nothing
   Cost cost;
   Cost preparation;  ///< of the state that it starts from, which other engines may share
 

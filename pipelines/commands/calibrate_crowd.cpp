@@ -59,7 +59,6 @@ nlohmann::json summarise(const CrowdLawFit& fit, const std::vector<CrowdMeasurem
 
 std::string people_text(const CrowdLawFit& fit, const RunContext& context) {
   std::string text = entries_text(fit.table);
-  for (const std::string& remark : fit.remarks) text += "note: " + remark + "\n";
   return text + fmt::format("law table: {}; report: {}", context.path("law_table.toml"), context.path("report.html"));
 }
 

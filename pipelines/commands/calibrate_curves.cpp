@@ -176,9 +176,9 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   remarks = fit.remarks;
   for (const ForceCurves& kind : fit.curves)
     for (const std::string& one : implausible_forces(kind))
-      remarks.insert(remarks.begin(), to_string(kind.kind) + ": " + one);
+      summary.head.warnings.push_back(to_string(kind.kind) + ": " + one);
   add_missing_kind(fit, remarks);
-  if (const std::string remark = kt_remark(fit.card); !remark.empty()) remarks.push_back(remark);
+  if (const std::string remark = kt_remark(fit.card); !remark.empty()) summary.head.warnings.push_back(remark);
   std::string people;
   for (const FitReport& r : fit.reports) {
     people += force_line(r, fit.card.spec);
@@ -189,7 +189,6 @@ ExitStatus calibrate_curves(const CommonOptions& options) {
   }
   summary.experiment = drawn_samples(fit.curves);
   note_thinned(fit.curves, summary.experiment, remarks);
-  for (const std::string& remark : remarks) people += "note: " + remark + "\n";
   people += "law card: " + run.path("law.toml") + "; report: " + run.path("report.html") + "\n";
   summary.inputs = options.inputs;
   summary.relaxation = fit.card.relaxation;

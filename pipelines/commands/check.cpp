@@ -70,8 +70,8 @@ ExitStatus command_check(const CommonOptions& options) {
     write_standard_output(out.facts.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     return ExitStatus::good;
   }
-  std::string text = path + ": sound\n" + out.lines;
-  for (const std::string& warning : out.warnings()) text += "  mind: " + warning + "\n";
+  std::string text = path + ": OK\n" + out.lines;
+  for (const std::string& warning : out.warnings()) text += "  warning: " + warning + "\n";
   write_standard_output(text);
   return ExitStatus::good;
 }

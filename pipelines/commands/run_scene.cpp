@@ -30,7 +30,7 @@ void mind_cores(const CommonOptions& options) {
                                        std::pair<const char*, std::int64_t>{"--ranks", options.ranks}})
     if (wanted > cores) {
       const std::string text =
-          fmt::format("softgrain: mind: {} {}: {} here; more than that take turns and are slower than {}\n", option,
+          fmt::format("softgrain: warning: {} {}: {} here; more than that take turns and are slower than {}\n", option,
                       wanted, cores == 1 ? "one core" : fmt::format("{} cores", cores), cores);
       log_text(text);
       if (!options.quiet) (void)std::fputs(text.c_str(), stderr);

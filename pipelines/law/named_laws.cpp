@@ -31,21 +31,43 @@ class RangeCheck {
  public:
   RangeCheck(const LawTableEntry& entry, Crowd form) : entry_(entry), law_(*entry.find(form)) {}
 
-  /// Contacts deeper than any row of their kind, or smaller partners than the table has.
+  /// Contacts of partners whose size the table does not have.
   [[nodiscard]] std::string note(const System3& s) const {
+    const Counts c = count(s);
+    if (c.outside == 0) return "";
+    return fmt::format("{} of {} soft contacts have a size ratio outside the table; its nearest row was used",
+                       c.outside, c.all);
+  }
+
+  /// Contacts deeper than any row of their kind.
+  [[nodiscard]] std::string warning(const System3& s) const {
+    const Counts c = count(s);
+    if (c.deep == 0) return "";
+    return fmt::format(
+        "{} of {} soft contacts are deeper at the end than the law was measured: strain less, or measure "
+        "larger overlaps",
+        c.deep, c.all);
+  }
+
+ private:
+  struct Counts {
     std::size_t deep = 0;
     std::size_t outside = 0;
     std::size_t all = 0;
+  };
+
+  [[nodiscard]] Counts count(const System3& s) const {
+    Counts out;
     for (const ContactRecord<3>& c : contact_records(s)) {
       if (!is_crowd_law(s.laws.law(law_of(s, c)))) continue;
-      ++all;
+      ++out.all;
       const auto& p = s.particles;
       const double ri = p.sphere[static_cast<std::size_t>(c.i)].r;
       const double rj = c.j < p.grains ? p.sphere[static_cast<std::size_t>(c.j)].r : 0.0;
       const bool i_soft = p.material[static_cast<std::size_t>(c.i)] == kSoftMaterial;
       const bool j_soft = c.j < p.grains && p.material[static_cast<std::size_t>(c.j)] == kSoftMaterial;
       if (rj == 0.0) {
-        deep += c.overlap / ri > entry_.overlap_max ? 1 : 0;
+        out.deep += c.overlap / ri > entry_.overlap_max ? 1 : 0;
         continue;
       }
       const auto rows = law_.rows(i_soft && j_soft ? PartnerKind::soft : PartnerKind::solid);
@@ -53,19 +75,12 @@ class RangeCheck {
       if (i_soft && j_soft) ratio = std::max(ratio, 1.0 / ratio);
       const bool covered =
           !rows.empty() && ratio >= rows.front().ratio && (!j_soft || !i_soft || ratio <= rows.back().ratio);
-      outside += covered ? 0 : 1;
-      deep += !rows.empty() && c.overlap / std::min(ri, rj) > rows.back().overlap_max ? 1 : 0;
+      out.outside += covered ? 0 : 1;
+      out.deep += !rows.empty() && c.overlap / std::min(ri, rj) > rows.back().overlap_max ? 1 : 0;
     }
-    std::string text;
-    if (deep > 0)
-      text = fmt::format("{} of {} soft contacts are deeper at the end than any that was measured", deep, all);
-    if (outside > 0)
-      text += fmt::format("{}{} of {} have a size ratio outside the table; its nearest row was used",
-                          text.empty() ? "" : "; ", outside, all);
-    return text;
+    return out;
   }
 
- private:
   static constexpr std::int32_t kSoftMaterial = 1;  ///< of make_law_system
   static bool is_crowd_law(const AnyLaw& law) {
     return std::visit([]<class Law>(const Law&) { return law_serves<Law, 3>() && !law_serves<Law, 2>(); }, law);
@@ -249,7 +264,8 @@ NamedLaws table_law_of(const LawSources& sources, WantedForm wanted, const Macro
             for (const std::string& one : {check.note(s), has_soft(s) ? unloads : std::string()})
               text += (text.empty() || one.empty() ? "" : "; ") + one;
             return text;
-          }};
+          },
+          [=](const System3& s) { return check.warning(s); }};
 }
 
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
@@ -333,6 +349,15 @@ NamedLaws scene_law(const LawSources& sources, const MacroSpec& spec, double con
   NamedLaws law = table_law_of(sources, sources.forms.front(), spec, contents_fraction);
   law.name = name;
   return law;
+}
+
+void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve) {
+  const auto add = [&](const std::function<std::string(const System3&)>& say, std::string& text) {
+    const std::string said = say ? say(end) : "";
+    text += (text.empty() || said.empty() ? "" : "; ") + said;
+  };
+  add(law.note, curve.note);
+  add(law.warning, curve.warning);
 }
 
 std::vector<NamedLaws> laws_for(const LawSources& sources, const MacroSpec& spec, double contents_fraction) {

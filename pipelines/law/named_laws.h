@@ -25,11 +25,16 @@ struct NamedLaws {
   std::string tag;  ///< changes with the numbers of the law: part of the name of checkpoints; empty: none
   /// What to say about the end of a run (contacts that no measurement covers); empty text when nothing; may be empty.
   std::function<std::string(const System3&)> note;
+  /// The same of what may make the result wrong: contacts deeper than any that was measured.
+  std::function<std::string(const System3&)> warning{};
 };
 
 /// The pair law of a card; `beyond` instead of what the card says. Throws BadInput when the card has no usable law.
 NamedLaws pair_law_of(const LawCard& card, const MacroSpec& spec, const std::string& name,
                       std::optional<Beyond> beyond = std::nullopt);
+
+/// What a law has to say about the end of a run goes to the note and the warning of its curve.
+void add_law_texts(const NamedLaws& law, const System3& end, MacroCurve& curve);
 
 /// Where a scene takes its laws from: table [law] of a comparison, keys of a macro scene.
 struct LawSources {

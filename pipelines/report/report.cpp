@@ -36,7 +36,7 @@ std::string sections_of(const RunData& run) {
 void write_report(const std::string& run_directory) {
   const RunData run = load_run(run_directory);
   std::string body = sections_of(run);
-  body = heading_section(run) + contents(body) + remarks_section(run) + body + next_section(run);
+  body = heading_section(run) + warnings_section(run) + contents(body) + body + next_section(run) + notes_section(run);
   const std::string name = std::filesystem::weakly_canonical(run_directory).filename().string();
   write_figures(run_directory, figures_of(body));
   write_text_atomic(run_directory + "/report.html",

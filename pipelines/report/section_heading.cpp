@@ -48,9 +48,9 @@ std::string verdict(const RunData& run, const AnySummary& summary) {
            "goes "
            "on with it.</p>\n";
   if (summary.status.empty() || is_good(summary.status)) return "";
-  const bool told = summary.remarks && !summary.remarks->empty() && !summary.remarks->front().empty();
+  const std::vector<std::string> why = warnings_of(summary);
   return "<p class=\"verdict\"><strong>Do not use this result as it is:</strong> " +
-         escape(told ? summary.remarks->front() : "see what to be careful with.") + "</p>\n";
+         escape(why.empty() ? "see the notes at the end." : why.front()) + "</p>\n";
 }
 
 /// Command, seed, threads, time.

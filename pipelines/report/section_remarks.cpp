@@ -76,31 +76,47 @@ void add_macro(const std::vector<MacroCurve>& macro, Remarks& remarks) {
   if (use_pair_law(macro)) remarks.push_back(pair_law_remark() + ".");
 }
 
-/// A run states its own remarks in its summary; without such a list they follow from the data.
-void add_stated_or_derived(const RunData& run, const AnySummary& summary, Remarks& remarks) {
-  if (summary.remarks) {
-    for (const std::string& one : *summary.remarks)
-      if (!one.empty()) remarks.push_back(one);
-    return;
+/// A run states its own notes in its summary; without such a list they follow from the data.
+Remarks notes_of_run(const RunData& run, const AnySummary& summary) {
+  Remarks notes = notes_of(summary);
+  if (!summary.remarks) {
+    if (run.measurements) add_convergence(*run.measurements, notes);
+    if (run.card) add_laws(*run.card, notes);
+    add_macro(run.macro, notes);
   }
-  if (run.measurements) add_convergence(*run.measurements, remarks);
-  if (run.card) add_laws(*run.card, remarks);
-  add_macro(run.macro, remarks);
+  if (run.measurements) add_packings(*run.measurements, notes);
+  return notes;
+}
+
+std::string list_of(const Remarks& remarks, std::size_t from = 0) {
+  std::string items;
+  for (std::size_t k = from; k < remarks.size(); ++k) items += "<li>" + escape(remarks[k]) + "</li>\n";
+  return items;
 }
 
 }  // namespace
 
-std::string remarks_section(const RunData& run) {
-  Remarks remarks;
+std::string warnings_section(const RunData& run) {
+  constexpr std::size_t kMost = 5;
   const auto summary = run.summary_as<AnySummary>();
-  if (!summary.status.empty() && !is_good(summary.status))
-    remarks.push_back("The status of the run is \"" + summary.status + "\".");
-  add_stated_or_derived(run, summary, remarks);
-  if (run.measurements) add_packings(*run.measurements, remarks);
-  if (remarks.empty()) return "";
-  std::string items;
-  for (const std::string& remark : remarks) items += "<li>" + escape(remark) + "</li>\n";
-  return "<div class=\"remarks\" id=\"remarks\"><h2>What to be careful with</h2>\n<ul>\n" + items + "</ul></div>\n";
+  Remarks warnings = warnings_of(summary);
+  const bool bad = !summary.status.empty() && !is_good(summary.status);
+  if (bad) warnings.insert(warnings.begin(), "The status of the run is \"" + summary.status + "\".");
+  if (warnings.empty()) return "";
+  const Remarks shown(warnings.begin(),
+                      warnings.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, warnings.size())));
+  std::string html = "<div class=\"remarks\" id=\"warnings\"><h2>Warnings</h2>\n<ul>\n" + list_of(shown) + "</ul>";
+  if (warnings.size() > kMost)
+    html += "<details><summary>and " + std::to_string(warnings.size() - kMost) + " more</summary><ul>\n" +
+            list_of(warnings, kMost) + "</ul></details>";
+  return html + "</div>\n";
+}
+
+std::string notes_section(const RunData& run) {
+  const Remarks notes = notes_of_run(run, run.summary_as<AnySummary>());
+  if (notes.empty()) return "";
+  return "<details id=\"notes\"><summary>" + std::to_string(notes.size()) + (notes.size() == 1 ? " note" : " notes") +
+         "</summary>\n<ul>\n" + list_of(notes) + "</ul></details>\n";
 }
 
 }  // namespace softgrain::report

@@ -15,7 +15,8 @@ std::vector<HeadLine> law_lines(const RunData& run);       ///< of the head: for
 std::vector<HeadLine> material_lines(const RunData& run);  ///< of the head
 std::string next_section(const RunData& run);              ///< what to do next, in two lines
 std::string heading_section(const RunData& run);           ///< what was run and what came out
-std::string remarks_section(const RunData& run);           ///< what to be careful with
+std::string warnings_section(const RunData& run);          ///< what may make the result wrong
+std::string notes_section(const RunData& run);             ///< all other remarks, folded
 std::string laws_section(const RunData& run);              ///< parameters, errors, intervals, units
 std::string own_data_section(const RunData& run);          ///< curves of an experiment and the law fitted to them
 std::string packing_section(const RunData& run);           ///< the packing in 3D, from the states that the run kept

@@ -214,39 +214,69 @@ bool all_carry_stress(const std::vector<MacroCurve>& curves) {
   return std::none_of(curves.begin(), curves.end(), lacks_stress);
 }
 
-std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of) {
+namespace {
+
+/// One line for each engine: what the first of its usable curves says, and of how many others that say something.
+std::vector<std::string> said_by_engine(const std::vector<MacroCurve>& curves, std::string MacroCurve::*text,
+                                        const std::string& of) {
   std::vector<std::string> out;
   std::vector<std::string> seen;
   for (const MacroCurve& c : curves) {
-    if (!c.usable) {
-      out.push_back(fmt::format("{}'{}' of sample {} is not usable: {}", of, c.engine, c.sample, c.note));
-      continue;
-    }
-    if (c.note.empty() || std::find(seen.begin(), seen.end(), c.engine) != seen.end()) continue;
+    if (!c.usable || (c.*text).empty() || std::find(seen.begin(), seen.end(), c.engine) != seen.end()) continue;
     seen.push_back(c.engine);
     const std::vector<MacroCurve> all = curves_of(curves, c.engine);
-    const auto noted =
-        std::count_if(all.begin(), all.end(), [](const MacroCurve& o) { return o.usable && !o.note.empty(); });
-    const std::string more = noted > 1 ? fmt::format(" (and of {} more)", noted - 1) : "";
-    out.push_back(fmt::format("{}'{}' of sample {}{}: {}", of, c.engine, c.sample, more, c.note));
+    const auto others =
+        std::count_if(all.begin(), all.end(), [&](const MacroCurve& o) { return o.usable && !(o.*text).empty(); }) - 1;
+    const std::string more = others > 0 ? fmt::format(" (and of {} more)", others) : "";
+    out.push_back(fmt::format("{}'{}' of sample {}{}: {}", of, c.engine, c.sample, more, c.*text));
   }
   return out;
 }
 
-std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
+}  // namespace
+
+std::vector<std::string> run_warnings(const std::vector<MacroCurve>& curves, const std::string& of) {
   std::vector<std::string> out;
   for (const MacroCurve& c : curves)
     if (lacks_stress(c))
-      out.push_back(
-          fmt::format("macro run '{}' of sample {} carries no stress at its end: what is relative to it is "
-                      "undefined",
-                      c.engine, c.sample));
-  for (std::string& note : run_notes(curves, "macro run ")) out.push_back(std::move(note));
+      out.push_back(fmt::format("{}'{}' of sample {} carries no stress at its end: what is relative to it is undefined",
+                                of, c.engine, c.sample));
+  for (const MacroCurve& c : curves)
+    if (!c.usable) out.push_back(fmt::format("{}'{}' of sample {} is not usable: {}", of, c.engine, c.sample, c.note));
+  for (std::string& one : said_by_engine(curves, &MacroCurve::warning, of)) out.push_back(std::move(one));
+  return out;
+}
+
+std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of) {
+  return said_by_engine(curves, &MacroCurve::note, of);
+}
+
+std::vector<std::string> macro_warnings(const std::vector<MacroCurve>& curves) {
+  return run_warnings(curves, "macro run ");
+}
+
+std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
+  std::vector<std::string> out = run_notes(curves, "macro run ");
   if (!use_pair_law(curves)) return out;
   out.emplace_back(
       "a solid grain of finite radius meets a soft particle by the law measured against a plane; mu of the grains "
       "stands in for the friction limit of soft contacts");
   out.push_back(pair_law_remark());
+  return out;
+}
+
+std::vector<std::string> warnings_of(const AnySummary& summary) {
+  std::vector<std::string> out = summary.warnings;
+  if (from_word<RunStatus>(summary.status) == RunStatus::not_usable && summary.remarks)
+    out.insert(out.end(), summary.remarks->begin(), summary.remarks->end());
+  std::erase(out, "");
+  return out;
+}
+
+std::vector<std::string> notes_of(const AnySummary& summary) {
+  if (from_word<RunStatus>(summary.status) == RunStatus::not_usable || !summary.remarks) return {};
+  std::vector<std::string> out = *summary.remarks;
+  std::erase(out, "");
   return out;
 }
 

@@ -60,9 +60,11 @@ void fields(auto&& visit, Of<SizesSummary> auto& s) {
 struct SummaryHead {
   RunStatus status = RunStatus::good;
   std::string title;
-  std::vector<std::string> remarks;          ///< sentences about what must not be overlooked
+  std::vector<std::string> remarks;          ///< notes: what else is to be known; of a run that is not usable, why
   std::map<std::string, std::string> files;  ///< that were written
   std::vector<SizesSummary> sizes{};
+  /// What may make the result wrong for its purpose, with what to do about it; the most important first.
+  std::vector<std::string> warnings{};
 
   /// Not usable, and why.
   void reject(const std::string& remark) {
@@ -74,6 +76,7 @@ struct SummaryHead {
 void fields(auto&& visit, Of<SummaryHead> auto& s) {
   visit("status", s.status);
   visit("title", s.title);
+  visit("warnings", s.warnings);
   visit("remarks", s.remarks);
   visit("files", s.files, kLeftOut);
   visit("sizes", s.sizes, kLeftOut);
@@ -101,6 +104,7 @@ struct AnySummary {
   std::string command;
   std::string version;
   std::string commit;
+  std::vector<std::string> warnings;
   std::optional<std::vector<std::string>> remarks;
   std::map<std::string, std::string> files;
   std::optional<double> seconds;
@@ -115,6 +119,7 @@ void fields(auto&& visit, Of<AnySummary> auto& s) {
   visit("command", s.command);
   visit("version", s.version);
   visit("commit", s.commit);
+  visit("warnings", s.warnings);
   visit("remarks", s.remarks);
   visit("files", s.files);
   visit("seconds", s.seconds);
@@ -122,6 +127,11 @@ void fields(auto&& visit, Of<AnySummary> auto& s) {
   visit("engine", s.engine);
   visit("sizes", s.sizes);
 }
+
+/// Warnings, most important first. Where the result is not usable its remarks are among them: they say why.
+std::vector<std::string> warnings_of(const AnySummary& summary);
+/// All other remarks.
+std::vector<std::string> notes_of(const AnySummary& summary);
 
 /// Whether a status in words says that the result is to be used.
 inline bool is_good(const std::string& status) { return from_word<RunStatus>(status) == RunStatus::good; }
@@ -357,10 +367,12 @@ std::vector<std::string> measurement_remarks(const Measurements& data);
 /// Whether every run with a law, and every shelled twin, ends under stress: else nothing can be said relative to it.
 bool all_carry_stress(const std::vector<MacroCurve>& curves);
 
-/// What runs say of themselves, after `of` (with its blank or comma): each that cannot be used, one line for all others
-/// of an engine.
+/// What runs say of themselves, after `of` (with its blank or comma), one line for all of an engine. Warnings: each
+/// that cannot be used or carries no stress, and what makes a result doubtful. Notes: all else.
+std::vector<std::string> run_warnings(const std::vector<MacroCurve>& curves, const std::string& of);
 std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of);
 
+std::vector<std::string> macro_warnings(const std::vector<MacroCurve>& curves);
 std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves);
 
 }  // namespace softgrain

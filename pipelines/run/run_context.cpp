@@ -14,12 +14,15 @@
 
 #include "common/io/json_record.h"
 #include "common/io/text_file.h"
+#include "pipelines/law/terminal_plot.h"
 #include "pipelines/results/summary.h"
 #include "pipelines/run/run_files.h"
 
 namespace softgrain {
 
 namespace {
+
+using law::wrapped;
 
 /// Lines with a time into DIR/log.txt (continued by --resume), plain lines to standard error unless quiet.
 std::shared_ptr<spdlog::logger> make_logger(const std::string& file, const CommonOptions& options) {
@@ -78,18 +81,44 @@ std::string settings_text(const Scene& scene, std::uint64_t seed) {
   return head + ":\n" + text;
 }
 
-/// The text for people, which says at its end that the result is not usable, and why.
-std::string with_status(std::string people, const nlohmann::json& summary) {
-  if (!people.empty() && people.back() != '\n') people += '\n';
-  const std::string status = summary.value("status", "");
-  if (from_word<RunStatus>(status) != RunStatus::not_usable) return people;
-  std::string reason;
-  if (const auto remarks = summary.find("remarks");
-      remarks != summary.end() && remarks->is_array() && !remarks->empty() && remarks->front().is_string())
-    reason = remarks->front().get<std::string>();
-  if (people.starts_with(status)) return people;
-  return people + fmt::format("status: {} (exit status {}){}\n", status, static_cast<int>(ExitStatus::not_usable),
-                              reason.empty() ? "" : ": " + reason);
+constexpr std::size_t kLineWidth = 99;
+constexpr std::size_t kMostWarnings = 5;
+
+/// The result, which says at its end that it is not usable, and why; then as many warnings as anybody reads, and where
+/// the rest is. Lines of at most kLineWidth.
+std::string console_summary(std::string result, const nlohmann::json& summary) {
+  if (!result.empty() && result.back() != '\n') result += '\n';
+  const auto all = record_of<AnySummary>(summary);
+  std::vector<std::string> warnings = warnings_of(all);
+  const bool bad = from_word<RunStatus>(all.status) == RunStatus::not_usable;
+  std::string text;
+  for (std::size_t at = 0; at < result.size();) {
+    const std::size_t end = result.find('\n', at);
+    const std::string line = result.substr(at, end - at);
+    text += line.size() > kLineWidth ? wrapped(line, 4, kLineWidth) : line + "\n";
+    at = end + 1;
+  }
+  if (bad && !result.starts_with(all.status))
+    text += wrapped(fmt::format("status: {} (exit status {}){}", all.status, static_cast<int>(ExitStatus::not_usable),
+                                warnings.empty() ? "" : ": " + warnings.front()),
+                    4, kLineWidth);
+  if (bad && !warnings.empty()) warnings.erase(warnings.begin());  // has been said
+  for (std::size_t k = 0; k < std::min(warnings.size(), kMostWarnings); ++k)
+    text += wrapped("warning: " + warnings[k], 4, kLineWidth);
+  const std::size_t further = warnings.size() - std::min(warnings.size(), kMostWarnings);
+  const std::size_t notes = notes_of(all).size() + further;
+  if (notes > 0)
+    text += fmt::format("{} note{}: at the end of log.txt and of the report\n", notes, notes == 1 ? "" : "s");
+  return text;
+}
+
+/// What the log has beside the console summary: all warnings and notes.
+std::string remarks_text(const nlohmann::json& summary) {
+  const auto all = record_of<AnySummary>(summary);
+  std::string text;
+  for (const std::string& one : warnings_of(all)) text += "warning: " + one + "\n";
+  for (const std::string& one : notes_of(all)) text += "note: " + one + "\n";
+  return text;
 }
 
 }  // namespace
@@ -166,7 +195,11 @@ Provenance RunContext::provenance(const Scene& scene, std::uint64_t used_seed) c
   return p;
 }
 
-void RunContext::say(const std::string& line) const { logger_->info("{}", line); }
+void RunContext::say(const std::string& line) const {
+  std::string text = line.size() > kLineWidth ? wrapped(line, 4, kLineWidth) : line;
+  if (!text.empty() && text.back() == '\n') text.pop_back();
+  logger_->info("{}", text);
+}
 
 void RunContext::finish(nlohmann::json summary, const std::string& people) const {
   const Provenance build = build_provenance();
@@ -179,8 +212,8 @@ void RunContext::finish(nlohmann::json summary, const std::string& people) const
   add("commit", build.commit);
   const std::string text = summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   write_text_atomic(path("summary.json"), text);
-  const std::string end = with_status(people, summary);
-  log_text(end);
+  const std::string end = console_summary(people, summary);
+  log_text(end + remarks_text(summary));
   if (shows_) write_standard_output(options_.json ? text : end);
 }
 

@@ -10,8 +10,8 @@ void read_numbers(const std::string& directory, RunEntry& entry) {
   const auto summary = run.summary_as<AnySummary>();
   entry.status = from_word<RunStatus>(summary.status).value_or(RunStatus::good);
   if (summary.seconds) entry.seconds = *summary.seconds;
-  if (entry.status == RunStatus::not_usable && summary.remarks && !summary.remarks->empty())
-    entry.reason = summary.remarks->front();
+  if (const std::vector<std::string> why = warnings_of(summary); entry.status == RunStatus::not_usable && !why.empty())
+    entry.reason = why.front();
   entry.numbers = report::values_of(run);
 }
 

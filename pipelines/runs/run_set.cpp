@@ -209,7 +209,7 @@ std::vector<RunEntry> make_runs(const std::vector<ReadyRun>& ready, const RunPla
 void note_swept_keys(const RunPlan& plan, SetSummary& summary) {
   for (const SweptKey& one : plan.over)
     if (one.key == "macro.mu")
-      summary.head.remarks.emplace_back(
+      summary.head.warnings.emplace_back(
           "macro.mu changes the friction between the particles of the scene alone: the law of soft particles stays the "
           "one that was measured, with grains of its own friction inside; for grains of another friction measure a law "
           "with them");

@@ -98,11 +98,7 @@ std::string varied_text(const SetSummary& summary) {
   return text;
 }
 
-std::string set_text(const SetSummary& summary) {
-  std::string text = differences_text(summary) + numbers_text(summary);
-  for (const std::string& remark : summary.head.remarks) text += "note: " + remark + "\n";
-  return text;
-}
+std::string set_text(const SetSummary& summary) { return differences_text(summary) + numbers_text(summary); }
 
 std::string differences_text(const SetSummary& summary) {
   std::string text;

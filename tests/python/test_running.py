@@ -210,7 +210,7 @@ class RefusedTest(InEmptyFolder):
         self.assertGreater(found.core_seconds, 1.0)
         self.assertGreater(found["twin_grains"], 1000)
         self.assertTrue(any("bodies are few" in w for w in found.warnings))
-        self.assertIn("mind: ", str(found))
+        self.assertIn("warning: ", str(found))
         self.assertIn("scene of kind pipeline", found.lines)
         self.assertIn("time_step", list(found))
         self.assertNotIn("status", found)

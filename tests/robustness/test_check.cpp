@@ -11,6 +11,7 @@
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_files.h"
+#include "tests/support/unwrapped.h"
 
 namespace softgrain {
 namespace {
@@ -404,7 +405,7 @@ TEST_F(Check, AFailedPackingCostsNoOther) {
   const test::ProgramOutcome outcome =
       run_the_program("run '" + directory_.file("scene.toml") + "' --out '" + directory_.file("run") + "'");
   EXPECT_EQ(outcome.status, 3) << outcome.output;
-  EXPECT_NE(outcome.output.find("packing hasty: "), std::string::npos) << outcome.output;
+  EXPECT_NE(test::unwrapped(outcome.output).find("packing hasty: "), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("preparation_passes"), std::string::npos) << outcome.output;
   const json summary = test::summary_of(directory_.file("run"));
   ASSERT_EQ(summary["variants"].size(), 1U);
@@ -421,8 +422,9 @@ TEST_F(Check, AFailedPackingNamesTheTestsThatFallWithIt) {
   const test::ProgramOutcome outcome =
       run_the_program("run '" + directory_.file("scene.toml") + "' --quiet --out '" + directory_.file("run") + "'");
   EXPECT_EQ(outcome.status, 3) << outcome.output;
-  EXPECT_NE(outcome.output.find("packing hasty: "), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("not tested: hasty-press, hasty-squeeze"), std::string::npos) << outcome.output;
+  EXPECT_NE(test::unwrapped(outcome.output).find("packing hasty: "), std::string::npos) << outcome.output;
+  EXPECT_NE(test::unwrapped(outcome.output).find("not tested: hasty-press, hasty-squeeze"), std::string::npos)
+      << outcome.output;
   EXPECT_EQ(test::summary_of(directory_.file("run"))["variants"].size(), 2U);
 }
 

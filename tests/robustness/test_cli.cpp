@@ -98,7 +98,7 @@ TEST(CommandLine, MoreThreadsThanCoresAreSaid) {
   write_text_atomic(scene, kOneGrain);
   const std::string more = std::to_string(omp_get_num_procs() + 1);
   expect("microsim " + scene + " --out " + directory.file("run") + " --threads " + more, 0,
-         "mind: --threads " + more + ": ");
+         "warning: --threads " + more + ": ");
 }
 
 /// Folders of kept results, which have a page, are not written into unless asked for.

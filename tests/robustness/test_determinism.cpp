@@ -90,10 +90,10 @@ std::vector<SmallForm> small_forms() {
   return {
       {"calibration.toml", "run", with(deep, {quick_rest}), 3},
       {"four_decades.toml", "run",
-       with(crowd, {{"configuration=[" + plane + "," + solid + "," + soft + "]", "hierarchy.levels=2",
-                     "hierarchy.form=bag", "hierarchy.inner_radius_max=0.2", "hierarchy.inner_radius_min=0.1",
-                     "hierarchy.inner_count=4", "fixed_point.iterations=2", "fixed_point.tolerance=0.9",
-                     "check.packings=1", "check.inner_count=1", "check.overlaps=[0.2,0.3]"}}),
+       with(crowd,
+            {{"configuration=[" + plane + "," + solid + "," + soft + "]", "hierarchy.levels=2", "hierarchy.form=bag",
+              "hierarchy.inner_radius=0.3", "hierarchy.replicates=4", "fixed_point.iterations=2",
+              "fixed_point.tolerance=0.9", "check.packings=1", "check.overlaps=[0.2,0.3]"}}),
        3, false},
       {"glass_beads.toml", "microsim", box(R"(variant=[{name="4MPa"},{name="rough",wall_mu=0.3}])"), 0},
       {"glass_beads_comparison.toml", "microsim",
@@ -119,6 +119,12 @@ std::vector<SmallForm> small_forms() {
        with(
            {"packing.polydispersity=4", "packing.trials=300", "packing.count=2", "macro.bodies=8", "macro.samples=2"},
            {{R"(scene=[{test="oedometric",strain=0.2,steps=2},{test="shear",preload=0.06,preload_steps=1,strain=0.1,steps=1}])",
+             "law.range=clamp"}}),
+       0},
+      {"extreme_polydispersity.toml", "run",
+       with(
+           {"packing.polydispersity=4", "packing.trials=300", "packing.count=2", "macro.bodies=40"},
+           {{R"(scene=[{name="two",resolved=["shelled"],strain=0.2,steps=2},{name="four",strain=0.2,steps=2,law={table="../results/hierarchy/law_table.toml",forms=["directional"]}}])",
              "law.range=clamp"}}),
        0},
       {"material.toml",

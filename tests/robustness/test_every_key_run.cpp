@@ -36,6 +36,7 @@ const std::map<std::string, std::string> kNotInResults{
      "describes the material; a remark says that no contact of it has a law that goes by it"},
     {"disks material.powder.rigid",
      "describes the material; a remark says that no contact of it has a law that goes by it"},
+    {"pipeline macro.kt", "its scene measures the initial slope alone, which stands in for the secant"},
     {"disks contact.1.pair", "its order does not matter, and without one of the two a contact has no law"},
     {"particles-drawn contact.0.pair", "its order does not matter, and without one of the two a contact has no law"},
     {"particles-drawn particle.0.inside", "there is no sphere that they could be inside: \"none\" is all it takes"},
@@ -96,7 +97,7 @@ TEST_P(SlowEveryKey, ChangesResultsOrIsRefused) {
       const auto& [path, key] = all[k];
       const std::string name = "changed-" + std::to_string(k);
       // Of words that were not there it is not known which one they stand for; a limit shows once it is reached.
-      constexpr std::size_t kTries = 3;
+      constexpr std::size_t kTries = 10;
       const bool words = key.form == KeyForm::choice || key.form == KeyForm::flag;
       const std::size_t may_be_default = words && key.texts.empty() && key.numbers.empty() ? 1 : 0;
       std::vector<std::string> same;

@@ -5,6 +5,7 @@
 #include "microsim/particles/scene_memory.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -47,8 +48,8 @@ class GrainBoxBadInput : public ::testing::Test {
     const ProgramOutcome outcome = run_the_program("microsim '" + directory_.file("scene.toml") +
                                                    "' --quiet --threads 1 --out '" + directory_.file("out") + "'");
     EXPECT_EQ(outcome.status, status) << outcome.output << "\n" << text;
-    for (const std::string& word : words)
-      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in: " << outcome.output;
+    const std::string said = test::unwrapped(outcome.output);
+    for (const std::string& word : words) EXPECT_NE(said.find(word), std::string::npos) << word << " not in: " << said;
   }
   TemporaryDirectory directory_;
 };

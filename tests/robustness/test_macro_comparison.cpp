@@ -3,11 +3,13 @@
 
 #include <filesystem>
 
+#include "common/contact/crowd_table_file.h"
 #include "common/data/macro_result.h"
 #include "common/io/text_file.h"
 #include "tests/support/markup_check.h"
 #include "tests/support/process.h"
 #include "tests/support/program.h"
+#include "tests/support/synthetic_crowd.h"
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_comparison.h"
@@ -71,6 +73,28 @@ TEST_F(MacroComparison, EveryEngineOnEveryScene) {
   EXPECT_NE(read_text(out() + "/table.md").find("| shear-35 | free | 1 |"), std::string::npos);
   EXPECT_NE(read_text(out() + "/table.csv").find("oedometric-35,pair,2,"), std::string::npos);
   EXPECT_FALSE(fs::exists(out() + "/work"));
+}
+
+/// Without twins soft particles hold what the law of the scene was measured on.
+TEST_F(MacroComparison, ASceneMayHaveALawOfItsOwn) {
+  LawTable table{1, {synthetic::law_entry(0.58)}};
+  table.entries[0].grains = 1000.0;
+  save_law_table(table, directory_.file("levels.toml"), build_provenance());
+  write_text_atomic(scene(), std::string(kTinyComparison) +
+                                 "resolved = []\nname = \"levels\"\n[scene.law]\ntable = \"levels.toml\"\nforms = "
+                                 "[\"bag\"]\n");
+  const ProgramOutcome outcome = run("out");
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.output;
+  const auto summary = nlohmann::json::parse(read_text(out() + "/summary.json"));
+  const auto& common = summary["scenes"][0];
+  const auto& own = summary["scenes"][1];
+  EXPECT_EQ(common["engines"][0]["engine"], "pair");
+  EXPECT_EQ(own["engines"][0]["engine"], "bag");
+  const auto& facts = own["samples"][0];
+  EXPECT_EQ(facts["inner_grains"], 1000 * facts["soft"].get<int>());
+  const double bodies = facts["body_fraction"];
+  const double soft = facts["soft_share"];
+  EXPECT_NEAR(facts["solid_fraction"].get<double>(), bodies * (1.0 - soft + 0.58 * soft), 1e-12);
 }
 
 TEST_F(MacroComparison, ThreadsDoNotMatter) {

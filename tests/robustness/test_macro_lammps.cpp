@@ -22,6 +22,7 @@
 #include "tests/support/synthetic_run.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/tiny_pipeline.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -63,8 +64,8 @@ class MacroLammps : public ::testing::Test {
 
   static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words) {
     EXPECT_EQ(outcome.status, status) << outcome.output;
-    for (const std::string& word : words)
-      EXPECT_NE(outcome.output.find(word), std::string::npos) << word << " not in " << outcome.output;
+    const std::string said = unwrapped(outcome.output);
+    for (const std::string& word : words) EXPECT_NE(said.find(word), std::string::npos) << word << " not in " << said;
   }
 
   /// A program in the place of softgrain-lammps.

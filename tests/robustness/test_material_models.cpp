@@ -10,6 +10,7 @@
 #include "common/io/text_file.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -90,7 +91,7 @@ TEST(MaterialModelsRun, RefusesACardOfGrainsWithAnotherFriction) {
       run_the_program("run '" + directory.file("scene.toml") + "' --quiet --out '" + out + "'");
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const std::string message = "measured with nu = 0.3, mu = 0.3 and serves no grains of nu = 0.3, mu = 0.5";
-  EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+  EXPECT_NE(unwrapped(outcome.output).find(message), std::string::npos) << outcome.output;
   const nlohmann::json scores = scores_of(out);
   for (const char* model : {"cells", "density"}) {
     EXPECT_EQ(scores[model]["samples"], 0) << model;

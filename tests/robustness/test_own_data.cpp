@@ -18,6 +18,7 @@
 #include "tests/support/run_comparison.h"
 #include "tests/support/synthetic_law.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -79,7 +80,11 @@ class OwnData : public ::testing::Test {
     return json::parse(read_text(file(run) + "/summary.json"));
   }
   ProgramOutcome calibrate(const std::string& inputs, const std::string& out, const std::string& more = "") const {
-    return run_the_program("calibrate " + inputs + " --quiet --set replicates=60 --out '" + file(out) + "' " + more);
+    ProgramOutcome outcome =
+        run_the_program("calibrate " + inputs + " --quiet --set replicates=60 --out '" + file(out) + "' " + more);
+    outcome.output = unwrapped(outcome.output);
+    if (std::filesystem::exists(file(out) + "/log.txt")) outcome.output += read_text(file(out) + "/log.txt");
+    return outcome;
   }
   static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words) {
     EXPECT_EQ(outcome.status, status) << outcome.output;

@@ -27,9 +27,9 @@ TEST(RunLog, HasWhatTheTerminalSaid) {
   ASSERT_EQ(done.status, 0) << done.output;
   const std::string log = read_text(runs.out("out") + "/log.txt");
   EXPECT_TRUE(has(log.substr(0, log.find('\n')), " softgrain ")) << log;
-  for (const char* words :
-       {"--set macro.steps=2", "seed 1", "scene.toml", "bodies = 6", "steps = 2", "preparing macro samples: begins",
-        "preparing macro samples: done", "macro with laws: begins", "macro: resolved twins: done", "mind: --threads"})
+  for (const char* words : {"--set macro.steps=2", "seed 1", "scene.toml", "bodies = 6", "steps = 2",
+                            "preparing macro samples: begins", "preparing macro samples: done",
+                            "macro with laws: begins", "macro: resolved twins: done", "warning: --threads"})
     EXPECT_TRUE(has(log, words)) << words << " not in\n" << log;
   std::istringstream said(done.output);
   for (std::string line; std::getline(said, line);)
@@ -40,6 +40,42 @@ TEST(RunLog, HasWhatTheTerminalSaid) {
   ASSERT_EQ(run_the_program(command + "--quiet --set macro.steps=2").status, 0);
   EXPECT_TRUE(has(read_text(runs.out("out") + "/log.txt"), "macro with laws: done"));
 }
+
+std::size_t count_of(const std::string& text, const std::string& line_begin) {
+  std::size_t n = text.starts_with(line_begin) ? 1 : 0;
+  for (std::size_t at = text.find("\n" + line_begin); at != std::string::npos;
+       at = text.find("\n" + line_begin, at + 1))
+    ++n;
+  return n;
+}
+
+class ConsoleSummary : public ::testing::TestWithParam<KindScene> {};
+
+/// Lines that a terminal shows whole (but for file names), five warnings at most, notes in the log and the report.
+TEST_P(ConsoleSummary, IsShort) {
+  const KindRuns runs(GetParam());
+  const std::string command = GetParam().command + " '" + runs.out("scene.toml") + "' --out '" + runs.out("out") + "'";
+  const ProgramOutcome done = run_the_program(command);
+  ASSERT_EQ(done.status, GetParam().status) << done.output;
+  std::istringstream said(done.output);
+  for (std::string line; std::getline(said, line);)
+    if (!has(line, runs.out("out"))) {
+      EXPECT_LE(line.size(), 100U) << line;
+    }
+  EXPECT_LE(count_of(done.output, "warning: "), 5U) << done.output;
+  EXPECT_EQ(count_of(done.output, "note: "), 0U) << done.output;
+  const auto summary = nlohmann::json::parse(read_text(runs.out("out") + "/summary.json"));
+  const std::string log = read_text(runs.out("out") + "/log.txt");
+  for (const char* list : {"warnings", "remarks"})
+    for (const auto& text : summary.value(list, nlohmann::json::array()))
+      EXPECT_TRUE(has(log, text.get<std::string>())) << text << " not in\n" << log;
+  if (summary["status"] == "good" && !summary["remarks"].empty()) {
+    EXPECT_TRUE(has(done.output, "at the end of log.txt and of the report")) << done.output;
+    EXPECT_TRUE(has(read_text(runs.out("out") + "/report.html"), "<details id=\"notes\">"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ConsoleSummary, ::testing::ValuesIn(quick_kinds()), name_of_kind);
 
 TEST(RunLog, SaysHowARunEnded) {
   const KindRuns runs({"particles", "microsim", tiny_particles("0.2"), 0});

@@ -55,6 +55,7 @@ inline LawTableEntry law_entry(double solid_fraction = 0.7, double shift = 0.0) 
   e.solid_fraction = solid_fraction;
   e.solid_fraction_error = 0.001 / 3.0;
   e.packings = 12;
+  e.grains = 1.0e6 / 3.0;
   e.relaxation = "damped, increment 0.005";
   e.volume_max = 0.2 / 3.0 + shift;
   e.overlap_max = 0.28 + shift;

@@ -36,16 +36,15 @@ overlap = 0.6
 [hierarchy]
 levels = 2
 form = "bag"
-inner_radius_max = 0.2
-inner_radius_min = 0.1
-inner_count = 4
+fill = "masses"
+inner_radius = 0.3
+replicates = 4
 [fixed_point]
 iterations = 2
 tolerance = 0.9
 [check]
 packings = 2
 overlaps = [0.2, 0.3]
-inner_count = 1
 )";
 
 }  // namespace softgrain::test

@@ -86,6 +86,7 @@ void expect_same(const LawTableEntry& a, const LawTableEntry& b) {
   expect_same(a.spec, b.spec);
   EXPECT_EQ(a.solid_fraction, b.solid_fraction);
   EXPECT_EQ(a.solid_fraction_error, b.solid_fraction_error);
+  EXPECT_EQ(a.grains, b.grains);
   EXPECT_EQ(a.packings, b.packings);
   EXPECT_EQ(a.relaxation, b.relaxation);
   EXPECT_EQ(a.volume_max, b.volume_max);

@@ -1,35 +1,93 @@
-// Parts of a hierarchy: what fills the voids, shells inside shells, inner soft particles with all their grains.
+// Parts of a hierarchy: what a level holds, shells inside shells, inner soft particles with all their grains.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "common/contact/crowd_from_table.h"
 #include "common/core/error.h"
 #include "common/core/solid_sphere.h"
+#include "common/data/crowd_replicates.h"
 #include "common/dynamics/force_pass.h"
 #include "common/neighbours/verlet_list.h"
+#include "common/packing/void_filling.h"
 #include "microsim/crowd_arrangements.h"
+#include "microsim/filled_shell.h"
+#include "microsim/shell_compaction.h"
 #include "pipelines/kinds/hierarchy/level.h"
+#include "pipelines/kinds/hierarchy/level_errors.h"
 #include "tests/support/crowd.h"
 #include "tests/support/synthetic_crowd.h"
 
 namespace softgrain {
 namespace {
 
-HierarchySetup setup_of(double r_min, double r_max) {
+HierarchySetup setup_of(double inner_radius) {
   HierarchySetup setup;
   setup.crowd.spec = test::coarse_spec();
-  setup.voids.r_max = r_max;
-  setup.voids.r_min = r_min;
+  setup.inner_radius = inner_radius;
+  setup.next_volume = next_volume(setup.crowd.spec.exponent, setup.crowd.spec.polydispersity);
   return setup;
 }
 
-TEST(FillLevel, InnerSoftParticlesLieInTheVoids) {
-  const HierarchySetup setup = setup_of(0.08, 0.16);
+double volume_of(const std::vector<InnerSoft>& inner) {
+  double sum = 0.0;
+  for (const InnerSoft& s : inner) sum += cube(s.r);
+  return sum;
+}
+
+/// No sphere overlaps another one or the shell, and each of them touches something.
+void expect_touching(const std::vector<PackedSphere>& spheres) {
+  for (std::size_t a = 0; a < spheres.size(); ++a) {
+    double room = 1.0 - norm(spheres[a].x) - spheres[a].r;
+    for (std::size_t b = 0; b < spheres.size(); ++b)
+      if (b != a) room = std::min(room, norm(spheres[a].x - spheres[b].x) - spheres[a].r - spheres[b].r);
+    EXPECT_NEAR(room, 0.0, 1e-12) << a;
+  }
+}
+
+TEST(NextVolume, IsThatOfTheDistribution) {
+  EXPECT_NEAR(next_volume(3.5, 10.0), std::sqrt(0.1), 1e-15);
+  // Integrals of r^3 r^-b over both ranges.
+  for (const double b : {2.8, 3.5, 4.3}) {
+    const auto volume = [b](double low, double high) { return std::pow(high, 4.0 - b) - std::pow(low, 4.0 - b); };
+    EXPECT_NEAR(next_volume(b, 5.0), volume(0.2, 1.0) / volume(1.0, 5.0), 1e-12) << b;
+  }
+}
+
+TEST(FillShell, SoftParticlesHoldTheMassOfTheNextLevel) {
+  const HierarchySetup setup = setup_of(0.125);
+  constexpr double kGrainsBelow = 0.7;
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    const ShellPacking published = generate_shell_packing(setup.crowd.spec, 1, index);
+    const ShellFilling filling{setup.inner_radius, setup.next_volume / kGrainsBelow, 0.05};
+    const SoftContent content = fill_shell(setup.crowd.spec, filling, published, 1);
+    const double grains = content.grains.solid_fraction();
+    const double soft = volume_of(content.inner);
+    const double one = cube(setup.inner_radius);
+    EXPECT_NEAR(soft * kGrainsBelow / grains, setup.next_volume, 0.06) << "one soft particle is " << one / grains;
+    const double packed = grains + cube(0.95) * soft;
+    EXPECT_LE(packed, published.solid_fraction() * 1.03);
+    EXPECT_GE(packed, 0.55);
+    std::vector<PackedSphere> all;
+    for (std::size_t k = 0; k < content.grains.radius.size(); ++k)
+      all.push_back({content.grains.position[k], content.grains.radius[k]});
+    for (const InnerSoft& s : content.inner) all.push_back({s.x, 0.95 * s.r});  // at their onset
+    expect_touching(all);
+    const SoftContent again = fill_shell(setup.crowd.spec, filling, published, 1);
+    ASSERT_EQ(again.inner.size(), content.inner.size());
+    EXPECT_EQ(again.inner.front().x, content.inner.front().x);
+    EXPECT_NE(fill_shell(setup.crowd.spec, filling, published, 2).inner.front().x, content.inner.front().x);
+  }
+}
+
+TEST(FillHoles, InnerSoftParticlesLieInTheVoids) {
+  HierarchySetup setup = setup_of(0.16);
+  setup.inner_radius_min = 0.08;
   for (std::uint64_t index = 0; index < 3; ++index) {
     const ShellPacking packing = generate_shell_packing(setup.crowd.spec, 1, index);
-    const SoftContent content = fill_level(setup, packing);
+    const SoftContent content = fill_holes(setup, {0.16, 10.0, 0.0}, packing);
     ASSERT_GT(content.inner.size(), 3U);
-    EXPECT_TRUE(content.inner_packings.empty());
+    EXPECT_EQ(content.grains.radius, packing.radius);
     for (std::size_t a = 0; a < content.inner.size(); ++a) {
       const InnerSoft& inner = content.inner[a];
       EXPECT_GE(inner.r, 0.08);
@@ -39,20 +97,65 @@ TEST(FillLevel, InnerSoftParticlesLieInTheVoids) {
         EXPECT_GE(norm(inner.x - packing.position[k]), inner.r + packing.radius[k] - 1e-9);
       for (std::size_t b = 0; b < a; ++b)
         EXPECT_GE(norm(inner.x - content.inner[b].x), inner.r + content.inner[b].r - 1e-9);
-      if (a > 0) {
-        EXPECT_LE(inner.r, content.inner[a - 1].r * 1.01) << "largest hole first";
-      }
     }
-    EXPECT_EQ(fill_level(setup, packing).inner.size(), content.inner.size());
+    // No more than their mass, but for the last one.
+    const double wanted = 0.5 * volume_of(content.inner) / packing.solid_fraction();
+    const SoftContent less = fill_holes(setup, {0.16, wanted, 0.0}, packing);
+    EXPECT_GE(volume_of(less.inner), 0.5 * volume_of(content.inner));
+    EXPECT_LE(volume_of(less.inner), 0.5 * volume_of(content.inner) + cube(0.16));
   }
 }
 
-TEST(FillLevel, TheCountIsALimit) {
-  HierarchySetup setup = setup_of(0.05, 0.16);
-  setup.voids.count = 2;
-  EXPECT_EQ(fill_level(setup, generate_shell_packing(setup.crowd.spec, 1, 0)).inner.size(), 2U);
-  setup = setup_of(0.9, 0.95);
-  EXPECT_TRUE(fill_level(setup, generate_shell_packing(setup.crowd.spec, 1, 0)).inner.empty());
+TEST(CompactInShell, GrowsToTheRadiiWhereThereIsRoom) {
+  RandomStream random(1, RandomPurpose::test, 0);
+  const std::vector<double> few(60, 0.18);  // 0.35 of the volume
+  const CompactedShell loose = compact_in_shell(few, random);
+  EXPECT_EQ(loose.share, 1.0);
+  for (const double r : loose.packing.radius) EXPECT_NEAR(r, 0.18, 0.18 * 2e-3);
+  const std::vector<double> many(300, 0.15);  // 1.01 of it
+  const CompactedShell jammed = compact_in_shell(many, random);
+  EXPECT_LT(jammed.share, 0.9);
+  // Equal spheres jam at 0.64, less beside a wall seven of them across.
+  EXPECT_GT(jammed.packing.solid_fraction(), 0.50);
+  EXPECT_LT(jammed.packing.solid_fraction(), 0.66);
+  EXPECT_THROW((void)compact_in_shell({}, random), BadInput);
+  EXPECT_THROW((void)compact_in_shell({1.2}, random), BadInput);
+}
+
+TEST(LevelErrors, TheOnsetIsWhereSixPlanesBegin) {
+  const LawTableEntry entry = synthetic::law_entry();
+  const CrowdLaw& law = *entry.find(Crowd::bag);
+  const double onset = law_onset(law, 0.28);
+  const CrowdModel model = crowd_model(law);
+  const auto force = [&](double x) { return crowd_forces(model, six_planes(), std::vector<double>(6, x))[0]; };
+  EXPECT_GT(onset, 0.01);
+  EXPECT_LT(onset, law.delta.value);
+  EXPECT_EQ(force(onset * (1.0 - 1e-6)), 0.0);
+  EXPECT_GT(force(onset * (1.0 + 1e-6)), 0.0);
+}
+
+TEST(LevelErrors, DrawsOfTheLawBelowGoIntoThoseOfTheLevel) {
+  LawTableEntry below = synthetic::law_entry();
+  for (CrowdLaw& law : below.laws)
+    for (const double factor : {0.8, 1.0, 1.25}) {
+      law.replicates.push_back(crowd_numbers(law));
+      law.replicates.back()[0] *= factor;
+    }
+  const std::vector<double> draws = strength_draws(below, Crowd::bag, 0.5);
+  ASSERT_EQ(draws.size(), 3U);
+  EXPECT_NEAR(draws[0], std::sqrt(0.8), 1e-12);
+  EXPECT_NEAR(draws[1], 1.0, 1e-12);
+  EXPECT_NEAR(draws[2], std::sqrt(1.25), 1e-12);
+  LawTableEntry level = synthetic::law_entry();
+  for (CrowdLaw& law : level.laws) law.replicates.assign(6, crowd_numbers(law));
+  EXPECT_NEAR(strength_error(level, Crowd::bag), 0.0, 1e-12);
+  const Estimate before = level.find(Crowd::bag)->a;
+  spread(level, draws);
+  EXPECT_NEAR(level.find(Crowd::bag)->replicates[3][0], before.value * std::sqrt(0.8), 1e-12);
+  EXPECT_GT(level.find(Crowd::bag)->a.standard_error, before.standard_error);
+  EXPECT_GT(strength_error(level, Crowd::bag), 0.08);
+  EXPECT_NEAR(law_strength(*scaled_law(below, 1.25).find(Crowd::bag), 0.2),
+              1.25 * law_strength(*below.find(Crowd::bag), 0.2), 1e-12);
 }
 
 TEST(LawDistance, IsZeroForTheSameLawAndGrowsWithTheDifference) {
@@ -124,10 +227,8 @@ class ResolvedInner : public ::testing::Test {
  protected:
   ResolvedInner() {
     spec_ = test::coarse_spec();
-    HierarchySetup setup = setup_of(0.1, 0.3);
-    setup.crowd.spec = spec_;
-    setup.voids.count = 2;
-    content_ = fill_level(setup, generate_shell_packing(spec_, 1, 0));
+    const HierarchySetup setup = setup_of(0.2);
+    content_ = fill_shell(spec_, {0.2, 0.025, 0.0}, generate_shell_packing(spec_, 1, 0), 1);
     for (std::uint64_t k = 0; k < 2; ++k) content_.inner_packings.push_back(generate_shell_packing(spec_, 1, 100 + k));
     laws_ = inner_laws(setup, synthetic::law_entry());
   }

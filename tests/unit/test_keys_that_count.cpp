@@ -146,6 +146,7 @@ TEST_F(KeysThatCount, KeysOfAnotherTestOrLawAreRefused) {
   refused(soft + "tangential_deltas = [0.2]\n", "goes with angles_deg");
   refused(soft + "[measure]\nrotation_step_deg = 0.02\n", "goes with angles_deg");
   refused(soft + "[measure]\nturn_speed = 0.001\n", "goes with angles_deg");
+  refused(soft + "angles_deg = [-0.05, 0.05]\n[measure]\nrotation = \"cumulative\"\n", "two angles of one sign");
   refused(soft + "[measure]\nturn_speed = 1.0\n", "turn_speed = 1: must be from");
   refused(soft + "[measure.damped]\nincrement = 0.01\n", "goes with relaxation = \"damped\"");
   refused(soft + "[packing]\nrmax = 0.004\nrmax_over_shell = 0.3\n", "rmax_over_shell = 0.3: contradicts rmax");

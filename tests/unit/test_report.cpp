@@ -63,8 +63,8 @@ TEST_F(Report, AWholeRunHasAllSections) {
   save_macro(synthetic::macro(), path("macro.h5"));
   write_text_atomic(path("summary.json"), kSummary);
   std::string html = written();
-  for (const char* id : {"remarks", "laws", "normal", "tangential", "stiffness", "relaxations", "macro", "radii",
-                         "cost", "provenance"}) {
+  for (const char* id :
+       {"notes", "laws", "normal", "tangential", "stiffness", "relaxations", "macro", "radii", "cost", "provenance"}) {
     EXPECT_TRUE(has_text(html, std::string("id=\"") + id + "\"")) << id;
   }
   EXPECT_TRUE(has_text(html, "seed 104"));

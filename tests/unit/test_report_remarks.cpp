@@ -64,9 +64,9 @@ TEST(ReportRemarks, ThePairLawIsRemarkedOnWhereItWasUsed) {
   report::RunData run;
   run.summary = nlohmann::json::object();
   run.macro = curves_with(Crowd::pair);
-  EXPECT_TRUE(has_text(report::remarks_section(run), "2.2 to 12 times"));
+  EXPECT_TRUE(has_text(report::notes_section(run), "2.2 to 12 times"));
   run.macro = curves_with(Crowd::directional);
-  EXPECT_EQ(report::remarks_section(run), "");
+  EXPECT_EQ(report::notes_section(run), "");
 }
 
 TEST(ReportMacro, NamesTheLawOfItsCurves) {

@@ -201,7 +201,6 @@ ExitStatus run_powder_ensemble(const PowderSetup& setup, const Run& run) {
   add_samples(samples, structures, summary);
   std::string people = add_means(setup, samples, structures, summary);
   people += add_consolidation(samples, summary);
-  for (const std::string& remark : summary.head.remarks) people += "note: " + remark + "\n";
   return run.finish(json_of(summary), people + "data: " + run.path("powder.h5") + "\n");
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipelines/kinds/hierarchy/scene.h"
 #include "pipelines/kinds/law_table/crowd_check.h"
@@ -31,14 +32,19 @@ void spend_on_levels(const HierarchySetup& setup, const MeasureTrial& trial, Fin
 
 /// Of two decades with all their grains: every inner soft particle holds as many as its parent.
 void spend_on_resolved(const HierarchySetup& setup, const MeasureTrial& trial, Findings& out) {
-  constexpr double kInner = 240.0;  // soft particles that the voids take, when all are kept
   if (setup.check_packings == 0 || setup.check_overlaps.empty()) return;
-  const double inner = setup.check_inner > 0 ? static_cast<double>(setup.check_inner) : kInner;
+  constexpr double kHoles = 240.0;   // soft particles that the voids take
+  constexpr double kFilled = 0.64;   // of the shell, where grains and soft particles jam
+  constexpr double kGrains = 0.706;  // of grains alone
+  const double soft = setup.next_volume / kGrains;
+  const double holes = setup.check_inner > 0 ? static_cast<double>(setup.check_inner) : kHoles;
+  const double inner =
+      setup.fill == LevelFill::voids ? holes : kFilled * soft / (1.0 + soft) / std::pow(setup.inner_radius, 3);
   CrowdConfiguration plane;
   plane.partners = {{PartnerKind::plane, 0.0, {{1.0, 0.0, 0.0}}}};
   plane.stages = {{CrowdMove::load, {setup.check_overlaps.back()}}};
   // The grains of the smallest inner particles set the step.
-  out.spend("resolved check", static_cast<double>(setup.check_packings) * (1.0 + inner) / setup.voids.r_min *
+  out.spend("resolved check", static_cast<double>(setup.check_packings) * (1.0 + inner) / setup.inner_radius *
                                   seconds_per_packing(plane, setup.crowd, trial.pass_seconds));
 }
 

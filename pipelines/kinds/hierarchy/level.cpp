@@ -7,35 +7,46 @@
 #include <numeric>
 
 #include "common/contact/crowd_from_table.h"
+#include "common/core/solid_sphere.h"
 #include "common/core/stopwatch.h"
+#include "common/packing/void_filling.h"
+#include "microsim/filled_shell.h"
+#include "pipelines/kinds/hierarchy/level_errors.h"
 #include "pipelines/run/key_text.h"
 
 namespace softgrain {
 
-SOFTGRAIN_EVERY_MEMBER(VoidFillingOptions, r_max, r_min, volume, count, tolerance)
+SOFTGRAIN_EVERY_MEMBER(ShellFilling, inner_radius, soft_over_grains, onset)
 
 namespace {
 
+constexpr double kStronger = 1.25;  ///< law of the level below, to see how the forces follow it
+constexpr std::int64_t kSensitivityPackings = 6;
+
 /// All that the content of a level depends on beside the packings that it is filled into.
-std::string tag_of(const HierarchySetup& setup, const LawTableEntry& below) {
-  return KeyText(setup.form, setup.unloading, setup.rolling, setup.voids, below.solid_fraction,
-                 numbers_of(below, setup.form))
+std::string tag_of(const HierarchySetup& setup, const HierarchyLevel& below) {
+  return KeyText(setup.form, setup.unloading, setup.rolling, setup.fill, setup.inner_radius_min,
+                 filling_above(setup, below), below.entry.solid_fraction, numbers_of(below.entry, setup.form))
       .text();
 }
 
-/// Facts about the inner soft particles, over the packings of the pool.
-void describe_inner(LevelContents& contents, HierarchyLevel& level) {
+/// Facts about the content, means over the packings of the pool.
+void describe_content(LevelContents& contents, double fraction_inside, HierarchyLevel& level) {
   const std::vector<ShellPacking>& pool = contents.packings;
+  const double share = 1.0 / static_cast<double>(pool.size());
   level.inner_low = 1.0;
   for (std::size_t k = 0; k < pool.size(); ++k) {
     const SoftContent content = contents.of(pool[k], static_cast<std::int64_t>(k));
     for (const InnerSoft& inner : content.inner) {
-      level.inner_volume += inner.r * inner.r * inner.r / static_cast<double>(pool.size());
+      level.inner_volume += share * inner.r * inner.r * inner.r;
       level.inner_low = std::min(level.inner_low, inner.r);
       level.inner_high = std::max(level.inner_high, inner.r);
     }
-    level.inner_mean += static_cast<double>(content.inner.size()) / static_cast<double>(pool.size());
+    level.grain_volume += share * content.grains.solid_fraction();
+    level.inner_mean += share * static_cast<double>(content.inner.size());
+    level.grains += share * static_cast<double>(content.grains.radius.size());
   }
+  level.entry.solid_fraction = level.grain_volume + fraction_inside * level.inner_volume;
 }
 
 /// Sum over the neighbours of the centre at the last loading point of a run, -1 when it is not there.
@@ -48,19 +59,24 @@ double summed_end_force(const CrowdConfiguration& c, const CrowdRun& run) {
   return std::accumulate(last->normal.begin(), end, 0.0);
 }
 
+const std::string& name_of(const CrowdMeasurements& data, const CrowdRun& run) {
+  return data.configurations[static_cast<std::size_t>(run.configuration)].name;
+}
+
 /// Ratio of mean end forces on the packings that both levels have, with its error by linear propagation of the paired
 /// residuals.
 LevelChange change_of(const CrowdMeasurements& data, const CrowdMeasurements& below, std::int64_t configuration) {
+  const CrowdConfiguration& c = data.configurations[static_cast<std::size_t>(configuration)];
   std::vector<std::pair<double, double>> pairs;
   for (const CrowdRun& a : data.runs)
     for (const CrowdRun& b : below.runs)
-      if (a.configuration == configuration && b.configuration == configuration && a.packing == b.packing &&
+      if (a.configuration == configuration && name_of(below, b) == c.name && a.packing == b.packing &&
           a.orientation == b.orientation) {
-        const double here = summed_end_force(data.configurations[static_cast<std::size_t>(configuration)], a);
-        const double there = summed_end_force(data.configurations[static_cast<std::size_t>(configuration)], b);
+        const double here = summed_end_force(c, a);
+        const double there = summed_end_force(c, b);
         if (here >= 0.0 && there >= 0.0) pairs.emplace_back(here, there);
       }
-  LevelChange change{data.configurations[static_cast<std::size_t>(configuration)].name, 1.0, 0.0};
+  LevelChange change{c.name, 1.0, 0.0};
   double here = 0.0;
   double there = 0.0;
   for (const auto& [a, b] : pairs) {
@@ -90,8 +106,49 @@ CrowdLevel crowd_level(const HierarchySetup& setup, LevelContents& contents, std
   if (below == nullptr) return crowd;
   crowd.fill = [&contents](const ShellPacking& packing, std::int64_t k) { return contents.of(packing, k); };
   crowd.laws = inner_laws(setup, below->entry);
-  crowd.tag = tag_of(setup, below->entry);
+  crowd.tag = tag_of(setup, *below);
   return crowd;
+}
+
+/// Planes alone, one and as many as there are: what shows how the law follows that of the level below.
+CrowdSetup planes_of(const CrowdSetup& setup) {
+  CrowdSetup out = setup;
+  const auto planes = [](const CrowdConfiguration& c) {
+    return !c.held_out && std::all_of(c.partners.begin(), c.partners.end(),
+                                      [](const CrowdPartner& p) { return p.kind == PartnerKind::plane && !p.smooth; });
+  };
+  std::erase_if(out.configurations, [&](const CrowdConfiguration& c) { return !planes(c); });
+  std::stable_sort(out.configurations.begin(), out.configurations.end(),
+                   [](const auto& a, const auto& b) { return a.partners.size() < b.partners.size(); });
+  if (out.configurations.size() > 2)
+    out.configurations.erase(out.configurations.begin() + 1, out.configurations.end() - 1);
+  out.packings_max = out.packings_min = std::min(kSensitivityPackings, setup.packings_min);
+  out.packings.clear();
+  out.plan.clear();
+  return out;
+}
+
+/// Relative change of the forces of planes over that of the law below, from the same packings with that law stronger.
+Sensitivity sensitivity_of(const HierarchySetup& setup, LevelContents& contents, const HierarchyLevel& below,
+                           HierarchyLevel& level, const CrowdMeasurements& data, const Run& run) {
+  HierarchyLevel stronger = below;
+  stronger.entry = scaled_law(below.entry, kStronger);
+  CrowdLevel crowd = crowd_level(setup, contents, level.number, &stronger);
+  crowd.file = fmt::format("crowd_level_{}_sensitivity.h5", level.number);
+  std::vector<ShellPacking> pool = contents.packings;
+  const CrowdMeasurements moved = run_crowd_stage(planes_of(setup.crowd), run, level.left_out, pool, &crowd);
+  Sensitivity out;
+  double weights = 0.0;
+  for (std::size_t c = 0; c < moved.configurations.size(); ++c) {
+    const LevelChange change = change_of(moved, data, static_cast<std::int64_t>(c));
+    const double error = std::max(change.error, 1e-3);
+    out.value += std::log(change.ratio) / std::log(kStronger) / (error * error);
+    weights += 1.0 / (error * error);
+  }
+  out.value = std::max(0.0, out.value / weights);
+  out.error = 1.0 / std::sqrt(weights) / std::log(kStronger);
+  level.cost += cost_of(moved);
+  return out;
 }
 
 /// How far the law has moved from one level to the next, and how much of that packings alone would make.
@@ -106,15 +163,39 @@ void compare_with_below(HierarchyLevel& level, const HierarchyLevel& below, cons
   level.distance_noise = std::sqrt(noise / static_cast<double>(level.changes.size()));
 }
 
+/// Draws of the law below go into the draws of this one.
+void add_errors_below(const HierarchySetup& setup, LevelContents& contents, const HierarchyLevel& below,
+                      const CrowdMeasurements& data, HierarchyLevel& level, const Run& run) {
+  if (setup.replicates == 0) return;
+  level.sensitivity = sensitivity_of(setup, contents, below, level, data, run);
+  spread(level.entry, strength_draws(below.entry, setup.form, level.sensitivity.value));
+  level.error = strength_error(level.entry, setup.form);
+}
+
 }  // namespace
 
-SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing) {
+SoftContent fill_holes(const HierarchySetup& setup, const ShellFilling& filling, const ShellPacking& packing) {
   SoftContent content{packing, {}, {}};
   std::vector<PackedSphere> placed;
   for (std::size_t k = 0; k < packing.radius.size(); ++k) placed.push_back({packing.position[k], packing.radius[k]});
-  for (const PackedSphere& s : fill_voids(placed, VoidDomain::unit_sphere(), setup.voids).added)
+  VoidFillingOptions holes;
+  holes.r_max = setup.inner_radius;
+  holes.r_min = setup.inner_radius_min;
+  holes.volume = kSphereVolume * filling.soft_over_grains * packing.solid_fraction();
+  for (const PackedSphere& s : fill_voids(placed, VoidDomain::unit_sphere(), holes).added)
     content.inner.push_back({s.x, s.r});
   return content;
+}
+
+ShellFilling filling_above(const HierarchySetup& setup, const HierarchyLevel& below) {
+  return {setup.inner_radius, setup.next_volume / below.grain_volume,
+          law_onset(*below.entry.find(setup.form), below.entry.overlap_max)};
+}
+
+void LevelContents::begin_level(const HierarchyLevel* below) {
+  filling_.reset();
+  if (below != nullptr) filling_ = filling_above(setup_, *below);
+  known_.clear();
 }
 
 SoftContent LevelContents::of(const ShellPacking& packing, std::int64_t number) {
@@ -123,7 +204,11 @@ SoftContent LevelContents::of(const ShellPacking& packing, std::int64_t number) 
     const auto found = known_.find(number);
     if (found != known_.end()) return found->second;
   }
-  SoftContent content = fill_level(setup_, packing);
+  SoftContent content{packing, {}, {}};
+  if (filling_ && setup_.fill == LevelFill::masses)
+    content = fill_shell(setup_.crowd.spec, *filling_, packing, seed_);
+  else if (filling_)
+    content = fill_holes(setup_, *filling_, packing);
   const std::lock_guard<std::mutex> lock(mutex_);
   return known_.emplace(number, std::move(content)).first->second;
 }
@@ -141,12 +226,7 @@ InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below) {
 double law_distance(const LawTableEntry& law, const LawTableEntry& below, Crowd form) {
   const CrowdModel here = crowd_model(*law.find(form));
   const CrowdModel there = crowd_model(*below.find(form));
-  std::vector<CrowdPartner> cube;
-  for (int k = 0; k < 6; ++k) {
-    CrowdPartner plane;
-    plane.direction[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
-    cube.push_back(plane);
-  }
+  const std::vector<CrowdPartner> cube = six_planes();
   double total = 0.0;
   for (const std::size_t planes : {std::size_t{1}, cube.size()}) {
     const std::vector<CrowdPartner> partners(cube.begin(), cube.begin() + static_cast<std::ptrdiff_t>(planes));
@@ -171,19 +251,23 @@ HierarchyLevel run_level(const HierarchySetup& setup, LevelContents& contents, s
   const Stopwatch watch;
   HierarchyLevel level;
   level.number = number;
+  contents.begin_level(below);
   const CrowdLevel crowd = crowd_level(setup, contents, number, below);
   data = run_crowd_stage(setup.crowd, run, level.left_out, contents.packings, &crowd);
-  if (below != nullptr) describe_inner(contents, level);
   CrowdFitOptions fit;
   fit.seed = run.seed;
-  fit.replicates = 0;
+  fit.replicates = static_cast<int>(setup.replicates);
   level.entry = fit_crowd_laws(data, fit);
-  double grains = 0.0;
-  for (const ShellPacking& p : contents.packings)
-    grains += static_cast<double>(p.radius.size()) / static_cast<double>(contents.packings.size());
-  level.grains = grains + (below != nullptr ? level.inner_mean * below->grains : 0.0);
+  describe_content(contents, below != nullptr ? below->entry.solid_fraction : 0.0, level);
+  if (below != nullptr) level.grains += level.inner_mean * below->grains;
+  level.entry.grains = level.grains;
   level.cost = cost_of(data);
-  if (below != nullptr) compare_with_below(level, *below, data, *data_below, setup.form);
+  level.own_error = strength_error(level.entry, setup.form);
+  level.error = level.own_error;
+  if (below != nullptr) {
+    compare_with_below(level, *below, data, *data_below, setup.form);
+    add_errors_below(setup, contents, *below, data, level, run);
+  }
   level.seconds = watch.seconds();
   return level;
 }

@@ -3,10 +3,12 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibrate/crowd_fit.h"
+#include "microsim/filled_shell.h"
 #include "pipelines/kinds/hierarchy/scene.h"
 #include "pipelines/kinds/law_table/crowd_stage.h"
 #include "pipelines/run/run.h"
@@ -20,29 +22,38 @@ struct LevelChange {
   double error = 0.0;  ///< standard error over packings, of the paired ratio of means
 };
 
+/// Relative change of the forces of a level over that of the law below.
+struct Sensitivity {
+  double value = 0.0;
+  double error = 0.0;
+};
+
 struct HierarchyLevel {
   std::int64_t number = 0;  ///< 0: the finest, grains only
   LawTableEntry entry;
   double inner_mean = 0.0;    ///< soft particles inside, mean over packings
   double inner_volume = 0.0;  ///< their volume over that of the shell
+  double grain_volume = 0.0;  ///< of its own grains, over that of the shell
   double inner_low = 0.0;     ///< radii over Rs
   double inner_high = 0.0;
   std::vector<LevelChange> changes;   ///< against the level below; empty for the finest
   double distance = 0.0;              ///< of the two laws, see law_distance() (form of the hierarchy)
   double distance_noise = 0.0;        ///< what packings alone would make of it, from the standard errors of the changes
+  Sensitivity sensitivity;            ///< to the law below
+  double own_error = 0.0;             ///< relative standard error of its forces, from its packings alone
+  double error = 0.0;                 ///< with what the law below adds
   std::vector<std::string> left_out;  ///< a sentence for each measurement that broke off
   Cost cost;
   double seconds = 0.0;
   double grains = 0.0;  ///< that a resolved soft particle of this level would hold
 };
 
-/// Soft particles in the voids of a packing; deterministic.
-SoftContent fill_level(const HierarchySetup& setup, const ShellPacking& packing);
-
-/// The same content at every level: packings are made and filled once.
+/// Packings of grains alone, made once, and what a level makes of each: its content.
 class LevelContents {
  public:
-  explicit LevelContents(const HierarchySetup& setup) : setup_(setup) {}
+  LevelContents(const HierarchySetup& setup, std::uint64_t seed) : setup_(setup), seed_(seed) {}
+  /// From now on contents hold soft particles of the level below; none: grains alone.
+  void begin_level(const HierarchyLevel* below);
   /// Of the packing with this number in the pool; safe from several threads.
   SoftContent of(const ShellPacking& packing, std::int64_t number);
 
@@ -50,9 +61,18 @@ class LevelContents {
 
  private:
   const HierarchySetup& setup_;
+  std::uint64_t seed_;
+  std::optional<ShellFilling> filling_;
   std::mutex mutex_;
   std::map<std::int64_t, SoftContent> known_;
 };
+
+/// Soft particles in the voids of a packing of grains, largest hole first, until they have their volume or no hole is
+/// left; deterministic.
+SoftContent fill_holes(const HierarchySetup& setup, const ShellFilling& filling, const ShellPacking& packing);
+
+/// Soft particles on top of this level: what they hold of it has `next_volume` of the volume of the grains beside them.
+ShellFilling filling_above(const HierarchySetup& setup, const HierarchyLevel& below);
 
 /// Laws of inner soft particles from the entry of the level below. E is that of the grains.
 InnerLaws inner_laws(const HierarchySetup& setup, const LawTableEntry& below);

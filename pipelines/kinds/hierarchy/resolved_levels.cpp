@@ -17,12 +17,10 @@ namespace {
 constexpr std::uint64_t kInnerPackings = 1000000;
 constexpr std::size_t kDifferentInner = 8;  ///< different ones, used turn by turn
 
-enum class Engine { empty, law, resolved };
-constexpr Engine kEngines[] = {Engine::resolved, Engine::law, Engine::empty};
+enum class Engine { law, resolved };
+constexpr Engine kEngines[] = {Engine::resolved, Engine::law};
 
-const char* name_of(Engine engine) {
-  return engine == Engine::empty ? "empty" : engine == Engine::law ? "law" : "resolved";
-}
+const char* name_of(Engine engine) { return engine == Engine::law ? "law" : "resolved"; }
 
 CrowdConfiguration one_plane(const std::vector<double>& overlaps) {
   CrowdConfiguration c;
@@ -32,24 +30,13 @@ CrowdConfiguration one_plane(const std::vector<double>& overlaps) {
   return c;
 }
 
-SoftContent content_of(const HierarchySetup& setup, const ShellPacking& packing, Engine engine,
-                       const std::vector<ShellPacking>& inner) {
-  SoftContent content = fill_level(setup, packing);
-  if (setup.check_inner > 0 && content.inner.size() > static_cast<std::size_t>(setup.check_inner))
-    content.inner.resize(static_cast<std::size_t>(setup.check_inner));
-  if (engine == Engine::empty) content.inner.clear();
-  if (engine == Engine::resolved) content.inner_packings = inner;
-  return content;
-}
-
 struct Task {
   Engine engine = Engine::law;
   std::size_t packing = 0;
 };
 
 /// Means and the error of the paired ratio.
-CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<CrowdRun>& law,
-                    const std::vector<CrowdRun>& empty, std::size_t k) {
+CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<CrowdRun>& law, std::size_t k) {
   const auto n = static_cast<double>(resolved.size());
   CheckPoint p;
   p.overlap = resolved.front().points[k].overlap[0];
@@ -57,7 +44,6 @@ CheckPoint point_of(const std::vector<CrowdRun>& resolved, const std::vector<Cro
   for (std::size_t j = 0; j < resolved.size(); ++j) {
     p.resolved += force(resolved[j]) / n;
     p.law += force(law[j]) / n;
-    p.empty += force(empty[j]) / n;
   }
   if (!(p.resolved > 0.0)) return p;
   p.ratio = p.law / p.resolved;
@@ -90,11 +76,9 @@ std::vector<CheckRun> check_tasks(std::size_t packings) {
   return runs;
 }
 
-/// Loads the stored run, or measures and stores it.
-void measure(CheckRun& check, const HierarchySetup& setup, const InnerLaws& laws,
-             const std::vector<ShellPacking>& inner, const CrowdPlan& plan, const Run& run) {
-  const ShellPacking packing = generate_shell_packing(setup.crowd.spec, run.seed, check.task.packing);
-  const SoftContent content = content_of(setup, packing, check.task.engine, inner);
+/// Loads the stored run, or measures and stores it. `content` is of level 1.
+void measure(CheckRun& check, const HierarchySetup& setup, const InnerLaws& laws, const SoftContent& content,
+             const CrowdPlan& plan, const Run& run) {
   CrowdExperiment e = make_crowd(setup.crowd.spec, one_plane(setup.check_overlaps), content, {}, &laws);
   check.grains = static_cast<double>(e.system.particles.grains);
   check.inside = static_cast<double>(content.inner.size());
@@ -121,9 +105,7 @@ CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup&
   result.packings = setup.check_packings;
   const auto resolved = runs_of(checks, Engine::resolved);
   const auto law = runs_of(checks, Engine::law);
-  const auto empty = runs_of(checks, Engine::empty);
-  for (std::size_t k = 0; k < setup.check_overlaps.size(); ++k)
-    result.points.push_back(point_of(resolved, law, empty, k));
+  for (std::size_t k = 0; k < setup.check_overlaps.size(); ++k) result.points.push_back(point_of(resolved, law, k));
   for (const CheckRun& c : checks) {
     if (c.task.engine == Engine::resolved) {
       result.resolved_cost += c.run.cost;
@@ -138,17 +120,25 @@ CheckResult result_of(const std::vector<CheckRun>& checks, const HierarchySetup&
 
 }  // namespace
 
-CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const Run& run) {
+CheckResult check_two_decades(const HierarchySetup& setup, const HierarchyLevel& finest, const Run& run) {
   std::vector<ShellPacking> inner;
   for (std::size_t k = 0; k < kDifferentInner; ++k)
     inner.push_back(generate_shell_packing(setup.crowd.spec, run.seed, kInnerPackings + k));
-  const InnerLaws laws = inner_laws(setup, finest);
+  const InnerLaws laws = inner_laws(setup, finest.entry);
+  LevelContents contents(setup, run.seed);
+  contents.begin_level(&finest);
   CrowdPlan plan(1);
   for (const double x : setup.check_overlaps) plan[0].push_back(x / setup.check_overlaps.back());
   std::vector<CheckRun> checks = check_tasks(static_cast<std::size_t>(setup.check_packings));
   Progress progress("two decades, resolved", static_cast<double>(checks.size()), run.context.quiet());
   parallel_tasks(static_cast<std::int64_t>(checks.size()), [&](std::int64_t t) {
-    measure(checks[static_cast<std::size_t>(t)], setup, laws, inner, plan, run);
+    CheckRun& check = checks[static_cast<std::size_t>(t)];
+    SoftContent content = contents.of(generate_shell_packing(setup.crowd.spec, run.seed, check.task.packing),
+                                      static_cast<std::int64_t>(check.task.packing));
+    if (setup.check_inner > 0 && content.inner.size() > static_cast<std::size_t>(setup.check_inner))
+      content.inner.resize(static_cast<std::size_t>(setup.check_inner));
+    if (check.task.engine == Engine::resolved) content.inner_packings = inner;
+    measure(check, setup, laws, content, plan, run);
     progress.advance();
   });
   return result_of(checks, setup);

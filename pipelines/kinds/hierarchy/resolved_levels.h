@@ -18,7 +18,6 @@ struct CheckPoint {
   double resolved_error = 0.0;
   double ratio = 0.0;
   double ratio_error = 0.0;  ///< of the paired ratio of means
-  double empty = 0.0;        ///< without inner soft particles
 };
 
 struct CheckResult {
@@ -32,6 +31,6 @@ struct CheckResult {
 };
 
 /// Runs the check with the law of the finest level. Finished runs are kept in the run.store.
-CheckResult check_two_decades(const HierarchySetup& setup, const LawTableEntry& finest, const Run& run);
+CheckResult check_two_decades(const HierarchySetup& setup, const HierarchyLevel& finest, const Run& run);
 
 }  // namespace softgrain

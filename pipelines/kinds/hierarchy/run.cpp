@@ -9,6 +9,7 @@
 
 #include "common/contact/crowd_from_table.h"
 #include "common/contact/crowd_table_file.h"
+#include "pipelines/kinds/hierarchy/level_errors.h"
 #include "pipelines/kinds/hierarchy/summary.h"
 #include "pipelines/kinds/law_table/crowd_summary.h"
 #include "pipelines/report/run_data.h"
@@ -34,7 +35,7 @@ bool at_rest(const HierarchySetup& setup, const HierarchyLevel& level) {
 
 void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& result) {
   CrowdMeasurements below;
-  LevelContents contents(setup);
+  LevelContents contents(setup, run.seed);
   for (std::int64_t k = 0; k < setup.iterations; ++k) {
     if (k >= setup.levels && result.fixed) break;
     run.context.say(k == 0 ? "level 0: grains only" : fmt::format("level {}: on top of the law of level {}", k, k - 1));
@@ -66,12 +67,7 @@ void run_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& resul
 /// Forces of one plane and of six, per plane, over overlap.
 LevelCurves curves_of(const HierarchyLevel& level, Crowd form) {
   const CrowdModel model = crowd_model(*level.entry.find(form));
-  std::vector<CrowdPartner> cube;
-  for (int k = 0; k < 6; ++k) {
-    CrowdPartner plane;
-    plane.direction[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
-    cube.push_back(plane);
-  }
+  const std::vector<CrowdPartner> cube = six_planes();
   LevelCurves out;
   for (int k = 1; k <= 50; ++k) {
     const double x = level.entry.overlap_max * k / 50.0;
@@ -82,7 +78,8 @@ LevelCurves curves_of(const HierarchyLevel& level, Crowd form) {
   return out;
 }
 
-LevelSummary summary_of(const HierarchyLevel& level, Crowd form) {
+/// `grains_below`: share of the shell that the grains of the level below take up in theirs.
+LevelSummary summary_of(const HierarchyLevel& level, double grains_below, Crowd form) {
   const CrowdLaw& law = *level.entry.find(form);
   LevelSummary out;
   out.level = level.number;
@@ -93,10 +90,16 @@ LevelSummary summary_of(const HierarchyLevel& level, Crowd form) {
   out.cost = level.cost;
   out.cost.seconds = level.seconds;
   out.curves = curves_of(level, form);
+  out.grain_percent = 100.0 * level.grain_volume;
+  out.solid_percent = 100.0 * level.entry.solid_fraction;
+  if (!std::isnan(level.error)) out.error_percent = 100.0 * level.error;
   if (level.number == 0) return out;
-  out.inner = {level.inner_mean, level.inner_low, level.inner_high, 100.0 * level.inner_volume};
+  out.inner = {level.inner_mean, level.inner_low, level.inner_high, 100.0 * level.inner_volume,
+               level.inner_volume * grains_below / level.grain_volume};
   out.distance_percent = 100.0 * level.distance;
   out.noise_percent = 100.0 * level.distance_noise;
+  if (!std::isnan(level.own_error)) out.own_error_percent = 100.0 * level.own_error;
+  out.sensitivity = level.sensitivity;
   out.changes = level.changes;
   return out;
 }
@@ -130,8 +133,10 @@ std::string fixed_text(const HierarchySetup& setup, const HierarchyRun& result) 
                       *result.fixed, 100.0 * result.levels[static_cast<std::size_t>(*result.fixed)].distance,
                       100.0 * setup.tolerance,
                       100.0 * result.levels[static_cast<std::size_t>(*result.fixed)].distance_noise);
-  return text + fmt::format("No fixed point within {} levels: the last two differ by {:.2f} %.", result.levels.size(),
-                            100.0 * result.levels.back().distance);
+  return text + fmt::format(
+                    "The law still changes from level to level: that of level {} differs by {:.3g} % from the one "
+                    "below.",
+                    result.levels.back().number, 100.0 * result.levels.back().distance);
 }
 
 HierarchySummary summarise(const HierarchySetup& setup, const HierarchyRun& result, const Run& run) {
@@ -140,7 +145,8 @@ HierarchySummary summarise(const HierarchySetup& setup, const HierarchyRun& resu
   for (const char* file : {"crowd_level_0.h5", "law_table.toml", "report.html"}) s.head.files[file] = run.path(file);
   double evaluations = 0.0;
   for (const HierarchyLevel& l : result.levels) {
-    s.levels.push_back(summary_of(l, setup.form));
+    const double below = s.levels.empty() ? 0.0 : s.levels.back().grain_percent / 100.0;
+    s.levels.push_back(summary_of(l, below, setup.form));
     evaluations += static_cast<double>(l.cost.contact_evaluations);
   }
   const HierarchyLevel& finest = result.levels.front();
@@ -169,14 +175,13 @@ std::string people_text(const HierarchySetup& setup, const HierarchyRun& result)
     for (const CheckPoint& p : result.check->points)
       text += fmt::format("  h/Rs = {:.3f}: law over resolved {:.3f}({:.3f})\n", p.overlap, p.ratio, p.ratio_error);
   }
-  for (const std::string& remark : result.remarks) text += "note: " + remark + "\n";
   return text;
 }
 
 void check_levels(const HierarchySetup& setup, const Run& run, HierarchyRun& result) {
   if (setup.check_packings == 0) return;
   try {
-    result.check = check_two_decades(setup, result.levels.front().entry, run);
+    result.check = check_two_decades(setup, result.levels.front(), run);
   } catch (const NotUsable& e) {  // the levels are kept and said
     result.usable = false;
     result.remarks.push_back("no resolved check: " + std::string(e.what()));
@@ -195,7 +200,7 @@ ExitStatus run_hierarchy(const Scene& scene, const CommonOptions& options) {
     run_levels(setup, run, result);
     check_levels(setup, run, result);
   });
-  if (!result.fixed) {
+  if (!result.fixed && setup.seeks_fixed_point) {
     result.usable = false;
     result.remarks.emplace_back("the fixed point was not reached: allow more iterations or packings");
   }

@@ -3,26 +3,42 @@
 #include <algorithm>
 
 #include "calibrate/crowd_fit.h"
+#include "microsim/filled_shell.h"
 
 namespace softgrain {
 
 namespace {
 
-constexpr std::int64_t kMany = 1000000;
+constexpr double kSmallestHole = 0.45;  ///< that is filled, over the largest
+
+/// Soft particles hold what is finer: their largest grain is as large as the smallest one beside them.
+double inner_radius_of(const SoftParticleSpec& spec) {
+  return spec.sizes ? spec.sizes->smallest() / spec.sizes->largest() : 1.0 / spec.polydispersity;
+}
 
 void read_levels(const SceneTable& t, HierarchySetup& out) {
+  const SoftParticleSpec& spec = out.crowd.spec;
   out.levels = t.count("levels", 2, 100, out.levels);
-  out.voids.r_max = t.number("inner_radius_max", Unit::none, Range{0.0, 1.0, true, true}, 0.1);
-  out.voids.r_min =
-      t.number("inner_radius_min", Unit::none, Range{0.0, out.voids.r_max, true, false}, 0.5 * out.voids.r_max);
-  out.voids.count = t.count("inner_count", 1, kMany, kMany);
+  out.inner_radius = t.number("inner_radius", Unit::none, Range{0.01, 0.5, false, false},
+                              std::clamp(inner_radius_of(spec), 0.01, 0.5));
+  out.fill = t.choice<LevelFill>("fill", out.fill);
+  if (out.fill == LevelFill::voids)
+    out.inner_radius_min = t.number("inner_radius_min", Unit::none, Range{0.0, out.inner_radius, true, false},
+                                    kSmallestHole * out.inner_radius);
+  else if (t.has("inner_radius_min"))
+    t.mistake("inner_radius_min", "goes with fill = \"voids\"");
+  const Range volumes{0.0, 100.0, true, false};
+  out.next_volume = spec.sizes
+                        ? t.number("next_volume", Unit::none, volumes)
+                        : t.number("next_volume", Unit::none, volumes, next_volume(spec.exponent, spec.polydispersity));
+  out.replicates = t.count("replicates", 0, 1000, out.replicates);
   out.form = t.choice<Crowd>("form", out.form);
   out.unloading = t.flag("unloading", out.unloading);
   out.rolling = t.flag("rolling", out.rolling);
 }
 
 void read_fixed_point(const SceneTable& t, HierarchySetup& out) {
-  out.iterations = t.count("iterations", out.levels, 1000, std::max(out.levels, out.iterations));
+  out.iterations = t.count("iterations", out.levels, 1000, std::max(out.levels, std::int64_t{8}));
   out.tolerance = t.number("tolerance", Unit::none, Range{0.0, 1.0, true, true}, out.tolerance);
 }
 
@@ -32,7 +48,10 @@ void read_check(const SceneTable& t, HierarchySetup& out) {
   if (out.check_overlaps.empty() || std::adjacent_find(out.check_overlaps.begin(), out.check_overlaps.end(),
                                                        std::greater_equal<>()) != out.check_overlaps.end())
     t.mistake("overlaps", "must ascend");
-  out.check_inner = t.count("inner_count", 0, kMany, 0);
+  if (out.fill == LevelFill::voids)
+    out.check_inner = t.count("inner_count", 0, 1000000, 0);
+  else if (t.has("inner_count"))
+    t.mistake("inner_count", "goes with fill = \"voids\": without some of its soft particles a level would have holes");
 }
 
 bool has_one(const CrowdSetup& setup, PartnerKind kind) {
@@ -50,7 +69,9 @@ HierarchySetup read_hierarchy_setup(const Scene& scene) {
     out.title = root.text("title", "");
     out.crowd = read_crowd_setup(root);
     read_levels(root.table("hierarchy"), out);
-    read_fixed_point(root.table_or_empty("fixed_point"), out);
+    out.iterations = out.levels;
+    out.seeks_fixed_point = root.has("fixed_point");
+    if (out.seeks_fixed_point) read_fixed_point(root.table("fixed_point"), out);
     if (root.has("check")) read_check(root.table("check"), out);
     for (const PartnerKind kind : {PartnerKind::plane, PartnerKind::solid, PartnerKind::soft})
       if (!has_one(out.crowd, kind))

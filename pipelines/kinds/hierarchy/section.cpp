@@ -12,18 +12,27 @@ namespace {
 
 std::string number_of(const std::optional<double>& x, int digits = 3) { return format_number(x.value_or(NAN), digits); }
 
-std::string level_table(const std::vector<LevelSummary>& levels) {
-  HtmlTable table({"level (0: grains only)", "soft particles inside", "radii over Rs", "volume share [%]", "a", "b",
-                   "delta", "distance to the level below [%]", "noise [%]", "grains if resolved", "contact evaluations",
-                   "seconds"});
+/// What is in a soft particle of each level.
+std::string content_table(const std::vector<LevelSummary>& levels) {
+  HtmlTable table({"level (0: grains only)", "own grains [% of the volume]", "soft particles inside",
+                   "their volume [%]", "next level over own grains", "all grains [%]", "grains if resolved"});
   for (const LevelSummary& l : levels) {
-    const InnerSummary inner = l.inner.value_or(InnerSummary{NAN, NAN, NAN, NAN});
-    table.row({std::to_string(l.level), number_of(inner.mean),
-               number_of(inner.radius_low) + "–" + number_of(inner.radius_high), number_of(inner.volume_percent),
-               number_of(l.law.parameters[0]), number_of(l.law.parameters[1]), number_of(l.law.parameters[2]),
-               number_of(l.distance_percent), number_of(l.noise_percent), number_of(l.resolved_grains),
-               number_of(static_cast<double>(l.cost.contact_evaluations)), number_of(l.cost.seconds)});
+    const InnerSummary inner = l.inner.value_or(InnerSummary{NAN, NAN, NAN, NAN, NAN});
+    table.row({std::to_string(l.level), number_of(l.grain_percent), number_of(inner.mean),
+               number_of(inner.volume_percent), number_of(inner.next_volume), number_of(l.solid_percent),
+               number_of(l.resolved_grains)});
   }
+  return table.html();
+}
+
+std::string law_table(const std::vector<LevelSummary>& levels) {
+  HtmlTable table({"level", "a", "b", "delta", "standard error of its forces [%]", "of its own packings [%]",
+                   "follows the law below by", "distance to it [%]", "noise [%]"});
+  for (const LevelSummary& l : levels)
+    table.row({std::to_string(l.level), number_of(l.law.parameters[0]), number_of(l.law.parameters[1]),
+               number_of(l.law.parameters[2]), number_of(l.error_percent), number_of(l.own_error_percent),
+               number_of(l.level > 0 ? l.sensitivity.value : NAN), number_of(l.distance_percent),
+               number_of(l.noise_percent)});
   return table.html();
 }
 
@@ -72,7 +81,7 @@ std::string hierarchy_section(const RunData& run) {
   if (!summary.fixed_point) return "";
   const std::vector<LevelSummary>& levels = summary.levels;
   std::string body = paragraph(summary.fixed_point->text);
-  body += level_table(levels);
+  body += content_table(levels) + law_table(levels);
   body += figure_row({law_figure(levels, &LevelCurves::one, "one", "One plane"),
                       law_figure(levels, &LevelCurves::cube, "cube", "Six planes")});
   body += change_table(levels);

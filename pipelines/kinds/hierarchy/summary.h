@@ -8,12 +8,14 @@
 
 namespace softgrain {
 
-/// Soft particles inside one of the level: their mean number, radii over Rs, share of the volume.
+/// Soft particles inside one of the level: their mean number, radii over Rs, share of the volume; volume of the grains
+/// of the next level in them over that of the level's own.
 struct InnerSummary {
   double mean = 0.0;
   double radius_low = 0.0;
   double radius_high = 0.0;
   double volume_percent = 0.0;
+  double next_volume = 0.0;
 };
 
 struct LevelLaw {
@@ -30,14 +32,19 @@ struct LevelCurves {
 };
 
 struct LevelSummary {
-  std::int64_t level = 0;  ///< 0: grains only
+  std::int64_t level = 0;      ///< 0: grains only
+  double grain_percent = 0.0;  ///< of the shell that its own grains take up
+  double solid_percent = 0.0;  ///< and all grains, those inside soft particles too
   std::optional<InnerSummary> inner;
   LevelLaw law;
   double resolved_grains = 0.0;
   Cost cost;  ///< its seconds are those of the wall
   LevelCurves curves;
-  std::optional<double> distance_percent;  ///< to the law of the level below
-  std::optional<double> noise_percent;     ///< what packings alone make of it
+  std::optional<double> distance_percent;   ///< to the law of the level below
+  std::optional<double> noise_percent;      ///< what packings alone make of it
+  std::optional<double> error_percent;      ///< standard error of its forces, that of the levels below in it
+  std::optional<double> own_error_percent;  ///< from its own packings
+  Sensitivity sensitivity;
   std::vector<LevelChange> changes;
 };
 
@@ -74,6 +81,7 @@ void fields(auto&& visit, Of<InnerSummary> auto& s) {
   visit("radius_low", s.radius_low);
   visit("radius_high", s.radius_high);
   visit("volume_percent", s.volume_percent);
+  visit("next_volume", s.next_volume);
 }
 
 void fields(auto&& visit, Of<LevelLaw> auto& s) {
@@ -96,6 +104,8 @@ void fields(auto&& visit, Of<LevelChange> auto& c) {
 
 void fields(auto&& visit, Of<LevelSummary> auto& s) {
   visit("level", s.level);
+  visit("grain_percent", s.grain_percent);
+  visit("solid_percent", s.solid_percent);
   visit("inner", s.inner, kLeftOut);
   visit("law", s.law);
   visit("resolved_grains", s.resolved_grains);
@@ -103,6 +113,10 @@ void fields(auto&& visit, Of<LevelSummary> auto& s) {
   visit("curves", s.curves);
   visit("distance_percent", s.distance_percent, kLeftOut);
   visit("noise_percent", s.noise_percent, kLeftOut);
+  visit("error_percent", s.error_percent, kLeftOut);
+  visit("own_error_percent", s.own_error_percent, kLeftOut);
+  visit("sensitivity", s.sensitivity.value);
+  visit("sensitivity_error", s.sensitivity.error);
   visit("changes", s.changes, kLeftOut);
 }
 
@@ -128,7 +142,6 @@ void fields(auto&& visit, Of<CheckPoint> auto& p) {
   visit("resolved_error", p.resolved_error);
   visit("ratio", p.ratio);
   visit("ratio_error", p.ratio_error);
-  visit("empty", p.empty);
 }
 
 void fields(auto&& visit, Of<CheckSummary> auto& s) {

@@ -159,7 +159,6 @@ ExitStatus run_inverse(const Scene& scene, const CommonOptions& options) {
   for (const char* file : {"measurements.h5", "evaluations.csv", "report.html"})
     summary.head.files[file] = run.path(file);
   std::string people = people_text(setup, result, misfit);
-  for (const std::string& remark : summary.head.remarks) people += "note: " + remark + "\n";
   return run.finish(json_of(summary), people);
 }
 

@@ -365,7 +365,7 @@ CrowdMeasurements run_crowd_stage(const CrowdSetup& setup, const Run& run, std::
   data.spec = setup.spec;
   data.relaxation = relaxation_text(setup.options);
   data.configurations = setup.configurations;
-  for (const ShellPacking& p : pool) data.packings.push_back(describe(p, setup.spec));
+  for (const SoftContent& c : filled) data.packings.push_back(describe(c.grains, setup.spec));
   CrowdRunner runner(setup, run, filled, level);
   data.runs = measure_all(setup, runner, run);
   left_out.insert(left_out.end(), runner.left_out().begin(), runner.left_out().end());

@@ -16,7 +16,7 @@ namespace softgrain {
 /// its own.
 struct CrowdLevel {
   std::function<SoftContent(const ShellPacking&, std::int64_t packing)>
-      fill;  ///< adds what the packing leaves room for; empty: nothing
+      fill;  ///< the content that is made of a packing of grains alone; empty: that packing
   InnerLaws laws;
   std::string tag;                ///< all that decides `fill` and `laws`, for the cache
   std::string file = "crowd.h5";  ///< in the run directory

@@ -65,7 +65,6 @@ std::string people_text(const LawTableRun& result, const Run& run) {
       fmt::format("{} configurations, {} runs:\n", result.data.configurations.size(), result.data.runs.size());
   text += crowd_text(result.data);
   text += entries_text(result.fit.table);
-  for (const std::string& remark : result.fit.remarks) text += "note: " + remark + "\n";
   return text + "law table: " + run.path("law_table.toml") + "\n";
 }
 

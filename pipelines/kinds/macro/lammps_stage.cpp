@@ -198,8 +198,7 @@ class Sample {
     if (wanted > 0) out.states.push_back(std::move(last));
     if (!runs_.law.note || !out.curve.usable) return;
     force_pass(macro.system, 0.0);
-    const std::string note = runs_.law.note(macro.system);
-    out.curve.note += (out.curve.note.empty() || note.empty() ? "" : "; ") + note;
+    add_law_texts(runs_.law, macro.system, out.curve);
   }
 
   void require_inside(const lammps::PointRow& row, const MacroSystem& macro, const MacroCurve& curve) const {

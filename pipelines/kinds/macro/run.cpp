@@ -83,6 +83,7 @@ MacroRunSummary summarise(const MacroScene& scene, const LawIdentity& law, const
   MacroRunSummary summary;
   const bool resolved = has_twin(scene.setup, Twin::shelled);
   summary.head = {usable ? RunStatus::good : RunStatus::not_usable, scene.title, macro_remarks(curves), {}};
+  summary.head.warnings = macro_warnings(curves);
   if (!scene.setup.given)
     for (const std::string& one : first_point_remarks(scene.setup.spec, curves)) summary.head.remarks.push_back(one);
   summary.law = {law, scene.law_file};

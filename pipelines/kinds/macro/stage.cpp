@@ -220,10 +220,7 @@ RunOutcome run_contacts(const Stage& stage, std::int64_t sample, const Engine& e
   if (laws != nullptr) state.curve.law = laws->identity;
   RunOutcome out = run_task(stage, ContactRun{spec, places_record(packing, engine)}, state,
                             task_name(stage, sample, engine), progress);
-  if (laws != nullptr && laws->note && out.curve.usable) {
-    const std::string note = laws->note(state.macro.system);
-    out.curve.note += (out.curve.note.empty() || note.empty() ? "" : "; ") + note;
-  }
+  if (laws != nullptr && out.curve.usable) add_law_texts(*laws, state.macro.system, out.curve);
   run_again(stage, sample, engine, out.curve, progress);
   return out;
 }

@@ -23,7 +23,7 @@ void check_macro_comparison(const Scene& scene, Findings& out) {
     const json common = std::exchange(out.facts, json{{"name", s.name}});
     out.lines += "  scene " + s.name + ":\n";
     add_sizes(out, drawn_sizes(s.setup, setup.seed));
-    check_macro(s.setup, content, &setup.laws, setup.seed, out);
+    check_macro(s.setup, s.by_own_law() ? MacroContent{} : content, &setup.laws_of(s), setup.seed, out);
     scenes.push_back(std::exchange(out.facts, common));
   }
   out.facts["scenes"] = scenes;

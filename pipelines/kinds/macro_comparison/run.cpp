@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/io/text_file.h"
 #include "pipelines/compare/compare.h"
@@ -18,6 +19,8 @@ namespace softgrain {
 
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 /// What a scene left behind.
 struct SceneResult {
   std::string name;
@@ -27,6 +30,7 @@ struct SceneResult {
   std::vector<EngineScore> scores;
   std::vector<NamedLaws> laws;
   std::vector<BandRecord> bands;
+  std::vector<std::string> warnings;
   std::vector<std::string> remarks;
   bool usable = true;
 };
@@ -44,27 +48,43 @@ void remark_spread(SceneResult& r) {
 
 void remark_notes(const std::vector<MacroCurve>& curves, SceneResult& r) {
   for (const MacroCurve& c : curves) r.usable = r.usable && c.usable;
+  for (std::string& one : run_warnings(curves, r.name + ", ")) r.warnings.push_back(std::move(one));
   for (std::string& note : run_notes(curves, r.name + ", ")) r.remarks.push_back(std::move(note));
+}
+
+/// Solid fraction of soft particles, at which a table is taken; 0: that of its main entry.
+double inside_fraction(const ComparisonScene& scene, const std::vector<ShellPacking>& contents) {
+  return scene.by_own_law() ? 0.0 : mean_solid_fraction(contents);
+}
+
+/// Soft particles hold what the law says, whatever its levels; of radii inside it knows nothing.
+SceneFacts facts_by_law(const MacroPacking& packing, const LawSources& sources) {
+  SceneFacts facts = describe(packing, {});
+  facts.exponent = {kUnknown, kUnknown};
+  facts.largest_over_smallest = kUnknown;
+  if (!sources.table) return facts;
+  std::string remark;
+  const LawTableEntry entry = law_entry(sources, 0.0, remark);
+  facts.inner_grains = std::llround(static_cast<double>(facts.soft) * entry.grains);
+  facts.solid_fraction = facts.body_fraction * (1.0 - facts.soft_share * (1.0 - entry.solid_fraction));
+  return facts;
 }
 
 SceneResult run_scene(const ComparisonScene& scene, const MacroComparisonSetup& setup,
                       const std::vector<ShellPacking>& contents, const Run& run) {
-  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, {}, true};
+  SceneResult r{scene.name, scene.setup.spec, "macro_" + scene.name + ".h5", {}, {}, {}, {}, {}, {}, true};
   const auto packings = make_macro_packings(scene.setup, run, "macro_initial_" + scene.name + ".h5");
-  for (const MacroPacking& p : packings) r.facts.push_back(describe(p, contents));
-  r.laws = laws_for(setup.laws, scene.setup.spec, mean_solid_fraction(contents));
+  const LawSources& sources = setup.laws_of(scene);
+  const double fraction = inside_fraction(scene, contents);
+  for (const MacroPacking& p : packings)
+    r.facts.push_back(scene.by_own_law() ? facts_by_law(p, sources) : describe(p, contents));
+  r.laws = laws_for(sources, scene.setup.spec, fraction);
   const MacroRuns runs{scene.setup, packings, contents, run.seed, scene.name};
   auto curves = run_engines(runs, r.laws, run, "states_macro_" + scene.name + ".h5");
-  r.bands = add_bands(runs, draws_for(scene.setup, setup.laws, r.laws, mean_solid_fraction(contents)), run, curves);
+  r.bands = add_bands(runs, draws_for(scene.setup, sources, r.laws, fraction), run, curves);
   save_macro(curves, run.path(r.file), run.provenance);
   r.scores = score_engines(curves);
-  if (!all_carry_stress(curves)) {
-    r.usable = false;
-    r.remarks.push_back(
-        scene.name +
-        ": a run with a law, or a shelled twin, carries no stress at its end: what is relative to it is "
-        "undefined");
-  }
+  r.usable = r.usable && all_carry_stress(curves);
   remark_notes(curves, r);
   remark_spread(r);
   return r;
@@ -146,6 +166,7 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
   for (const SceneResult& r : results) {
     if (!r.usable) s.head.status = RunStatus::not_usable;
     s.compared.scenes.push_back(summary_of(r));
+    s.head.warnings.insert(s.head.warnings.end(), r.warnings.begin(), r.warnings.end());
     s.head.remarks.insert(s.head.remarks.end(), r.remarks.begin(), r.remarks.end());
     s.head.files["macro_" + r.name] = run.path(r.file);
   }
@@ -160,12 +181,20 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
 ExitStatus run_macro_comparison(const Scene& scene, const CommonOptions& options) {
   const MacroComparisonSetup setup = read_macro_comparison(scene);
   std::string sizes = sizes_text(setup.spec);
-  for (const ComparisonScene& s : setup.scenes) sizes += sizes_text(s.setup.spec);
-  const Run run(scene, options, "run", setup.seed, {setup.laws.files, setup.laws.text + sizes});
+  std::vector<std::string> files = setup.laws.files;
+  std::string text = setup.laws.text;
+  for (const ComparisonScene& s : setup.scenes) {
+    sizes += sizes_text(s.setup.spec);
+    if (!s.laws) continue;
+    files.insert(files.end(), s.laws->files.begin(), s.laws->files.end());
+    text += s.laws->text;
+  }
+  const Run run(scene, options, "run", setup.seed, {files, text + sizes});
   const auto contents = make_contents(setup.spec, setup.contents, run.seed);
-  for (const ComparisonScene& s : setup.scenes)  // before any run
-    (void)draws_for(s.setup, setup.laws, laws_for(setup.laws, s.setup.spec, mean_solid_fraction(contents)),
-                    mean_solid_fraction(contents));
+  for (const ComparisonScene& s : setup.scenes) {  // before any run
+    const double fraction = inside_fraction(s, contents);
+    (void)draws_for(s.setup, setup.laws_of(s), laws_for(setup.laws_of(s), s.setup.spec, fraction), fraction);
+  }
   std::vector<SceneResult> results;
   run.context.guard([&] {
     for (const ComparisonScene& s : setup.scenes) results.push_back(run_scene(s, setup, contents, run));

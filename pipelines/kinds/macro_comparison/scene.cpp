@@ -75,6 +75,10 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
           !any([](const ComparisonScene& s) { return s.setup.spec.construction == Construction::voids; }))
         macro.mistake("solid_fill", "goes with construction = \"voids\", which no [[scene]] has");
     }
+    const std::vector<SceneTable> parts = root.tables("scene");
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (parts[k].has("law"))
+        parts[k].table("law").part([&] { setup.scenes[k].laws = read_law_sources(scene, parts[k].table("law")); });
     if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
     const SceneTable law = root.table("law");
     law.part([&] { setup.laws = read_law_sources(scene, law); });

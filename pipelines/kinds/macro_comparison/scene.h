@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace softgrain {
 struct ComparisonScene {
   std::string name;  ///< of its files and in tables: letters, digits, '-'
   MacroSetup setup;
+  std::optional<LawSources> laws;  ///< in place of those of the comparison
+
+  /// What soft particles hold is what the law was measured on, not the contents of twins.
+  [[nodiscard]] bool by_own_law() const { return laws && setup.twins.empty(); }
 };
 
 struct MacroComparisonSetup {
@@ -22,6 +27,10 @@ struct MacroComparisonSetup {
   std::int64_t contents = 7;  ///< number of different ones
   LawSources laws;
   std::vector<ComparisonScene> scenes;
+
+  [[nodiscard]] const LawSources& laws_of(const ComparisonScene& scene) const {
+    return scene.laws ? *scene.laws : laws;
+  }
 };
 
 /// Reads [material], [packing], [law], [macro] and every [[scene]], whose keys replace those of [macro]. Throws

@@ -42,7 +42,6 @@ ExitStatus run_scene(const Scene& scene, const CommonOptions& options) {
   ParticlesSummary summary = summary_of(setup, result, memory_before);
   summary.head.sizes = summaries_of(drawn_sizes(setup));
   std::string text = particles_text(result) + "\n";
-  for (const std::string& remark : summary.head.remarks) text += "remark: " + remark + "\n";
   if (setup.record) {
     save_particles_run(run.path("run.h5"), setup, result, run.provenance);
     write_run_xdmf(run.path("run.h5"));

@@ -46,6 +46,7 @@ struct PipelineResult {
   std::vector<BandRecord> bands;
   std::optional<Comparison> comparison;       ///< of engine "law" with its twin
   std::optional<Comparison> pair_comparison;  ///< of engine "pair", where "law" is one of crowds
+  std::vector<std::string> warnings;
   std::vector<std::string> remarks;
   bool usable = true;
 };
@@ -151,6 +152,7 @@ std::optional<Comparison> with_twin(const std::string& engine, PipelineResult& r
 void run_macro(const PipelineSetup& setup, const Run& run, PipelineResult& result) {
   if (!setup.macro || !run_macro_samples(setup, run, result)) return;
   for (const std::string& r : macro_remarks(result.curves)) result.remarks.push_back(r);
+  for (const std::string& r : macro_warnings(result.curves)) result.warnings.push_back(r);
   for (const std::string& r : first_point_remarks(setup.macro->spec, result.curves)) result.remarks.push_back(r);
   for (const MacroCurve& c : result.curves) result.usable = result.usable && c.usable;
   result.usable = result.usable && all_carry_stress(result.curves);
@@ -181,7 +183,7 @@ void fields(auto&& visit, Of<PipelineSummary> auto& s) {
 
 PipelineSummary summarise(const PipelineSetup& setup, const PipelineResult& r, const Run& run) {
   PipelineSummary s;
-  s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}};
+  s.head = {r.usable ? RunStatus::good : RunStatus::not_usable, setup.title, r.remarks, {}, {}, r.warnings};
   for (const char* file : {"measurements.h5", "law.toml", "law.h5", "macro.h5", "macro_initial.h5", "report.html"})
     s.head.files[file] = run.path(file);
   if (!r.crowd_fit.table.entries.empty())
@@ -234,7 +236,6 @@ std::string people_text(const PipelineSetup& setup, const PipelineResult& r) {
                     rounded(r.comparison->speedup_seconds));
   if (crowd)
     text += fmt::format("macro, pair law (as published, measured above): {}\n", difference_text(*r.pair_comparison));
-  for (const std::string& remark : r.remarks) text += "note: " + remark + "\n";
   return text;
 }
 
@@ -247,7 +248,7 @@ ExitStatus run_pipeline(const Scene& scene, const CommonOptions& options) {
   PipelineResult result;
   run.context.guard([&] { result.measured = run_measure_stage(setup.measure, run); });
   for (const std::string& r : measurement_remarks(result.measured.data)) result.remarks.push_back(r);
-  for (const std::string& r : result.measured.left_out) result.remarks.push_back(r);
+  result.warnings = result.measured.left_out;
   result.usable = result.measured.enough_left;
   fit(setup, run, result);
   measure_table(setup, run, result);

@@ -326,7 +326,6 @@ std::string recipe_text(const RecipeSummary& s) {
   text += fmt::format(
       "a cubic metre holds {:.2g} grains; a sample with all of them: {:.2g}, about {:.2g} contact evaluations\n",
       r.grains_per_cubic_metre, r.resolved_grains, r.resolved_evaluations);
-  for (const std::string& remark : s.material.head.remarks) text += "note: " + remark + "\n";
   return text;
 }
 

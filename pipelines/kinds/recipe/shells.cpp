@@ -52,17 +52,19 @@ std::string sizes_text_of(const RecipeLevel& level) {
 }
 
 /// What a level measures, as a scene of kind "hierarchy" says it: planes alone and all around, a solid and a soft
-/// neighbour.
-HierarchySetup setup_of(const RecipeScene& scene, const RecipeLevel& level) {
+/// neighbour. `finer`: the next level, none for the finest.
+HierarchySetup setup_of(const RecipeScene& scene, const RecipeLevel& level, const RecipeLevel* finer) {
   const MacroSpec& spec = scene.material.variants.front().setup.spec;
   std::string text = fmt::format(
       "kind = \"hierarchy\"\nseed = {}\n[material]\nE = {}\nnu = {}\nmu = {}\ndensity = {}\n[packing]\nshell_radius = "
       "{}\nbeta = 3.0\ntrials = 10000\nplacement = \"voids\"\n{}[hierarchy]\nlevels = 2\nform = \"{}\"\n"
-      "inner_radius_max = {}\n[crowd]\nincrement = 0.005\ntolerance = 1e-2\npackings_min = {}\npackings_max = {}\n"
+      "inner_radius = {}\nnext_volume = {}\n[crowd]\nincrement = 0.005\ntolerance = 1e-2\npackings_min = "
+      "{}\npackings_max = {}\n"
       "target = 0.05\npoints = 10\n",
       scene.material.seed, spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.density, kShell,
-      sizes_text_of(level), to_string(scene.shells.form), std::min(0.2, 1.0 / scene.shells.ratio),
-      scene.shells.packings, scene.shells.packings);
+      sizes_text_of(level), to_string(scene.shells.form),
+      finer != nullptr ? std::clamp(finer->high / level.high, 0.01, 0.5) : 0.1,
+      finer != nullptr ? finer->share / level.share : 1.0, scene.shells.packings, scene.shells.packings);
   const auto add = [&](const char* arrangement, const char* partner, double overlap) {
     text += fmt::format("[[configuration]]\narrangement = \"{}\"\npartner = \"{}\"\noverlap = {}\n{}", arrangement,
                         partner, overlap, std::string(partner) == "plane" ? "" : "ratio = 1.0\n");
@@ -92,8 +94,8 @@ ShellLevels run_shells(const RecipeScene& scene, const Run& run) {
   for (std::size_t k = 0; k < decades.size(); ++k) {
     const RecipeLevel& decade = decades[decades.size() - 1 - k];
     run.context.say(fmt::format("shells, level {} of {}", k + 1, decades.size()));
-    const HierarchySetup setup = setup_of(scene, decade);
-    LevelContents contents(setup);
+    const HierarchySetup setup = setup_of(scene, decade, k > 0 ? &decades[decades.size() - k] : nullptr);
+    LevelContents contents(setup, run.seed);
     CrowdMeasurements data;
     HierarchyLevel level = run_level(setup, contents, static_cast<std::int64_t>(k),
                                      levels.empty() ? nullptr : &levels.back(), &below, data, run);

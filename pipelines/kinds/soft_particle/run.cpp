@@ -34,7 +34,7 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   summary.head.title = read.title;
   summary.head.remarks = measurement_remarks(result.data);
   if (!summary.head.remarks.empty() || !result.enough_left) summary.head.status = RunStatus::not_usable;
-  for (const std::string& text : result.left_out) summary.head.remarks.push_back(text);
+  summary.head.warnings = result.left_out;
   summary.measured = summary_of(result.data, setup.relaxations());
   summary.head.sizes = summaries_of(shell_sizes(setup.spec, result.data.packings));
   summary.measured.packings.broke_off = result.left_out.size();
@@ -42,7 +42,6 @@ ExitStatus run_soft_particle_scene(const Scene& scene, const CommonOptions& opti
   std::string people =
       fmt::format("{} packings, solid fraction {:.4f}, {} points measured in {:.1f} s\n", result.data.packings.size(),
                   summary.measured.packings.solid_fraction, summary.measured.measurement.points, result.wall_seconds);
-  for (const std::string& text : result.left_out) people += "note: " + text + "\n";
   return run.finish(json_of(summary), people);
 }
 

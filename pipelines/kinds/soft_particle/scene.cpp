@@ -236,6 +236,17 @@ bool MeasureSetup::rotates() const {
   });
 }
 
+bool MeasureSetup::turns_on() const {
+  const auto several = [](const std::vector<double>& angles) {
+    const auto positive = std::count_if(angles.begin(), angles.end(), [](double a) { return a > 0.0; });
+    const auto negative = std::count_if(angles.begin(), angles.end(), [](double a) { return a < 0.0; });
+    return std::max(positive, negative) > 1;
+  };
+  return std::any_of(series.begin(), series.end(), [&](const MeasureSeries& s) {
+    return std::any_of(s.kinds.begin(), s.kinds.end(), [&](PairKind k) { return several(s.plan(k).angles_deg); });
+  });
+}
+
 SoftParticleSpec read_soft_particle(const SceneTable& root) {
   SoftParticleSpec spec;
   read_material(root.table_or_empty("material"), spec);
@@ -276,6 +287,8 @@ MeasureSetup read_measure_setup(const SceneTable& root) {
     std::vector<Relaxation> relaxations;
     for (const MeasureSeries& s : setup.series) relaxations.push_back(s.relaxation);
     refuse_idle_protocols(measure, relaxations, setup.rotates());
+    if (measure.has("rotation") && setup.rotates() && !setup.turns_on())
+      measure.mistake("rotation", "goes with two angles of one sign: there is nothing that a turn could go on from");
   }
   if (root.sound())
     require_increments_used(measure, setup.series.front().relaxation,

@@ -37,6 +37,7 @@ struct MeasureSetup {
 
   [[nodiscard]] std::int64_t packings() const;  ///< largest number of packings of a series
   [[nodiscard]] bool rotates() const;           ///< whether any series turns soft particles
+  [[nodiscard]] bool turns_on() const;          ///< whether some angle is one beyond another of the same sign
   /// Names of the relaxations, that of the fit first.
   [[nodiscard]] std::vector<std::string> relaxations() const {
     std::vector<std::string> names;

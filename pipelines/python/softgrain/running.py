@@ -75,7 +75,7 @@ def _directory(scene, kind):
 
 # ---- what the program says while it runs
 
-_COMPLAINT = re.compile(r"softgrain: (?!mind:)")  # what the exception will say
+_COMPLAINT = re.compile(r"softgrain: (?!warning:)")  # what the exception will say
 _BAR = re.compile(r"^(?P<what>.*?)(?: \[[#.]*\])? +(?P<percent>\d+) %, (?P<rest>.*)$")
 
 
@@ -293,7 +293,7 @@ def run(scene, *, set=None, out=None, law=None, threads=None, seed=None, resume=
 
 
 class Findings(Drawn):
-    """What check() found out. findings["time_step"]: a fact by name; kind; warnings: what to mind; core_seconds: time that a run would
+    """What check() found out. findings["time_step"]: a fact by name; kind; warnings: what may make a result wrong; core_seconds: time that a run would
     take on one core, None where it is not known."""
 
     def __init__(self, facts):
@@ -317,7 +317,7 @@ class Findings(Drawn):
         return len(self.facts)
 
     def __str__(self):
-        return "\n".join([*self.lines, *(f"mind: {w}" for w in self.warnings)])
+        return "\n".join([*self.lines, *(f"warning: {w}" for w in self.warnings)])
 
     __repr__ = __str__
 
