@@ -8,8 +8,10 @@ namespace softgrain {
 using Quad = double __attribute__((vector_size(32)));
 
 namespace detail {
-using QuadInMemory = double __attribute__((vector_size(32), may_alias));
-using UnalignedQuad = double __attribute__((vector_size(32), may_alias, aligned(8)));
+// By typedef, as clang takes no notice of may_alias and aligned in an alias: it would load unaligned numbers by an
+// instruction that asks for aligned ones.
+typedef double QuadInMemory __attribute__((vector_size(32), may_alias));               // NOLINT(modernize-use-using)
+typedef double UnalignedQuad __attribute__((vector_size(32), may_alias, aligned(8)));  // NOLINT(modernize-use-using)
 }  // namespace detail
 
 /// 32 bytes at an address that is a multiple of 32.
