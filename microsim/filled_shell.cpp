@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/core/solid_sphere.h"
+#include "common/packing/grading_parts.h"
 #include "microsim/shell_compaction.h"
 #include "microsim/shell_packing.h"
 
@@ -15,19 +16,14 @@ namespace {
 constexpr RandomPurpose kFilledShell{10};
 constexpr int kDraws = 16;  ///< of grains; the one whose volume comes nearest is taken
 
-Grading sizes_of(const SoftParticleSpec& spec) {
-  if (spec.sizes) return *spec.sizes;
-  const double largest = spec.rmax_over_shell * spec.shell_radius;
-  return Grading::power_law(spec.exponent, largest / spec.polydispersity, largest);
-}
-
 double volume_of(const std::vector<double>& radii) {
   return std::accumulate(radii.begin(), radii.end(), 0.0, [](double sum, double r) { return sum + cube(r); });
 }
 
 /// Radii over that of the shell, of about this volume over that of the shell.
 std::vector<double> draw_grains(const SoftParticleSpec& spec, double volume, RandomStream& random) {
-  const Grading sizes = sizes_of(spec);
+  const Grading sizes =
+      sizes_or_power_law(spec.sizes, spec.exponent, spec.rmax_over_shell * spec.shell_radius, spec.polydispersity);
   const double shell = cube(spec.shell_radius);
   const auto count = static_cast<std::size_t>(std::max(1.0, std::round(volume * shell / sizes.mean_volume())));
   std::vector<double> best;

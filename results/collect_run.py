@@ -71,7 +71,7 @@ def hierarchy_tables(summary):
                          number(inner.get("next_volume")), number(level["solid_percent"]), number(level["resolved_grains"])])
         laws.append([k, number(level["law"]["a"]), number(level["law"]["b"]), number(level["law"]["delta"]),
                      number(level.get("error_percent")),
-                     f"{level['sensitivity']:.2f} ± {level['sensitivity_error']:.2f}" if "inner" in level else "-",
+                     "{value:.2f} ± {error:.2f}".format(**level["sensitivity"]) if "sensitivity" in level else "-",
                      number(level.get("distance_percent")), number(level["contact_evaluations"]), number(level["seconds"])])
         changes += [[k, c["configuration"], f"{c['ratio']:.3f} ± {c['error']:.3f}"] for c in level.get("changes", [])]
     text = summary["fixed_point"]["text"] + "\n\n"

@@ -116,7 +116,7 @@ struct LawTableEntry {
   SoftParticleSpec spec;
   double solid_fraction = 0.0;
   double solid_fraction_error = 0.0;  ///< standard error over packings
-  double grains = 0.0;                ///< that one soft particle stands for, those inside inner ones too; 0: unknown
+  double grains = 0.0;                ///< that one soft particle represents, those inside inner ones too; 0: unknown
   bool main = false;                  ///< of the packing that the table was made for; at most one is
   int packings = 0;
   std::string relaxation;

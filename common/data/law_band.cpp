@@ -79,9 +79,9 @@ double half_width(const PairLaw& law, double variance) {
 
 LawInterval around(double value, double half) { return {std::max(0.0, value - half), value + half, kFromCovariance}; }
 
-/// Empty where the width is that of rounding: what never scattered says nothing of how far off it may be.
-constexpr double kRounding = 1e-12;
+constexpr double kRounding = 1e-12;  ///< over the value: a narrower interval is one of rounding
 
+/// Empty where the width is that of rounding: what never scattered says nothing of how far off it may be.
 std::optional<LawInterval> unless_nothing(double value, double half) {
   if (value > 0.0 && !(half > kRounding * value)) return std::nullopt;
   return around(value, half);

@@ -39,4 +39,8 @@ Grading mixture_of(std::vector<SizePiece> coarse, std::vector<SizePiece> fines, 
   return Grading::classes(std::move(coarse));
 }
 
+Grading sizes_or_power_law(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
+  return sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest);
+}
+
 }  // namespace softgrain

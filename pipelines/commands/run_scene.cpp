@@ -24,7 +24,7 @@ std::string kinds_with_engine() {
 }
 
 /// Results do not depend on the number, time does.
-void mind_cores(const CommonOptions& options) {
+void warn_of_cores(const CommonOptions& options) {
   const int cores = omp_get_num_procs();
   for (const auto& [option, wanted] : {std::pair<const char*, std::int64_t>{"--threads", options.threads},
                                        std::pair<const char*, std::int64_t>{"--ranks", options.ranks}})
@@ -47,7 +47,7 @@ ExitStatus run_scene(const CommonOptions& options, const std::string& command) {
         fmt::format("{}: scenes of kind \"{}\" run in our own engine alone: --engine, --ranks and --write-only "
                     "go with {}",
                     command, kind.name, kinds_with_engine()));
-  mind_cores(options);
+  warn_of_cores(options);
   if (!options.seeds.empty()) {
     if (options.seed_given) throw BadInput("--seeds: goes without --seed");
     return run_set(options, make_plan({}, options.seeds, options.overrides), command, "seeds");

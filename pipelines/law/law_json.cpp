@@ -99,6 +99,7 @@ json law_table_json(const LawTable& table) {
   for (const LawTableEntry& e : table.entries) {
     json one = verdict_json(e);
     one["solid_fraction_error"] = e.solid_fraction_error;
+    if (e.grains > 0.0) one["grains"] = e.grains;
     one["main"] = &e == &main_entry(table);
     one["relaxation"] = e.relaxation;
     one["beyond"] = to_string(e.beyond);

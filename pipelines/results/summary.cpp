@@ -236,6 +236,10 @@ std::vector<std::string> said_by_engine(const std::vector<MacroCurve>& curves, s
 }  // namespace
 
 std::vector<std::string> run_warnings(const std::vector<MacroCurve>& curves, const std::string& of) {
+  return said_by_engine(curves, &MacroCurve::warning, of);
+}
+
+std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of) {
   std::vector<std::string> out;
   for (const MacroCurve& c : curves)
     if (lacks_stress(c))
@@ -243,12 +247,8 @@ std::vector<std::string> run_warnings(const std::vector<MacroCurve>& curves, con
                                 of, c.engine, c.sample));
   for (const MacroCurve& c : curves)
     if (!c.usable) out.push_back(fmt::format("{}'{}' of sample {} is not usable: {}", of, c.engine, c.sample, c.note));
-  for (std::string& one : said_by_engine(curves, &MacroCurve::warning, of)) out.push_back(std::move(one));
+  for (std::string& one : said_by_engine(curves, &MacroCurve::note, of)) out.push_back(std::move(one));
   return out;
-}
-
-std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of) {
-  return said_by_engine(curves, &MacroCurve::note, of);
 }
 
 std::vector<std::string> macro_warnings(const std::vector<MacroCurve>& curves) {
@@ -266,9 +266,9 @@ std::vector<std::string> macro_remarks(const std::vector<MacroCurve>& curves) {
 }
 
 std::vector<std::string> warnings_of(const AnySummary& summary) {
-  std::vector<std::string> out = summary.warnings;
-  if (from_word<RunStatus>(summary.status) == RunStatus::not_usable && summary.remarks)
-    out.insert(out.end(), summary.remarks->begin(), summary.remarks->end());
+  std::vector<std::string> out;
+  if (from_word<RunStatus>(summary.status) == RunStatus::not_usable && summary.remarks) out = *summary.remarks;
+  out.insert(out.end(), summary.warnings.begin(), summary.warnings.end());
   std::erase(out, "");
   return out;
 }

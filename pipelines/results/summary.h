@@ -128,7 +128,7 @@ void fields(auto&& visit, Of<AnySummary> auto& s) {
   visit("sizes", s.sizes);
 }
 
-/// Warnings, most important first. Where the result is not usable its remarks are among them: they say why.
+/// Warnings, most important first. Where the result is not usable its remarks come before them: the first says why.
 std::vector<std::string> warnings_of(const AnySummary& summary);
 /// All other remarks.
 std::vector<std::string> notes_of(const AnySummary& summary);
@@ -367,8 +367,8 @@ std::vector<std::string> measurement_remarks(const Measurements& data);
 /// Whether every run with a law, and every shelled twin, ends under stress: else nothing can be said relative to it.
 bool all_carry_stress(const std::vector<MacroCurve>& curves);
 
-/// What runs say of themselves, after `of` (with its blank or comma), one line for all of an engine. Warnings: each
-/// that cannot be used or carries no stress, and what makes a result doubtful. Notes: all else.
+/// What runs say of themselves, after `of` (with its blank or comma), one line for all of an engine. Warnings: what
+/// makes a result doubtful. Notes: first each that cannot be used or carries no stress, then all else.
 std::vector<std::string> run_warnings(const std::vector<MacroCurve>& curves, const std::string& of);
 std::vector<std::string> run_notes(const std::vector<MacroCurve>& curves, const std::string& of);
 

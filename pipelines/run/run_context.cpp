@@ -84,8 +84,8 @@ std::string settings_text(const Scene& scene, std::uint64_t seed) {
 constexpr std::size_t kLineWidth = 99;
 constexpr std::size_t kMostWarnings = 5;
 
-/// The result, which says at its end that it is not usable, and why; then as many warnings as anybody reads, and where
-/// the rest is. Lines of at most kLineWidth.
+/// The result; whether it is not usable, and why; the first kMostWarnings warnings; where the rest is. In lines of at
+/// most kLineWidth.
 std::string console_summary(std::string result, const nlohmann::json& summary) {
   if (!result.empty() && result.back() != '\n') result += '\n';
   const auto all = record_of<AnySummary>(summary);
@@ -106,9 +106,9 @@ std::string console_summary(std::string result, const nlohmann::json& summary) {
   for (std::size_t k = 0; k < std::min(warnings.size(), kMostWarnings); ++k)
     text += wrapped("warning: " + warnings[k], 4, kLineWidth);
   const std::size_t further = warnings.size() - std::min(warnings.size(), kMostWarnings);
-  const std::size_t notes = notes_of(all).size() + further;
-  if (notes > 0)
-    text += fmt::format("{} note{}: at the end of log.txt and of the report\n", notes, notes == 1 ? "" : "s");
+  if (further > 0) text += fmt::format("{} more warning{} at the end of log.txt\n", further, further == 1 ? "" : "s");
+  const std::size_t notes = notes_of(all).size();
+  if (notes > 0) text += fmt::format("{} note{} at the end of log.txt\n", notes, notes == 1 ? "" : "s");
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/run_comparison.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -130,8 +131,7 @@ TEST(DamagedRun, GoesOnFromTheCheckpointBefore) {
     else
       fs::resize_file(checkpoint, random.below(fs::file_size(checkpoint)));
     ASSERT_TRUE(ended_with(wait_for(start_program(runs.arguments(out, {"--resume"}))), 0));
-    EXPECT_NE(read_text(runs.out(out) + "/log.txt").find("continuing from the checkpoint before it"),
-              std::string::npos);
+    EXPECT_NE(log_of(runs.out(out)).find("continuing from the checkpoint before it"), std::string::npos);
     expect_same_runs(runs.out("whole"), runs.out(out));
   }
 }
@@ -156,7 +156,7 @@ TEST(DamagedRun, StartsATaskAfreshOfWhichNothingIsLeft) {
     if (fs::exists(file + ".previous")) fs::resize_file(file + ".previous", 100);
     const int status = wait_for(start_program(runs.arguments(out, {"--threads", "1", "--resume"})));
     EXPECT_TRUE(ended_with(status, 3)) << task << status;
-    EXPECT_NE(read_text(runs.out(out) + "/log.txt").find(task + " starts afresh"), std::string::npos) << task;
+    EXPECT_NE(log_of(runs.out(out)).find(task + " starts afresh"), std::string::npos) << task;
     expect_same_runs(runs.out("whole"), runs.out(out));
   }
 }
@@ -195,7 +195,7 @@ class DamagedEverywhere : public ::testing::TestWithParam<KindScene> {
   [[nodiscard]] std::string logs() const {
     std::string text;
     for (const auto& entry : fs::recursive_directory_iterator(runs_.out("out")))
-      if (entry.path().filename() == "log.txt") text += read_text(entry.path().string());
+      if (entry.path().filename() == "log.txt") text += log_of(entry.path().parent_path().string());
     return text;
   }
   void expect_to_start_afresh() const {

@@ -9,6 +9,7 @@
 #include "tests/support/program.h"
 #include "tests/support/synthetic_law.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -70,7 +71,7 @@ TEST_F(MacroPackings, ADamagedFileOfTheCacheIsMadeAgain) {
   const fs::path kept_file = fs::directory_iterator(file("cache"))->path();
   fs::resize_file(kept_file, fs::file_size(kept_file) / 2);
   expect(macro("second", cache), 0, {});
-  EXPECT_NE(read_text(file("second") + "/log.txt").find("prepared again"), std::string::npos);
+  EXPECT_NE(log_of(file("second")).find("prepared again"), std::string::npos);
   EXPECT_EQ(curve("first").stress_axial, curve("second").stress_axial);
   EXPECT_EQ(macro("third", "--packing-cache /proc/softgrain").status, 4);
 }

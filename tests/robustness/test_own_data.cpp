@@ -83,7 +83,7 @@ class OwnData : public ::testing::Test {
     ProgramOutcome outcome =
         run_the_program("calibrate " + inputs + " --quiet --set replicates=60 --out '" + file(out) + "' " + more);
     outcome.output = unwrapped(outcome.output);
-    if (std::filesystem::exists(file(out) + "/log.txt")) outcome.output += read_text(file(out) + "/log.txt");
+    if (std::filesystem::exists(file(out) + "/log.txt")) outcome.output += log_of(file(out));
     return outcome;
   }
   static void expect(const ProgramOutcome& outcome, int status, const std::vector<std::string>& words) {

@@ -17,6 +17,7 @@
 #include "tests/support/process.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unwrapped.h"
 
 namespace {
 
@@ -157,7 +158,7 @@ TEST_F(ParticlesKill, WhereTheOnlyCheckpointIsDamagedTheRunStartsAfresh) {
   fs::remove(out + "/checkpoint.h5.previous");
   write_text_atomic(out + "/checkpoint.h5", "nonsense");
   ASSERT_TRUE(ended_well(end_after(start(scene_, out, true), kPatience, SIGKILL)));
-  EXPECT_NE(read_text(out + "/log.txt").find("checkpoint is left: the run starts afresh"), std::string::npos);
+  EXPECT_NE(log_of(out).find("checkpoint is left: the run starts afresh"), std::string::npos);
   expect_same_end(out);
 }
 

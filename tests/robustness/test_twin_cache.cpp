@@ -9,6 +9,7 @@
 #include "macrosim/twin_places.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/unwrapped.h"
 
 namespace softgrain {
 namespace {
@@ -100,7 +101,7 @@ TEST_F(TwinCache, ADamagedFileIsRunAgain) {
   const fs::path file = fs::directory_iterator(directory_.file("cache"))->path();
   fs::resize_file(file, fs::file_size(file) / 2);
   run("second", cache);
-  EXPECT_NE(read_text(directory_.file("second") + "/log.txt").find("run again"), std::string::npos);
+  EXPECT_NE(test::log_of(directory_.file("second")).find("run again"), std::string::npos);
   EXPECT_EQ(twin("second").stress_axial, twin("first").stress_axial);
 }
 

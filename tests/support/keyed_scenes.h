@@ -323,7 +323,7 @@ inline std::vector<KindScene> keyed_scenes() {
   };
   add("material-variants", material_variants());
   add("material-loadings", material_loadings());
-  add("comparison-stages", comparison_stages() + "[scene.law]\ncard = \"other-law.toml\"\n");
+  add("comparison-stages", comparison_stages() + "[scene.law]\ncard = \"other-law.toml\"\n[[scene]]\nname = \"b\"\n");
   add("comparison-packing", comparison_packing());
   add("macro-cells", macro_cells());
   add("macro-table", macro_table());

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "common/io/text_file.h"
+
 namespace softgrain::test {
 
 /// Continued lines begin with four blanks.
@@ -12,5 +14,8 @@ inline std::string unwrapped(std::string text) {
     text.replace(at, broken.size(), " ");
   return text;
 }
+
+/// log.txt of a run; where it breaks a line depends on how long the paths are.
+inline std::string log_of(const std::string& run_directory) { return unwrapped(read_text(run_directory + "/log.txt")); }
 
 }  // namespace softgrain::test

@@ -30,7 +30,7 @@ HierarchySummary hierarchy() {
   s.levels[1].inner = InnerSummary{4.0, 0.1, 0.2, 3.0, 0.3};
   s.levels[1].error_percent = 4.0;
   s.levels[1].own_error_percent = 3.0;
-  s.levels[1].sensitivity = {0.4, 0.05};
+  s.levels[1].sensitivity = Sensitivity{0.4, 0.05};
   s.levels[1].law.parameters = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
   s.levels[1].curves = {{0.1, 0.2}, {1.0, 2.0}, {3.0, 4.0}};
   s.levels[1].distance_percent = 2.5;

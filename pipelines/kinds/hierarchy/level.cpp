@@ -168,7 +168,7 @@ void add_errors_below(const HierarchySetup& setup, LevelContents& contents, cons
                       const CrowdMeasurements& data, HierarchyLevel& level, const Run& run) {
   if (setup.replicates == 0) return;
   level.sensitivity = sensitivity_of(setup, contents, below, level, data, run);
-  spread(level.entry, strength_draws(below.entry, setup.form, level.sensitivity.value));
+  spread(level.entry, strength_draws(below.entry, setup.form, level.sensitivity->value));
   level.error = strength_error(level.entry, setup.form);
 }
 

@@ -36,13 +36,13 @@ struct HierarchyLevel {
   double grain_volume = 0.0;  ///< of its own grains, over that of the shell
   double inner_low = 0.0;     ///< radii over Rs
   double inner_high = 0.0;
-  std::vector<LevelChange> changes;   ///< against the level below; empty for the finest
-  double distance = 0.0;              ///< of the two laws, see law_distance() (form of the hierarchy)
-  double distance_noise = 0.0;        ///< what packings alone would make of it, from the standard errors of the changes
-  Sensitivity sensitivity;            ///< to the law below
-  double own_error = 0.0;             ///< relative standard error of its forces, from its packings alone
-  double error = 0.0;                 ///< with what the law below adds
-  std::vector<std::string> left_out;  ///< a sentence for each measurement that broke off
+  std::vector<LevelChange> changes;  ///< against the level below; empty for the finest
+  double distance = 0.0;             ///< of the two laws, see law_distance() (form of the hierarchy)
+  double distance_noise = 0.0;       ///< what packings alone would make of it, from the standard errors of the changes
+  std::optional<Sensitivity> sensitivity;  ///< to the law below, where there is one and error bars are asked for
+  double own_error = 0.0;                  ///< relative standard error of its forces, from its packings alone
+  double error = 0.0;                      ///< with what the law below adds
+  std::vector<std::string> left_out;       ///< a sentence for each measurement that broke off
   Cost cost;
   double seconds = 0.0;
   double grains = 0.0;  ///< that a resolved soft particle of this level would hold

@@ -6,6 +6,7 @@
 #include "calibrate/bootstrap.h"
 #include "common/contact/crowd_from_table.h"
 #include "common/data/crowd_replicates.h"
+#include "microsim/crowd_arrangements.h"
 
 namespace softgrain {
 
@@ -32,9 +33,8 @@ std::vector<double> strengths(const LawTableEntry& entry, Crowd form) {
 }  // namespace
 
 std::vector<CrowdPartner> six_planes() {
-  std::vector<CrowdPartner> planes(6);
-  for (std::size_t k = 0; k < planes.size(); ++k)
-    planes[k].direction[static_cast<int>(k / 2)] = k % 2 == 0 ? 1.0 : -1.0;
+  std::vector<CrowdPartner> planes;
+  for (const Vec3& direction : directions_of(Arrangement::cube)) planes.push_back({PartnerKind::plane, 0.0, direction});
   return planes;
 }
 

@@ -31,7 +31,7 @@ std::string law_table(const std::vector<LevelSummary>& levels) {
   for (const LevelSummary& l : levels)
     table.row({std::to_string(l.level), number_of(l.law.parameters[0]), number_of(l.law.parameters[1]),
                number_of(l.law.parameters[2]), number_of(l.error_percent), number_of(l.own_error_percent),
-               number_of(l.level > 0 ? l.sensitivity.value : NAN), number_of(l.distance_percent),
+               number_of(l.sensitivity ? l.sensitivity->value : NAN), number_of(l.distance_percent),
                number_of(l.noise_percent)});
   return table.html();
 }

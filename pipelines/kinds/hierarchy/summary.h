@@ -44,7 +44,7 @@ struct LevelSummary {
   std::optional<double> noise_percent;      ///< what packings alone make of it
   std::optional<double> error_percent;      ///< standard error of its forces, that of the levels below in it
   std::optional<double> own_error_percent;  ///< from its own packings
-  Sensitivity sensitivity;
+  std::optional<Sensitivity> sensitivity;   ///< to the law below
   std::vector<LevelChange> changes;
 };
 
@@ -102,6 +102,11 @@ void fields(auto&& visit, Of<LevelChange> auto& c) {
   visit("error", c.error);
 }
 
+void fields(auto&& visit, Of<Sensitivity> auto& s) {
+  visit("value", s.value);
+  visit("error", s.error);
+}
+
 void fields(auto&& visit, Of<LevelSummary> auto& s) {
   visit("level", s.level);
   visit("grain_percent", s.grain_percent);
@@ -115,8 +120,7 @@ void fields(auto&& visit, Of<LevelSummary> auto& s) {
   visit("noise_percent", s.noise_percent, kLeftOut);
   visit("error_percent", s.error_percent, kLeftOut);
   visit("own_error_percent", s.own_error_percent, kLeftOut);
-  visit("sensitivity", s.sensitivity.value);
-  visit("sensitivity_error", s.sensitivity.error);
+  visit("sensitivity", s.sensitivity, kLeftOut);
   visit("changes", s.changes, kLeftOut);
 }
 

@@ -7,6 +7,7 @@
 
 #include "calibrate/rod_packing.h"
 #include "common/core/solid_sphere.h"
+#include "common/packing/grading_parts.h"
 #include "macrosim/macro_packing.h"
 #include "macrosim/preparation.h"
 #include "pipelines/kinds/macro/stages.h"
@@ -20,10 +21,6 @@ constexpr double kMargin = 1.1;
 /// Samples that are drawn at least where room is doubted: a doubt must not depend on the seed, which the command line
 /// may replace. What is refused is judged by the samples of the run themselves.
 constexpr std::int64_t kDraws = 32;
-
-Grading sizes_or_power_law(const std::optional<Grading>& sizes, double exponent, double largest, double ratio) {
-  return sizes ? *sizes : Grading::power_law(exponent, largest / ratio, largest);
-}
 
 /// Share of the cell that bodies fill when they jam: that of rods without friction, less with it.
 double jammed_fraction(const MacroSpec& spec) {

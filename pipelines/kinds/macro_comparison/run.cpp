@@ -140,14 +140,13 @@ std::string people_text(const std::vector<SceneResult>& results, const Run& run)
 }
 
 /// The packings of a comparison should be those that the law was measured on.
-std::vector<std::string> law_remarks(const MacroComparisonSetup& setup) {
-  const SoftParticleSpec& mine = setup.spec;
-  if (setup.laws.table)
-    for (const LawTableEntry& e : setup.laws.table->entries)
+std::vector<std::string> law_remarks(const SoftParticleSpec& mine, const LawSources& laws) {
+  if (laws.table)
+    for (const LawTableEntry& e : laws.table->entries)
       if ((e.spec.sizes || mine.sizes) && !same_sizes(e.spec, mine))
         return {"the law table was measured on soft particles whose grains have other sizes than those of the twins"};
-  if (!setup.laws.card) return {};
-  const SoftParticleSpec& law = setup.laws.card->spec;
+  if (!laws.card) return {};
+  const SoftParticleSpec& law = laws.card->spec;
   if (!packing_known(law))
     return {
         "the law card does not say what is inside the soft particle that was measured; the twins are filled as this "
@@ -162,7 +161,11 @@ MacroComparisonSummary summarise(const MacroComparisonSetup& setup, const std::v
                                  const Run& run) {
   MacroComparisonSummary s;
   s.head.title = setup.title;
-  s.head.remarks = law_remarks(setup);
+  for (const ComparisonScene& scene : setup.scenes)
+    if (!scene.by_own_law())
+      for (const std::string& one : law_remarks(setup.spec, setup.laws_of(scene)))
+        if (std::find(s.head.remarks.begin(), s.head.remarks.end(), one) == s.head.remarks.end())
+          s.head.remarks.push_back(one);
   for (const SceneResult& r : results) {
     if (!r.usable) s.head.status = RunStatus::not_usable;
     s.compared.scenes.push_back(summary_of(r));

@@ -80,8 +80,12 @@ MacroComparisonSetup read_macro_comparison(const Scene& scene) {
       if (parts[k].has("law"))
         parts[k].table("law").part([&] { setup.scenes[k].laws = read_law_sources(scene, parts[k].table("law")); });
     if (setup.scenes.empty()) root.mistake("scene", "no [[scene]] to compare on; an empty one takes all from [macro]");
-    const SceneTable law = root.table("law");
-    law.part([&] { setup.laws = read_law_sources(scene, law); });
+    const bool all_own = !setup.scenes.empty() && std::all_of(setup.scenes.begin(), setup.scenes.end(),
+                                                              [](const ComparisonScene& s) { return s.laws; });
+    if (all_own && root.has("law"))
+      root.mistake("law", "every [[scene]] has a law of its own");
+    else if (!all_own)
+      root.table("law").part([&] { setup.laws = read_law_sources(scene, root.table("law")); });
     return setup;
   });
 }

@@ -55,15 +55,16 @@ std::string sizes_text_of(const RecipeLevel& level) {
 /// neighbour. `finer`: the next level, none for the finest.
 HierarchySetup setup_of(const RecipeScene& scene, const RecipeLevel& level, const RecipeLevel* finer) {
   const MacroSpec& spec = scene.material.variants.front().setup.spec;
+  const double hole = std::min(0.2, 1.0 / scene.shells.ratio);
   std::string text = fmt::format(
       "kind = \"hierarchy\"\nseed = {}\n[material]\nE = {}\nnu = {}\nmu = {}\ndensity = {}\n[packing]\nshell_radius = "
       "{}\nbeta = 3.0\ntrials = 10000\nplacement = \"voids\"\n{}[hierarchy]\nlevels = 2\nform = \"{}\"\n"
-      "inner_radius = {}\nnext_volume = {}\n[crowd]\nincrement = 0.005\ntolerance = 1e-2\npackings_min = "
+      "inner_radius = {}\ninner_radius_min = {}\nnext_volume = {}\nreplicates = 0\n[crowd]\nincrement = "
+      "0.005\ntolerance = 1e-2\npackings_min = "
       "{}\npackings_max = {}\n"
       "target = 0.05\npoints = 10\n",
       scene.material.seed, spec.youngs_modulus, spec.poisson_ratio, spec.friction, spec.density, kShell,
-      sizes_text_of(level), to_string(scene.shells.form),
-      finer != nullptr ? std::clamp(finer->high / level.high, 0.01, 0.5) : 0.1,
+      sizes_text_of(level), to_string(scene.shells.form), hole, 0.5 * hole,
       finer != nullptr ? finer->share / level.share : 1.0, scene.shells.packings, scene.shells.packings);
   const auto add = [&](const char* arrangement, const char* partner, double overlap) {
     text += fmt::format("[[configuration]]\narrangement = \"{}\"\npartner = \"{}\"\noverlap = {}\n{}", arrangement,
