@@ -3,10 +3,11 @@
 
 Every sample is strained by our engine, by our engine with a friction that differs in the twelfth digit (what chaos alone
 makes of a rounding), and by softgrain-lammps on one rank. Long runs are held together by their statistics: the mean over
-the samples of the relative difference of axial stress, against its standard error. --page writes README.md's table
-(agreement.md), agreement.json and agreement.png beside this script.
+the samples of the relative difference of axial stress, against its standard error. --page writes agreement.csv, cost.csv,
+agreement.json and agreement.png beside this script; README.md and notes.md are written by hand.
 """
 import argparse
+import csv
 import json
 import os
 import subprocess
@@ -108,27 +109,31 @@ def study(program, samples):
     return result
 
 
-def table(result, samples):
-    lines = [f"{samples} samples of 1000 bodies, oedometric; differences of axial stress in per cent of the mean: mean over the "
-             "samples (its standard error), spread of one sample.", "",
-             "| law | strain | stress [Pa] | our engine, mu + 1e-12 | spread | LAMMPS | spread |", "|---|---|---|---|---|---|---|"]
+def agreement_rows(result):
+    names = {"own, mu + 1e-12": "own engine with mu + 1e-12", "lammps": "LAMMPS"}
+    rows = [["law", "strain", "axial stress [Pa]"] + [f"{names[run]}: {what} [%]" for run in list(RUNS)[1:]
+                                                      for what in ("difference", "error", "spread of one sample")]]
     for name, entry in result.items():
         strain = np.array(entry["strain"])
         for at in (0.05, 0.1, 0.15):
             k = int(np.argmin(abs(strain - at)))
-            cells = []
+            row = [name, f"{strain[k]:.2f}", f"{np.mean(entry['own'], axis=0)[k]:.4g}"]
             for run in list(RUNS)[1:]:
                 a = entry["against"][run]
-                cells += [f"{100 * a['mean'][k]:+.2f}({100 * a['error'][k]:.2f})", f"{100 * a['spread'][k]:.2f}"]
-            lines.append(f"| {name} | {strain[k]:.2f} | {np.mean(entry['own'], axis=0)[k]:.4g} | " + " | ".join(cells) + " |")
-    lines += ["", "| law | engine | passes | near pairs per pass | time per pass, ours = 1 |", "|---|---|---|---|---|"]
+                row += [f"{100 * a['mean'][k]:+.2f}", f"{100 * a['error'][k]:.2f}", f"{100 * a['spread'][k]:.2f}"]
+            rows.append(row)
+    return rows
+
+
+def cost_rows(result):
+    rows = [["law", "engine", "loop passes", "near pairs per pass", "time per pass over that of the own engine"]]
     for name, entry in result.items():
         ours = entry["cost"]["own"]
         for run in ("own", "lammps"):
             c = entry["cost"][run]
             ratio = c["seconds"] / c["loop_passes"] / (ours["seconds"] / ours["loop_passes"])
-            lines.append(f"| {name} | {run} | {c['loop_passes']:.0f} | {c['contact_evaluations'] / c['loop_passes']:.0f} | {ratio:.2f} |")
-    return "\n".join(lines) + "\n"
+            rows.append([name, run, f"{c['loop_passes']:.0f}", f"{c['contact_evaluations'] / c['loop_passes']:.0f}", f"{ratio:.2f}"])
+    return rows
 
 
 def picture(result, path):
@@ -152,11 +157,13 @@ def main():
     parser.add_argument("--page", action="store_true")
     arguments = parser.parse_args()
     result = study(os.path.abspath(arguments.program), arguments.samples)
-    text = table(result, arguments.samples)
-    print(text)
+    tables = {"agreement": agreement_rows(result), "cost": cost_rows(result)}
+    for rows in tables.values():
+        csv.writer(sys.stdout).writerows(rows)
     if arguments.page:
-        with open(os.path.join(HERE, "agreement.md"), "w") as f:
-            f.write(text)
+        for name, rows in tables.items():
+            with open(os.path.join(HERE, name + ".csv"), "w", newline="") as f:
+                csv.writer(f, lineterminator="\n").writerows(rows)
         with open(os.path.join(HERE, "agreement.json"), "w") as f:
             json.dump(result, f)
         picture(result, os.path.join(HERE, "agreement.png"))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes curves.csv and the pictures of this folder and prints the table of its README: collect.py TRUTH FOUR_DECADES, two
-directories of runs. Standard library only.
+"""Makes curves.csv, variants.csv and the pictures of this folder: collect.py TRUTH FOUR_DECADES, two directories of runs.
+The pages are written by hand. Standard library only.
 """
 import collections
 import csv
@@ -44,10 +44,9 @@ def at(samples, column, strain=None, point=None):
     return mean_error([pick(points)[column] for points in samples.values()])
 
 
-def with_error(value, error, digits):
-    if math.isnan(value):
-        return "-"
-    return f"{value:.{digits}f}" + ("" if math.isnan(error) else f"({error * 10 ** digits:.0f})")
+def cells_of(value, error, digits):
+    """Two cells, the error of the mean beside it; empty where there is none."""
+    return ["" if math.isnan(x) else f"{x:.{digits}f}" for x in (value, error)]
 
 
 def write_curves(variants):
@@ -65,23 +64,30 @@ def write_curves(variants):
                 f.write(",".join(cells) + "\n")
 
 
-def print_table(variants):
-    print("| variant | grains | solid fraction | 1000 axial/E at 2 % | at 5 % | at 8 % | K0 at 5 % | at 8 % | rattlers | coordination | shear: q/p at 2 % | at 6 % |")
-    print("|---" * 12 + "|")
+COLUMNS = [("solid fraction", 4), ("1000 axial/E at 2 % strain", 3), ("1000 axial/E at 5 % strain", 3), ("1000 axial/E at 8 % strain", 3),
+           ("K0 at 5 % strain", 3), ("K0 at 8 % strain", 3), ("rattlers", 3), ("coordination", 2), ("q/p in shear at 2 % strain", 2),
+           ("q/p in shear at 6 % strain", 2)]
+
+
+def write_variants(variants):
+    """One row per packing: means over samples of the oedometric test and of shear at constant volume, and their standard errors."""
+    none = (math.nan, math.nan)
     grains = {"2.4": 1500, "3": 1500, "12": 8000, "30": 80000}
+    rows = [["variant", "grains", "samples"] + [c for name, _ in COLUMNS for c in (name, "error of " + name)]]
     for name, samples in variants.items():
         if not name.endswith("-oedometric"):
             continue
         base = name[:-len("-oedometric")]
         shear = variants.get(base + "-shear")
-        cells = [base, f"{grains.get(base.split('-')[-1], 2500):,} x {len(samples)}", with_error(*at(samples, "solid_fraction", point=0), 4)]
-        for e in (0.02, 0.05, 0.08):
-            mean, error = at(samples, "axial/E", e)
-            cells.append(with_error(1000 * mean, 1000 * error, 3))
-        cells += [with_error(*at(samples, "K0", e), 3) for e in (0.05, 0.08)]
-        cells += [with_error(*at(samples, "rattlers", point=0), 3), with_error(*at(samples, "coordination", point=0), 2)]
-        cells += [with_error(*at(shear, "q/p", e), 2) if shear else "-" for e in (0.02, 0.058)]
-        print("| " + " | ".join(cells) + " |")
+        means = [at(samples, "solid_fraction", point=0)]
+        means += [tuple(1000 * x for x in at(samples, "axial/E", e)) for e in (0.02, 0.05, 0.08)]
+        means += [at(samples, "K0", e) for e in (0.05, 0.08)]
+        means += [at(samples, column, point=0) for column in ("rattlers", "coordination")]
+        means += [at(shear, "q/p", e) if shear else none for e in (0.02, 0.058)]
+        cells = [c for mean, (_, digits) in zip(means, COLUMNS) for c in cells_of(*mean, digits)]
+        rows.append([base, grains.get(base.split("-")[-1], 2500), len(samples)] + cells)
+    with open(os.path.join(HERE, "variants.csv"), "w", newline="") as f:
+        csv.writer(f, lineterminator="\n").writerows(rows)
 
 
 def svg(name, title, x_label, y_label, series, log_x=False, log_y=False):
@@ -154,7 +160,7 @@ def pictures(truth, four):
          ("K0, slow", COLORS[1], False, over_span(truth, "slow", "oedometric", "K0", 0.05)),
          ("q/p, fast", COLORS[2], False, over_span(four, "fast", "oedometric", "q/p", 0.05)),
          ("q/p, slow", COLORS[3], False, over_span(truth, "slow", "oedometric", "q/p", 0.05))], True)
-    svg("shares.svg", "Who bears the pressure at 5 % strain (split at 1/2, fast)", "largest over smallest radius", "share of p",
+    svg("shares.svg", "Shares of the pressure at 5 % strain (split at 1/2, fast)", "largest over smallest radius", "share of p",
         [(pair, COLORS[k], False, over_span(four, "fast", "oedometric", pair + " 0.5", 0.05)) for k, pair in
          enumerate(("coarse-coarse", "coarse-fine", "fine-fine"))], True)
 
@@ -170,5 +176,5 @@ def mean_onset(samples, modulus, exponent):
 if __name__ == "__main__":
     truth, four = read(sys.argv[1]), read(sys.argv[2])
     write_curves(truth)
-    print_table(truth)
+    write_variants(truth)
     pictures(truth, four)

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""README.md, floor.svg and growth.svg of this folder from what was measured: python3 results/performance/collect.py DIRECTORY
+"""Tables and pictures of this folder from what was measured: python3 results/performance/collect.py DIRECTORY
 
-DIRECTORY holds what text.md says how to make, each left out with a word when it is not there:
+Writes contact_loop.csv, scaling.csv, engines.csv, threads.csv, tables.md (the narrow tables), floor.svg and growth.svg.
+README.md and the pages beside it are written by hand. README.md says how to make the files that DIRECTORY holds; what
+needs a missing one is not written, or marked as not measured in tables.md:
   loop.json     bench_softgrain --benchmark_filter='Contact|Bare|Roofline' --benchmark_format=json
   scaling.json  tests/bench/scaling --json
   engines.json  tests/bench/compare_engines --json
   instructions.json  the same with --callgrind, when counted in another run
   macro.json    tests/bench/scaling --macro --json
 """
+import csv
 import json
 import math
 import pathlib
-import re
 import sys
 
 HERE = pathlib.Path(__file__).parent
@@ -44,8 +46,8 @@ CASES = {  # benchmark: words, work
     "ContactLoop/as_read": ("full, grains in the order of the file", FULL),
     "ContactLoop/undamped": ("no damping", Work(14, 130, 3, 2, 4, 4, 13, 80)),
     "ContactLoop/frictionless": ("no friction, no rotation", Work(14, 35, 3, 1, 2, 2, 12, 16)),
-    "ContactLoop/frictionless_undamped": ("neither", ELASTIC),
-    "ContactLoop/frictionless_undamped_as_read": ("neither, in the order of the file", ELASTIC),
+    "ContactLoop/frictionless_undamped": ("no friction, rotation or damping", ELASTIC),
+    "ContactLoop/frictionless_undamped_as_read": ("the same, grains in the order of the file", ELASTIC),
     "ContactLoop/rescaled": ("rescaled spring", Work(14, 150, 4, 3, 4, 4, 13, 96)),
     "ContactLoop/open_cell": ("open cell", Work(11, 142, 4, 2, 4, 4, 9, 80)),
     "ContactLoop/polydisperse": ("radii 0.1-1 m (scene B)", FULL),
@@ -54,11 +56,11 @@ CASES = {  # benchmark: words, work
 }
 OTHERS = {  # no count by hand: what they are compared with
     "ContactLoopScalar/full": ("scalar loop, full", "ContactLoop/full"),
-    "ContactLoopScalar/frictionless_undamped": ("scalar loop, neither", "ContactLoop/frictionless_undamped"),
+    "ContactLoopScalar/frictionless_undamped": ("scalar loop, no friction, rotation or damping", "ContactLoop/frictionless_undamped"),
     "ContactLoopWalls/full": ("walls only, full", "ContactLoopScalar/full"),
-    "ContactLoopWalls/frictionless_undamped": ("walls only, neither", "ContactLoopScalar/frictionless_undamped"),
+    "ContactLoopWalls/frictionless_undamped": ("walls only, no friction, rotation or damping", "ContactLoopScalar/frictionless_undamped"),
     "ContactLoopOutput/full": ("pass and records of all contacts", "ContactLoop/full"),
-    "ContactLoopStiffnessOff/full": ("pass, list looked at, forces set to zero", "ContactLoop/full"),
+    "ContactLoopStiffnessOff/full": ("pass, list read, forces set to zero", "ContactLoop/full"),
     "ContactLoopStiffnessOn/full": ("the same with sums of stiffness", "ContactLoopStiffnessOff/full"),
     "ContactLoopSoft/touching": ("soft grains, threshold 0.001", "ContactLoopScalar/full"),
 }
@@ -74,6 +76,11 @@ MACHINE = {
     "RooflineRead/6291456": "byte read, 6 MB", "RooflineRead/268435456": "byte read, 256 MB",
     "RooflineUpdate/6291456": "byte updated, 6 MB", "RooflineUpdate/268435456": "byte updated, 256 MB",
 }
+
+
+def write_csv(name, head, rows):
+    with open(HERE / name, "w", newline="") as f:
+        csv.writer(f, lineterminator="\n").writerows([head, *rows])
 
 
 def table(head, rows):
@@ -103,7 +110,7 @@ class Loop:
 
 
 def number(x, digits=1):
-    return "-" if x is None else f"{x:.{digits}f}"
+    return "" if x is None else f"{x:.{digits}f}"
 
 
 def feature_rows(loop):
@@ -116,34 +123,35 @@ def feature_rows(loop):
         said = sum(parts.values()) / sum(all_parts.values())
         yield (words, number(loop.ns(name)), number(loop.ns(name, "per_pair")), number(loop.ns(name) / loop.ns(full), 2),
                number(said, 2), number(loop.ns(BARE.get(name, ""))), number(max(parts.values())), number(sum(parts.values())),
-               f"{work.flops} + {work.pair_flops}", str(work.roots), str(work.divisions), f"{work.gathers} + 2",
-               str(work.scatters), f"{work.bytes} + {work.pair_bytes}")
+               work.flops, work.pair_flops, work.roots, work.divisions, work.gathers, 2, work.scatters, work.bytes,
+               work.pair_bytes)
 
 
-def features(loop):
-    head = ("scene", "ns/contact", "ns/pair", "of full", "counted", "bare", "floor", "sum", "flops + per pair", "roots",
-            "divisions", "gathers + per pair", "scatters", "list bytes + per pair")
-    return table(head, feature_rows(loop))
+FEATURES = ("scene", "time per contact [ns]", "time per listed pair [ns]", "time over the full loop",
+            "counted work over that of the full loop", "program for this scene alone [ns per contact]",
+            "largest kind of work [ns per contact]", "sum of all kinds of work [ns per contact]", "flops per contact",
+            "flops per listed pair", "square roots per contact", "divisions per contact", "gathers per contact",
+            "gathers per listed pair", "scatters per contact", "list bytes per contact", "list bytes per listed pair")
 
 
 def others(loop):
     rows = []
     for name, (words, against) in OTHERS.items():
         if loop.ns(name) is not None:
-            rows.append((words, number(loop.ns(name)), number(loop.ns(name) / loop.ns(against), 2) + " x",
+            rows.append((words, number(loop.ns(name)), number(loop.ns(name) / loop.ns(against), 2),
                          CASES[against][0] if against in CASES else OTHERS[against][0]))
-    return table(("case", "ns/contact", "", "compared with"), rows)
+    return table(("case", "time per contact [ns]", "over the compared case", "compared with"), rows)
 
 
 def soft(loop):
     rows = [(words, f"{loop.rows[name]['listed']:.0f}", f"{loop.rows[name]['touching']:.0f}",
              number(loop.ns(name, "per_pair"))) for name, words in SOFT.items() if name in loop.rows]
-    return table(("soft grains", "listed pairs", "carry force", "ns/listed pair"), rows)
+    return table(("soft grains", "listed pairs", "of these with a force", "time per listed pair [ns]"), rows)
 
 
 def machine(loop):
     rows = [(words, number(loop.machine[name], 3)) for name, words in MACHINE.items() if name in loop.machine]
-    return table(("one", "ns"), rows)
+    return table(("operation", "time [ns]"), rows)
 
 
 def lists(loop):
@@ -152,52 +160,56 @@ def lists(loop):
     for name in (f"ContactList/{key}" for key in words if f"ContactList/{key}" in loop.rows):
         rows.append((words[name.split("/")[1]], number(loop.ns(name, "per_grain"), 0),
                      number(loop.ns(name, "per_pair"), 0), number(loop.rows[name]["cpu_time"] / 1e3, 2)))
-    return table(("scene", "ns/grain", "ns/listed pair", "ms"), rows)
+    return table(("scene", "time per grain [ns]", "time per listed pair [ns]", "whole list [ms]"), rows)
 
 
 def steps(loop):
-    names = {"full": "full", "frictionless": "no friction, no rotation", "frictionless_undamped": "neither"}
+    names = {"full": "full", "frictionless": "no friction, no rotation", "frictionless_undamped": "no friction, rotation or damping"}
     rows = []
     for key, words in names.items():
         step, whole = loop.ns(f"ContactLoop/{key}"), loop.ns(f"ContactStep/{key}")
         if step and whole:
             rows.append((words, number(whole), number(step), number(loop.ns(f"ContactStep/{key}", "per_grain")),
                          number(whole / loop.ns("ContactStep/full"), 2)))
-    return table(("scene A", "step, ns/contact", "its pass", "step, ns/grain", "of full"), rows)
+    return table(("scene A", "step [ns per contact]", "its pass [ns per contact]", "step [ns per grain]", "over the full step"),
+                 rows)
 
 
-def scaling(report):
-    rows = []
-    for r in report["rows"]:
-        rows.append((r["title"], str(r["threads"]), str(r["grains"]), number(r["contacts_per_grain"], 2),
-                     number(r["listed_pairs"] / max(r["contacts"], 1), 2), number(r["ns_per_particle_step"]),
-                     number(r["ns_per_contact"]), number(r["ns_per_listed_pair"]), number(r["rebuilds_per_1000_steps"]),
-                     number(r["bytes_per_grain"], 0), number(r["bytes_of_target"], 2)))
-    head = ("scene", "threads", "grains", "touching pairs/grain", "listed/touching", "ns/grain-step", "ns/contact", "ns/listed pair",
-            "lists/1000 steps", "bytes/grain", "of 400/grain + 150/contact")
-    out = table(head, rows)
+SCALING = ("scene", "threads", "grains", "touching pairs per grain", "listed over touching pairs", "time per grain and step [ns]",
+           "time per contact [ns]", "time per listed pair [ns]", "lists per 1000 steps", "memory per grain [B]",
+           "memory over 400 B per grain and 150 B per contact", "speed-up over one thread (wall clock)", "load of the machine",
+           "cores")
+
+
+def scaling_rows(report):
     single = {r["title"]: r for r in report["rows"] if r["threads"] == 1}
     for r in report["rows"]:
+        gain = ("", "", "")
         if r["threads"] > 1 and r["title"] in single:
-            out += (f"\n\n{r['title']}: {r['threads']} threads {single[r['title']]['seconds'] / r['seconds']:.2f} times as fast "
-                    f"by the wall clock (load {report['load'][0]:.1f} on {report['cores']} cores).")
-    return out
+            gain = (number(single[r["title"]]["seconds"] / r["seconds"], 2), number(report["load"][0]), report["cores"])
+        yield (r["title"], r["threads"], r["grains"], number(r["contacts_per_grain"], 2),
+               number(r["listed_pairs"] / max(r["contacts"], 1), 2), number(r["ns_per_particle_step"]),
+               number(r["ns_per_contact"]), number(r["ns_per_listed_pair"]), number(r["rebuilds_per_1000_steps"]),
+               number(r["bytes_per_grain"], 0), number(r["bytes_of_target"], 2), *gain)
 
 
-def engines(report):
-    rows = []
+ENGINES = ("scene", "engine", "time per contact [ns]", "fastest round [ns]", "slowest round [ns]", "forces alone [ns per contact]",
+           "time over softgrain on one thread", "contacts per grain", "pressure [Pa]", "peak memory [MB]")
+
+
+def engine_rows(report):
     for scene, result in report["scenes"].items():
         ours = result["engines"].get("softgrain", {}).get("ns_per_contact")
         for name, f in result["engines"].items():
             spread = f["ns_per_contact_rounds"]
-            rows.append((scene.replace("_", " "), name, number(f["ns_per_contact"]), f"{min(spread):.1f}-{max(spread):.1f}",
-                         number(f.get("force_ns_per_contact")), number(f["ns_per_contact"] / ours, 2) if ours else "-",
-                         number(f["coordination_number"], 4), number(f["pressure"], 2), number(f["peak_memory"] / 1e6, 0)))
-    out = table(("scene", "engine", "ns/contact", "of all rounds", "forces", "times ours", "contacts per grain", "pressure [Pa]",
-                 "MB"), rows)
-    out += (f"\n\n{report['rounds']} rounds, {report['steps']} steps after {report['warm_up']}, {report['clock']} time, "
+            yield (scene.replace("_", " "), name, number(f["ns_per_contact"]), number(min(spread)), number(max(spread)),
+                   number(f.get("force_ns_per_contact")), number(f["ns_per_contact"] / ours, 2) if ours else "",
+                   number(f["coordination_number"], 4), number(f["pressure"], 2), number(f["peak_memory"] / 1e6, 0))
+
+
+def how_compared(report):
+    return (f"{report['rounds']} rounds of {report['steps']} steps after {report['warm_up']}, {report['clock']} time, "
             f"{report['processor']}.")
-    return out
 
 
 def expected(share, threads):
@@ -205,42 +217,30 @@ def expected(share, threads):
     return 1.0 / (share + (1.0 - share) / threads)
 
 
-def threads(report):
-    """The gain of a second thread, and what it says of more: all that is lost taken for work that one thread does alone."""
-    rows = []
+THREADS = ("scene", "speed-up by a second thread of softgrain", "by a second rank of LAMMPS classic",
+           "by a second rank of LAMMPS granular", "time of LAMMPS classic over softgrain on two cores",
+           "time of LAMMPS granular over softgrain on two cores", "loss as serial share [%]", "speed-up on 8 threads at least",
+           "speed-up on 64 threads at least")
+
+
+def thread_rows(report):
+    """The gain of a second thread, and of more when all that is lost is taken for work that one thread does alone."""
     for scene, result in report["scenes"].items():
         gains, ratios = result.get("gains", {}), result.get("ratios_on_all_cores", {})
         if "softgrain" not in gains:
             continue
         share = min(1.0, max(0.0, 2.0 / gains["softgrain"] - 1.0))
-        lammps = [f"{number(gains.get(f'LAMMPS {law}'), 2)}" for law in ("classic", "granular")]
-        against = [f"{number(next((r for name, r in ratios.items() if name.startswith(f'LAMMPS {law}')), None), 2)}"
+        lammps = [number(gains.get(f"LAMMPS {law}"), 2) for law in ("classic", "granular")]
+        against = [number(next((r for name, r in ratios.items() if name.startswith(f"LAMMPS {law}")), None), 2)
                    for law in ("classic", "granular")]
-        rows.append((scene.replace("_", " "), number(gains["softgrain"], 2), *lammps, *against, f"{100 * share:.0f} %",
-                     number(expected(share, 8)), number(expected(share, 64))))
-    head = ("scene", "second thread", "second rank, classic", "granular", "time of LAMMPS classic over ours, all on two cores", "granular",
-            "lost, as serial share", "8 threads at least", "64 threads at least")
-    return table(head, rows) if rows else None
+        yield (scene.replace("_", " "), number(gains["softgrain"], 2), *lammps, *against, number(100 * share, 0),
+               number(expected(share, 8)), number(expected(share, 64)))
 
 
 def instructions(report):
     rows = [(scene.replace("_", " "), number(result["instructions_per_contact"], 0))
             for scene, result in report["scenes"].items() if "instructions_per_contact" in result]
     return table(("scene", "instructions per contact and step"), rows) if rows else None
-
-
-# Phase of the loop: share of samples [%] with everything, without friction, with neither friction nor damping.
-PROFILE = {
-    "find_touching, note_touch": ((29, 36, 52), "branch vectors of all listed pairs, which of them touch, histories forgotten"),
-    "gather": ((28, 35, 12), "records of the touching pairs become rows"),
-    "evaluate": ((26, 15, 15), "all arithmetic of the law"),
-    "scatter": ((17, 13, 21), "forces and torques to bodies, history to the list"),
-}
-
-
-def profile(_):
-    return table(("phase", "full", "no friction", "neither", ""),
-                 [(name, *(f"{share} %" for share in shares), words) for name, (shares, words) in PROFILE.items()])
 
 
 def growth(report):
@@ -255,8 +255,8 @@ def growth(report):
         rows.append((f"{r['bodies']:,}", f"{r['preparation_passes']:,.0f}", f"{r['test_passes']:,.0f}",
                      number(r["preparation_seconds"], 2), number(r["test_seconds"], 2), number(exponent, 2),
                      number(r["memory_mb"], 0)))
-    return table(("bodies", "preparation, passes", "test, passes", "preparation [s]", "test [s]", "whole grows like N to the",
-                  "peak memory [MB]"), rows)
+    return table(("particles", "passes of the preparation", "passes of the loading", "preparation [s]", "loading [s]",
+                  "exponent of the whole", "peak memory [MB]"), rows)
 
 
 COLOURS = {"sums and products": "#0072b2", "roots, divisions": "#d55e00", "gathers": "#009e73", "scatters": "#56b4e9",
@@ -348,7 +348,7 @@ def growth_picture(of):
         out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>' for x, y in places]
         out.append(f'<rect x="{left + width + 14}" y="{top + 22 * k}" width="12" height="12" fill="{colour}"/>'
                    f'<text x="{left + width + 32}" y="{top + 11 + 22 * k}">{words}</text>')
-    out.append(f'<text x="{left + width / 2}" y="{top + height + 36}" text-anchor="middle">grains or bodies</text>')
+    out.append(f'<text x="{left + width / 2}" y="{top + height + 36}" text-anchor="middle">grains or particles</text>')
     out.append(f'<text x="16" y="{top + height / 2}" text-anchor="middle" transform="rotate(-90 16 {top + height / 2})">'
                'ns per body and step or pass, on the wall</text>')
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + width + 280}" height="{top + height + 48}" '
@@ -363,17 +363,20 @@ def main():
     read = {key: json.loads((directory / f"{key}.json").read_text()) if (directory / f"{key}.json").exists() else None
             for key in ("loop", "scaling", "engines", "instructions", "macro")}
     loop = Loop(read["loop"]) if read["loop"] else None
-    makers = {**{f.__name__: (f, loop) for f in (features, others, soft, machine, lists, steps, profile)},
-              "threads": (threads, read["engines"]), "growth": (growth, read["macro"]),
-              "scaling": (scaling, read["scaling"]), "engines": (engines, read["engines"]),
-              "instructions": (instructions, read["instructions"] or read["engines"])}
-
-    def fill(match):
-        make, source = makers[match.group(1)]
-        return (make(source) if source else None) or "*Not measured yet.*"
-
-    text = re.sub(r"^\{(\w+)\}$", fill, (HERE / "text.md").read_text(), flags=re.M)
-    (HERE / "README.md").write_text(text)
+    for name, head, rows, source in (("contact_loop.csv", FEATURES, feature_rows, loop),
+                                     ("scaling.csv", SCALING, scaling_rows, read["scaling"]),
+                                     ("engines.csv", ENGINES, engine_rows, read["engines"]),
+                                     ("threads.csv", THREADS, thread_rows, read["engines"])):
+        if source:
+            write_csv(name, head, rows(source))
+    text = "# Tables of the speed measurements\n\nWritten by `collect.py`; the [page](README.md) links to what they mean.\n"
+    for title, make, source in (("Other loops (processor time)", others, loop), ("Soft grains below the threshold", soft, loop),
+                                ("Whole steps", steps, loop), ("Making a list", lists, loop),
+                                ("What this machine can do", machine, loop), ("Macro scenes", growth, read["macro"]),
+                                ("How engines.csv was measured", how_compared, read["engines"]),
+                                ("Instructions of a whole step", instructions, read["instructions"] or read["engines"])):
+        text += f"\n## {title}\n\n{(make(source) if source else None) or '*Not measured.*'}\n"
+    (HERE / "tables.md").write_text(text)
     if loop:
         (HERE / "floor.svg").write_text(picture(loop))
     of = curves(read["scaling"], read["macro"])

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Tables and pictures of this folder from three runs and a comparison. The second run repeats the first with the damped relaxation,
-the third is both relaxations of old on 24 packings, and the comparison is that of results/relaxation/study.sh.
+"""Writes tables.md, relaxations.csv, cost.csv, law.toml and the pictures of this folder from three runs and a comparison; README.md and
+notes.md are written by hand. The second run repeats the first with the damped relaxation, the third has the damped relaxation and the
+published protocol on 24 packings, and the comparison is that of results/relaxation/study.sh.
 
   softgrain run pipelines/published.toml --out results/published_run
   softgrain run pipelines/published.toml --set measure.relaxation=damped --set measure.least_work={} --out results/published_damped
@@ -9,6 +10,7 @@ the third is both relaxations of old on 24 packings, and the comparison is that 
   python3 results/published/collect.py results/published_run results/published_damped results/relaxation_check \\
     results/relaxation_study/dynamics-finer.json
 """
+import csv
 import json
 import pathlib
 import shutil
@@ -24,6 +26,12 @@ FIGURES = {
     "axial-stress-oedometric": "macro_against_twin",
     "size-distribution-of-the-packed-grains": "size_distribution",
 }
+QUANTITIES = {"normal": ("Fn", "N"), "kt_initial": ("kt, initial slope", "N/m"), "kt_secant": ("kt, secant at 1 degree", "N/m")}
+RELAXATION_HEAD = ["pair", "quantity", "unit", "Delta", "packings"] + [
+    name + end for name in ("published protocol", "slow dynamics") for end in (" [unit]", ": error [unit]")] + [
+    "slow dynamics over published", "slow dynamics over published: error", "damped [unit]", "damped: error [unit]",
+    "damped over published", "damped over published: error"]
+COST_HEAD = ["pair", "state", "relaxation", "points", "loop passes per point", "contact evaluations per point", "time per point [s]"]
 
 
 def published(delta):
@@ -36,8 +44,17 @@ def table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(r) + " |" for r in rows]) + "\n"
 
 
-def pm(value, error, digits=3):
-    return f"{value:.{digits}g} ± {error:.2g}"
+def write_csv(name, head, rows):
+    with open(HERE / name, "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([head] + rows)
+
+
+def pm(value, error):
+    return " ± ".join(digits(value, error))
+
+
+def digits(value, error):
+    return [f"{value:.3g}", f"{error:.2g}"]
 
 
 def law_rows(laws):
@@ -89,15 +106,22 @@ def force_rows(checked, studied, law=None):
     return rows
 
 
-def ratio_rows(rows, damped):
-    by_delta = {round(r["delta"], 6): r for r in damped}
+def ratio_digits(r):
+    return digits(r["ratio"], r["ratio_error"]) if r["ratio"] is not None and r["ratio_error"] is not None else ["", ""]
+
+
+def relaxation_rows(run, damped):
+    """Three relaxations on the packings of the run: mean, error and ratio by pair, quantity and overlap."""
     out = []
-    for r in rows:
-        d = by_delta.get(round(r["delta"], 6))
-        if not r["reference"] or not d:
-            continue
-        out.append([f"{r['delta']:.3f}", pm(r["reference"], r["reference_error"]), pm(r["candidate"], r["candidate_error"]), ratio(r),
-                    pm(d["candidate"], d["candidate_error"]), ratio(d), str(r["packings"])])
+    for pair in ("soft-solid", "soft-soft"):
+        for key, (quantity, unit) in QUANTITIES.items():
+            by_delta = {round(r["delta"], 6): r for r in damped["relaxations"][pair][key]}
+            for r in run["relaxations"][pair][key]:
+                d = by_delta.get(round(r["delta"], 6))
+                if not r["reference"] or not d:
+                    continue
+                out.append([pair, quantity, unit, f"{r['delta']:.3f}", r["packings"], *digits(r["reference"], r["reference_error"]),
+                            *digits(r["candidate"], r["candidate_error"]), *ratio_digits(r), *digits(d["candidate"], d["candidate_error"]), *ratio_digits(d)])
     return out
 
 
@@ -116,47 +140,39 @@ def cost_rows(relaxations, damped):
     return rows
 
 
-def main():
-    run_dir, damped_dir, check_dir, study_file = (pathlib.Path(p) for p in sys.argv[1:5])
-    run, old, check = (json.loads((d / "summary.json").read_text()) for d in (run_dir, damped_dir, check_dir))
-    study = json.loads(study_file.read_text())
-    p, c = run["packings"], run["comparison"]
+def tables_page(run, old, check, study):
+    p, c, macro = run["packings"], run["comparison"], run["macro"]
     scale = 5e5 * 0.016**2  # E Rs^2 [N]
-    made = {name: r["provenance"]["commit"] for name, r in (("damped", old), ("check", check))}
-    text = "# The published experiment\n\n"
-    text += (f"Made by `collect.py` from `softgrain run pipelines/published.toml` (slow-dynamics; version {run['provenance']['version']}, commit "
-             f"{run['provenance']['commit']}, status {run['status']}), the same with `--set measure.relaxation=damped --set measure.least_work={{}}` (commit {made['damped']}), "
-             f"`softgrain microsim pipelines/relaxation_check.toml` (commit {made['check']}) and the [study of the relaxations](../relaxation/README.md).\n\n")
-    text += (HERE / "notes.md").read_text() + "\n"
+    text = "# Tables of the published experiment\n\n"
+    text += (f"Written by `collect.py` from the runs named there: `pipelines/published.toml` (slow dynamics, version {run['provenance']['version']}, "
+             f"commit {run['provenance']['commit']}, status {run['status']}), the same with the damped relaxation (commit {old['provenance']['commit']}), "
+             f"`pipelines/relaxation_check.toml` (commit {check['provenance']['commit']}) and the [study of the relaxations](../relaxation/README.md).\n\n")
     text += (f"{p['count']} packings: {p['grains']:.0f} grains, solid fraction {p['solid_fraction']:.4f} ± {p['solid_fraction_deviation']:.4f} "
              f"(deviation), {p['contacts_per_grain']:.2f} contacts per grain, re-fitted exponent {p['exponent']:.2f} ± {p['exponent_deviation']:.2f}.\n\n")
-    text += "![normal law](normal_law.svg)\n\n"
     law_head = ["pair", "quantity", "a", "b", "c", "delta", "unit", "status"]
-    text += "## Laws (slow-dynamics, 95 % intervals by bootstrap over packings)\n\n" + table(law_head, law_rows(run["laws"]))
+    text += "## Laws by slow dynamics\n\n95 % intervals by bootstrap over packings.\n\n" + table(law_head, law_rows(run["laws"]))
     text += "\nPublished, soft-solid normal: a = 73.669 N, b = 2.799, c = -0.035 N, delta = 0.065. a, b and delta are nearly degenerate: compare F.\n"
-    text += "\n### The same packings by the damped relaxation\n\n" + table(law_head, law_rows(old["laws"]))
-    sides = ["published protocol (B)", "slow-dynamics (B)", "ratio", "published protocol (A)", "damped (A)", "ratio"]
-    text += "\n## F(Delta), soft-solid, against the published law [N]\n\nA: 24 packings (seed 1); B: 24 others (seed 2001) that no setting was chosen on.\n\n"
+    text += "\n## Laws by the damped relaxation, same packings\n\n" + table(law_head, law_rows(old["laws"]))
+    sides = ["published protocol (B)", "slow dynamics (B)", "ratio", "published protocol (A)", "damped (A)", "ratio"]
+    text += "\n## F(Delta), soft-solid, against the published law [N]\n\nA: 24 packings (seed 1). B: 24 others (seed 2001) that no setting was chosen on.\n\n"
     text += table(["Delta", "published law"] + sides, force_rows(check["relaxations"]["soft-solid"]["normal"], study_rows(study, "soft-solid", scale), published))
     text += "\n## F(Delta), soft-soft [N]\n\n"
     text += table(["Delta"] + sides, force_rows(check["relaxations"]["soft-soft"]["normal"], study_rows(study, "soft-soft", scale)))
-    for kind in ("soft-solid", "soft-soft"):
-        for key, name in (("normal", "Fn [N]"), ("kt_initial", "kt, initial slope [N/m]"), ("kt_secant", "kt, secant at 1 degree [N/m]")):
-            text += f"\n## {name}, {kind}, {p['count']} packings\n\n"
-            text += table(["Delta", "published protocol", "slow-dynamics", "ratio", "damped", "ratio", "packings"],
-                          ratio_rows(run["relaxations"][kind][key], old["relaxations"][kind][key]))
-    text += "\n## Cost per recorded point\n\n"
-    text += table(["pair", "state", "relaxation", "points", "loop passes", "contact evaluations", "seconds"], cost_rows(run["relaxations"], old["relaxations"]))
-    text += "\nSeconds are of one thread on a machine that had other work; loop passes and contact evaluations do not depend on that.\n"
-    text += "\n![ratio of the relaxations](relaxations_ratio.svg)\n\n## Macro against its shelled twin\n\n"
-    text += (f"{run['macro']['samples']} samples of {run['macro']['bodies']} bodies, {100 * run['macro']['soft_volume_share']:.0f} % soft by volume, "
-             f"{run['resolved']['grains_inside']} grains in a twin. Axial stress differs by {100 * c['stress_error']:.0f} % "
-             f"(± {100 * c['stress_error_standard_error']:.0f} %, relative L2); at the end the law gives {c['end_stress_ratio']:.2f} of the twin's stress. "
-             f"{c['speedup_contact_evaluations']:.0f} times fewer contact evaluations, {c['speedup_seconds']:.0f} times less time. "
-             "The pair law is measured with one contact; with neighbours all around a soft particle is stiffer.\n\n![macro](macro_against_twin.svg)\n")
+    text += "\n## Macro scene against its shelled twin\n\n"
+    text += (f"{macro['samples']} samples of {macro['bodies']} particles, {100 * macro['soft_volume_share']:.0f} % soft by volume, "
+             f"{run['resolved']['grains_inside']} grains in a twin. The axial stress differs by {100 * c['stress_error']:.0f} % "
+             f"(± {100 * c['stress_error_standard_error']:.0f} %, relative L2). At the end the law gives {c['end_stress_ratio']:.2f} of the twin's stress. "
+             f"It takes {c['speedup_contact_evaluations']:.0f} times fewer contact evaluations and {c['speedup_seconds']:.0f} times less time.\n")
     text += "\n## Remarks of the run\n\n" + "".join(f"- {r}\n" for r in run["remarks"])
-    text += "\nHow the packing moves the law: [packing_study.md](packing_study.md). kt beside the published one, and how shell, path and speed of the turn move it: [rotation_study.md](rotation_study.md).\n"
-    (HERE / "README.md").write_text(text)
+    return text
+
+
+def main():
+    run_dir, damped_dir, check_dir, study_file = (pathlib.Path(p) for p in sys.argv[1:5])
+    run, old, check = (json.loads((d / "summary.json").read_text()) for d in (run_dir, damped_dir, check_dir))
+    (HERE / "tables.md").write_text(tables_page(run, old, check, json.loads(study_file.read_text())))
+    write_csv("relaxations.csv", RELAXATION_HEAD, relaxation_rows(run, old))
+    write_csv("cost.csv", COST_HEAD, cost_rows(run["relaxations"], old["relaxations"]))
     for source, name in FIGURES.items():
         shutil.copy(run_dir / "figures" / f"{source}.svg", HERE / f"{name}.svg")
     card = (run_dir / "law.toml").read_text().splitlines()

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How beta, I (trials) and rmax/Rs move F(Delta), soft-solid, beside the published law: writes packing_study.md here.
+# How beta, I (trials) and rmax/Rs move F(Delta), soft-solid, beside the published law: writes packing_study.md and packing_study.csv here.
 # Usage: results/published/packing_study.sh [WORK_DIRECTORY]; about ten minutes on two cores.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # kt by a slow turn beside the published stiffness, and what the shell, the path and the speed of the turn make of it: writes
-# rotation_study.md and its pictures here. Usage: results/published/rotation_study.sh [WORK_DIRECTORY]; ten minutes of one core.
+# rotation_study.md, rotation_study.csv and the pictures here. Usage: results/published/rotation_study.sh [WORK_DIRECTORY]; ten minutes of one core.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=${1:-$root/results/rotation_study}

@@ -1,5 +1,9 @@
 #!/usr/bin/env python3
-"""Table and picture of this folder from the runs of study.sh: python3 results/relaxation/collect.py WORK_DIRECTORY"""
+"""Writes one_contact.csv, stiffness.csv and error_against_cost.svg from the runs of study.sh; the pages are written by hand.
+
+  python3 results/relaxation/collect.py WORK_DIRECTORY
+"""
+import csv
 import json
 import math
 import pathlib
@@ -18,7 +22,10 @@ SETTINGS = {
 }
 FILLED = ("dynamics-finer", "least-work", "damped")
 SHELL_STIFFNESS = 5e5 * 0.016  # E Rs [N/m], by which the comparison divides kt
-QUANTITIES = {"normal_force": "Fn", "stiffness_initial": "kt, initial slope", "stiffness_secant": "kt, secant at 1°"}
+QUANTITIES = {"normal_force": "Fn", "stiffness_initial": "kt, initial slope", "stiffness_secant": "kt, secant at 1 degree"}
+HEAD = ["pair", "relaxation", "quantity", "Delta", "bias [%]", "error [%]", "passes per point", "published mean [Fn: E Rs^2, kt: E Rs]",
+        "published passes per point"]
+STIFFNESS_HEAD = ["quantity", "Delta", "part", "packings", "bias [%]", "error [%]"]
 
 
 def load(work):
@@ -34,36 +41,33 @@ def bias(row):
     return 100.0 * (row["ratio"] - 1.0), 100.0 * row["ratio_standard_error"]
 
 
-def cell(row):
+def cells(row):
     if row["ratio"] is None or row["ratio_standard_error"] is None:
-        return "-"
+        return ["", ""]
     value, error = bias(row)
-    return f"{value:+.1f} ± {error:.1f}"
+    return [f"{value:+.1f}", f"{error:.1f}"]
 
 
-def passes(m):
-    """Loop passes per recorded point: along the overlaps, after a rotation, and in a plan of 12 overlaps with 12 angles each."""
-    normal, rotated = (m["cost"][f"candidate_{k}"]["loop_passes_per_point"] for k in ("normal", "tangential"))
-    return normal, rotated
+def write_csv(name, head, rows):
+    with open(HERE / name, "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([head] + rows)
 
 
-def table(runs, pair):
-    first = next(iter(runs.values()))[pair]
-    head = ["relaxation"]
-    for key, word in QUANTITIES.items():
-        head += [f"{word} {r['delta']:.2f}" for r in first[key]]
-    head += ["passes/point", "rotated"]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    for name, by_pair in runs.items():
-        m = by_pair[pair]
-        cells = [SETTINGS[name][0]] + [cell(r) for key in QUANTITIES for r in m[key]]
-        cells += [f"{c:.0f}" for c in passes(m)]
-        lines.append("| " + " | ".join(cells) + " |")
-    m = first
-    reference = [m["cost"][f"reference_{k}"]["loop_passes_per_point"] for k in ("normal", "tangential")]
-    counts = [f"{r['reference']['mean']:.3g}" for key in QUANTITIES for r in m[key]]
-    lines.append("| *published: mean, dimensionless* | " + " | ".join(counts + [f"{c:.0f}" for c in reference]) + " |")
-    return "\n".join(lines) + "\n"
+def passes(m, which="candidate"):
+    """Loop passes per recorded point: along the overlaps, and after a rotation."""
+    return [m["cost"][f"{which}_{k}"]["loop_passes_per_point"] for k in ("normal", "tangential")]
+
+
+def bias_rows(runs):
+    rows = []
+    for pair in ("soft-solid", "soft-soft"):
+        for name, by_pair in runs.items():
+            m = by_pair[pair]
+            for key, quantity in QUANTITIES.items():
+                ours, published = (passes(m, which)[key != "normal_force"] for which in ("candidate", "reference"))
+                rows += [[pair, SETTINGS[name][0], quantity, f"{r['delta']:.2f}", *cells(r), f"{ours:.0f}", f"{r['reference']['mean']:.3g}",
+                          f"{published:.0f}"] for r in m[key]]
+    return rows
 
 
 def stiffness_parts(work, runs):
@@ -82,22 +86,22 @@ def stiffness_parts(work, runs):
     return parts
 
 
-def stiffness_table(work, runs):
+def stiffness_rows(work, runs):
     """Every part, and the ratio of the means over all their packings (parts weigh with packings times mean). A part in which a packing
-    rearranged during the rotation shows an error above 100 %: it has no slope and does not count."""
-    lines = ["| quantity | Delta | parts: packings, bias in % | packings | all [%] |", "|---|---|---|---|---|"]
+    rearranged during the rotation shows an error above 100 %: it has no slope, stays empty and does not count."""
+    rows = []
     for (quantity, delta), parts in sorted(stiffness_parts(work, runs).items()):
-        each = "; ".join(f"{n}: {100 * (r - 1):+.1f} ± {100 * e:.1f}" if e < 1.0 else f"{n}: jump" for n, _, r, e in parts)
+        name = [QUANTITIES["stiffness_" + quantity], f"{delta:.2f}"]
+        rows += [name + [f"part {k}", n] + ([f"{100 * (r - 1):+.1f}", f"{100 * e:.1f}"] if e < 1.0 else ["", ""])
+                 for k, (n, _, r, e) in enumerate(parts, 1)]
         parts = [p for p in parts if p[3] < 1.0]
         if not parts:
-            lines.append(f"| {QUANTITIES['stiffness_' + quantity]} | {delta:.2f} | {each} | 0 | - |")
             continue
         weights = [n * mean for n, mean, _, _ in parts]
         ratio = sum(w * r for w, (_, _, r, _) in zip(weights, parts)) / sum(weights)
         error = math.sqrt(sum((w * e) ** 2 for w, (_, _, _, e) in zip(weights, parts))) / sum(weights)
-        lines.append(f"| {QUANTITIES['stiffness_' + quantity]} | {delta:.2f} | {each} | {sum(p[0] for p in parts)} | "
-                     f"{100 * (ratio - 1):+.1f} ± {100 * error:.1f} |")
-    return "\n".join(lines) + "\n"
+        rows.append(name + ["all", sum(p[0] for p in parts), f"{100 * (ratio - 1):+.1f}", f"{100 * error:.1f}"])
+    return rows
 
 
 class Panel:
@@ -196,10 +200,8 @@ def main():
     work = pathlib.Path(sys.argv[1])
     runs = load(work)
     (HERE / "error_against_cost.svg").write_text(picture(runs))
-    text = (HERE / "text.md").read_text()
-    tables = "".join(f"\n### {pair}\n\n{table(runs, pair)}" for pair in ("soft-solid", "soft-soft"))
-    text = text.replace("{{TABLES}}", tables.strip() + "\n").replace("{{STIFFNESS}}", stiffness_table(work, runs))
-    (HERE / "README.md").write_text(text)
+    write_csv("one_contact.csv", HEAD, bias_rows(runs))
+    write_csv("stiffness.csv", STIFFNESS_HEAD, stiffness_rows(work, runs))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Error against cost of every relaxation, on 24 packings that no setting was chosen on: writes README.md and the pictures of
+# Error against cost of every relaxation, on 24 packings that no setting was chosen on: writes the CSV files and the picture of
 # this folder. Usage: results/relaxation/study.sh [WORK_DIRECTORY]; an hour and a half on two cores, most of it the reference.
 # Finished runs in WORK_DIRECTORY are kept.
 set -euo pipefail
@@ -35,20 +35,20 @@ for seed in 3001 3002 3003; do
       >/dev/null || [ $? -eq 3 ]
 done
 # With several neighbours.
-crowd() { # name, then key=value ...
+multi_contact() { # name, then key=value ...
   local name=$1 options=() setting
   shift
   for setting in "$@"; do options+=(--set "$setting"); done
   [ -f "$work/$name/summary.json" ] ||
-    "$program" run "$root/results/relaxation/crowd_study.toml" --out "$work/$name" --resume --quiet "${options[@]}" >/dev/null ||
+    "$program" run "$root/results/relaxation/multi_contact_study.toml" --out "$work/$name" --resume --quiet "${options[@]}" >/dev/null ||
     [ $? -eq 3 ]
 }
-crowd crowd-scenes
-crowd crowd-finer crowd.step_factor=2 crowd.settle_time=480
-crowd crowd-longer crowd.settle_time=480
-crowd crowd-short crowd.step_factor=2 crowd.settle_time=120
-crowd crowd-damped crowd.relaxation=damped
-crowd crowd-damped-half crowd.relaxation=damped crowd.increment=0.0025
-crowd crowd-published crowd.relaxation=published
-python3 "$root/results/relaxation/crowd.py" "$work"
+multi_contact multi-contact-scenes
+multi_contact multi-contact-finer multi_contact.step_factor=2 multi_contact.settle_time=480
+multi_contact multi-contact-longer multi_contact.settle_time=480
+multi_contact multi-contact-short multi_contact.step_factor=2 multi_contact.settle_time=120
+multi_contact multi-contact-damped multi_contact.relaxation=damped
+multi_contact multi-contact-damped-half multi_contact.relaxation=damped multi_contact.increment=0.0025
+multi_contact multi-contact-published multi_contact.relaxation=published
+python3 "$root/results/relaxation/multi_contact.py" "$work"
 python3 "$root/results/relaxation/collect.py" "$work"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Tables of this folder (needs h5py): python3 results/shear_and_rolling/collect.py RUN writes tables.md of a run of study.toml,
-collect.py --depths RUN writes depths.md of a run of pipelines/law_table.toml."""
+"""Tables of this folder (needs h5py): python3 results/shear_and_rolling/collect.py RUN writes paths.csv of a run of study.toml,
+collect.py --depths RUN writes depths.csv of a run of pipelines/law_table.toml. The pages are written by hand."""
+import csv
 import pathlib
 import sys
 
@@ -75,8 +76,13 @@ def line(name, s, before):
     n = np.array(s["N"])
     t, te = share(np.array(s["T"]) - (np.array(before["T"]) if before else 0.0), n)
     m, me = share(np.array(s["M"]) - (np.array(before["M"]) if before else 0.0), n)
-    return (f"| {name} | {s['overlap']:.2f} | {s['slide']:.3f} | {s['roll']:.3f} | {n.mean():.5f} | {n.std(ddof=1) / len(n) ** 0.5:.5f} | "
-            f"{t:+.3f} ± {te:.3f} | {m:+.3f} ± {me:.3f} |")
+    return [name, f"{s['overlap']:.2f}", f"{s['slide']:.3f}", f"{s['roll']:.3f}", f"{n.mean():.5f}", f"{n.std(ddof=1) / len(n) ** 0.5:.5f}",
+            f"{t:+.3f}", f"{te:.3f}", f"{m:+.3f}", f"{me:.3f}"]
+
+
+def write_csv(name, head, rows):
+    with open(HERE / name, "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([head] + rows)
 
 
 def paired(state, before):
@@ -103,39 +109,46 @@ SLIDES = (np.pi / 180.0, 0.04, 0.08, 0.16, 0.3, 0.6)
 
 def depths(run):
     """Drag of a slide over how deep the neighbour is pressed in."""
-    slides = " | ".join(f"{s:.3g}" for s in SLIDES)
-    lines = [f"| neighbour | h/Rs | packings | N/(E Rs²) | T/N at {slides} | kt h/N | kt √(h Rs)/N | N at the end |", "|" + "---|" * (len(SLIDES) + 7)]
-    for name, states in load(run / "crowd.h5").items():
+    head = ["neighbour", "overlap h [Rs]", "packings", "N [E Rs^2]"]
+    for slide in SLIDES:
+        head += [f"T/N at a slide of {slide:.3g} Rs", f"T/N at {slide:.3g} Rs: error"]
+    head += ["kt h/N", "kt h/N: error", "kt sqrt(h Rs)/N", "kt sqrt(h Rs)/N: error", "N at the end over N"]
+    rows = []
+    for name, states in load(run / "multi_contact.h5").items():
         moves = [s for s in states if s["slide"]]
         if not moves or not name.endswith("slide"):
             continue
         before = next(s for s in reversed(states) if not s["slide"])
         h = before["overlap"]
         along = [drag_at(moves, before, s) for s in SLIDES]
-        stiffness, error = (x / SLIDES[0] for x in along[0])
-        lines.append(f"| {name.rsplit('-', 2)[0]} | {h:.2f} | {len(before['N'])} | {np.mean(before['N']):.5f} | "
-                     + " | ".join(f"{t:.3f} ± {e:.3f}" for t, e in along)
-                     + f" | {stiffness * h:.2f} ± {error * h:.2f} | {stiffness * h**0.5:.2f} ± {error * h**0.5:.2f} | "
-                     + f"{np.mean(moves[-1]['N']) / np.mean(before['N']):.2f} |")
-    (HERE / "depths.md").write_text("\n".join(lines) + "\n")
+        stiffness = [x / SLIDES[0] for x in along[0]]
+        rows.append([name.rsplit("-", 2)[0], f"{h:.2f}", len(before["N"]), f"{np.mean(before['N']):.5f}"]
+                    + [f"{x:.3f}" for drag in along for x in drag] + [f"{x * w:.2f}" for w in (h, h**0.5) for x in stiffness]
+                    + [f"{np.mean(moves[-1]['N']) / np.mean(before['N']):.2f}"])
+    write_csv("depths.csv", head, rows)
+
+
+def paths(run):
+    rows = []
+    for name, states in load(run / "multi_contact.h5").items():
+        moves = [s for s in states if s["slide"] or s["roll"]]
+        before = next((s for s in reversed(states) if not s["slide"] and not s["roll"]), None)
+        if "oblique" in name or not moves:
+            rows.append(line(name, states[-1], None))
+            continue
+        rows.append(line(name, before, None))
+        ends = [k for k in range(len(moves)) if k + 1 == len(moves) or moves[k + 1]["stage"] != moves[k]["stage"]]
+        middle = [k for k in range(0, len(moves), 2)] if len(ends) == 1 else []
+        rows += [line(name, moves[k], before) for k in sorted(set(middle + ends))]
+    write_csv("paths.csv", ["path", "overlap h [Rs]", "slide [Rs]", "roll [Rs]", "N [E Rs^2]", "N: error [E Rs^2]", "T/N", "T/N: error", "M/(N Rs)",
+                            "M/(N Rs): error"], rows)
 
 
 def main():
     if sys.argv[1] == "--depths":
         depths(pathlib.Path(sys.argv[2]))
-        return
-    lines = ["| path | h/Rs | slid | rolled | N/(E Rs²) | ± | T/N | M/(N Rs) |", "|" + "---|" * 8]
-    for name, states in load(pathlib.Path(sys.argv[1]) / "crowd.h5").items():
-        moves = [s for s in states if s["slide"] or s["roll"]]
-        before = next((s for s in reversed(states) if not s["slide"] and not s["roll"]), None)
-        if "oblique" in name or not moves:
-            lines.append(line(name, states[-1], None))
-            continue
-        lines.append(line(name, before, None))
-        ends = [k for k in range(len(moves)) if k + 1 == len(moves) or moves[k + 1]["stage"] != moves[k]["stage"]]
-        middle = [k for k in range(0, len(moves), 2)] if len(ends) == 1 else []
-        lines += [line(name, moves[k], before) for k in sorted(set(middle + ends))]
-    (HERE / "tables.md").write_text("\n".join(lines) + "\n")
+    else:
+        paths(pathlib.Path(sys.argv[1]))
 
 
 if __name__ == "__main__":

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Stress tests of numerical stability: study.py PROGRAM [--quick] [--page README.md]. Standard library only.
+"""Stress tests of numerical stability: study.py PROGRAM [--quick] [--table cases.csv]. Standard library only.
 
 Every case is a scene that is run by the program, and a closed form or a rule that its outcome is held against. A case ends
 in one of four ways: "held" (good, and within the stated error), "refused" (exit status 2 before any work), "stopped" (exit
 status 3: a guard or the residual said so, and the summary says why), or "WRONG" (good status and a wrong number, not a
 number, a crash, a hang). The study fails when a case is WRONG or ends otherwise than the case says it should.
---quick leaves out what takes long; it is a test of the default suite. --page writes the table.
+--quick leaves out what takes long; it is a test of the default suite. --table writes one row per case as CSV; README.md is
+written by hand.
 """
 import argparse
+import csv
 import gzip
 import json
 import math
@@ -383,49 +385,33 @@ def oversubscribed(program, directory):
 
 # Table -------------------------------------------------------------------------------------------------------------------
 
-def show(case):
+def row(case):
     o = case.outcome
-    error = "" if o.error is None else f"{o.error:.1e}"
-    said = re.sub(r"[^\s(]*/scene\.toml", "scene.toml", o.text).replace("softgrain: ", "").replace("|", "/").replace("\n", " ")
-    said = said if len(said) < 220 else said[:217] + "..."
-    return f"| {plain(case.value)} | {o.kind} | {error} | {said} |"
+    message = re.sub(r"[^\s(]*/scene\.toml", "scene.toml", o.text).replace("softgrain: ", "").replace("\n", " ")
+    message = message if len(message) < 220 else message[:217] + "..."
+    return (case.axis, plain(case.value), o.kind, "" if o.error is None else f"{o.error:.1e}",
+            "" if case.quantity == "-" else case.quantity, message)
 
 
 def plain(value):
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def page(done, commit, path):
-    notes = os.path.join(os.path.dirname(os.path.abspath(path)), "notes.md")
-    text = "# Stress tests of numerical stability\n\n"
-    text += f"Made by `results/stability/study.py PROGRAM --page results/stability/README.md` (commit {commit}).\n\n"
-    if os.path.exists(notes):
-        text += open(notes).read().rstrip() + "\n\n"
-    axes = []
-    for c in done:
-        if c.axis not in axes:
-            axes.append(c.axis)
-    text += "| varied | held | refused (status 2) | stopped (status 3) |\n|---|---|---|---|\n"
-    for axis in axes:
-        of = lambda kind: ", ".join(plain(c.value) for c in done if c.axis == axis and c.outcome.kind == kind)
-        text += f"| {axis} | {of('held')} | {of('refused')} | {of('stopped')} |\n"
-    for axis in axes:
-        mine = [c for c in done if c.axis == axis]
-        text += f"\n## {axis}\n\nError: {mine[0].quantity}.\n\n| value | outcome | error | said |\n|---|---|---|---|\n"
-        text += "\n".join(show(c) for c in mine) + "\n"
-    with open(path, "w") as f:
-        f.write(text)
+def write_table(done, path):
+    with open(path, "w", newline="") as f:
+        head = ("varied", "value", "outcome", "error [-]", "what the error is of", "message")
+        csv.writer(f, lineterminator="\n").writerows([head, *map(row, done)])
 
 
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("program")
     arguments.add_argument("--quick", action="store_true")
-    arguments.add_argument("--page")
+    arguments.add_argument("--table")
     arguments.add_argument("--only", default="")
     o = arguments.parse_args()
     program = os.path.abspath(o.program)
-    done, failed, commit = [], 0, "unknown"
+    done, failed = [], 0
     with tempfile.TemporaryDirectory() as directory:
         everything = cases() + soft_cases()
         if not o.quick:
@@ -436,7 +422,6 @@ def main():
             place = os.path.join(directory, str(n))
             os.mkdir(place)
             status, summary, said, case.seconds = run(program, case.scene, place, case.command, case.more, case.limit)
-            commit = (summary or {}).get("commit", commit)
             case.outcome = judge(status, summary, said, case.check, case.bound)
             wrong = case.outcome.kind not in case.allowed
             failed += wrong
@@ -450,8 +435,8 @@ def main():
             failed += threads.outcome.kind != "held"
             done.append(threads)
             print("threads:", threads.outcome.kind, threads.outcome.text)
-    if o.page:
-        page(done, commit, o.page)
+    if o.table:
+        write_table(done, o.table)
     print(f"{len(done)} cases, {failed} not as they should be")
     return 1 if failed else 0
 
